@@ -1,0 +1,53 @@
+// Sparse LU of 6 x 6 blocks (one per node) with its pattern fixed at build.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "solver/types.h"
+
+namespace topple {
+
+/// A x = b for an unsymmetric matrix with a symmetric block pattern, one 6 x 6 block row per node, eliminated
+/// in minimum-degree order without pivoting between blocks.
+class BlockLu {
+ public:
+  /// `edges`: pairs of nodes 0..nodes-1 that couple.
+  BlockLu(int nodes, const std::vector<std::pair<int, int>>& edges);
+
+  void set_zero();
+  /// Adds to block (i, j), which must be on the diagonal or an edge.
+  template <class Block>
+  void add(int i, int j, const Block& block) {
+    double* out = values_.data() + k_block * index(i, j);
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) out[k_stride * r + c] += block(r, c);
+  }
+  /// Makes x[6 i + k] = b[6 i + k]: row and diagonal of a fixed direction.
+  void fix(int i, int k);
+  /// Node at fault when a diagonal block is singular, else -1.
+  int factor();
+  /// Overwrites b (6 per node) with x.
+  void solve(double* b) const;
+
+ private:
+  static constexpr int k_stride = 8;  ///< columns per row: two 32-byte vectors
+  static constexpr int k_block = 6 * k_stride;
+  int index(int i, int j) const;
+
+  struct Column {
+    std::vector<int> rows;    ///< eliminated later and coupled, permuted numbers, ascending
+    std::vector<int> lower;   ///< block numbers of (row, this)
+    std::vector<int> upper;   ///< block numbers of (this, row)
+    std::vector<int> update;  ///< block numbers of (row a, row b), row-major
+  };
+  int nodes_;
+  std::vector<int> place_;    ///< node to position in the order
+  std::vector<int> node_at_;  ///< inverse
+  std::vector<int> lookup_;   ///< permuted (i, j) to block number, -1: none
+  std::vector<Column> columns_;
+  std::vector<double> values_;
+};
+
+}  // namespace topple

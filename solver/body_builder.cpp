@@ -1,0 +1,181 @@
+#include "solver/body_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+Mat3 member_triad(const Vec3& from, const Vec3& to, Vec3 up) {
+  const Vec3 x = (to - from).normalized();
+  if (up.isZero()) up = std::abs(x.z()) > 0.999 ? Vec3::UnitX() : Vec3::UnitZ();
+  const Vec3 z = up - up.dot(x) * x;
+  if (z.norm() < 1e-6 * up.norm()) throw BuildError("up", "up is parallel to the member");
+  Mat3 triad;
+  triad.col(0) = x;
+  triad.col(2) = z.normalized();
+  triad.col(1) = triad.col(2).cross(x);
+  return triad;
+}
+
+// Counter-clockwise hull of points in the horizontal plane (Andrew 1979); collinear points are left out.
+std::vector<Vec3> convex_hull(std::vector<Vec3> points, double tolerance) {
+  std::sort(points.begin(), points.end(),
+            [](const Vec3& a, const Vec3& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  std::vector<Vec3> hull;
+  const auto half = [&](auto begin, auto end) {
+    const std::size_t base = hull.size();
+    for (auto it = begin; it != end; ++it) {
+      while (hull.size() >= base + 2) {
+        const Vec3 a = hull[hull.size() - 1] - hull[hull.size() - 2], b = *it - hull[hull.size() - 2];
+        if (a.x() * b.y() - a.y() * b.x() > tolerance) break;
+        hull.pop_back();
+      }
+      hull.push_back(*it);
+    }
+    hull.pop_back();
+  };
+  half(points.begin(), points.end());
+  half(points.rbegin(), points.rend());
+  return hull;
+}
+
+}  // namespace
+
+BodyBuilder::BodyBuilder(Model& model, const std::string& name)
+    : model_(model), body_(static_cast<int>(model.bodies.size())) {
+  Body new_body{};
+  new_body.name = name;
+  new_body.first_node = model.node_total();
+  new_body.first_element = static_cast<int>(model.elements.size());
+  new_body.first_member = static_cast<int>(model.members.size());
+  new_body.first_contact_point = static_cast<int>(model.contact_points.size());
+  model.bodies.push_back(new_body);
+}
+
+int BodyBuilder::node(const Vec3& position) {
+  const auto cell = [](double x) { return std::llround(x / k_same_place); };
+  const auto key = std::make_tuple(cell(position.x()), cell(position.y()), cell(position.z()));
+  for (long long dx = -1; dx <= 1; ++dx)
+    for (long long dy = -1; dy <= 1; ++dy)
+      for (long long dz = -1; dz <= 1; ++dz) {
+        const auto found =
+            places_.find({std::get<0>(key) + dx, std::get<1>(key) + dy, std::get<2>(key) + dz});
+        if (found != places_.end()) return found->second;
+      }
+  const int index = model_.node_total();
+  places_[key] = index;
+  model_.node_position.push_back(position);
+  model_.node_mass.push_back(0);
+  model_.node_inertia.push_back(Mat3::Zero());
+  model_.node_body.push_back(body_);
+  ++body().node_count;
+  return index;
+}
+
+std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, const Vec3& to, int members,
+                                   int elements, int section, int material, const Vec3& up) {
+  const Section& profile = model_.sections[section];
+  const Material& stuff = model_.materials[material];
+  const double shear = stuff.young / (2 * (1 + stuff.poisson));
+  const int total = members * elements;
+  Element element;
+  element.length = (to - from).norm() / total;
+  element.triad = member_triad(from, to, up);
+  element.normal_stiffness = {stuff.young * profile.area, shear * profile.area * profile.ky,
+                              shear * profile.area * profile.kz};
+  element.bending_stiffness = {shear * profile.j, stuff.young * profile.iy, stuff.young * profile.iz};
+  std::vector<int> nodes;
+  for (int i = 0; i <= total; ++i)
+    nodes.push_back(node(from + (to - from) * (static_cast<double>(i) / total)));
+  for (int m = 0; m < members; ++m) {
+    Member member;
+    member.name = members == 1 ? name : name + "-" + std::to_string(m + 1);
+    member.body = body_;
+    member.first_element = static_cast<int>(model_.elements.size());
+    member.element_count = elements;
+    member.section = section;
+    member.material = material;
+    for (int e = 0; e < elements; ++e) {
+      const int i = m * elements + e;
+      element.node[0] = nodes[i];
+      element.node[1] = nodes[i + 1];
+      element.member = static_cast<int>(model_.members.size());
+      element.s = e % 2 == 0 ? k_gauss_shift : -k_gauss_shift;
+      model_.elements.push_back(element);
+      ++body().element_count;
+    }
+    model_.members.push_back(member);
+    ++body().member_count;
+  }
+  return nodes;
+}
+
+void BodyBuilder::add_material_mass() {
+  for (int m = body().first_member; m < body().first_member + body().member_count; ++m) {
+    const Member& member = model_.members[m];
+    const Section& section = model_.sections[member.section];
+    const double density = model_.materials[member.material].density;
+    for (int e = member.first_element; e < member.first_element + member.element_count; ++e) {
+      const Element& element = model_.elements[e];
+      const bool first = (e - member.first_element) % 2 == 0;
+      // Simpson's 1/6 : 2/3 : 1/6 over the pair: 1/3 and 2/3 of one element's own length
+      const double share[2] = {first ? 1. / 3 : 2. / 3, first ? 2. / 3 : 1. / 3};
+      const Mat3 rotary = density * element.length * element.triad *
+                          Vec3(section.iy + section.iz, section.iy, section.iz).asDiagonal() *
+                          element.triad.transpose();
+      for (int k = 0; k < 2; ++k) {
+        model_.node_mass[element.node[k]] += share[k] * density * section.area * element.length;
+        model_.node_inertia[element.node[k]] += share[k] * rotary;
+      }
+    }
+  }
+}
+
+void BodyBuilder::add_contact_point(int node, double width) {
+  model_.contact_points.push_back({node, width});
+  ++body().contact_point_count;
+}
+
+void BodyBuilder::close() {
+  Body& b = body();
+  b.mass = 0;
+  b.centre_of_gravity.setZero();
+  for (int i = b.first_node; i < b.first_node + b.node_count; ++i) {
+    b.mass += model_.node_mass[i];
+    b.centre_of_gravity += model_.node_mass[i] * model_.node_position[i];
+  }
+  b.centre_of_gravity /= b.mass;
+  b.inertia.setZero();
+  for (int i = b.first_node; i < b.first_node + b.node_count; ++i) {
+    const Mat3 arm = skew(model_.node_position[i] - b.centre_of_gravity);
+    b.inertia += model_.node_inertia[i] - model_.node_mass[i] * arm * arm;
+  }
+  b.base_centre = b.centre_of_gravity;
+  if (b.contact_point_count == 0) return;
+
+  double lowest = 1e300, highest = -1e300;
+  for (int i = b.first_contact_point; i < b.first_contact_point + b.contact_point_count; ++i) {
+    const double z = model_.node_position[model_.contact_points[i].node].z();
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
+  }
+  const double tolerance = 1e-6 * (highest - lowest) + k_same_place;
+  std::vector<Vec3> base;
+  for (int i = b.first_contact_point; i < b.first_contact_point + b.contact_point_count; ++i) {
+    const Vec3& x = model_.node_position[model_.contact_points[i].node];
+    if (x.z() > lowest + tolerance) continue;
+    b.base_points.push_back(i);
+    base.push_back(x);
+  }
+  if (base.size() < 3) return;
+  std::vector<Vec3> hull = convex_hull(base, 1e-9);
+  if (hull.size() < 3) return;
+  b.base_centre.setZero();
+  for (const Vec3& x : hull) b.base_centre += x / static_cast<double>(hull.size());
+  b.support_polygon = std::move(hull);
+}
+
+}  // namespace topple

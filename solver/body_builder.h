@@ -1,0 +1,46 @@
+// Lines of members into a model: what cabinets and frames have in common.
+#pragma once
+
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "solver/cabinet.h"
+#include "solver/model.h"
+
+namespace topple {
+
+/// Appends one body to a model: open, add lines and contact points, then close. Node positions that agree
+/// within k_same_place are one node.
+class BodyBuilder {
+ public:
+  static constexpr double k_same_place = 1e-7;  ///< m
+
+  BodyBuilder(Model& model, const std::string& name);
+
+  int node(const Vec3& position);
+  /// `members` equal members of `elements` elements each between two points. Returns the nodes along the
+  /// line.
+  std::vector<int> line(const std::string& name, const Vec3& from, const Vec3& to, int members, int elements,
+                        int section, int material, const Vec3& up);
+  /// Line mass rho A with Simpson weights, and the section's rotary inertia, of every member from its
+  /// density.
+  void add_material_mass();
+  void add_contact_point(int node, double width);
+  /// Fills mass, centre of gravity, inertia, base and support polygon.
+  void close();
+
+  Body& body() { return model_.bodies[body_]; }
+
+ private:
+  Model& model_;
+  int body_;
+  std::map<std::tuple<long long, long long, long long>, int> places_;
+};
+
+/// Integration point of the first element of a subset: the member's stress points fall on its Gauss points,
+/// r = 1 - 2/sqrt(3) there, mirrored in the second.
+inline constexpr double k_gauss_shift = 0.15470053837925152;  // 2/sqrt(3) - 1
+
+}  // namespace topple

@@ -1,0 +1,74 @@
+// Builders: bodies from members.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/model.h"
+
+namespace topple {
+
+/// A description that no body can be built from; what() is one sentence without file and line, `key` the
+/// scene key at fault ("cg_height").
+struct BuildError : std::runtime_error {
+  BuildError(std::string key_at_fault, const std::string& what)
+      : std::runtime_error(what), key(std::move(key_at_fault)) {}
+  std::string key;
+};
+
+/// A steel cabinet: twelve edges, shelves, and diagonals in place of its panels. Lengths between the centre
+/// lines of the edge members, which is where it rocks.
+struct CabinetSpec {
+  enum class Inertia { panels, solid, given };
+  enum class Pose { upright, on_back, on_front, on_side };
+  enum class Bracing { panels, none };
+  std::string name;
+  Vec3 size{0.38, 0.88, 1.79};  ///< m, depth (x), width (y), height (z)
+  double mass = 40;             ///< kg
+  double cg_height = 0.895;     ///< m above the bottom centre lines
+  Inertia inertia = Inertia::panels;
+  Vec3 inertia_given = Vec3::Zero();  ///< kg m^2 about the centre of gravity
+  double at_x = 0, at_y = 0;          ///< m, centre of the footprint in its pose
+  double yaw = 0;                     ///< rad
+  Pose pose = Pose::upright;
+  double tilt = 0;  ///< rad, about the bottom edge on the +x side before yaw; negative: -x side
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  int section = 0, material = 0;  ///< indices into the model's lists
+  int shelves = 0;
+  Bracing bracing = Bracing::panels;
+  double panel_thickness = 0.6e-3;  ///< m, of the sheet that the diagonals replace
+  int divisions = 1;                ///< members per edge
+};
+
+struct FrameMember {
+  int node[2];
+  int section, material;
+  int elements = 2;        ///< even
+  Vec3 up = Vec3::Zero();  ///< zero: z, or x for a vertical member
+};
+
+/// Anything made of straight members. Node numbers in supports, loads and masses count from 0 within the
+/// frame.
+struct FrameSpec {
+  std::string name;
+  std::vector<Vec3> nodes;  ///< m, world
+  std::vector<FrameMember> members;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  std::vector<std::pair<int, double>> masses;  ///< node, kg
+  double mass = 0;                             ///< kg, 0: from the densities
+  std::vector<Vec3> copies;                    ///< translations; empty: one at the origin
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+};
+
+/// Adds a cabinet that touches z = 0 with its members' surface. Throws BuildError.
+BodyStart add_cabinet(Model& model, const CabinetSpec& spec);
+
+/// Adds a frame, once per copy. The user's node k of copy c is `first_node + k` of body c. Throws BuildError.
+std::vector<BodyStart> add_frame(Model& model, const FrameSpec& spec);
+
+}  // namespace topple

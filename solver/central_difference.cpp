@@ -1,0 +1,167 @@
+#include "solver/central_difference.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "solver/beam.h"
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+constexpr int k_power_iterations = 400;
+
+bool fixed_direction(const BodySystem& s, int node, int direction) {
+  return s.fixed[node] >> direction & 1;
+}
+
+void clear_fixed(const BodySystem& s, int node, Vec3& translation, Vec3& rotation) {
+  for (int k = 0; k < 3; ++k) {
+    if (fixed_direction(s, node, k)) translation[k] = 0;
+    if (fixed_direction(s, node, 3 + k)) rotation[k] = 0;
+  }
+}
+
+// Velocity v of a touching node with mass/(h/2) (v - v_half) = rest + contact forces at v.
+Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double mass, double h,
+                    const Vec3& half, const Vec3& rest, std::span<TouchingPair> pairs,
+                    std::span<const Vec3> sticks) {
+  Vec3 v = half;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    Vec3 residual = 2 * mass / h * (v - half) - rest;
+    Mat3 slope = 2 * mass / h * Mat3::Identity();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      TouchingPair& pair = pairs[k];
+      Mat3 by_position, by_velocity;
+      const ContactInput input{
+          s.model.planes[pair.plane].normal, pair.depth, pair.L, v, sticks[k], s.contact_mass};
+      pair.out = contact_force(law, input, by_position, by_velocity);
+      residual -= pair.out.force;
+      slope -= by_velocity;
+    }
+    const Vec3 correction = slope.inverse() * residual;
+    v -= correction;
+    for (int k = 0; k < 3; ++k)
+      if (fixed_direction(s, node, k)) v[k] = 0;
+    if (!(correction.norm() > 1e-12 * (1 + v.norm()))) break;
+  }
+  return v;
+}
+
+}  // namespace
+
+StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State& state, double t, double h,
+                                      IntegratorScratch& w, StepEnergy& energy) {
+  const int n = s.count;
+  s.load(state, w.start);
+  w.trial.resize(n);
+  w.travel.resize(n);
+  const std::span<const Vec3> stick(state.stick);
+  s.find_contacts(p.contact, w.start, stick, w.start.position, w.contacts_start);
+  for (int i = 0; i < n; ++i) {
+    const int g = s.first + i;
+    w.trial.velocity[i] = w.start.velocity[i] + h / 2 * state.acceleration[g];
+    w.trial.angular_velocity[i] = w.start.angular_velocity[i] + h / 2 * state.angular_acceleration[g];
+    w.trial.position[i] = w.start.position[i] + h * w.trial.velocity[i];
+    w.trial.rotation[i] = w.start.rotation[i] * exp_quaternion(h * w.trial.angular_velocity[i]);
+    w.trial.rotation[i].normalize();
+  }
+  s.evaluate(p, t + h, w.trial, stick, w.start.position);
+
+  // Contacts enter `force` at the half-step velocity; at touching nodes they are solved for at the new one.
+  const std::size_t planes = s.model.planes.size();
+  for (std::size_t k = 0; k < s.pairs.size();) {
+    const int point = s.pairs[k].point, i = s.model.contact_points[point].node - s.first;
+    std::size_t end = k;
+    Vec3 rest = s.force[i];
+    Vec3 sticks[8];
+    for (; end < s.pairs.size() && s.pairs[end].point == point && end - k < 8; ++end) {
+      rest -= s.pairs[end].out.force;
+      sticks[end - k] =
+          stick[point * planes + s.pairs[end].plane] + w.trial.position[i] - w.start.position[i];
+    }
+    const std::span<TouchingPair> own(s.pairs.data() + k, end - k);
+    const double mass = s.model.node_mass[s.first + i];
+    const Vec3 v =
+        solve_velocity(s, p.contact, i, mass, h, w.trial.velocity[i], rest, own, {sticks, own.size()});
+    s.force[i] = 2 * mass / h * (v - w.trial.velocity[i]);
+    k = end;
+  }
+
+  bool finite = true;
+  for (int i = 0; i < n; ++i) {
+    const int g = s.first + i;
+    const Mat3& j = s.model.node_inertia[g];
+    clear_fixed(s, i, s.force[i], s.moment[i]);
+    const Vec3 acceleration = s.force[i] / s.model.node_mass[g];
+    const Vec3 moment = w.trial.rotation[i].conjugate() * s.moment[i];
+    const Vec3 half = w.trial.angular_velocity[i];
+    const Mat3 inverse = j.inverse();
+    Vec3 omega = half, angular = Vec3::Zero();
+    for (int pass = 0; pass < 3; ++pass) {  // the gyroscopic moment at the new velocity: a strong contraction
+      angular = inverse * (moment - omega.cross(j * omega));
+      omega = half + h / 2 * angular;
+    }
+    w.trial.velocity[i] += h / 2 * acceleration;
+    w.trial.angular_velocity[i] = omega;
+    state.position[g] = w.trial.position[i];
+    state.rotation[g] = w.trial.rotation[i];
+    state.velocity[g] = w.trial.velocity[i];
+    state.angular_velocity[g] = omega;
+    state.acceleration[g] = state.algorithmic_acceleration[g] = acceleration;
+    state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] = angular;
+    finite = finite && std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum());
+  }
+  book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.pairs, energy);
+  s.store_stick(s.pairs, state.stick);
+  StepStatus status;
+  status.time = t + h;
+  status.body = s.index;
+  if (!finite) status.kind = StepStatus::Kind::not_finite;
+  return status;
+}
+
+double explicit_limit(BodySystem& s) {
+  const int n = s.count;
+  const Body& body = s.model.bodies[s.index];
+  std::vector<Mat12> tangents(body.element_count);
+  for (int e = 0; e < body.element_count; ++e) {
+    const Element& element = s.model.elements[body.first_element + e];
+    BeamGradient gradient;
+    const auto& x = s.model.node_position;
+    beam_tangent(
+        element, element.s,
+        beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
+        gradient, tangents[e]);
+  }
+  std::vector<Mat3> inverse(n);
+  for (int i = 0; i < n; ++i) inverse[i] = s.model.node_inertia[s.first + i].inverse();
+  Eigen::VectorXd v(6 * n), kv(6 * n);
+  for (int i = 0; i < 6 * n; ++i)
+    v[i] = std::sin(1 + 2.7 * i);  // any start that no symmetry of a body shares
+  double value = 0;
+  for (int iteration = 0; iteration < k_power_iterations; ++iteration) {
+    kv.setZero();
+    for (int e = 0; e < body.element_count; ++e) {
+      const Element& element = s.model.elements[body.first_element + e];
+      const int i = element.node[0] - s.first, j = element.node[1] - s.first;
+      Eigen::Matrix<double, 12, 1> u;
+      u << v.segment<6>(6 * i), v.segment<6>(6 * j);
+      const Eigen::Matrix<double, 12, 1> f = tangents[e] * u;
+      kv.segment<6>(6 * i) += f.head<6>();
+      kv.segment<6>(6 * j) += f.tail<6>();
+    }
+    for (int i = 0; i < n; ++i) {
+      Vec3 translation = kv.segment<3>(6 * i) / s.model.node_mass[s.first + i];
+      Vec3 rotation = inverse[i] * kv.segment<3>(6 * i + 3);
+      clear_fixed(s, i, translation, rotation);
+      kv.segment<3>(6 * i) = translation;
+      kv.segment<3>(6 * i + 3) = rotation;
+    }
+    value = kv.norm() / v.norm();
+    v = kv / kv.norm();
+  }
+  return 2 / std::sqrt(value);
+}
+
+}  // namespace topple

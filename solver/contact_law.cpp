@@ -1,0 +1,129 @@
+#include "solver/contact_law.h"
+
+#include <cmath>
+
+namespace topple {
+namespace {
+
+double power(double x, double q) {
+  if (q == 1) return x;
+  if (q == 2) return x * x;
+  return std::pow(x, q);
+}
+
+double penalty_slope(const ContactLaw& law, double depth, double L) {
+  if (law.q == 1) return -law.alpha / L;
+  return -law.alpha * law.q * power(depth, law.q - 1) / L;  // by l
+}
+
+struct Derivatives {
+  Mat3* by_position = nullptr;
+  Mat3* by_velocity = nullptr;
+};
+
+// -friction P v / sqrt(v^2 + eps^2)
+void add_drag(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
+              Derivatives derivatives) {
+  const double speed = std::sqrt(in.velocity.squaredNorm() + law.slip_speed * law.slip_speed);
+  const Vec3 direction = in.velocity / speed;
+  const Vec3 drag = -law.friction * p * direction;
+  const double normal_drag = in.normal.dot(drag);
+  out.normal += normal_drag;
+  out.tangential = drag - normal_drag * in.normal;
+  if (!derivatives.by_position) return;
+  *derivatives.by_position -= law.friction * dp * direction * in.normal.transpose();
+  *derivatives.by_velocity -=
+      law.friction * p / speed * (Mat3::Identity() - direction * direction.transpose());
+}
+
+void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
+             Derivatives derivatives) {
+  const Vec3& n = in.normal;
+  const double vn = n.dot(in.velocity);
+  const double m = normal_loss(law.restitution);
+  const double root = std::sqrt(vn * vn + law.normal_speed * law.normal_speed);
+  const double factor = 1 - m * vn / root;
+  const double dfactor = -m * law.normal_speed * law.normal_speed / (root * root * root);
+  out.conservative = p;
+  out.normal = p * factor;
+
+  const double k = k_stick_stiffness * law.alpha / in.L;
+  const double c = 2 * k_stick_damping * std::sqrt(k * in.mass);
+  const Mat3 tangent_plane = Mat3::Identity() - n * n.transpose();
+  const Vec3 stick = tangent_plane * in.stick;
+  const Vec3 trial = k * stick + c * (tangent_plane * in.velocity);
+  const double size = trial.norm(), limit = law.friction * out.normal;
+  const bool slips = size > limit;
+  out.tangential = slips ? Vec3(-limit / size * trial) : Vec3(-trial);
+  const double spring = k * stick.norm();
+  out.stick = spring > limit ? Vec3(limit / spring * stick) : stick;
+  out.stick_energy = 0.5 * k * out.stick.squaredNorm();
+  if (!derivatives.by_position) return;
+
+  *derivatives.by_position = dp * factor * n * n.transpose();
+  *derivatives.by_velocity = p * dfactor * n * n.transpose();
+  if (!slips) {
+    *derivatives.by_position -= k * tangent_plane;
+    *derivatives.by_velocity -= c * tangent_plane;
+    return;
+  }
+  const Vec3 direction = trial / size;
+  const Mat3 across = limit / size * (tangent_plane - direction * direction.transpose());
+  *derivatives.by_position -= law.friction * dp * factor * direction * n.transpose() + k * across;
+  *derivatives.by_velocity -= law.friction * p * dfactor * direction * n.transpose() + c * across;
+}
+
+ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivatives derivatives) {
+  ContactOutput out{};
+  out.tangential.setZero();
+  out.stick.setZero();
+  const Vec3& n = in.normal;
+  const double p = penalty_force(law, in.depth), dp = penalty_slope(law, in.depth, in.L);
+  if (law.kind == ContactLawKind::coulomb) {
+    coulomb(law, in, p, dp, out, derivatives);
+  } else if (law.kind == ContactLawKind::paper) {
+    out.conservative = out.normal = p;
+    if (derivatives.by_position) {
+      *derivatives.by_position = dp * n * n.transpose();
+      derivatives.by_velocity->setZero();
+    }
+    add_drag(law, in, p, dp, out, derivatives);
+  } else {
+    const double vn = n.dot(in.velocity), eps2 = law.slip_speed * law.slip_speed;
+    const double root = std::sqrt(vn * vn + eps2);
+    out.normal = -p * vn / root;
+    if (derivatives.by_position) {
+      *derivatives.by_position = -dp * vn / root * n * n.transpose();
+      *derivatives.by_velocity = -p * eps2 / (root * root * root) * n * n.transpose();
+    }
+    add_drag(law, in, p, dp, out, derivatives);
+  }
+  out.force = out.normal * n + out.tangential;
+  return out;
+}
+
+}  // namespace
+
+double penalty_force(const ContactLaw& law, double depth) {
+  return depth > 0 ? law.alpha * power(depth, law.q) : 0;
+}
+
+double penalty_energy(const ContactLaw& law, double depth, double L) {
+  return depth > 0 ? law.alpha * L / (law.q + 1) * depth * power(depth, law.q) : 0;
+}
+
+double normal_loss(double restitution) {
+  const double e2 = restitution * restitution;
+  return (1 - e2) / (1 + e2);
+}
+
+ContactOutput contact_force(const ContactLaw& law, const ContactInput& input) {
+  return evaluate(law, input, {});
+}
+
+ContactOutput contact_force(const ContactLaw& law, const ContactInput& input, Mat3& by_position,
+                            Mat3& by_velocity) {
+  return evaluate(law, input, {&by_position, &by_velocity});
+}
+
+}  // namespace topple

@@ -1,0 +1,23 @@
+// Where the energy of a step went.
+#pragma once
+
+#include <vector>
+
+#include "solver/body_system.h"
+
+namespace topple {
+
+/// Energies that bodies exchanged in a step, J; added to.
+struct StepEnergy {
+  double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0;
+};
+
+/// Work of gravity, floor, loads and contacts on one body over a step from t to t + h between two evaluations
+/// of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick springs are not booked:
+/// their energy is known at both ends.
+void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
+               const BodyMotion& start, const BodyMotion& end,
+               const std::vector<TouchingPair>& contacts_start, const std::vector<TouchingPair>& contacts_end,
+               StepEnergy& energy);
+
+}  // namespace topple

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <cmath>
+
+#include "solver/body_builder.h"
+#include "solver/cabinet.h"
+
+namespace topple {
+namespace {
+
+void add_one(Model& model, const FrameSpec& spec, const std::string& name, const Vec3& shift) {
+  BodyBuilder builder(model, name);
+  for (std::size_t i = 0; i < spec.nodes.size(); ++i) {
+    const int before = model.node_total();
+    const int index = builder.node(spec.nodes[i] + shift);
+    if (index != before)
+      throw BuildError("nodes", "nodes " + std::to_string(index - builder.body().first_node) + " and " +
+                                    std::to_string(i) + " are in one place");
+  }
+  const int first = builder.body().first_node, count = builder.body().node_count;
+  std::vector<double> width(count, 0.);
+  for (std::size_t m = 0; m < spec.members.size(); ++m) {
+    const FrameMember& member = spec.members[m];
+    if (member.node[0] == member.node[1])
+      throw BuildError("members", "member " + std::to_string(m) + " has no length");
+    const std::vector<int> nodes =
+        builder.line("member-" + std::to_string(m), model.node_position[first + member.node[0]],
+                     model.node_position[first + member.node[1]], 1, member.elements, member.section,
+                     member.material, member.up);
+    width.resize(builder.body().node_count, 0.);
+    for (int node : nodes)
+      width[node - first] = std::max(width[node - first], model.sections[member.section].width);
+  }
+  for (int i = 0; i < count; ++i)
+    if (width[i] == 0) throw BuildError("nodes", "node " + std::to_string(i) + " belongs to no member");
+  builder.add_material_mass();
+  for (const auto& [node, mass] : spec.masses) model.node_mass[first + node] += mass;
+  if (spec.mass > 0) {
+    double from_density = 0, added = 0;
+    for (int i = first; i < model.node_total(); ++i) from_density += model.node_mass[i];
+    for (const auto& [node, mass] : spec.masses) added += mass;
+    if (!(spec.mass > added)) throw BuildError("mass", "is not above the sum of `masses`");
+    const double factor = (spec.mass - added) / (from_density - added);
+    for (int i = first; i < model.node_total(); ++i) {
+      model.node_mass[i] *= factor;
+      model.node_inertia[i] *= factor;
+    }
+    for (const auto& [node, mass] : spec.masses) model.node_mass[first + node] += mass * (1 - factor);
+  }
+  for (std::size_t i = 0; i < width.size(); ++i)
+    builder.add_contact_point(first + static_cast<int>(i), width[i]);
+  builder.close();
+  for (Support support : spec.supports) {
+    support.node += first;
+    model.supports.push_back(support);
+  }
+  for (Load load : spec.loads) {
+    load.node += first;
+    model.loads.push_back(load);
+  }
+}
+
+}  // namespace
+
+std::vector<BodyStart> add_frame(Model& model, const FrameSpec& spec) {
+  std::vector<Vec3> copies = spec.copies;
+  if (copies.empty()) copies.push_back(Vec3::Zero());
+  std::vector<BodyStart> starts;
+  for (std::size_t c = 0; c < copies.size(); ++c) {
+    add_one(model, spec, c == 0 ? spec.name : spec.name + "-" + std::to_string(c + 1), copies[c]);
+    BodyStart start;
+    start.velocity = spec.velocity;
+    start.angular_velocity = spec.angular_velocity;
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+}  // namespace topple

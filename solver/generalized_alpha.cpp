@@ -1,0 +1,244 @@
+#include "solver/generalized_alpha.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+constexpr int k_most_iterations = 25;
+// Newton stops when the error left is below this part of the body's size: a hundred times rounding.
+constexpr double k_convergence = 1e-11;
+// A factorisation is used again while each correction is below this part of the one before.
+constexpr double k_good_rate = 0.1;
+
+enum class Outcome { converged, diverged, not_finite, singular };
+
+struct Attempt {
+  Outcome outcome;
+  int iterations;
+  int node;  // where the last correction was greatest, of the model
+};
+
+class ImplicitStep {
+ public:
+  ImplicitStep(BodySystem& system, const Parameters& parameters, State& state, double t, double h,
+               IntegratorScratch& scratch)
+      : s_(system),
+        p_(parameters),
+        state_(state),
+        t_(t),
+        h_(h),
+        c_(parameters.spectral_radius),
+        w_(scratch) {}
+
+  Attempt solve();
+  void accept(StepEnergy& energy);
+
+ private:
+  std::span<const Vec3> body_part(const std::vector<Vec3>& all) const {
+    return {all.data() + s_.first, std::size_t(s_.count)};
+  }
+  void predict();
+  void update_trial();
+  double correct(int& node);
+  void add_inertia_tangent();
+  void fill_residual();
+
+  BodySystem& s_;
+  const Parameters& p_;
+  State& state_;
+  const double t_, h_;
+  const GeneralizedAlpha c_;
+  IntegratorScratch& w_;
+};
+
+void ImplicitStep::predict() {
+  const int n = s_.count;
+  s_.load(state_, w_.start);
+  w_.trial.resize(n);
+  for (auto* array : {&w_.travel, &w_.turn, &w_.acceleration, &w_.angular_acceleration, &w_.algorithmic,
+                      &w_.algorithmic_angular})
+    array->resize(n);
+  w_.right_hand_side.resize(6 * n);
+  for (int i = 0; i < n; ++i) {
+    const int g = s_.first + i;
+    w_.travel[i] = h_ * (state_.velocity[g] + h_ / 2 * state_.algorithmic_acceleration[g]);
+    w_.turn[i] = h_ * (state_.angular_velocity[g] + h_ / 2 * state_.algorithmic_angular_acceleration[g]);
+  }
+}
+
+void ImplicitStep::update_trial() {
+  const double beta = c_.beta, gamma = c_.gamma, am = c_.alpha_m, af = c_.alpha_f;
+  for (int i = 0; i < s_.count; ++i) {
+    const int g = s_.first + i;
+    const auto advance = [&](const Vec3& step, const Vec3& v0, const Vec3& a0, const Vec3& balance0, Vec3& v1,
+                             Vec3& a1, Vec3& balance1) {
+      a1 = (step - h_ * v0 - h_ * h_ * (0.5 - beta) * a0) / (beta * h_ * h_);
+      v1 = v0 + h_ * ((1 - gamma) * a0 + gamma * a1);
+      balance1 = ((1 - am) * a1 + am * a0 - af * balance0) / (1 - af);
+    };
+    advance(w_.travel[i], state_.velocity[g], state_.algorithmic_acceleration[g], state_.acceleration[g],
+            w_.trial.velocity[i], w_.algorithmic[i], w_.acceleration[i]);
+    advance(w_.turn[i], state_.angular_velocity[g], state_.algorithmic_angular_acceleration[g],
+            state_.angular_acceleration[g], w_.trial.angular_velocity[i], w_.algorithmic_angular[i],
+            w_.angular_acceleration[i]);
+    w_.trial.position[i] = w_.start.position[i] + w_.travel[i];
+    w_.trial.rotation[i] = w_.start.rotation[i] * exp_quaternion(w_.turn[i]);
+    w_.trial.rotation[i].normalize();
+  }
+}
+
+void ImplicitStep::add_inertia_tangent() {
+  const double ca = (1 - c_.alpha_m) / ((1 - c_.alpha_f) * c_.beta * h_ * h_), cv = c_.gamma / (c_.beta * h_);
+  for (int i = 0; i < s_.count; ++i) {
+    const int g = s_.first + i;
+    const Mat3& j = s_.model.node_inertia[g];
+    const Vec3& omega = w_.trial.angular_velocity[i];
+    const Mat3 r0 = w_.start.rotation[i].toRotationMatrix(), r1 = w_.trial.rotation[i].toRotationMatrix();
+    const Vec3 momentum = j * omega;
+    const Vec3 rate = r1 * (j * w_.angular_acceleration[i] + omega.cross(momentum));
+    const Mat3 by_turn = ca * j + cv * (skew(omega) * j - skew(momentum));
+    Mat6 block = Mat6::Zero();
+    block.diagonal().head<3>().setConstant(ca * s_.model.node_mass[g]);
+    block.bottomRightCorner<3, 3>() =
+        r1 * by_turn * inverse_left_jacobian(w_.turn[i]) * r0.transpose() - skew(rate);
+    s_.lu.add(i, i, block);
+  }
+}
+
+void ImplicitStep::fill_residual() {
+  for (int i = 0; i < s_.count; ++i) {
+    const int g = s_.first + i;
+    const Mat3& j = s_.model.node_inertia[g];
+    const Vec3& omega = w_.trial.angular_velocity[i];
+    const Vec3 force = s_.force[i] - s_.model.node_mass[g] * w_.acceleration[i];
+    const Vec3 rate = j * w_.angular_acceleration[i] + omega.cross(j * omega);
+    const Vec3 moment = s_.moment[i] - w_.trial.rotation[i] * rate;
+    for (int k = 0; k < 3; ++k) {
+      w_.right_hand_side[6 * i + k] = s_.fixed[i] >> k & 1 ? 0 : force[k];
+      w_.right_hand_side[6 * i + 3 + k] = s_.fixed[i] >> (3 + k) & 1 ? 0 : moment[k];
+    }
+  }
+}
+
+// Applies the solution; returns its greatest length, rotations times the body's size.
+double ImplicitStep::correct(int& node) {
+  double greatest = 0;
+  for (int i = 0; i < s_.count; ++i) {
+    const Vec3 shift(&w_.right_hand_side[6 * i]), spin(&w_.right_hand_side[6 * i + 3]);
+    w_.travel[i] += shift;
+    w_.turn[i] += inverse_left_jacobian(w_.turn[i]) * (w_.start.rotation[i].conjugate() * spin);
+    const double length = std::max(shift.norm(), s_.size * spin.norm());
+    if (!(length <= greatest)) {
+      greatest = length;
+      node = s_.first + i;
+    }
+  }
+  return greatest;
+}
+
+Attempt ImplicitStep::solve() {
+  predict();
+  const double cv = c_.gamma / (c_.beta * h_);
+  const std::span<const Vec3> stick(state_.stick);
+  const double tolerance = k_convergence * s_.size;
+  double last = 0;
+  bool fresh = true;
+  int node = s_.first;
+  for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
+    update_trial();
+    if (fresh) {
+      s_.lu.set_zero();
+      s_.evaluate_with_tangent(p_, t_ + h_, w_.trial, stick, w_.start.position, cv);
+      add_inertia_tangent();
+      for (int i = 0; i < s_.count; ++i)
+        for (int k = 0; k < 6; ++k)
+          if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
+      const int singular = s_.lu.factor();
+      if (singular >= 0) return {Outcome::singular, iteration, s_.first + singular};
+    } else {
+      s_.evaluate(p_, t_ + h_, w_.trial, stick, w_.start.position);
+    }
+    fill_residual();
+    s_.lu.solve(w_.right_hand_side.data());
+    const double size = correct(node);
+    if (!std::isfinite(size)) return {Outcome::not_finite, iteration, node};
+    if (size > 10 * s_.size) return {Outcome::diverged, iteration, node};
+    const double rate = iteration > 1 ? size / last : 1;
+    if (size < tolerance || (rate < 0.5 && size * rate / (1 - rate) < tolerance)) {
+      update_trial();
+      return {Outcome::converged, iteration, node};
+    }
+    fresh = rate > k_good_rate && iteration > 1;
+    last = size;
+  }
+  return {Outcome::diverged, k_most_iterations, node};
+}
+
+void ImplicitStep::accept(StepEnergy& energy) {
+  const std::span<const Vec3> stick(state_.stick);
+  s_.find_contacts(p_.contact, w_.start, stick, w_.start.position, w_.contacts_start);
+  s_.find_contacts(p_.contact, w_.trial, stick, w_.start.position, s_.pairs);
+  book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.pairs, energy);
+  // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
+  // takes out.
+  for (int i = 0; i < s_.count; ++i) {
+    const int g = s_.first + i;
+    const Mat3& j = s_.model.node_inertia[g];
+    const double m = s_.model.node_mass[g];
+    const Vec3 &v0 = w_.start.velocity[i], &v1 = w_.trial.velocity[i];
+    const Vec3 &w0 = w_.start.angular_velocity[i], &w1 = w_.trial.angular_velocity[i];
+    const Vec3 rate0 = j * state_.angular_acceleration[g] + w0.cross(j * w0);
+    const Vec3 rate1 = j * w_.angular_acceleration[i] + w1.cross(j * w1);
+    energy.numerical += 0.5 * m * (state_.acceleration[g] + w_.acceleration[i]).dot(w_.travel[i]) -
+                        0.5 * m * (v1 + v0).dot(v1 - v0) + 0.5 * (rate0 + rate1).dot(w_.turn[i]) -
+                        0.5 * (w1 + w0).dot(j * (w1 - w0));
+    state_.position[g] = w_.trial.position[i];
+    state_.rotation[g] = w_.trial.rotation[i];
+    state_.velocity[g] = v1;
+    state_.angular_velocity[g] = w1;
+    state_.acceleration[g] = w_.acceleration[i];
+    state_.angular_acceleration[g] = w_.angular_acceleration[i];
+    state_.algorithmic_acceleration[g] = w_.algorithmic[i];
+    state_.algorithmic_angular_acceleration[g] = w_.algorithmic_angular[i];
+  }
+  s_.store_stick(s_.pairs, state_.stick);
+}
+
+}  // namespace
+
+StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
+                                     double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy) {
+  StepStatus status;
+  status.time = t + h;
+  status.body = system.index;
+  ImplicitStep implicit(system, parameters, state, t, h, scratch);
+  const Attempt attempt = implicit.solve();
+  status.newton_iterations = attempt.iterations;
+  if (attempt.outcome == Outcome::converged) {
+    implicit.accept(energy);
+    return status;
+  }
+  if (halvings == 0) {
+    status.kind = attempt.outcome == Outcome::not_finite ? StepStatus::Kind::not_finite
+                  : attempt.outcome == Outcome::singular ? StepStatus::Kind::singular
+                                                         : StepStatus::Kind::newton_diverged;
+    status.node = attempt.node;
+    status.element = system.element_at(attempt.node);
+    return status;
+  }
+  int iterations = attempt.iterations, rejected = 1;
+  for (int half = 0; half < 2; ++half) {
+    status = advance_generalized_alpha(system, parameters, state, t + half * h / 2, h / 2, halvings - 1,
+                                       scratch, energy);
+    status.newton_iterations = iterations += status.newton_iterations;
+    status.rejected = rejected += status.rejected;
+    if (!status.ok()) return status;
+  }
+  return status;
+}
+
+}  // namespace topple

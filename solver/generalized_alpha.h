@@ -1,0 +1,37 @@
+// Implicit time integration on the group of motions.
+#pragma once
+
+#include <vector>
+
+#include "solver/body_system.h"
+#include "solver/energy.h"
+#include "solver/step.h"
+
+namespace topple {
+
+/// Coefficients of the generalized-alpha method (Chung & Hulbert 1993) from its spectral radius at infinity.
+struct GeneralizedAlpha {
+  double alpha_m, alpha_f, gamma, beta;
+  explicit GeneralizedAlpha(double rho)
+      : alpha_m((2 * rho - 1) / (rho + 1)),
+        alpha_f(rho / (rho + 1)),
+        gamma(0.5 + alpha_f - alpha_m),
+        beta(0.25 * (gamma + 0.5) * (gamma + 0.5)) {}
+};
+
+/// Scratch of the integrators for one body.
+struct IntegratorScratch {
+  BodyMotion start, trial;
+  std::vector<Vec3> travel, turn;  ///< unknowns: displacement, rotation vector (material) of the step
+  std::vector<Vec3> acceleration, angular_acceleration, algorithmic, algorithmic_angular;
+  std::vector<double> right_hand_side;
+  std::vector<TouchingPair> contacts_start;
+};
+
+/// Advances one body of `state` by h from time t with the balance of forces taken at the end of the step
+/// (Brüls & Cardona 2010). Newton to convergence; a step that does not converge is halved, at most `halvings`
+/// times. On failure the body's part of `state` is undefined.
+StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
+                                     double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy);
+
+}  // namespace topple

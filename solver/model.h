@@ -1,0 +1,108 @@
+// What is simulated: bodies made of members, members made of elements, elements between nodes.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/section.h"
+#include "solver/types.h"
+
+namespace topple {
+
+/// Linear Timoshenko beam element with one integration point (Eq. 1). Reference configuration.
+struct Element {
+  int node[2];
+  int member;
+  double length;           ///< m
+  double s;                ///< place of the integration point in the elastic state, -1..1; stresses at r = -s
+  Mat3 triad;              ///< columns: local x, y, z in world axes
+  Vec3 normal_stiffness;   ///< EA, kGAy, kGAz, N
+  Vec3 bending_stiffness;  ///< GJ, EIy, EIz, N m^2
+};
+
+/// A straight member: a run of elements of one section and one material, two by two subsets.
+struct Member {
+  std::string name;  ///< "post-1", "brace-front-a"; unique within its body
+  int body;
+  int first_element;
+  int element_count;
+  int section;   ///< index into Model::sections
+  int material;  ///< index into Model::materials
+};
+
+/// Fixed directions of a node, in world axes; bit k < 3 translation k, bit 3 + k rotation k.
+struct Support {
+  int node;
+  unsigned fixed;
+};
+
+/// Dead load on a node, world axes; times a factor that is piecewise linear in time (empty: 1).
+struct Load {
+  int node;
+  Vec3 force;                                      ///< N
+  Vec3 moment;                                     ///< N m
+  std::vector<std::pair<double, double>> history;  ///< (s, factor), increasing times
+};
+
+/// A node that can touch floors and walls.
+struct ContactPoint {
+  int node;
+  double width;  ///< m, contact width of its member
+};
+
+/// Connected members that move together.
+struct Body {
+  std::string name;
+  int first_node, node_count;
+  int first_element, element_count;
+  int first_member, member_count;
+  int first_contact_point, contact_point_count;
+  double mass;                        ///< kg
+  Vec3 centre_of_gravity;             ///< m, world, reference pose
+  Mat3 inertia;                       ///< kg m^2 about the centre of gravity, world axes, reference pose
+  std::vector<Vec3> support_polygon;  ///< convex hull of the base's contact points, counter-clockwise seen
+                                      ///< from above, world, reference pose; empty when it has no base
+  std::vector<int> base_points;  ///< contact points (global index) on the base
+  Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
+  std::vector<std::array<int, 4>> panels;  ///< nodes of flat sheets, for pictures only
+};
+
+/// A plane floor or wall. Its centre line lies width/2 behind its face, so that l = L is surface touch.
+struct Plane {
+  std::string name;
+  Vec3 point;    ///< m, on the face
+  Vec3 normal;   ///< unit, towards the bodies
+  double width;  ///< m, contact width; 0: that of the touching member
+};
+
+/// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
+/// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
+struct Model {
+  std::vector<Material> materials;
+  std::vector<Section> sections;
+  std::vector<Vec3> node_position;  ///< m, reference
+  std::vector<double> node_mass;    ///< kg
+  std::vector<Mat3> node_inertia;   ///< kg m^2, about the node, world axes in the reference pose
+  std::vector<int> node_body;
+  std::vector<Element> elements;
+  std::vector<Member> members;
+  std::vector<Body> bodies;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  std::vector<ContactPoint> contact_points;
+  std::vector<Plane> planes;
+
+  int node_total() const { return static_cast<int>(node_position.size()); }
+};
+
+/// How a body starts: a rigid rotation of its reference pose about a line, then velocities.
+struct BodyStart {
+  Vec3 pivot = Vec3::Zero();             ///< m, a point of the rotation axis
+  Vec3 rotation = Vec3::Zero();          ///< rotation vector, rad, world
+  Vec3 velocity = Vec3::Zero();          ///< m/s, of the centre of gravity
+  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, world
+};
+
+}  // namespace topple

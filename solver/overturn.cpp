@@ -1,0 +1,179 @@
+#include "solver/overturn.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_upright_normal = 0.7;  // planes steeper than 45 degrees are walls
+constexpr double k_fallen = k_pi / 3;     // stop_when = "all-overturned"
+constexpr double k_fallen_for = 0.5;      // s
+
+// Distance from p to the boundary of a counter-clockwise polygon along the unit direction d, horizontal.
+double distance_to_edge(const std::vector<Vec3>& polygon, const Vec3& p, const Vec3& d) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Vec3 outward(edge.y(), -edge.x(), 0);
+    const double speed = outward.dot(d);
+    if (speed <= 0) continue;
+    nearest = std::min(nearest, outward.dot(polygon[i] - p) / speed);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+BodyPose body_pose(const Model& model, const State& state, int index) {
+  const Body& body = model.bodies[index];
+  BodyPose pose;
+  pose.centre.setZero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    pose.centre += model.node_mass[i] * state.position[i];
+  pose.centre /= body.mass;
+  Mat3 a = Mat3::Zero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    a += model.node_mass[i] * (state.position[i] - pose.centre) *
+         (model.node_position[i] - body.centre_of_gravity).transpose();
+  // Rotation closest to the moment matrix by torque-like corrections (Müller et al. 2016) from the first
+  // node's own; bodies on one line keep that node's twist.
+  pose.rotation = state.rotation[body.first_node];
+  for (int pass = 0; pass < 20; ++pass) {
+    const Mat3 r = pose.rotation.toRotationMatrix();
+    Vec3 torque = Vec3::Zero();
+    double size = 0;
+    for (int k = 0; k < 3; ++k) {
+      torque += r.col(k).cross(a.col(k));
+      size += r.col(k).dot(a.col(k));
+    }
+    if (!(std::abs(size) > 0)) break;
+    const Vec3 spin = torque / std::abs(size);
+    pose.rotation = exp_quaternion(spin) * pose.rotation;
+    pose.rotation.normalize();
+    if (spin.norm() < 1e-14) break;
+  }
+  return pose;
+}
+
+double tilt(const BodyPose& pose) {
+  const Vec3 up = pose.rotation * Vec3::UnitZ();
+  return std::atan2(std::hypot(up.x(), up.y()), up.z());
+}
+
+double critical_angle(const Model& model, int index, const BodyPose& pose) {
+  const Body& body = model.bodies[index];
+  if (body.support_polygon.empty()) return std::numeric_limits<double>::infinity();
+  const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
+  const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
+  const double lean = std::hypot(up.x(), up.y());
+  double distance = std::numeric_limits<double>::infinity();
+  if (lean > 1e-12) {
+    distance =
+        distance_to_edge(body.support_polygon, body.centre_of_gravity, Vec3(-up.x(), -up.y(), 0) / lean);
+  } else {
+    for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
+      const Vec3 edge = body.support_polygon[(i + 1) % body.support_polygon.size()] - body.support_polygon[i];
+      const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
+      distance = std::min(distance, outward.dot(body.support_polygon[i] - body.centre_of_gravity));
+    }
+  }
+  return std::atan2(distance, height);
+}
+
+double slide(const Model& model, int index, const BodyPose& pose) {
+  const Body& body = model.bodies[index];
+  const Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
+  return std::hypot(now.x() - body.base_centre.x(), now.y() - body.base_centre.y());
+}
+
+Outcome::Outcome(const Model& model) {
+  for (const Body& body : model.bodies) {
+    const std::size_t sides = body.support_polygon.size();
+    BodyOutcome outcome;
+    outcome.lifted.assign(sides, false);
+    bodies_.push_back(outcome);
+    side_force_.emplace_back(sides, 0.);
+    total_force_.push_back(0);
+    std::vector<std::vector<int>> side_of(body.contact_point_count);
+    for (int point : body.base_points)
+      for (std::size_t i = 0; i < sides; ++i) {
+        const Vec3 edge = body.support_polygon[(i + 1) % sides] - body.support_polygon[i];
+        const Vec3 to = model.node_position[model.contact_points[point].node] - body.support_polygon[i];
+        if (std::abs(edge.x() * to.y() - edge.y() * to.x()) < 1e-6 * edge.squaredNorm())
+          side_of[point - body.first_contact_point].push_back(static_cast<int>(i));
+      }
+    side_of_.push_back(std::move(side_of));
+  }
+}
+
+void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
+                      const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
+                      std::vector<Event>& events) {
+  for (auto& sides : side_force_) std::fill(sides.begin(), sides.end(), 0.);
+  std::fill(total_force_.begin(), total_force_.end(), 0.);
+  for (const ContactForce& f : forces) {
+    const int b = model.node_body[model.contact_points[f.point].node];
+    bodies_[b].peak_penetration = std::max(bodies_[b].peak_penetration, f.depth);
+    if (model.planes[f.plane].normal.z() < k_upright_normal) continue;
+    total_force_[b] += f.normal;
+    for (int side : side_of_[b][f.point - model.bodies[b].first_contact_point])
+      side_force_[b][side] += f.normal;
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyOutcome& o = bodies_[b];
+    const Body& body = model.bodies[b];
+    const BodyPose pose = body_pose(model, state, static_cast<int>(b));
+    const double before = o.tilt - o.critical, time_before = o.time;
+    o.time = state.time;
+    o.tilt = tilt(pose);
+    o.peak_tilt = std::max(o.peak_tilt, o.tilt);
+    o.slide = topple::slide(model, static_cast<int>(b), pose);
+    o.peak_slide = std::max(o.peak_slide, o.slide);
+    o.critical = critical_angle(model, static_cast<int>(b), pose);
+    const double beyond = o.tilt - o.critical;
+    const auto add = [&](Event::Kind kind, double time, double value) {
+      events.push_back({kind, state.step, time, static_cast<int>(b), value});
+    };
+    if (beyond > 0 && !o.beyond_since) {
+      const bool crossed = state.step > 0 && before < 0;
+      o.beyond_since =
+          crossed ? time_before + (state.time - time_before) * before / (before - beyond) : state.time;
+      add(Event::Kind::overturn, *o.beyond_since, o.tilt);
+    } else if (beyond <= 0) {
+      o.beyond_since.reset();
+    }
+    if (o.tilt <= k_fallen)
+      o.over_60_since.reset();
+    else if (!o.over_60_since)
+      o.over_60_since = state.time;
+
+    const double weight = body.mass * parameters.gravity.norm();
+    for (std::size_t side = 0; side < o.lifted.size(); ++side) {
+      const double carried = side_force_[b][side];
+      if (!o.lifted[side] && carried < k_uplift * weight && total_force_[b] > k_closing * weight) {
+        o.lifted[side] = true;
+        if (!o.first_uplift) o.first_uplift = state.time;
+        add(Event::Kind::uplift, state.time, static_cast<double>(side));
+      } else if (o.lifted[side] && carried > k_closing * weight) {
+        o.lifted[side] = false;
+        ++o.impacts;
+        add(Event::Kind::impact, state.time, static_cast<double>(side));
+      }
+    }
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+      o.peak_stress = std::max(
+          o.peak_stress,
+          equivalent_stress(model.sections[model.members[model.elements[e].member].section], sections[e]));
+  }
+}
+
+bool Outcome::all_overturned(double time) const {
+  return std::all_of(bodies_.begin(), bodies_.end(), [&](const BodyOutcome& o) {
+    return o.over_60_since && time - *o.over_60_since >= k_fallen_for;
+  });
+}
+
+}  // namespace topple

@@ -1,0 +1,80 @@
+// Who falls: tilt, critical angle, uplift, impacts, overturning.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/model.h"
+#include "solver/state.h"
+#include "solver/step.h"
+
+namespace topple {
+
+/// A side is lifted when it carries less than this part of the body's weight while the body stands on
+/// another, and has closed again when it carries more than k_closing. Two thresholds, or a resting side would
+/// chatter.
+inline constexpr double k_uplift = 1e-3;
+inline constexpr double k_closing = 1e-2;
+
+/// Pose of a body as a rigid one: mass-weighted best fit of its nodes (Kabsch/Horn).
+struct BodyPose {
+  Vec3 centre;    ///< m, centre of gravity
+  Quat rotation;  ///< reference to current
+};
+BodyPose body_pose(const Model& model, const State& state, int body);
+
+/// Angle between the body's vertical axis now and in its reference pose, rad, 0..pi.
+double tilt(const BodyPose& pose);
+
+/// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
+/// rad. Infinite for a body without a base or with supports.
+double critical_angle(const Model& model, int body, const BodyPose& pose);
+
+/// Horizontal travel of the mid-point of the base relative to the floor since the reference pose, m.
+double slide(const Model& model, int body, const BodyPose& pose);
+
+struct Event {
+  enum class Kind { uplift, impact, overturn };
+  Kind kind;
+  std::int64_t step;
+  double time;  ///< s
+  int body;
+  double value;  ///< uplift, impact: index of the side; overturn: tilt, rad
+};
+
+/// What happened to one body so far. Times in s, angles in rad, lengths in m.
+struct BodyOutcome {
+  double tilt = 0, peak_tilt = 0;
+  double slide = 0, peak_slide = 0;
+  double critical = 0;                 ///< critical angle in the present direction
+  std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
+  std::optional<double> first_uplift;
+  int impacts = 0;
+  double peak_stress = 0;               ///< Pa
+  double peak_penetration = 0;          ///< greatest 1 - l/L
+  std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
+  std::vector<bool> lifted;             ///< per side of the support polygon
+  double time = 0;                      ///< of this observation
+};
+
+/// Follows a run step by step.
+class Outcome {
+ public:
+  explicit Outcome(const Model& model);
+  /// Takes in one accepted step. `forces`: contact forces of that state. Appends to `events`.
+  void observe(const Model& model, const Parameters& parameters, const State& state,
+               const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
+               std::vector<Event>& events);
+  const std::vector<BodyOutcome>& bodies() const { return bodies_; }
+  bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
+
+ private:
+  std::vector<BodyOutcome> bodies_;
+  std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
+  std::vector<double> total_force_;                     ///< per body, N
+  std::vector<std::vector<std::vector<int>>> side_of_;  ///< per body: contact point (from 0) to its sides
+};
+
+}  // namespace topple

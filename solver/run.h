@@ -1,0 +1,91 @@
+// A run: a model that is stepped, observed, and knows when it is over.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/model.h"
+#include "solver/overturn.h"
+#include "solver/parameters.h"
+#include "solver/state.h"
+#include "solver/step.h"
+
+namespace topple {
+
+enum class StopWhen { never, all_overturned, at_rest };
+
+/// What a scene asks of a run besides its mechanics.
+struct RunSettings {
+  double duration = 10;      ///< s
+  bool settle = true;        ///< start from rest under gravity
+  double output_rate = 100;  ///< Hz, of recorded rows
+  StopWhen stop_when = StopWhen::never;
+};
+
+/// Node whose motion the summary reports; node -1: the body itself.
+struct Probe {
+  std::string name;
+  int body;
+  int node;  ///< index into the model
+};
+
+/// All that a run needs.
+struct Setup {
+  Model model;
+  Parameters parameters;
+  std::vector<BodyStart> starts;  ///< one per body
+  RunSettings run;
+  std::vector<Probe> probes;
+};
+
+/// Motion of one probe so far. Displacements from the reference pose, m, floor's frame; rotation vector, rad.
+struct ProbeOutcome {
+  Vec3 displacement = Vec3::Zero();
+  Vec3 rotation = Vec3::Zero();
+  Vec3 peak = Vec3::Zero();       ///< of each component the value of greatest size
+  Vec3 peak_time = Vec3::Zero();  ///< s
+};
+
+/// A run in progress. The model is shared and never changes.
+class Run {
+ public:
+  /// Settles when asked to; `status()` tells what became of it.
+  explicit Run(const Setup& setup);
+  /// Continues from a checkpoint of the same setup.
+  Run(const Setup& setup, State state);
+
+  /// One accepted step. Must not be called when over().
+  StepStatus advance();
+  /// Time is up, a stop condition holds or the last step failed.
+  bool over() const;
+  bool stopped_early() const { return stopped_early_; }
+
+  const Setup& setup() const { return *setup_; }
+  const State& state() const { return state_; }
+  const StepStatus& status() const { return status_; }
+  const Outcome& outcome() const { return outcome_; }
+  const std::vector<ProbeOutcome>& probes() const { return probes_; }
+  const std::vector<Event>& events() const { return events_; }
+  const std::vector<ContactForce>& contacts() const { return contacts_; }
+  const std::vector<SectionForces>& sections() const { return sections_; }
+  std::int64_t newton_iterations() const { return newton_iterations_; }
+  std::int64_t rejected_steps() const { return rejected_steps_; }
+
+ private:
+  void observe();
+
+  const Setup* setup_;
+  State state_;
+  Workspace workspace_;
+  Outcome outcome_;
+  std::vector<ProbeOutcome> probes_;
+  StepStatus status_;
+  std::vector<Event> events_;
+  std::vector<ContactForce> contacts_;
+  std::vector<SectionForces> sections_;
+  std::int64_t newton_iterations_ = 0, rejected_steps_ = 0;
+  std::optional<double> rest_since_;
+  bool stopped_early_ = false;
+};
+
+}  // namespace topple

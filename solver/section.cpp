@@ -1,0 +1,77 @@
+#include "solver/section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/types.h"
+
+namespace topple {
+namespace {
+
+struct Inertia {
+  double area, iy, iz;
+};
+
+Inertia rectangle(double b, double h) {
+  return {b * h, b * h * h * h / 12, h * b * b * b / 12};
+}
+
+// Saint-Venant torsion of a solid rectangle, Fourier series (Timoshenko & Goodier, Theory of Elasticity, art.
+// 109).
+double rectangle_torsion(double a, double b) {
+  if (a < b) std::swap(a, b);
+  double sum = 0;
+  for (int n = 1; n < 40; n += 2) sum += std::tanh(n * k_pi * a / (2 * b)) / std::pow(n, 5);
+  return a * b * b * b * (1. / 3 - 64 / std::pow(k_pi, 5) * b / a * sum);
+}
+
+// Shear coefficients after Cowper (1966). Box: thin-walled rectangular tube of uniform wall, web height along
+// the shear force m = flange width / web height.
+double box_shear(double poisson, double along, double across) {
+  const double m = across / along, n = poisson;
+  return 10 * (1 + n) * std::pow(1 + 3 * m, 2) /
+         ((12 + 72 * m + 150 * m * m + 90 * m * m * m) + n * (11 + 66 * m + 135 * m * m + 90 * m * m * m) +
+          10 * m * m * ((3 + n) * m + 3 * m * m));
+}
+
+}  // namespace
+
+void complete_section(Section& section, double poisson) {
+  const double a = section.size_y, b = section.size_z, t = section.thickness, n = poisson;
+  switch (section.shape) {
+    case Section::Shape::box: {
+      const Inertia outer = rectangle(a, b), inner = rectangle(a - 2 * t, b - 2 * t);
+      section.area = outer.area - inner.area;
+      section.iy = outer.iy - inner.iy;
+      section.iz = outer.iz - inner.iz;
+      section.j = 2 * t * (a - t) * (a - t) * (b - t) * (b - t) / (a + b - 2 * t);
+      section.ky = box_shear(n, a - t, b - t);
+      section.kz = box_shear(n, b - t, a - t);
+      break;
+    }
+    case Section::Shape::solid: {
+      const Inertia outer = rectangle(a, b);
+      section.area = outer.area;
+      section.iy = outer.iy;
+      section.iz = outer.iz;
+      section.j = rectangle_torsion(a, b);
+      section.ky = section.kz = 10 * (1 + n) / (12 + 11 * n);
+      break;
+    }
+    case Section::Shape::pipe: {
+      const double outer = a / 2, inner = outer - t, m = inner / outer, m2 = 1 + m * m;
+      section.size_z = a;
+      section.area = k_pi * (outer * outer - inner * inner);
+      section.iy = section.iz = k_pi / 4 * (std::pow(outer, 4) - std::pow(inner, 4));
+      section.j = 2 * section.iy;
+      section.ky = section.kz = 6 * (1 + n) * m2 * m2 / ((7 + 6 * n) * m2 * m2 + (20 + 12 * n) * m * m);
+      break;
+    }
+    case Section::Shape::custom:
+      return;
+  }
+  section.width = (section.size_y + section.size_z) / 2;
+}
+
+}  // namespace topple

@@ -1,0 +1,42 @@
+// Cross-sections and materials of members.
+#pragma once
+
+#include <string>
+
+namespace topple {
+
+/// Linear elastic material.
+struct Material {
+  std::string name;
+  double young = 0;    ///< Pa
+  double poisson = 0;  ///< -
+  double density = 0;  ///< kg/m^3
+};
+
+/// Cross-section in the local y-z plane of a member. `size = [a, b]` runs along y and z.
+struct Section {
+  enum class Shape { box, solid, pipe, custom };
+  std::string name;
+  Shape shape = Shape::box;
+  double size_y = 0;     ///< m, outer; pipe: diameter
+  double size_z = 0;     ///< m, outer; pipe: diameter
+  double thickness = 0;  ///< m, wall; box and pipe
+  double area = 0;       ///< m^2
+  double iy = 0;         ///< m^4, resists bending in the local x-z plane
+  double iz = 0;         ///< m^4, resists bending in the local x-y plane
+  double j = 0;          ///< m^4, torsion constant
+  double ky = 0;         ///< shear coefficient in y
+  double kz = 0;         ///< shear coefficient in z
+  double width = 0;      ///< m, contact width: the L of Eq. 2 is the mean of two of these
+
+  /// Distances of the extreme fibres from the centre line, m.
+  double fibre_y() const { return size_y / 2; }
+  double fibre_z() const { return size_z / 2; }
+};
+
+/// Fills area, iy, iz, j, ky, kz, width from shape, sizes and thickness (thin-walled Bredt torsion
+/// for the box, Saint-Venant series for the solid, shear coefficients after Cowper 1966).
+/// shape must not be custom; sizes > 0; 0 < 2 thickness < smaller size.
+void complete_section(Section& section, double poisson);
+
+}  // namespace topple

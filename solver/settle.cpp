@@ -1,0 +1,90 @@
+#include "solver/settle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+constexpr int k_most_rounds = 400;
+constexpr double k_first_sigma = 1e-3;  // s
+constexpr double k_last_sigma = 1e3;    // s
+constexpr double k_balance = 1e-10;     // of the body's weight, greatest force left on a node
+constexpr double k_furthest = 0.25;     // of the body's size: more is falling, not settling
+
+}  // namespace
+
+StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
+  Parameters still = parameters;
+  still.shakes.clear();
+  still.contact.kind = ContactLawKind::coulomb;
+  still.contact.restitution = 1;  // the normal force of Eq. 2 alone
+  const int n = s.count;
+  s.load(state, w.start);
+  std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
+  std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
+  const std::vector<Vec3> origin = w.start.position;
+  w.right_hand_side.resize(6 * n);
+  const double weight = s.model.bodies[s.index].mass * parameters.gravity.norm();
+  double sigma = k_first_sigma;
+  StepStatus status;
+  status.time = state.time;
+  status.body = s.index;
+  status.kind = StepStatus::Kind::not_settled;
+  for (int round = 0; round < k_most_rounds; ++round) {
+    s.lu.set_zero();
+    s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
+    double left = 0;
+    for (int i = 0; i < n; ++i) {
+      const int g = s.first + i;
+      Mat6 block = Mat6::Zero();
+      block.diagonal().head<3>().setConstant(s.model.node_mass[g] / (sigma * sigma));
+      block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
+      s.lu.add(i, i, block);
+      for (int k = 0; k < 3; ++k) {
+        w.right_hand_side[6 * i + k] = s.fixed[i] >> k & 1 ? 0 : s.force[i][k];
+        w.right_hand_side[6 * i + 3 + k] = s.fixed[i] >> (3 + k) & 1 ? 0 : s.moment[i][k];
+        left = std::max({left, std::abs(w.right_hand_side[6 * i + k]),
+                         std::abs(w.right_hand_side[6 * i + 3 + k]) / s.size});
+      }
+      for (int k = 0; k < 6; ++k)
+        if (s.fixed[i] >> k & 1) s.lu.fix(i, k);
+    }
+    s.store_stick(s.pairs, state.stick);
+    if (left < k_balance * weight && sigma > 1) {
+      for (int i = 0; i < n; ++i) {
+        const int g = s.first + i;
+        state.position[g] = w.start.position[i];
+        state.rotation[g] = w.start.rotation[i];
+        state.velocity[g].setZero();
+        state.angular_velocity[g].setZero();
+      }
+      status.kind = StepStatus::Kind::ok;
+      return status;
+    }
+    if (s.lu.factor() >= 0) return status;
+    s.lu.solve(w.right_hand_side.data());
+    w.trial = w.start;
+    double furthest = 0, step = 0;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 shift(&w.right_hand_side[6 * i]), spin(&w.right_hand_side[6 * i + 3]);
+      w.trial.position[i] += shift;
+      w.trial.rotation[i] = exp_quaternion(spin) * w.trial.rotation[i];
+      w.trial.rotation[i].normalize();
+      step = std::max(step, shift.norm());
+      furthest = std::max(furthest, (w.trial.position[i] - origin[i]).norm());
+      if (!std::isfinite(furthest + spin.sum())) return status;
+    }
+    if (furthest > k_furthest * s.size) return status;
+    // stick springs travel along: evaluate them from where they were
+    s.find_contacts(still.contact, w.trial, state.stick, w.start.position, s.pairs);
+    s.store_stick(s.pairs, state.stick);
+    std::swap(w.start, w.trial);
+    sigma = std::clamp(sigma * (step < 0.01 * s.size ? 2 : 0.5), k_first_sigma / 16, k_last_sigma);
+  }
+  return status;
+}
+
+}  // namespace topple

@@ -1,0 +1,16 @@
+// Rest under gravity.
+#pragma once
+
+#include "solver/body_system.h"
+#include "solver/generalized_alpha.h"
+#include "solver/step.h"
+
+namespace topple {
+
+/// Moves one body of `state` to where gravity, floors, walls and supports hold it at rest, by Newton steps on
+/// (M/sigma^2) (x - x_k) = f(x) with growing sigma. `law`: its alpha, q and friction serve; loads and floor
+/// motion do not.
+StepStatus settle_body(BodySystem& system, const Parameters& parameters, State& state,
+                       IntegratorScratch& scratch);
+
+}  // namespace topple

@@ -1,0 +1,111 @@
+#include "solver/state.h"
+
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+// Calls f on every number of the state, in the order of a checkpoint; `step` and counts are handled by the
+// callers.
+template <class AnyState, class F>
+void each_number(AnyState& s, F f) {
+  f(s.time);
+  const auto each = [&](auto& vectors) {
+    for (auto& v : vectors)
+      for (int k = 0; k < 3; ++k) f(v[k]);
+  };
+  each(s.position);
+  for (auto& q : s.rotation)
+    for (int k = 0; k < 4; ++k) f(q.coeffs()[k]);
+  each(s.velocity);
+  each(s.angular_velocity);
+  each(s.acceleration);
+  each(s.angular_acceleration);
+  each(s.algorithmic_acceleration);
+  each(s.algorithmic_angular_acceleration);
+  each(s.stick);
+  for (int k = 0; k < 3; ++k) f(s.floor_displacement[k]);
+  for (int k = 0; k < 3; ++k) f(s.floor_velocity[k]);
+  auto& e = s.energy;
+  for (auto* number : {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction,
+                       &e.normal_damping, &e.numerical, &e.start_total, &e.largest})
+    f(*number);
+}
+
+void resize(const Model& model, State& state) {
+  const std::size_t n = model.node_position.size();
+  for (auto* array : {&state.position, &state.velocity, &state.angular_velocity, &state.acceleration,
+                      &state.angular_acceleration, &state.algorithmic_acceleration,
+                      &state.algorithmic_angular_acceleration})
+    array->assign(n, Vec3::Zero());
+  state.rotation.assign(n, Quat::Identity());
+  state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
+}
+
+}  // namespace
+
+State start_state(const Model& model, const std::vector<BodyStart>& starts) {
+  State state;
+  resize(model, state);
+  for (int i = 0; i < model.node_total(); ++i) {
+    const BodyStart& start = starts[model.node_body[i]];
+    const Quat turn = exp_quaternion(start.rotation);
+    const auto moved = [&](const Vec3& x) { return Vec3(start.pivot + turn * (x - start.pivot)); };
+    const Vec3 centre = moved(model.bodies[model.node_body[i]].centre_of_gravity);
+    state.position[i] = moved(model.node_position[i]);
+    state.rotation[i] = turn;
+    state.velocity[i] = start.velocity + start.angular_velocity.cross(state.position[i] - centre);
+    state.angular_velocity[i] = turn.conjugate() * start.angular_velocity;
+  }
+  for (const Support& support : model.supports)
+    for (int k = 0; k < 3; ++k) {
+      if (support.fixed >> k & 1) state.velocity[support.node][k] = 0;
+      if (support.fixed >> (3 + k) & 1) state.angular_velocity[support.node].setZero();
+    }
+  return state;
+}
+
+std::vector<double> pack(const State& state) {
+  std::vector<double> numbers;
+  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 20);
+  numbers.push_back(std::bit_cast<double>(state.step));
+  each_number(state, [&](double x) { numbers.push_back(x); });
+  return numbers;
+}
+
+State unpack(const Model& model, std::span<const double> numbers) {
+  State state;
+  resize(model, state);
+  std::size_t count = 1;
+  each_number(state, [&](double&) { ++count; });
+  if (count != numbers.size()) throw std::invalid_argument("a checkpoint of another model");
+  state.step = std::bit_cast<std::int64_t>(numbers[0]);
+  std::size_t next = 1;
+  each_number(state, [&](double& x) { x = numbers[next++]; });
+  return state;
+}
+
+std::uint64_t hash(const State& state) {
+  std::uint64_t sum = 14695981039346656037ull;
+  const auto mix = [&](std::uint64_t bits) {
+    for (int shift = 0; shift < 64; shift += 8) {
+      sum ^= bits >> shift & 0xff;
+      sum *= 1099511628211ull;
+    }
+  };
+  mix(static_cast<std::uint64_t>(state.step));
+  each_number(state, [&](double x) { mix(std::bit_cast<std::uint64_t>(x)); });
+  return sum;
+}
+
+bool is_finite(const State& state) {
+  bool finite = true;
+  each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
+  return finite;
+}
+
+}  // namespace topple

@@ -1,0 +1,72 @@
+// Exactly what is needed to continue bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+#include "solver/types.h"
+
+namespace topple {
+
+/// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity and contact are what is
+/// there or came in; dissipated is what went out.
+struct EnergyLedger {
+  double input = 0;  ///< work of the floor's acceleration and of loads on the bodies, in the floor's frame
+  double kinetic = 0;
+  double strain = 0;
+  double gravity = 0;         ///< relative to the start
+  double contact = 0;         ///< stored in penalty and stick springs
+  double friction = 0;        ///< dissipated by tangential contact forces
+  double normal_damping = 0;  ///< dissipated by normal contact forces
+  double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
+  double start_total = 0;     ///< kinetic + strain + contact at the start
+  double largest = 0;         ///< largest energy exchanged so far
+
+  double dissipated() const { return friction + normal_damping + numerical; }
+  /// Energy that nothing explains.
+  double unexplained() const {
+    return kinetic + strain + gravity + contact - start_total - input + dissipated();
+  }
+  /// |unexplained| over the largest energy exchanged so far (input, kinetic, potential).
+  double balance_error() const;
+};
+
+/// Motion of a run at one accepted step, in the floor's frame. Per-node arrays have Model::node_total()
+/// entries.
+struct State {
+  double time = 0;                                     ///< s
+  std::int64_t step = 0;                               ///< accepted steps; settling does not count
+  std::vector<Vec3> position;                          ///< m
+  std::vector<Quat> rotation;                          ///< reference to current
+  std::vector<Vec3> velocity;                          ///< m/s
+  std::vector<Vec3> angular_velocity;                  ///< rad/s, in the node's material axes
+  std::vector<Vec3> acceleration;                      ///< m/s^2, from the balance of forces
+  std::vector<Vec3> angular_acceleration;              ///< rad/s^2, material axes
+  std::vector<Vec3> algorithmic_acceleration;          ///< a of generalized-alpha
+  std::vector<Vec3> algorithmic_angular_acceleration;  ///< likewise, material axes
+  /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
+  std::vector<Vec3> stick;
+  Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)
+  Vec3 floor_velocity = Vec3::Zero();      ///< m/s, high-passed
+  EnergyLedger energy;
+};
+
+/// The reference pose moved by `starts` (one per body), at rest or moving rigidly; accelerations zero.
+State start_state(const Model& model, const std::vector<BodyStart>& starts);
+
+/// State as numbers, in a fixed order: the content of a checkpoint.
+std::vector<double> pack(const State& state);
+
+/// Inverse of pack. Throws std::invalid_argument when the count does not fit the model.
+State unpack(const Model& model, std::span<const double> numbers);
+
+/// 64-bit FNV-1a over the bytes of pack().
+std::uint64_t hash(const State& state);
+
+/// No NaN, no infinity anywhere.
+bool is_finite(const State& state);
+
+}  // namespace topple

@@ -1,0 +1,242 @@
+#include "solver/step.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "solver/beam.h"
+#include "solver/body_system.h"
+#include "solver/central_difference.h"
+#include "solver/energy.h"
+#include "solver/excitation.h"
+#include "solver/generalized_alpha.h"
+#include "solver/settle.h"
+
+namespace topple {
+namespace {
+
+constexpr int k_halvings = 6;
+
+std::string format(const char* pattern, double a) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, a);
+  return text;
+}
+
+}  // namespace
+
+struct Workspace::Impl {
+  explicit Impl(const Model& model) {
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+      systems.push_back(std::make_unique<BodySystem>(model, b));
+  }
+  std::vector<std::unique_ptr<BodySystem>> systems;
+  IntegratorScratch scratch;
+  BodyMotion motion;
+  std::vector<TouchingPair> pairs;
+  std::vector<ContactForce> contact_forces;
+  State next;
+  std::optional<double> explicit_limit;  // s, and the body that sets it
+  int limiting_body = -1;
+};
+
+Workspace::Workspace(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+std::string StepStatus::message(const Model& model) const {
+  if (ok()) return "ok";
+  std::string where = body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor";
+  if (element >= 0) {
+    const Member& member = model.members[model.elements[element].member];
+    where += ", member \"" + member.name + "\" (element " + std::to_string(element) + ")";
+  }
+  const std::string when = format("at %.6g s", time);
+  switch (kind) {
+    case Kind::newton_diverged:
+      return "the step " + when + " has no converged solution: " + where + "; try a smaller time_step";
+    case Kind::not_finite:
+      return "the motion is no longer finite " + when + ": " + where + "; try a smaller time_step";
+    case Kind::singular:
+      return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
+    case Kind::not_settled:
+      return where +
+             " does not come to rest under gravity; does it stand on something? settle = false starts it as "
+             "it is";
+    case Kind::step_too_long:
+      return where + format(": central-difference is stable up to a time_step of %.4g s", limit) +
+             "; try a smaller one, or generalized-alpha";
+    case Kind::ok:
+      break;
+  }
+  return "";
+}
+
+StepStatus settle(const Model&, const Parameters& parameters, State& state, Workspace& workspace) {
+  StepStatus status;
+  for (auto& system : workspace.impl().systems) {
+    status = settle_body(*system, parameters, state, workspace.impl().scratch);
+    if (!status.ok()) return status;
+  }
+  return status;
+}
+
+void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
+  Workspace::Impl& w = workspace.impl();
+  EnergyLedger& energy = state.energy;
+  energy.kinetic = energy.strain = energy.contact = 0;
+  for (auto& system : w.systems) {
+    BodySystem& s = *system;
+    s.load(state, w.motion);
+    s.evaluate(parameters, state.time, w.motion, state.stick, w.motion.position);
+    for (int i = 0; i < s.count; ++i) {
+      const int g = s.first + i;
+      for (int k = 0; k < 3; ++k) {
+        if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
+        if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
+      }
+      const Mat3& j = model.node_inertia[g];
+      const Vec3& omega = state.angular_velocity[g];
+      state.acceleration[g] = state.algorithmic_acceleration[g] = s.force[i] / model.node_mass[g];
+      state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] =
+          j.inverse() * (state.rotation[g].conjugate() * s.moment[i] - omega.cross(j * omega));
+    }
+    const BodyEnergy part = s.energy(parameters.contact, w.motion, s.pairs);
+    energy.kinetic += part.kinetic;
+    energy.strain += part.strain;
+    energy.contact += part.contact;
+  }
+  energy.start_total = energy.kinetic + energy.strain + energy.contact;
+  energy.largest = std::max({energy.kinetic, energy.strain + energy.contact});
+}
+
+namespace {
+
+// The floor's velocity jumps: bodies keep their own, so they move the other way in the floor's frame.
+double jump(const Model& model, const std::vector<Shake>& shakes, double t, double h, State& state) {
+  const Vec3 floor = floor_velocity_jump(shakes, t - h / 2, t + h / 2);
+  if (floor.isZero(0)) return 0;
+  double gain = 0;
+  for (int i = 0; i < model.node_total(); ++i) {
+    gain -= 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
+    state.velocity[i] -= floor;
+    gain += 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
+  }
+  for (const Support& support : model.supports)
+    for (int k = 0; k < 3; ++k)
+      if (support.fixed >> k & 1) {
+        double& v = state.velocity[support.node][k];
+        gain -= 0.5 * model.node_mass[support.node] * v * v;
+        v = 0;
+      }
+  state.floor_velocity += floor;
+  return gain;
+}
+
+}  // namespace
+
+StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
+  Workspace::Impl& w = workspace.impl();
+  const double h = parameters.time_step, t = state.time;
+  const bool is_explicit = parameters.integrator == Integrator::central_difference;
+  StepStatus status;
+  if (is_explicit) {
+    if (!w.explicit_limit)
+      for (auto& system : w.systems)
+        if (const double limit = explicit_limit(*system); limit < w.explicit_limit.value_or(1e300)) {
+          w.explicit_limit = limit;
+          w.limiting_body = system->index;
+        }
+    if (h > *w.explicit_limit) {
+      status.kind = StepStatus::Kind::step_too_long;
+      status.limit = *w.explicit_limit;
+      status.time = t;
+      status.body = w.limiting_body;
+      return status;
+    }
+  }
+  State& next = w.next;
+  next = state;
+  StepEnergy exchanged;
+  exchanged.input = jump(model, parameters.shakes, t, h, next);
+
+  BodyEnergy held;
+  int iterations = 0, rejected = 0;
+  for (auto& system : w.systems) {
+    status = is_explicit ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
+                         : advance_generalized_alpha(*system, parameters, next, t, h, k_halvings, w.scratch,
+                                                     exchanged);
+    iterations += status.newton_iterations;
+    rejected += status.rejected;
+    if (!status.ok()) break;
+    const BodyEnergy part = system->energy(parameters.contact, w.scratch.trial, system->pairs);
+    held.kinetic += part.kinetic;
+    held.strain += part.strain;
+    held.contact += part.contact;
+  }
+  status.newton_iterations = iterations;
+  status.rejected = rejected;
+  if (!status.ok()) return status;
+
+  next.step = state.step + 1;
+  next.time = t + h;
+  advance_floor(next.floor_displacement, next.floor_velocity, floor_acceleration(parameters.shakes, t),
+                floor_acceleration(parameters.shakes, t + h), h);
+  EnergyLedger& e = next.energy;
+  e.input += exchanged.input;
+  e.gravity += exchanged.gravity;
+  e.friction += exchanged.friction;
+  e.normal_damping += exchanged.normal_damping;
+  e.numerical += exchanged.numerical;
+  e.kinetic = held.kinetic;
+  e.strain = held.strain;
+  e.contact = held.contact;
+  e.largest = std::max({e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact});
+  if (!is_finite(next)) {
+    status.kind = StepStatus::Kind::not_finite;
+    status.body = -1;
+    return status;
+  }
+  std::swap(state, next);
+  return status;
+}
+
+const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& parameters,
+                                                const State& state, Workspace& workspace) {
+  Workspace::Impl& w = workspace.impl();
+  w.contact_forces.clear();
+  for (auto& system : w.systems) {
+    system->load(state, w.motion);
+    system->find_contacts(parameters.contact, w.motion, state.stick, w.motion.position, w.pairs);
+    for (const TouchingPair& pair : w.pairs)
+      w.contact_forces.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
+  }
+  return w.contact_forces;
+}
+
+void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
+  forces.resize(model.elements.size());
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    const int i = element.node[0], j = element.node[1];
+    const BeamStrain strain = beam_strain(
+        element, element.s,
+        beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
+    forces[e] = {element.normal_stiffness.cwiseProduct(strain.gamma),
+                 element.bending_stiffness.cwiseProduct(strain.kappa)};
+  }
+}
+
+double equivalent_stress(const Section& section, const SectionForces& forces) {
+  const double normal = std::abs(forces.normal.x()) / section.area +
+                        std::abs(forces.moment.y()) * section.fibre_z() / section.iy +
+                        std::abs(forces.moment.z()) * section.fibre_y() / section.iz;
+  const double shear =
+      std::abs(forces.moment.x()) * std::max(section.fibre_y(), section.fibre_z()) / section.j;
+  return std::sqrt(normal * normal + 3 * shear * shear);
+}
+
+}  // namespace topple

@@ -1,0 +1,85 @@
+// One step of a run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+#include "solver/state.h"
+
+namespace topple {
+
+/// What became of a step. ok, or the first thing that went wrong and where.
+struct StepStatus {
+  enum class Kind { ok, newton_diverged, not_finite, singular, not_settled, step_too_long };
+  Kind kind = Kind::ok;
+  double time = 0;  ///< s
+  int body = -1;
+  int element = -1;  ///< -1: not an element's fault
+  int node = -1;
+  int newton_iterations = 0;
+  int rejected = 0;  ///< trial steps thrown away within this step
+  double limit = 0;  ///< s, step_too_long: the greatest stable step
+
+  bool ok() const { return kind == Kind::ok; }
+  /// One sentence: what, when, where, what to try.
+  std::string message(const Model& model) const;
+};
+
+/// Force of one plane on one contact point at the newest state, floor's frame.
+struct ContactForce {
+  int point;
+  int plane;
+  double depth;   ///< 1 - l/L, > 0
+  double normal;  ///< N, along the plane's normal
+  Vec3 force;     ///< N, on the point, normal and tangential
+};
+
+/// Section forces of one element at its stress point r = -s.
+struct SectionForces {
+  Vec3 normal;  ///< N, Vy, Vz, N
+  Vec3 moment;  ///< Mx, My, Mz, N m
+};
+
+/// Scratch of the integrators; may be thrown away at any time. Sized for one model.
+class Workspace {
+ public:
+  explicit Workspace(const Model& model);
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  struct Impl;
+  Impl& impl() { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Brings the bodies to rest under gravity on floors, walls and supports: positions, rotations and stick
+/// springs of `state` change, velocities become zero. Normal penalty forces of Eq. 2 with stick springs serve
+/// for every law. not_settled: a body has nothing to rest on, or tips over by itself.
+StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
+
+/// Initial accelerations and energies of `state`; call once before the first step and after a change of
+/// Parameters that is not seen by step.
+void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
+
+/// Advances `state` by parameters.time_step. On failure `state` is as before the call. generalized-alpha
+/// halves its step within the call (down to 1/64) when Newton does not converge.
+StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
+
+/// Contact forces at `state`, ordered by point then plane; the span lives until the next call with
+/// `workspace`.
+const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
+                                                const State& state, Workspace& workspace);
+
+/// Section forces of every element at `state`.
+void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
+
+/// Greatest equivalent stress of the element's section at its stress point, Pa: extreme-fibre normal stress
+/// with torsional shear after von Mises.
+double equivalent_stress(const Section& section, const SectionForces& forces);
+
+}  // namespace topple
