@@ -153,6 +153,7 @@ class CabinetBuilder {
     const Material& material = model_.materials[spec_.material];
     const double diagonal = std::hypot(a, b);
     Section brace = post;
+    brace.size_y = brace.size_z = k_brace_size * post.width;
     brace.name = spec_.name + "." + name;
     brace.shape = Section::Shape::custom;
     brace.area =
@@ -285,6 +286,9 @@ class CabinetBuilder {
                                     " times that (shelves carry mass inside)");
   }
 
+  /// Drawn side and extreme fibres of a diagonal over the post's width: it stands for a sheet and has no
+  /// section of its own.
+  static constexpr double k_brace_size = 0.3;
   /// Least mass of a node over the mean: keeps the explicit step from collapsing.
   static constexpr double k_least_share = 0.03;
 

@@ -22,10 +22,11 @@ void add_one(Model& model, const FrameSpec& spec, const std::string& name, const
     const FrameMember& member = spec.members[m];
     if (member.node[0] == member.node[1])
       throw BuildError("members", "member " + std::to_string(m) + " has no length");
-    const std::vector<int> nodes =
-        builder.line("member-" + std::to_string(m), model.node_position[first + member.node[0]],
-                     model.node_position[first + member.node[1]], 1, member.elements, member.section,
-                     member.material, member.up);
+    // copies: the line adds nodes to the list that holds its ends
+    const Vec3 from = model.node_position[first + member.node[0]];
+    const Vec3 to = model.node_position[first + member.node[1]];
+    const std::vector<int> nodes = builder.line("member-" + std::to_string(m), from, to, 1, member.elements,
+                                                member.section, member.material, member.up);
     width.resize(builder.body().node_count, 0.);
     for (int node : nodes)
       width[node - first] = std::max(width[node - first], model.sections[member.section].width);

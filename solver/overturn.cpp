@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/rotation.h"
 
@@ -23,6 +24,14 @@ double distance_to_edge(const std::vector<Vec3>& polygon, const Vec3& p, const V
     nearest = std::min(nearest, outward.dot(polygon[i] - p) / speed);
   }
   return nearest;
+}
+
+bool is_floor(const Plane& plane) {
+  return plane.normal.z() > k_upright_normal;
+}
+
+bool has_floor(const Model& model) {
+  return std::any_of(model.planes.begin(), model.planes.end(), is_floor);
 }
 
 }  // namespace
@@ -65,7 +74,7 @@ double tilt(const BodyPose& pose) {
 
 double critical_angle(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
-  if (body.support_polygon.empty()) return std::numeric_limits<double>::infinity();
+  if (body.support_polygon.empty() || !has_floor(model)) return std::numeric_limits<double>::infinity();
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = std::hypot(up.x(), up.y());
@@ -117,7 +126,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
   for (const ContactForce& f : forces) {
     const int b = model.node_body[model.contact_points[f.point].node];
     bodies_[b].peak_penetration = std::max(bodies_[b].peak_penetration, f.depth);
-    if (model.planes[f.plane].normal.z() < k_upright_normal) continue;
+    if (!is_floor(model.planes[f.plane])) continue;
     total_force_[b] += f.normal;
     for (int side : side_of_[b][f.point - model.bodies[b].first_contact_point])
       side_force_[b][side] += f.normal;

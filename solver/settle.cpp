@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/rotation.h"
 
@@ -13,6 +14,16 @@ constexpr double k_first_sigma = 1e-3;  // s
 constexpr double k_last_sigma = 1e3;    // s
 constexpr double k_balance = 1e-10;     // of the body's weight, greatest force left on a node
 constexpr double k_furthest = 0.25;     // of the body's size: more is falling, not settling
+
+// Force that rounding of the coordinates makes in the stiffest element, N.
+double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
+  const Body& body = s.model.bodies[s.index];
+  double stiffness = 0, reach = s.size;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+    stiffness = std::max(stiffness, s.model.elements[e].normal_stiffness.x() / s.model.elements[e].length);
+  for (const Vec3& x : position) reach = std::max(reach, x.norm());
+  return 8 * std::numeric_limits<double>::epsilon() * reach * stiffness;
+}
 
 }  // namespace
 
@@ -28,6 +39,7 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
   const std::vector<Vec3> origin = w.start.position;
   w.right_hand_side.resize(6 * n);
   const double weight = s.model.bodies[s.index].mass * parameters.gravity.norm();
+  const double balanced = k_balance * weight + rounding(s, origin);
   double sigma = k_first_sigma;
   StepStatus status;
   status.time = state.time;
@@ -53,7 +65,7 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
         if (s.fixed[i] >> k & 1) s.lu.fix(i, k);
     }
     s.store_stick(s.pairs, state.stick);
-    if (left < k_balance * weight && sigma > 1) {
+    if (left < balanced && sigma > 1) {
       for (int i = 0; i < n; ++i) {
         const int g = s.first + i;
         state.position[g] = w.start.position[i];

@@ -1,0 +1,272 @@
+#include "app/bridge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solver/excitation.h"
+
+namespace topple::app {
+namespace {
+
+constexpr int k_stations = 6;           // per element: bends of an element look smooth at any size on screen
+constexpr double k_floor_margin = 2.2;  // m, floor beyond where bodies go
+constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
+constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
+constexpr double k_wall_height = 2.4;   // m, least
+constexpr double k_degrees = 180 / k_pi;
+constexpr double k_mega = 1e-6;
+constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
+
+render::Float3 to_float(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+Vec3 position(const io::FrameRow& row, int node) {
+  return {row.position[3 * node], row.position[3 * node + 1], row.position[3 * node + 2]};
+}
+
+Quat rotation(const io::FrameRow& row, int node) {
+  const float* q = &row.rotation[4 * node];
+  return Quat(q[0], q[1], q[2], q[3]).normalized();
+}
+
+Vec3 floor_shift(const io::FrameRow& row) {
+  return Vec3(row.floor_displacement);
+}
+
+SectionForces forces_at(const io::FrameRow& row, const Element& element, std::size_t e, double xi) {
+  const float* f = &row.section_force[6 * e];
+  SectionForces out{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}};
+  const double arm = element.length / 2 * (xi + row.s[e]);  // from the stress point r = -s
+  out.moment.y() += out.normal.z() * arm;
+  out.moment.z() -= out.normal.y() * arm;
+  return out;
+}
+
+render::Profile profile(const Section& section) {
+  render::Profile out;
+  const float y = static_cast<float>(section.size_y / 2), z = static_cast<float>(section.size_z / 2);
+  if (section.shape == Section::Shape::pipe) {
+    constexpr int k_sides = 24;
+    out.smooth = true;
+    for (int i = 0; i < k_sides; ++i) {
+      const double angle = 2 * k_pi * i / k_sides;
+      out.outline.push_back(
+          {y * static_cast<float>(std::cos(angle)), y * static_cast<float>(std::sin(angle))});
+    }
+  } else {
+    out.outline = {{-y, -z}, {y, -z}, {y, z}, {-y, z}};
+  }
+  return out;
+}
+
+}  // namespace
+
+RunExtent::RunExtent(const Model&) : low(Vec3::Constant(1e30)), high(Vec3::Constant(-1e30)) {}
+
+void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
+  const Vec3 shift = floor_shift(row);
+  for (int i = 0; i < model.node_total(); ++i) {
+    low = low.cwiseMin(position(row, i) + shift);
+    high = high.cwiseMax(position(row, i) + shift);
+  }
+  double peak = 0;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    for (double xi : {-1., 1.})
+      peak = std::max(peak, equivalent_stress(model.sections[model.members[element.member].section],
+                                              forces_at(row, element, e, xi)));
+  }
+  peak_stress_.push_back(peak);
+  if (parameters.shakes.empty()) return;
+  time_s.push_back(static_cast<float>(row.time));
+  acceleration_gal.push_back(
+      static_cast<float>(Vec3(row.floor_acceleration).dot(parameters.shakes.front().direction) / k_gal));
+}
+
+double RunExtent::colour_top() const {
+  if (peak_stress_.empty()) return 0;
+  std::vector<double> sorted = peak_stress_;
+  const auto place =
+      sorted.begin() + static_cast<std::ptrdiff_t>(k_colour_share * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), place, sorted.end());
+  return *place;
+}
+
+io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
+  if (!(b.time > a.time)) return a;
+  const double u = std::clamp((time - a.time) / (b.time - a.time), 0., 1.);
+  io::FrameRow out = u < 0.5 ? a : b;  // what cannot lie between comes from the nearer row
+  out.time = time;
+  const auto mix = [u](const auto& x, const auto& y, auto& to) {
+    for (std::size_t i = 0; i < std::size(x); ++i)
+      to[i] = static_cast<std::remove_reference_t<decltype(to[i])>>((1 - u) * x[i] + u * y[i]);
+  };
+  mix(a.position, b.position, out.position);
+  mix(a.section_force, b.section_force, out.section_force);
+  mix(a.contact_depth, b.contact_depth, out.contact_depth);
+  mix(a.contact_force, b.contact_force, out.contact_force);
+  mix(a.energy, b.energy, out.energy);
+  mix(a.body, b.body, out.body);
+  mix(a.floor_acceleration, b.floor_acceleration, out.floor_acceleration);
+  mix(a.floor_displacement, b.floor_displacement, out.floor_displacement);
+  const auto turn = [u](const auto& x, const auto& y, auto& to, std::size_t at) {
+    const Quat q =
+        Quat(x[at], x[at + 1], x[at + 2], x[at + 3]).slerp(u, Quat(y[at], y[at + 1], y[at + 2], y[at + 3]));
+    const double parts[4] = {q.w(), q.x(), q.y(), q.z()};
+    for (std::size_t k = 0; k < 4; ++k)
+      to[at + k] = static_cast<std::remove_reference_t<decltype(to[at])>>(parts[k]);
+  };
+  for (std::size_t i = 0; i + 3 < a.rotation.size(); i += 4) turn(a.rotation, b.rotation, out.rotation, i);
+  for (std::size_t i = 0; i + 10 < a.body.size(); i += 11) turn(a.body, b.body, out.body, i + 3);
+  return out;
+}
+
+Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene), extent_(extent) {
+  for (const Section& section : scene.setup.model.sections) profiles_.push_back(profile(section));
+}
+
+render::SceneFrame Bridge::frame(const io::FrameRow& row) const {
+  render::SceneFrame out;
+  out.profiles = profiles_;
+  const Vec3 shift = floor_shift(row);
+  add_stations(row, out);
+  for (const Body& body : scene_.setup.model.bodies)
+    for (const auto& corners : body.panels) {
+      render::Panel panel;
+      for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(row, corners[k]) + shift);
+      out.panels.push_back(panel);
+    }
+  add_grounds(shift, out);
+  add_captions(row, out);
+  const Vec3 skin = Vec3::Constant(0.05);
+  out.bounds_min = to_float(extent_.low - skin);
+  out.bounds_max = to_float(extent_.high + skin);
+  return out;
+}
+
+// Between its nodes an element is a cubic in space with the nodes' directions at its ends, its section
+// turning evenly.
+void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) const {
+  const Model& model = scene_.setup.model;
+  const Vec3 shift = floor_shift(row);
+  for (std::size_t m = 0; m < model.members.size(); ++m) {
+    const Member& member = model.members[m];
+    const Section& section = model.sections[member.section];
+    render::Tube tube;
+    tube.first_station = static_cast<std::uint32_t>(out.stations.size());
+    tube.profile = static_cast<std::uint32_t>(member.section);
+    tube.member = static_cast<std::uint32_t>(m);
+    tube.body = static_cast<std::uint32_t>(member.body);
+    for (int k = 0; k < member.element_count; ++k) {
+      const std::size_t e = static_cast<std::size_t>(member.first_element + k);
+      const Element& element = model.elements[e];
+      const Vec3 x1 = position(row, element.node[0]) + shift, x2 = position(row, element.node[1]) + shift;
+      const Quat triad(element.triad);
+      const Quat q1 = rotation(row, element.node[0]) * triad, q2 = rotation(row, element.node[1]) * triad;
+      const double length = (x2 - x1).norm();
+      const Vec3 d1 = length * (q1 * Vec3::UnitX()), d2 = length * (q2 * Vec3::UnitX());
+      for (int i = k == 0 ? 0 : 1; i < k_stations; ++i) {
+        const double t = static_cast<double>(i) / (k_stations - 1), t2 = t * t, t3 = t2 * t;
+        const Vec3 x =
+            (2 * t3 - 3 * t2 + 1) * x1 + (t3 - 2 * t2 + t) * d1 + (3 * t2 - 2 * t3) * x2 + (t3 - t2) * d2;
+        const Quat q = q1.slerp(t, q2);
+        const double stress = equivalent_stress(section, forces_at(row, element, e, 2 * t - 1));
+        out.stations.push_back({to_float(x),
+                                {static_cast<float>(q.w()), static_cast<float>(q.x()),
+                                 static_cast<float>(q.y()), static_cast<float>(q.z())},
+                                static_cast<float>(stress * k_mega)});
+      }
+    }
+    tube.station_count = static_cast<std::uint32_t>(out.stations.size()) - tube.first_station;
+    out.tubes.push_back(tube);
+  }
+  out.legend.quantity = "equivalent stress";
+  out.legend.unit = "MPa";
+  out.legend.range_policy = "95 % of the run";
+  out.legend.minimum = 0;
+  out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
+}
+
+void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
+  const Model& model = scene_.setup.model;
+  for (const Plane& plane : model.planes) {
+    render::Ground ground;
+    ground.normal = to_float(plane.normal);
+    Vec3 low = extent_.low, high = extent_.high, along = Vec3::UnitX();
+    ground.is_floor = std::abs(plane.normal.z()) > 0.7;
+    if (ground.is_floor) {
+      low -= Vec3::Constant(k_floor_margin);
+      high += Vec3::Constant(k_floor_margin);
+    } else {
+      along = Vec3::UnitZ().cross(plane.normal).normalized();
+      const auto beside = [&](const Body& body) {
+        double nearest = 1e30;
+        for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+          nearest = std::min(nearest, plane.normal.dot(model.node_position[i] - plane.point));
+        return nearest < k_wall_reach;
+      };
+      Vec3 near_low = Vec3::Constant(1e30), near_high = -near_low;
+      for (const Body& body : model.bodies) {
+        if (!beside(body)) continue;
+        for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+          near_low = near_low.cwiseMin(model.node_position[i]);
+          near_high = near_high.cwiseMax(model.node_position[i]);
+        }
+      }
+      if (near_low.x() < 1e29) low = near_low, high = near_high;
+      low -= Vec3::Constant(k_wall_margin);
+      high += Vec3::Constant(k_wall_margin);
+      low.z() = 0;
+      high.z() = std::max(high.z(), k_wall_height);
+    }
+    // the rectangle lies in the plane, around the middle of the box
+    const Vec3 middle = (low + high) / 2, half = (high - low) / 2;
+    const Vec3 across = plane.normal.cross(along);
+    const Vec3 centre = middle - plane.normal * plane.normal.dot(middle - plane.point);
+    ground.centre = to_float(centre + shift);
+    ground.along = to_float(along);
+    ground.half_length = static_cast<float>(along.cwiseAbs().dot(half));
+    ground.half_width = static_cast<float>(across.cwiseAbs().dot(half));
+    out.grounds.push_back(ground);
+  }
+}
+
+void Bridge::add_captions(const io::FrameRow& row, render::SceneFrame& out) const {
+  const Setup& setup = scene_.setup;
+  out.caption.title = scene_.title;
+  out.caption.lines.push_back(fmt::format("t = {:.2f} s", row.time));
+  if (!setup.parameters.shakes.empty()) {
+    const Shake& shake = setup.parameters.shakes.front();
+    std::string what =
+        shake.kind == Shake::Kind::sine
+            ? fmt::format("floor: {:g} Hz, {:g} gal", shake.frequency, shake.amplitude / k_gal)
+            : fmt::format("floor: pulse {:g} s, {:g} gal", shake.duration, shake.amplitude / k_gal);
+    const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
+    const double d = Vec3(row.floor_displacement).dot(shake.direction);
+    out.caption.lines.push_back(fmt::format("{};  now {:+.0f} gal, {:+.0f} mm", what, a, 1e3 * d));
+    out.trace = {"floor acceleration, gal", extent_.time_s, extent_.acceleration_gal,
+                 static_cast<float>(row.time)};
+  }
+  for (std::size_t b = 0; b < setup.model.bodies.size(); ++b) {
+    const double tilt = row.body[11 * b + 7], slide = row.body[11 * b + 8], critical = row.body[11 * b + 10];
+    std::string line = setup.model.bodies[b].name + ": ";
+    if (!std::isfinite(critical))
+      line += fmt::format("tilt {:.1f}°", tilt * k_degrees);
+    else if (tilt > critical)
+      line += fmt::format("overturning, tilt {:.1f}°", tilt * k_degrees);
+    else
+      line += fmt::format("tilt {:.1f}° of {:.1f}°", tilt * k_degrees, critical * k_degrees);
+    if (std::isfinite(critical)) line += fmt::format(", slide {:.0f} mm", 1e3 * slide);
+    out.caption.lines.push_back(line);
+  }
+  out.caption.note =
+      fmt::format("topple {} · scene {} · contact α = {:g} kgf, q = {:g}, μ = {:g} · deformation ×1",
+                  TOPPLE_VERSION, scene_.name, setup.parameters.contact.alpha / k_standard_gravity,
+                  setup.parameters.contact.q, setup.parameters.contact.friction);
+}
+
+}  // namespace topple::app

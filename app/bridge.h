@@ -1,0 +1,50 @@
+// From what a run holds to what a picture needs: the one translation, for live frames and for recordings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/scene_frame.h"
+#include "solver/io/recording.h"
+#include "solver/io/scene.h"
+
+namespace topple::app {
+
+/// What pictures of one run share: the range of the colours, the space that bodies move through and the trace
+/// of the floor. Rows are added one after the other.
+class RunExtent {
+ public:
+  explicit RunExtent(const Model& model);
+  void add(const Model& model, const Parameters& parameters, const io::FrameRow& row);
+
+  /// Top of the colour scale, Pa: few instants of the run have a greater stress anywhere, so that an impact
+  /// of milliseconds does not darken all the rest.
+  double colour_top() const;
+
+  Vec3 low, high;                               ///< m, box of all nodes, floor's displacement included
+  std::vector<float> time_s, acceleration_gal;  ///< along the first shake's direction
+
+ private:
+  std::vector<double> peak_stress_;  ///< Pa, of each row
+};
+
+/// The row at `time` between two neighbours: positions and numbers linear, rotations by the shorter arc.
+io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
+
+/// Translates rows of one scene.
+class Bridge {
+ public:
+  Bridge(const io::Scene& scene, const RunExtent& extent);
+  render::SceneFrame frame(const io::FrameRow& row) const;
+
+ private:
+  void add_stations(const io::FrameRow& row, render::SceneFrame& out) const;
+  void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
+  void add_captions(const io::FrameRow& row, render::SceneFrame& out) const;
+
+  const io::Scene& scene_;
+  const RunExtent& extent_;
+  std::vector<render::Profile> profiles_;  ///< one per section
+};
+
+}  // namespace topple::app

@@ -1,0 +1,56 @@
+// The subcommands of topple. Each returns an exit code: 0 done, 1 the run failed, 130 interrupted; bad usage
+// and bad input leave as BadInput (exit 2).
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+
+namespace topple::app {
+
+inline constexpr int k_done = 0;
+inline constexpr int k_failed = 1;
+inline constexpr int k_bad_input = 2;
+inline constexpr int k_interrupted = 130;
+
+/// Bad usage or bad input found by the program itself. what() is one line.
+struct BadInput : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct RunOptions {
+  std::string scene;
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  std::string recording;               ///< empty: none
+  std::string json;                    ///< file, "-" or empty
+  bool quiet = false;
+};
+int run_command(const RunOptions& options);
+
+struct RenderOptions {
+  std::string source;                  ///< scene or recording
+  std::vector<std::string> overrides;  ///< of a scene
+  std::string png, mp4, still;         ///< one of them
+  std::optional<double> at;            ///< s, of the still
+  int width = 1280, height = 720;
+  int fps = 30;
+  render::NamedView view = render::NamedView::iso;
+  std::optional<double> from, to;  ///< s
+  bool quiet = false;
+};
+int render_command(const RenderOptions& options);
+
+struct ExportOptions {
+  std::string recording;
+  std::string csv;
+};
+int export_command(const ExportOptions& options);
+
+int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
+int info_command(const std::string& file, const std::string& json);
+int scenes_command();
+
+}  // namespace topple::app

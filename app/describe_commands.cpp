@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/files.h"
+#include "solver/io/recording.h"
+#include "solver/io/scene.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json vector(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+ordered_json describe(const io::Scene& scene) {
+  const Setup& setup = scene.setup;
+  ordered_json out;
+  out["kind"] = "scene";
+  out["scene"] = scene.name;
+  out["title"] = scene.title;
+  out["duration_s"] = setup.run.duration;
+  out["time_step_s"] = setup.parameters.time_step;
+  out["nodes"] = setup.model.node_total();
+  out["elements"] = setup.model.elements.size();
+  out["contact_points"] = setup.model.contact_points.size();
+  out["bodies"] = ordered_json::array();
+  for (const Body& body : setup.model.bodies)
+    out["bodies"].push_back({{"name", body.name},
+                             {"mass_kg", body.mass},
+                             {"centre_of_gravity_m", vector(body.centre_of_gravity)},
+                             {"inertia_kg_m2", vector(body.inertia.diagonal())},
+                             {"nodes", body.node_count},
+                             {"elements", body.element_count}});
+  return out;
+}
+
+ordered_json describe(const io::Recording& recording) {
+  ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  out["kind"] = "recording";
+  out["status"] = recording.status();
+  out["frames"] = recording.frame_count();
+  out["recorded_s"] = recording.times().empty() ? 0 : recording.times().back();
+  out["checkpoints"] = recording.checkpoint_count();
+  if (recording.checkpoint_count() > 0)
+    out["last_state_hash"] =
+        fmt::format("{:016x}", recording.checkpoint(recording.checkpoint_count() - 1).hash);
+  static const char* const k_kinds[] = {"uplift", "impact", "overturn"};
+  out["events"] = ordered_json::array();
+  for (const io::RecordedEvent& e : recording.events())
+    out["events"].push_back({{"kind", k_kinds[static_cast<int>(e.event.kind)]},
+                             {"time_s", e.time},
+                             {"step", e.step},
+                             {"body", out["bodies"][e.event.body]["name"]},
+                             {"value", e.event.value}});
+  if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());
+  return out;
+}
+
+std::string table(const ordered_json& d) {
+  std::string out = fmt::format("{} {}: {}\n", d["kind"].get<std::string>(), d["scene"].get<std::string>(),
+                                d["title"].get<std::string>());
+  out += fmt::format("duration {:g} s, time step {:g} s; {} nodes, {} elements, {} contact points\n",
+                     d["duration_s"].get<double>(), d["time_step_s"].get<double>(), d["nodes"].get<int>(),
+                     d["elements"].get<int>(), d["contact_points"].get<int>());
+  for (const auto& b : d["bodies"]) {
+    const auto &c = b["centre_of_gravity_m"], &i = b["inertia_kg_m2"];
+    out += fmt::format(
+        "body {}: {:.6g} kg, centre of gravity ({:.4f}, {:.4f}, {:.4f}) m, inertia ({:.4g}, {:.4g}, {:.4g}) "
+        "kg m^2\n",
+        b["name"].get<std::string>(), b["mass_kg"].get<double>(), c[0].get<double>(), c[1].get<double>(),
+        c[2].get<double>(), i[0].get<double>(), i[1].get<double>(), i[2].get<double>());
+  }
+  if (d["kind"] != "recording") return out;
+  out += fmt::format("{}: {} frames to {:g} s, {} checkpoints, last state {}\n",
+                     d["status"].get<std::string>(), d["frames"].get<long>(), d["recorded_s"].get<double>(),
+                     d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
+  for (const auto& e : d["events"])
+    out += fmt::format("{:>10.4f} s  {} {}\n", e["time_s"].get<double>(), e["body"].get<std::string>(),
+                       e["kind"].get<std::string>());
+  return out;
+}
+
+}  // namespace
+
+int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides) {
+  int code = k_done;
+  for (const std::string& scene : scenes) {
+    try {
+      io::load_scene(scene, overrides);
+      fmt::print("{}: ok\n", scene);
+    } catch (const io::InputError& error) {
+      fmt::print(stderr, "topple: {}\n", error.what());
+      code = k_bad_input;
+    }
+  }
+  return code;
+}
+
+int info_command(const std::string& file, const std::string& json) {
+  const ordered_json description =
+      io::is_recording(file) ? describe(io::Recording(file)) : describe(io::load_scene(file));
+  if (json == "-")
+    fmt::print("{}\n", description.dump(2));
+  else if (!json.empty())
+    write_whole_file(json, description.dump(2) + "\n");
+  else
+    fmt::print("{}", table(description));
+  return k_done;
+}
+
+int scenes_command() {
+  for (const io::BuiltinScene& builtin : io::builtin_scenes()) {
+    const std::string name(builtin.name);
+    fmt::print("{:<16} {}\n", name, io::load_scene(name).title);
+  }
+  return k_done;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,148 @@
+#include "app/summary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double k_degrees = 180 / k_pi;
+constexpr double k_good_balance = 1e-3;
+
+ordered_json number(double x) {
+  return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
+}
+
+ordered_json number(const std::optional<double>& x) {
+  return x ? number(*x) : ordered_json(nullptr);
+}
+
+ordered_json vector(const Vec3& v) {
+  return {number(v.x()), number(v.y()), number(v.z())};
+}
+
+ordered_json body(const Body& body, const BodyOutcome& o) {
+  return {{"name", body.name},
+          {"model", "frame"},
+          {"overturned", o.beyond_since.has_value()},
+          {"overturn_time_s", number(o.beyond_since)},
+          {"first_uplift_s", number(o.first_uplift)},
+          {"impacts", o.impacts},
+          {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
+          {"final_tilt_deg", number(o.tilt * k_degrees)},
+          {"critical_tilt_deg", number(o.critical * k_degrees)},
+          {"peak_slide_m", number(o.peak_slide)},
+          {"final_slide_m", number(o.slide)},
+          {"peak_stress_Pa", number(o.peak_stress)},
+          {"peak_yield_ratio", nullptr},
+          {"hinges", 0},
+          {"fractures", 0},
+          {"peak_penetration_ratio", number(o.peak_penetration)}};
+}
+
+ordered_json warnings(const Run& run) {
+  ordered_json list = ordered_json::array();
+  const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].peak_penetration > 1)
+      list.push_back(
+          fmt::format("body \"{}\" sank to {:.2f} contact widths: the centre line of a member passed that of "
+                      "the floor or wall; a larger alpha or width holds it",
+                      run.setup().model.bodies[b].name, bodies[b].peak_penetration));
+  const double balance = run.state().energy.balance_error();
+  if (balance > k_good_balance)
+    list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
+                               balance, k_good_balance));
+  return list;
+}
+
+std::string text(const ordered_json& value, const char* format) {
+  return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
+}
+
+}  // namespace
+
+ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status, double wall_s) {
+  const State& state = run.state();
+  const EnergyLedger& e = state.energy;
+  const Parameters& p = run.setup().parameters;
+  ordered_json out;
+  out["topple"] = TOPPLE_VERSION;
+  out["schema"] = 1;
+  out["scene"] = scene.name;
+  out["status"] = status;
+  if (!run.status().ok()) out["message"] = run.status().message(run.setup().model);
+  out["simulated_s"] = number(state.time);
+  out["wall_s"] = number(wall_s);
+  out["realtime_factor"] = wall_s > 0 ? number(state.time / wall_s) : ordered_json(nullptr);
+  out["integrator"] =
+      p.integrator == Integrator::central_difference ? "central-difference" : "generalized-alpha";
+  out["time_step_s"] = number(p.time_step);
+  out["steps"] = state.step;
+  out["rejected_steps"] = run.rejected_steps();
+  out["newton_iterations"] = run.newton_iterations();
+  out["energy"] = {{"input_J", number(e.input)},         {"kinetic_J", number(e.kinetic)},
+                   {"strain_J", number(e.strain)},       {"gravity_J", number(e.gravity)},
+                   {"contact_J", number(e.contact)},     {"dissipated_J", number(e.dissipated())},
+                   {"friction_J", number(e.friction)},   {"normal_damping_J", number(e.normal_damping)},
+                   {"numerical_J", number(e.numerical)}, {"balance_error", number(e.balance_error())}};
+  out["bodies"] = ordered_json::array();
+  const Model& model = run.setup().model;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b]));
+  out["probes"] = ordered_json::array();
+  for (std::size_t k = 0; k < run.probes().size(); ++k) {
+    const ProbeOutcome& probe = run.probes()[k];
+    out["probes"].push_back(
+        {{"name", run.setup().probes[k].name},
+         {"final",
+          {{"displacement_m", vector(probe.displacement)}, {"rotation_rad", vector(probe.rotation)}}},
+         {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
+  }
+  out["static"] = ordered_json::array();
+  out["warnings"] = warnings(run);
+  return out;
+}
+
+std::string summary_table(const ordered_json& s) {
+  std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
+                                s["status"].get<std::string>(), s["simulated_s"].get<double>());
+  if (!s["realtime_factor"].is_null())
+    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
+                       s["realtime_factor"].get<double>());
+  out +=
+      fmt::format("\n{}, step {:g} s: {} steps, {} rejected, {} iterations\n",
+                  s["integrator"].get<std::string>(), s["time_step_s"].get<double>(), s["steps"].get<long>(),
+                  s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
+  const auto& e = s["energy"];
+  out +=
+      fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
+                  text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
+  out += fmt::format("{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", "overturned",
+                     "uplift", "impacts", "peak tilt", "final tilt", "slide", "peak stress");
+  out += fmt::format("{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", "s", "s", "", "deg",
+                     "deg", "mm", "MPa");
+  for (const auto& b : s["bodies"]) {
+    out += fmt::format(
+        "{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", b["name"].get<std::string>(),
+        b["overturned"].get<bool>() ? text(b["overturn_time_s"], "{:.4f}") : "no",
+        text(b["first_uplift_s"], "{:.3f}"), b["impacts"].get<int>(), text(b["peak_tilt_deg"], "{:.3f}"),
+        text(b["final_tilt_deg"], "{:.3f}"),
+        b["peak_slide_m"].is_null() ? "-" : fmt::format("{:.2f}", 1e3 * b["peak_slide_m"].get<double>()),
+        b["peak_stress_Pa"].is_null() ? "-"
+                                      : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
+  }
+  for (const auto& p : s["probes"]) {
+    const auto& d = p["final"]["displacement_m"];
+    out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),
+                       text(d[1], "{:.6g}"), text(d[2], "{:.6g}"));
+  }
+  for (const auto& w : s["warnings"]) out += "warning: " + w.get<std::string>() + "\n";
+  return out;
+}
+
+}  // namespace topple::app
