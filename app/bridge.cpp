@@ -39,11 +39,7 @@ Vec3 floor_shift(const io::FrameRow& row) {
 
 SectionForces forces_at(const io::FrameRow& row, const Element& element, std::size_t e, double xi) {
   const float* f = &row.section_force[6 * e];
-  SectionForces out{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}};
-  const double arm = element.length / 2 * (xi + row.s[e]);  // from the stress point r = -s
-  out.moment.y() += out.normal.z() * arm;
-  out.moment.z() -= out.normal.y() * arm;
-  return out;
+  return forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, element.length, row.s[e], xi);
 }
 
 render::Profile profile(const Section& section) {
@@ -254,13 +250,13 @@ void Bridge::add_captions(const io::FrameRow& row, render::SceneFrame& out) cons
   for (std::size_t b = 0; b < setup.model.bodies.size(); ++b) {
     const double tilt = row.body[11 * b + 7], slide = row.body[11 * b + 8], critical = row.body[11 * b + 10];
     std::string line = setup.model.bodies[b].name + ": ";
-    if (!std::isfinite(critical))
+    if (critical == 0)
       line += fmt::format("tilt {:.1f}°", tilt * k_degrees);
     else if (tilt > critical)
       line += fmt::format("overturning, tilt {:.1f}°", tilt * k_degrees);
     else
       line += fmt::format("tilt {:.1f}° of {:.1f}°", tilt * k_degrees, critical * k_degrees);
-    if (std::isfinite(critical)) line += fmt::format(", slide {:.0f} mm", 1e3 * slide);
+    if (critical > 0) line += fmt::format(", slide {:.0f} mm", 1e3 * slide);
     out.caption.lines.push_back(line);
   }
   out.caption.note =

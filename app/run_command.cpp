@@ -26,7 +26,8 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
   }
   const auto start = std::chrono::steady_clock::now();
   Run run(scene.setup);
-  if (recorder && run.status().ok()) recorder->observe(run);
+  const bool started = run.status().ok();
+  if (recorder && started) recorder->observe(run);
   {
     Progress progress(scene.name, "s simulated", scene.setup.run.duration, quiet);
     while (!run.over() && !interrupted()) {
@@ -41,11 +42,11 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
                              : run.over()          ? "completed"
                                                    : "interrupted";
   nlohmann::ordered_json result = summary(scene, run, status, wall);
-  if (recorder && run.state().step + run.status().ok() > 0) recorder->finish(run, status, result.dump());
+  if (recorder && started) recorder->finish(run, status, result.dump());
   const int exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
   if (status == "diverged") {
     fmt::print(stderr, "topple: {}: {}\n", scene.name, run.status().message(scene.setup.model));
-    if (recorder && run.state().step > 0)
+    if (recorder && started)
       fmt::print(stderr, "topple: {}: holds everything up to {:.6g} s\n", path, run.state().time);
   }
   if (status == "interrupted")

@@ -1,0 +1,166 @@
+#include "solver/io/export_csv.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "solver/io/scene.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A table that appears under its name when it is complete.
+class CsvFile {
+ public:
+  CsvFile(const fs::path& path, const char* header) : path_(path), part_(path) {
+    part_ += ".part";
+    file_.reset(std::fopen(part_.c_str(), "wb"));
+    if (!file_) fail();
+    buffer_ = header;
+    buffer_ += '\n';
+  }
+  ~CsvFile() {
+    file_.reset();
+    std::error_code ignored;
+    if (!complete_) fs::remove(part_, ignored);
+  }
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+
+  template <typename Number>
+  CsvFile& number(Number value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    return field({digits, static_cast<std::size_t>(end - digits)});
+  }
+  template <typename Number>
+  CsvFile& numbers(const Number* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) number(values[i]);
+    return *this;
+  }
+  /// A name; in quotes where RFC 4180 asks for them.
+  CsvFile& text(const std::string& value) {
+    if (value.find_first_of(",\"\r\n") == std::string::npos) return field(value);
+    std::string quoted = "\"";
+    for (const char c : value) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field(quoted + '"');
+  }
+  CsvFile& none() { return field({}); }
+  void end_row() {
+    buffer_ += '\n';
+    at_row_start_ = true;
+    constexpr std::size_t enough = 1 << 16;
+    if (buffer_.size() >= enough) write();
+  }
+  /// Puts everything on disk, under the temporary name still.
+  void close() {
+    write();
+    if (std::fclose(file_.release()) != 0) fail();
+  }
+  void publish() {
+    std::error_code error;
+    fs::rename(part_, path_, error);
+    if (error) throw WriteError(path_.string() + ": " + error.message());
+    complete_ = true;
+  }
+
+ private:
+  CsvFile& field(std::string_view value) {
+    if (!at_row_start_) buffer_ += ',';
+    at_row_start_ = false;
+    buffer_ += value;
+    return *this;
+  }
+  void write() {
+    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size()) fail();
+    buffer_.clear();
+  }
+  [[noreturn]] void fail() const {
+    throw WriteError(path_.string() + ": " + std::generic_category().message(errno));
+  }
+
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  fs::path path_, part_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string buffer_;
+  bool at_row_start_ = true, complete_ = false;
+};
+
+void bodies_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const double* values = row.body.data() + 11 * b;
+    csv.number(row.time).text(model.bodies[b].name).numbers(values, 7);
+    csv.number(values[7] * 180 / k_pi).numbers(values + 8, 2).end_row();
+  }
+}
+
+void nodes_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (const Body& body : model.bodies) {
+    for (int k = 0; k < body.node_count; ++k) {
+      const auto n = static_cast<std::size_t>(body.first_node + k);
+      csv.number(row.time).text(body.name).number(k);
+      csv.numbers(row.position.data() + 3 * n, 3).numbers(row.rotation.data() + 4 * n, 4).end_row();
+    }
+  }
+}
+
+void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Member& member = model.members[static_cast<std::size_t>(model.elements[e].member)];
+    const float* f = row.section_force.data() + 6 * e;
+    const SectionForces forces{.normal = {f[0], f[1], f[2]}, .moment = {f[3], f[4], f[5]}};
+    const double stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces);
+    csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
+    csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(stress);
+    csv.none().number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
+  }
+}
+
+void floor_row(CsvFile& csv, const FrameRow& row) {
+  csv.number(row.time).numbers(row.floor_acceleration, 3).numbers(row.floor_displacement, 3).end_row();
+}
+
+void expect_same_model(const Model& model, const FrameRow& row) {
+  if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
+      row.rung.size() != model.bodies.size()) {
+    throw InputError("the scene in the recording gives another model than the one it was recorded with");
+  }
+}
+
+}  // namespace
+
+void write_csv(const Recording& recording, const Model& model, const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw WriteError(folder + ": " + error.message());
+  const fs::path base(folder);
+  CsvFile bodies(base / "bodies.csv", "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J");
+  CsvFile nodes(base / "nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
+  CsvFile elements(base / "elements.csv",
+                   "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
+  CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
+  for (std::int64_t i = 0; i < recording.frame_count(); ++i) {
+    const FrameRow row = recording.frame(i);
+    expect_same_model(model, row);
+    bodies_rows(bodies, model, row);
+    nodes_rows(nodes, model, row);
+    elements_rows(elements, model, row);
+    floor_row(floor, row);
+  }
+  CsvFile* const files[] = {&bodies, &nodes, &elements, &floor};
+  for (CsvFile* file : files) file->close();
+  for (CsvFile* file : files) file->publish();
+}
+
+void export_csv(const Recording& recording, const std::string& folder) {
+  const Scene scene = parse_scene(recording.scene_text(), recording.scene_name());
+  write_csv(recording, scene.setup.model, folder);
+}
+
+}  // namespace topple::io

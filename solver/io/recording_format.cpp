@@ -1,0 +1,151 @@
+#include "solver/io/recording_format.h"
+
+namespace topple::io {
+namespace {
+
+struct Column {
+  const char* name;
+  std::size_t offset;
+  hid_t type;
+};
+
+Handle compound(std::size_t size, std::initializer_list<Column> columns) {
+  Handle type(H5Tcreate(H5T_COMPOUND, size), H5Tclose);
+  for (const Column& column : columns) checked(H5Tinsert(type, column.name, column.offset, column.type));
+  return type;
+}
+
+Handle four_numbers() {
+  const hsize_t count = 4;
+  return Handle(H5Tarray_create2(H5T_IEEE_F64LE, 1, &count), H5Tclose);
+}
+
+Handle event_kind() {
+  Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
+  const auto insert = [&type](const char* name, Event::Kind kind) {
+    const auto number = static_cast<std::int32_t>(kind);
+    checked(H5Tenum_insert(type, name, &number));
+  };
+  insert("uplift", Event::Kind::uplift);
+  insert("impact", Event::Kind::impact);
+  insert("overturn", Event::Kind::overturn);
+  return type;
+}
+
+}  // namespace
+
+template <>
+Handle record_type<FrameRecord>() {
+  using R = FrameRecord;
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"data_checksum", offsetof(R, data_checksum), H5T_STD_U32LE},
+                              {"step", offsetof(R, step), H5T_STD_I64LE},
+                              {"time", offsetof(R, time), H5T_IEEE_F64LE},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+template <>
+Handle record_type<CheckpointRecord>() {
+  using R = CheckpointRecord;
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"data_checksum", offsetof(R, data_checksum), H5T_STD_U32LE},
+                              {"step", offsetof(R, step), H5T_STD_I64LE},
+                              {"time", offsetof(R, time), H5T_IEEE_F64LE},
+                              {"hash", offsetof(R, hash), H5T_STD_U64LE},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+template <>
+Handle record_type<EventRecord>() {
+  using R = EventRecord;
+  const Handle kind = event_kind();
+  const Handle value = four_numbers();
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"kind", offsetof(R, kind), kind},
+                              {"step", offsetof(R, step), H5T_STD_I64LE},
+                              {"time", offsetof(R, time), H5T_IEEE_F64LE},
+                              {"body", offsetof(R, body), H5T_STD_I32LE},
+                              {"element", offsetof(R, element), H5T_STD_I32LE},
+                              {"value", offsetof(R, value), value},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+template <>
+Handle record_type<EditRecord>() {
+  using R = EditRecord;
+  const Handle key = text_type(sizeof(R::key));
+  const Handle value = four_numbers();
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"kind", offsetof(R, kind), H5T_STD_I32LE},
+                              {"step", offsetof(R, step), H5T_STD_I64LE},
+                              {"key", offsetof(R, key), key},
+                              {"value", offsetof(R, value), value},
+                              {"blob_offset", offsetof(R, blob_offset), H5T_STD_I64LE},
+                              {"blob_length", offsetof(R, blob_length), H5T_STD_I64LE},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+template <>
+Handle record_type<BranchRecord>() {
+  using R = BranchRecord;
+  return compound(sizeof(R), {{"id", offsetof(R, branch), H5T_STD_I32LE},
+                              {"parent", offsetof(R, parent), H5T_STD_I32LE},
+                              {"fork_step", offsetof(R, fork_step), H5T_STD_I64LE},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+template <>
+Handle record_type<ResultRecord>() {
+  using R = ResultRecord;
+  const Handle status = text_type(sizeof(R::status));
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"summary_checksum", offsetof(R, summary_checksum), H5T_STD_U32LE},
+                              {"summary_length", offsetof(R, summary_length), H5T_STD_I64LE},
+                              {"status", offsetof(R, status), status},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
+  const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, b = shape.bodies;
+  const hid_t f32 = H5T_IEEE_F32LE, f64 = H5T_IEEE_F64LE, u8 = H5T_STD_U8LE;
+  return {
+      {{"position", f32, {n, 3}, "m", "x,y,z"},
+       {"rotation", f32, {n, 4}, "1", "w,x,y,z"},
+       {"section_force", f32, {e, 6}, "N,N,N,N m,N m,N m", "N,Vy,Vz,T,My,Mz"},
+       {"s", f32, {e}, "1", ""},
+       {"hinge", u8, {e}, "0 none, 1 first end, 2 second end, 3 broken", ""},
+       {"contact_depth", f32, {c}, "1", ""},
+       {"contact_force", f32, {c, 3}, "N", "x,y,z"},
+       {"energy",
+        f64,
+        {9},
+        "J,J,J,J,J,J,J,J,1",
+        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,balance_error"},
+       {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
+       {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
+       {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},
+       {"floor_displacement", f64, {3}, "m", "x,y,z"}}};
+}
+
+std::size_t row_bytes(const FrameField& field) {
+  std::size_t bytes = H5Tget_size(field.type);
+  for (const hsize_t dim : field.dims) bytes *= dim;
+  return bytes;
+}
+
+FrameRow blank_row(const RowShape& shape) {
+  FrameRow row;
+  row.position.resize(3 * shape.nodes);
+  row.rotation.resize(4 * shape.nodes);
+  row.section_force.resize(6 * shape.elements);
+  row.s.resize(shape.elements);
+  row.hinge.resize(shape.elements);
+  row.contact_depth.resize(shape.contacts);
+  row.contact_force.resize(3 * shape.contacts);
+  row.energy.resize(9);
+  row.body.resize(11 * shape.bodies);
+  row.rung.resize(shape.bodies);
+  return row;
+}
+
+}  // namespace topple::io

@@ -1,0 +1,342 @@
+#include "solver/io/recording_reader.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <thread>
+
+#include "solver/io/hdf5_read_driver.h"
+#include "solver/io/scene.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned char k_signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+constexpr std::size_t k_flags_at = 11;            // in a superblock of version 3
+constexpr unsigned char k_being_written = 1 | 4;  // open for writing; by SWMR
+// A block that a writer has half written is read again; one that stays wrong must not hold the reader up.
+constexpr unsigned k_metadata_attempts = 20;
+constexpr int k_open_attempts = 5;
+
+/// What the file's first bytes say, before HDF5 sees it.
+struct FirstBytes {
+  bool exists = false, is_hdf5 = false, being_written = false;
+  std::size_t count = 0;
+};
+
+FirstBytes first_bytes(const std::string& path) {
+  unsigned char bytes[k_flags_at + 1] = {};
+  std::ifstream file(path, std::ios::binary);
+  FirstBytes found{.exists = file.is_open()};
+  if (!found.exists) return found;
+  file.read(reinterpret_cast<char*>(bytes), sizeof bytes);
+  found.count = static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0));
+  found.is_hdf5 =
+      found.count >= sizeof k_signature && std::memcmp(bytes, k_signature, sizeof k_signature) == 0;
+  found.being_written = found.count == sizeof bytes && (bytes[k_flags_at] & k_being_written) != 0;
+  return found;
+}
+
+FirstBytes expect_recording(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw InputError(path + ": is a folder, not a recording");
+  const FirstBytes found = first_bytes(path);
+  if (!found.exists) throw InputError(path + ": " + std::generic_category().message(errno));
+  if (found.count == 0) throw InputError(path + ": is empty, not a recording");
+  if (!found.is_hdf5) throw InputError(path + ": is not a recording (an HDF5 file)");
+  return found;
+}
+
+}  // namespace
+
+RowReader::RowReader(hid_t group, const char* name, hid_t type)
+    : set_(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose), type_(H5Tcopy(type), H5Tclose) {
+  const Handle stored(H5Dget_type(set_), H5Tclose);
+  if (checked(H5Tequal(stored, type_)) == 0)
+    throw Hdf5Error(std::string(name) + " has another type than expected");
+  read_extent();
+}
+
+void RowReader::read_extent() {
+  const Handle space(H5Dget_space(set_), H5Sclose);
+  dims_.resize(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space))));
+  if (dims_.empty()) throw Hdf5Error("a data set without rows");
+  checked(H5Sget_simple_extent_dims(space, dims_.data(), nullptr));
+}
+
+void RowReader::read(hsize_t first, hsize_t count, void* to) const {
+  std::vector<hsize_t> start(dims_.size(), 0), extent = dims_;
+  start[0] = first;
+  extent[0] = count;
+  if (std::find(extent.begin(), extent.end(), hsize_t{0}) != extent.end()) return;
+  const int rank = static_cast<int>(dims_.size());
+  const Handle memory(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  const Handle file(H5Dget_space(set_), H5Sclose);
+  checked(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr));
+  checked(H5Dread(set_, type_, memory, file, H5P_DEFAULT, to));
+}
+
+void RowReader::refresh() {
+  checked(H5Drefresh(set_));
+  read_extent();
+}
+
+struct Recording::Impl {
+  ~Impl() {
+    const QuietHdf5 quiet;
+    close();
+  }
+  explicit Impl(const std::string& file_path) : path(file_path) {
+    const QuietHdf5 quiet;
+    const FirstBytes found = expect_recording(path);
+    live = found.being_written;
+    for (int attempt = 1;; ++attempt) {
+      try {
+        open();
+        return;
+      } catch (const Hdf5Error& error) {
+        // Beside a writer that is at work, what looks damaged may be a matter of moments.
+        if (!live || attempt == k_open_attempts) fail(error.what());
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        live = first_bytes(path).being_written;
+      }
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& why) const { throw InputError(path + ": cannot read: " + why); }
+
+  template <typename Work>
+  auto guarded(Work&& work) const {
+    const QuietHdf5 quiet;
+    try {
+      return work();
+    } catch (const Hdf5Error& error) {
+      fail(error.what());
+    }
+  }
+
+  void close() {
+    for (RowReader* set :
+         {&frame_index, &checkpoint_index, &checkpoint_state, &event_rows, &result_rows, &summary_bytes}) {
+      *set = {};
+    }
+    for (RowReader& field : fields) field = {};
+    file.reset();
+  }
+
+  void open() {
+    close();
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    use_read_driver(access);
+    if (live) checked(H5Pset_metadata_read_attempts(access, k_metadata_attempts));
+    file = Handle(H5Fopen(path.c_str(), live ? H5F_ACC_RDONLY | H5F_ACC_SWMR_READ : H5F_ACC_RDONLY, access),
+                  H5Fclose);
+    expect_format();
+    name = read_text_attribute(file, "scene");
+    const auto bytes = read_fixed(file, "scene");
+    text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    check_model();
+    open_rows();
+    load();
+  }
+
+  void expect_format() const {
+    if (!has_attribute(file, "format") || !has_attribute(file, "version") ||
+        read_text_attribute(file, "format") != k_format) {
+      throw InputError(path + ": is an HDF5 file, but not a recording of topple");
+    }
+    const std::int32_t version = read_int_attribute(file, "version");
+    if (version != k_format_version) {
+      throw InputError(path + ": recording format " + std::to_string(version) +
+                       " is not supported by this version, which reads format " +
+                       std::to_string(k_format_version));
+    }
+  }
+
+  void check_model() const {
+    const Handle group(H5Gopen2(file, "model", H5P_DEFAULT), H5Gclose);
+    for (const char* table :
+         {"nodes", "elements", "members", "bodies", "sections", "materials", "contact_points", "planes"}) {
+      read_fixed(group, table);
+    }
+  }
+
+  void open_rows() {
+    const auto records = [this](const char* set, const Handle& type) { return RowReader(file, set, type); };
+    frame_index = records("frames/index", record_type<FrameRecord>());
+    checkpoint_index = records("checkpoints/index", record_type<CheckpointRecord>());
+    event_rows = records("events", record_type<EventRecord>());
+    result_rows = records("result", record_type<ResultRecord>());
+    summary_bytes = records("summary", text_type(1));
+    checkpoint_state = RowReader(file, "checkpoints/state", H5T_IEEE_F64LE);
+    const auto descriptions = frame_fields({});
+    for (std::size_t i = 0; i < k_field_count; ++i) {
+      const std::string set = std::string("frames/") + descriptions[i].name;
+      fields[i] = RowReader(file, set.c_str(), descriptions[i].type);
+    }
+    const auto first = [](const RowReader& rows) {
+      const auto dims = rows.row_dims();
+      return dims.empty() ? std::size_t{0} : static_cast<std::size_t>(dims[0]);
+    };
+    shape = {.nodes = first(fields[0]),
+             .elements = first(fields[2]),
+             .contacts = first(fields[5]),
+             .bodies = first(fields[8]),
+             .state = first(checkpoint_state)};
+    const auto expected = frame_fields(shape);
+    for (std::size_t i = 0; i < k_field_count; ++i) {
+      if (fields[i].row_dims() != expected[i].dims) {
+        throw Hdf5Error(std::string("frames/") + expected[i].name + " has another shape than expected");
+      }
+    }
+  }
+
+  void load() {
+    frames = read_records<FrameRecord>(frame_index, "frames/index");
+    checkpoints = read_records<CheckpointRecord>(checkpoint_index, "checkpoints/index");
+    recorded_events = read_records<EventRecord>(event_rows, "events");
+    for (const RowReader& field : fields) frames.resize(std::min<std::size_t>(frames.size(), field.rows()));
+    checkpoints.resize(std::min<std::size_t>(checkpoints.size(), checkpoint_state.rows()));
+    times.clear();
+    for (const FrameRecord& frame : frames) times.push_back(frame.time);
+    status = "interrupted";
+    summary.clear();
+    for (const ResultRecord& result : read_records<ResultRecord>(result_rows, "result")) read_result(result);
+    // The end of a file is what goes missing first.
+    if (live && !frames.empty()) read_frame(frames.size() - 1);
+  }
+
+  void read_result(const ResultRecord& result) {
+    status.assign(result.status, strnlen(result.status, sizeof result.status));
+    const auto length = static_cast<hsize_t>(result.summary_length);
+    if (length > summary_bytes.rows()) throw Hdf5Error("the summary is incomplete");
+    summary.resize(length);
+    summary_bytes.read(0, length, summary.data());
+    if (crc32c(std::as_bytes(std::span(summary))) != result.summary_checksum) {
+      throw Hdf5Error("the summary is damaged (checksum differs)");
+    }
+  }
+
+  FrameRow read_frame(std::size_t index) const {
+    const FrameRecord& record = frames[index];
+    FrameRow row = blank_row(shape);
+    row.branch = record.branch;
+    row.step = record.step;
+    row.time = record.time;
+    std::uint32_t checksum = 0;
+    const auto bytes = field_bytes(row);
+    for (std::size_t i = 0; i < k_field_count; ++i) {
+      fields[i].read(index, 1, bytes[i].data());
+      checksum = crc32c(bytes[i], checksum);
+    }
+    if (checksum != record.data_checksum) {
+      throw Hdf5Error("frame " + std::to_string(index) + " is damaged (checksum differs)");
+    }
+    return row;
+  }
+
+  // Indices are refreshed before the data: the data then hold at least the rows that the indices name.
+  bool refresh() {
+    if (!live) return false;
+    const std::size_t frames_before = frames.size(), events_before = recorded_events.size();
+    const std::string status_before = status;
+    for (RowReader* set :
+         {&result_rows, &summary_bytes, &frame_index, &checkpoint_index, &event_rows, &checkpoint_state}) {
+      set->refresh();
+    }
+    for (RowReader& field : fields) field.refresh();
+    load();
+    return frames.size() != frames_before || recorded_events.size() != events_before ||
+           status != status_before;
+  }
+
+  std::string path;
+  bool live = false;
+  Handle file;
+  RowReader frame_index, checkpoint_index, checkpoint_state, event_rows, result_rows, summary_bytes;
+  std::array<RowReader, k_field_count> fields;
+  RowShape shape;
+  std::string name, text, status, summary;
+  std::vector<FrameRecord> frames;
+  std::vector<CheckpointRecord> checkpoints;
+  std::vector<EventRecord> recorded_events;
+  std::vector<double> times;
+};
+
+Recording::Recording(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+Recording::~Recording() = default;
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
+
+const std::string& Recording::scene_name() const {
+  return impl_->name;
+}
+const std::string& Recording::scene_text() const {
+  return impl_->text;
+}
+const std::string& Recording::status() const {
+  return impl_->status;
+}
+const std::string& Recording::summary_json() const {
+  return impl_->summary;
+}
+const std::vector<double>& Recording::times() const {
+  return impl_->times;
+}
+std::int64_t Recording::frame_count() const {
+  return static_cast<std::int64_t>(impl_->frames.size());
+}
+std::int64_t Recording::checkpoint_count() const {
+  return static_cast<std::int64_t>(impl_->checkpoints.size());
+}
+
+bool Recording::refresh() {
+  return impl_->guarded([this] { return impl_->refresh(); });
+}
+
+FrameRow Recording::frame(std::int64_t index) const {
+  if (index < 0 || index >= frame_count()) throw std::out_of_range("frame " + std::to_string(index));
+  return impl_->guarded([&] { return impl_->read_frame(static_cast<std::size_t>(index)); });
+}
+
+std::vector<RecordedEvent> Recording::events() const {
+  std::vector<RecordedEvent> events;
+  for (const EventRecord& record : impl_->recorded_events) {
+    const Event event{.kind = static_cast<Event::Kind>(record.kind),
+                      .step = record.step,
+                      .time = record.time,
+                      .body = record.body,
+                      .value = record.value[0]};
+    events.push_back({.branch = record.branch, .step = record.step, .time = record.time, .event = event});
+  }
+  return events;
+}
+
+Checkpoint Recording::checkpoint(std::int64_t index) const {
+  if (index < 0 || index >= checkpoint_count())
+    throw std::out_of_range("checkpoint " + std::to_string(index));
+  return impl_->guarded([&] {
+    const CheckpointRecord& record = impl_->checkpoints[static_cast<std::size_t>(index)];
+    Checkpoint checkpoint{.branch = record.branch,
+                          .step = record.step,
+                          .time = record.time,
+                          .hash = record.hash,
+                          .state = std::vector<double>(impl_->shape.state)};
+    impl_->checkpoint_state.read(static_cast<hsize_t>(index), 1, checkpoint.state.data());
+    if (crc32c(std::as_bytes(std::span(checkpoint.state))) != record.data_checksum) {
+      throw Hdf5Error("checkpoint " + std::to_string(index) + " is damaged (checksum differs)");
+    }
+    return checkpoint;
+  });
+}
+
+bool is_recording(const std::string& path) {
+  return first_bytes(path).is_hdf5;
+}
+
+}  // namespace topple::io

@@ -1,0 +1,21 @@
+include(${PROJECT_SOURCE_DIR}/assets/embed.cmake)
+
+file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml)
+topple_embed(
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_scenes.cpp.in
+  OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
+  FILES ${scene_files})
+
+target_sources(topple_io PRIVATE
+  ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_document.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_entry.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_keys.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_keys_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_override.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_read.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)

@@ -1,0 +1,70 @@
+#include "solver/io/scene.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "solver/io/scene_check.h"
+#include "solver/io/scene_document.h"
+#include "solver/io/scene_read.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t k_most_bytes = 4u << 20;
+
+void refuse_large(std::size_t bytes, const std::string& origin) {
+  if (bytes > k_most_bytes) {
+    throw InputError(origin + ": larger than " + std::to_string(k_most_bytes >> 20) +
+                     " MiB, which no scene is");
+  }
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened");
+  std::string text(k_most_bytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw InputError(path + ": cannot be read");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  refuse_large(text.size(), path);
+  return text;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& origin,
+                  const std::vector<std::string>& overrides) {
+  refuse_large(text.size(), origin);
+  Node root = parse_toml(text, origin);
+  for (const std::string& change : overrides) apply_override(root, change);
+  check_scene(root, origin);
+
+  Scene scene;
+  scene.name = fs::path(origin).stem().string();
+  const Entry entry(origin, "", "", &root, root.place);
+  scene.title = entry.has("title") ? entry.text("title") : scene.name;
+  scene.text = overrides.empty() ? std::string(text) : write_toml(root);
+  read_run(entry, scene.setup);
+  read_actions(entry, scene.setup);
+  read_planes(entry, scene.setup);
+  read_materials_and_sections(entry, scene.setup);
+  read_bodies(entry, scene.setup);
+  read_probes(entry, scene.setup);
+  return scene;
+}
+
+Scene load_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+  std::error_code status;
+  if (fs::is_directory(path_or_name, status)) throw InputError(path_or_name + ": is a folder");
+  if (fs::exists(path_or_name, status)) return parse_scene(read_text(path_or_name), path_or_name, overrides);
+  std::string names;
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
+    names += (names.empty() ? "" : ", ") + std::string(scene.name);
+  }
+  throw InputError(path_or_name + ": no such file or built-in scene; built-in: " + names);
+}
+
+}  // namespace topple::io

@@ -1,0 +1,214 @@
+// Cabinets and frames of a scene.
+#include <algorithm>
+#include <set>
+
+#include "solver/cabinet.h"
+#include "solver/io/scene_read.h"
+
+namespace topple::io {
+namespace {
+
+// What two cores step in reasonable time is far below; this keeps a slip of the pen from filling the memory.
+constexpr std::size_t k_most_elements = 100000;
+// As BodyBuilder: an `up` nearer to the member's axis gives no local z.
+constexpr double k_parallel = 1e-6;
+
+/// Materials and sections by name. Sections that builders add are not among them.
+class Library {
+ public:
+  explicit Library(const Model& model) {
+    for (const Material& material : model.materials) materials_.push_back(material.name);
+    for (const Section& section : model.sections) sections_.push_back(section.name);
+  }
+  int section(const Entry& entry) const { return index(entry, "section", sections_); }
+  int material(const Entry& entry) const { return index(entry, "material", materials_); }
+
+ private:
+  static int index(const Entry& entry, const std::string& key, const std::vector<std::string>& names) {
+    const std::string name = entry.text(key);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    std::string known;
+    for (const std::string& other : names) known += (known.empty() ? "; known: " : ", ") + other;
+    entry.fail(key,
+               "there is no [[" + key + "]] \"" + name + "\"" + (names.empty() ? " nor any other" : known));
+  }
+
+  std::vector<std::string> materials_, sections_;
+};
+
+void check_start(const Entry& entry, const Setup& setup) {
+  if (!setup.run.settle) return;
+  const auto moves = [&](std::string_view key) { return entry.has(key) && !entry.vector(key).isZero(0); };
+  for (const std::string_view key : {"velocity", "angular_velocity"}) {
+    if (moves(key))
+      entry.fail(key, "a body that starts in motion cannot settle: write settle = false in [run]");
+  }
+}
+
+CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
+  CabinetSpec spec;
+  spec.name = entry.name();
+  spec.size = entry.vector("size");
+  spec.mass = entry.number("mass");
+  spec.cg_height = entry.has("cg_height") ? entry.number("cg_height") : spec.size.z() / 2;
+  if (!(spec.cg_height < spec.size.z())) entry.fail("cg_height", "is not below the top");
+  if (entry.is_word("inertia")) {
+    spec.inertia = entry.choice_as<CabinetSpec::Inertia>("inertia");
+  } else {
+    spec.inertia = CabinetSpec::Inertia::given;
+    spec.inertia_given = entry.vector("inertia");
+  }
+  const std::vector<double> at = entry.numbers("at");
+  spec.at_x = at[0];
+  spec.at_y = at[1];
+  spec.yaw = entry.number("yaw");
+  spec.pose = entry.choice_as<CabinetSpec::Pose>("pose");
+  spec.tilt = entry.number("tilt");
+  spec.velocity = entry.vector("velocity");
+  spec.angular_velocity = entry.vector("angular_velocity");
+  spec.section = library.section(entry);
+  spec.material = library.material(entry);
+  spec.shelves = entry.integer("shelves");
+  spec.bracing = entry.choice_as<CabinetSpec::Bracing>("bracing");
+  spec.panel_thickness = entry.number("panel_thickness");
+  spec.divisions = entry.integer("divisions");
+  return spec;
+}
+
+int read_node(const Entry& entry, std::string_view key, int node, const FrameSpec& spec, int part = -1) {
+  const int count = static_cast<int>(spec.nodes.size());
+  if (node < count) return node;
+  entry.fail(key,
+             std::to_string(node) + " is not a node of the frame, which has 0.." + std::to_string(count - 1),
+             part);
+}
+
+FrameMember read_member(const Entry& entry, const FrameSpec& spec, const Library& library) {
+  FrameMember member{};
+  const std::vector<int> ends = entry.integers("nodes");
+  for (int k = 0; k < 2; ++k) member.node[k] = read_node(entry, "nodes", ends[k], spec, k);
+  if (ends[0] == ends[1]) entry.fail("nodes", "a member from a node to itself has no length");
+  member.section = library.section(entry);
+  member.material = library.material(entry);
+  member.elements = entry.integer("elements");
+  if (member.elements % 2 != 0) entry.fail("elements", std::to_string(member.elements) + " is not even");
+  if (entry.has("up")) {
+    member.up = entry.direction("up");
+    const Vec3 axis = spec.nodes[member.node[1]] - spec.nodes[member.node[0]];
+    if (axis.norm() > 0 && axis.normalized().cross(member.up).norm() < k_parallel) {
+      entry.fail("up", "is parallel to the member");
+    }
+  }
+  return member;
+}
+
+unsigned read_fix(const Entry& entry) {
+  static const std::string k_letters = "xyzXYZ";
+  unsigned fixed = 0;
+  for (const char c : entry.text("fix")) {
+    const auto bit = k_letters.find(c);
+    if (bit == std::string::npos) {
+      entry.fail("fix", "expected letters of " + k_letters + ", found \"" + entry.text("fix") + "\"");
+    }
+    fixed |= 1u << bit;
+  }
+  return fixed;
+}
+
+FrameSpec read_frame(const Entry& entry, const Library& library) {
+  FrameSpec spec;
+  spec.name = entry.name();
+  spec.nodes = entry.vectors("nodes");
+  for (const Entry& member : entry.entries("members"))
+    spec.members.push_back(read_member(member, spec, library));
+  if (spec.members.empty()) entry.fail("members", "there are none");
+  for (const Entry& support : entry.entries("supports")) {
+    const int node = read_node(support, "node", support.integer("node"), spec);
+    const auto same = [&](const Support& other) { return other.node == node; };
+    const auto found = std::find_if(spec.supports.begin(), spec.supports.end(), same);
+    if (found == spec.supports.end()) {
+      spec.supports.push_back({node, read_fix(support)});
+    } else {
+      found->fixed |= read_fix(support);
+    }
+  }
+  for (const Entry& load : entry.entries("loads")) {
+    const int node = read_node(load, "node", load.integer("node"), spec);
+    spec.loads.push_back({node, load.vector("force"), load.vector("moment"), load.history("history")});
+  }
+  for (const Entry& mass : entry.entries("masses")) {
+    spec.masses.emplace_back(read_node(mass, "node", mass.integer("node"), spec), mass.number("mass"));
+  }
+  if (entry.has("mass")) spec.mass = entry.number("mass");
+  spec.copies = entry.vectors("copies");
+  spec.velocity = entry.vector("velocity");
+  spec.angular_velocity = entry.vector("angular_velocity");
+  return spec;
+}
+
+void check_size(const Entry& entry, std::size_t elements) {
+  if (elements <= k_most_elements) return;
+  entry.fail("brings the scene to " + std::to_string(elements) + " elements, more than " +
+             std::to_string(k_most_elements));
+}
+
+void check_size(const Entry& entry, const Model& model, const FrameSpec& spec) {
+  std::size_t elements = 0;
+  for (const FrameMember& member : spec.members) elements += static_cast<std::size_t>(member.elements);
+  check_size(entry, model.elements.size() + elements * std::max<std::size_t>(1, spec.copies.size()));
+}
+
+// Copies are named by the builder, so that they may meet a name of the file.
+void check_copies(const Entry& entry, const Model& model, std::size_t first) {
+  std::set<std::string> names;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::string& name = model.bodies[b].name;
+    if (names.insert(name).second) continue;
+    if (b == first) entry.fail("name", "\"" + name + "\" is also the name of a copy");
+    entry.fail("copies", "the copy \"" + name + "\" has the name of another body");
+  }
+}
+
+// Blames the key that a builder names, or the whole entry where the key is absent.
+template <typename F>
+void build(const Entry& entry, F&& builder) {
+  try {
+    builder();
+  } catch (const BuildError& error) {
+    if (error.key.empty()) entry.fail(error.what());
+    entry.fail(error.key, error.what());
+  }
+}
+
+}  // namespace
+
+void read_bodies(const Entry& root, Setup& setup) {
+  Model& model = setup.model;
+  const Library library(model);
+  for (const Entry& entry : root.entries("cabinet")) {
+    const CabinetSpec spec = read_cabinet(entry, library);
+    check_start(entry, setup);
+    if (setup.run.settle && spec.tilt != 0) {
+      entry.fail("tilt", "a body that starts tilted cannot settle: write settle = false in [run]");
+    }
+    build(entry, [&] { setup.starts.push_back(add_cabinet(model, spec)); });
+    check_size(entry, model.elements.size());
+  }
+  for (const Entry& entry : root.entries("frame")) {
+    const FrameSpec spec = read_frame(entry, library);
+    check_start(entry, setup);
+    check_size(entry, model, spec);
+    const std::size_t first = model.bodies.size();
+    build(entry, [&] {
+      const std::vector<BodyStart> starts = add_frame(model, spec);
+      setup.starts.insert(setup.starts.end(), starts.begin(), starts.end());
+    });
+    check_copies(entry, model, first);
+  }
+  if (model.bodies.empty()) {
+    root.fail("there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
+  }
+}
+
+}  // namespace topple::io

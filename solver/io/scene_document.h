@@ -1,0 +1,70 @@
+// A TOML text as a tree in which every key and value knows where it was written.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace topple::io {
+
+/// Where a key or value was written: a line and column from 1, or an override.
+struct Place {
+  int line = 0;
+  int column = 0;
+  std::shared_ptr<const std::string> override_text;  ///< "contact.friction=9"; null: in the file
+};
+
+struct Item;
+
+/// A TOML value.
+struct Node {
+  enum class Kind { boolean, integer, real, text, date, list, table };
+  Kind kind = Kind::table;
+  Place place;
+  bool boolean = false;
+  std::int64_t integer = 0;
+  double real = 0;  ///< of an integer too
+  std::string text;
+  std::vector<Item> items;  ///< of a list or a table, in the order written
+
+  /// The value of a key of a table; null when absent.
+  const Node* find(std::string_view key) const;
+  const Item* find_item(std::string_view key) const;
+  Item* find_item(std::string_view key);
+  bool is_number() const { return kind == Kind::integer || kind == Kind::real; }
+};
+
+/// An entry of a table, or of a list (then without key).
+struct Item {
+  std::string key;
+  Place key_place;
+  Node value;
+};
+
+/// Fails with "ORIGIN:L:C: PATH: MESSAGE" or "--set KEY=VALUE: PATH: MESSAGE", always one line. Throws
+/// InputError.
+[[noreturn]] void fail(const std::string& origin, const Place& place, const std::string& path,
+                       const std::string& message);
+
+/// Parses TOML. Throws InputError at the place where it is broken.
+Node parse_toml(std::string_view text, const std::string& origin);
+
+/// Applies "KEY=VALUE". KEY is dotted; entries of arrays go by their name or number from 1. Creates absent
+/// keys and the tables above them, but no entry of an array. Throws InputError.
+void apply_override(Node& root, const std::string& override_text);
+
+/// TOML text of the tree; comments are lost, order is kept.
+std::string write_toml(const Node& root);
+
+/// What errors and overrides call entry `index` of an array: its name, else its number from 1.
+std::string entry_label(const Node& list, std::size_t index);
+
+/// "a table", "text", "a list": what was found.
+std::string_view kind_name(Node::Kind kind);
+
+/// The value as it would be written, on one line, shortened when long: "2.4", "\"30 mm\"".
+std::string shown(const Node& node);
+
+}  // namespace topple::io

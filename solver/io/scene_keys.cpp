@@ -1,0 +1,207 @@
+#include "solver/io/scene_keys.h"
+
+#include "solver/io/scene_key_rows.h"
+#include "solver/parameters.h"
+#include "solver/run.h"
+
+namespace topple::io {
+namespace {
+
+using T = KeyType;
+using D = Dimension;
+
+constexpr double k_far = 1e3;   // m
+constexpr double k_large = 10;  // m
+
+void add_top(std::vector<Key>& keys) {
+  Rows rows(keys, "");
+  rows.integer("topple", 1, 1, "schema version").required();
+  rows.plain("title", T::text, "one line on what it shows").absent_means("the scene's name");
+  rows.plain("run", T::table, "how it is stepped");
+  rows.plain("shake", T::tables, "acceleration of the floor; several add up");
+  rows.plain("contact", T::table, "contact law");
+  rows.plain("floor", T::table, "the floor, its face at z = 0").absent_means("no floor");
+  rows.plain("wall", T::tables, "a plane wall");
+  rows.plain("material", T::tables, "linear elastic material");
+  rows.plain("section", T::tables, "cross-section of members");
+  rows.plain("cabinet", T::tables, "a steel cabinet, built from members");
+  rows.plain("frame", T::tables, "anything made of straight members");
+  rows.later("anchor", "ties a body to a wall or floor");
+  rows.plain("probe", T::tables, "motion reported in the summary");
+}
+
+void add_run(std::vector<Key>& keys) {
+  Rows rows(keys, "run");
+  const Parameters parameters{};
+  const RunSettings run{};
+  rows.word("analysis", {"dynamic"}, "what is computed").later({"static", "modes"}).absent(0);
+  rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time").absent(run.duration);
+  rows.word("integrator", {"auto", "generalized-alpha", "central-difference"}, "auto is generalized-alpha")
+      .later({"newmark"})
+      .absent(0);
+  rows.words("want", {"motion", "stress"}, "what the scene is for").absent(0);
+  rows.later("beta", "of the Newmark method");
+  rows.later("gamma", "of the Newmark method");
+  rows.number("spectral_radius", 0, 1, "at infinite frequency")
+      .absent(parameters.spectral_radius)
+      .only("integrator", {"auto", "generalized-alpha"});
+  rows.number("time_step", D::time, "s", 1e-7, 0.1, "fixed step")
+      .later({"auto"})
+      .absent(parameters.time_step);
+  rows.later("tolerance", "of the adaptive step");
+  rows.later("load_steps", "of a static run");
+  rows.word("elements", {"asi-gauss"}, "where the integration points stand")
+      .later({"asi", "midpoint"})
+      .absent(0);
+  rows.plain("settle", T::boolean, "start from rest under gravity").absent(run.settle);
+  rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows").absent(run.output_rate);
+  rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
+  rows.word("stop_when", {"never", "all-overturned", "at-rest"},
+            "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
+      .absent(run.stop_when);
+}
+
+void add_shake(std::vector<Key>& keys) {
+  Rows rows(keys, "shake");
+  const Shake shake{};
+  rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
+  rows.word("type", {"sine", "pulse"}, "form of the acceleration")
+      .later({"sweep", "record"})
+      .absent(shake.kind);
+  rows.number("frequency", D::frequency, "Hz", 1e-3, 1e3, "frequency").required().only("type", {"sine"});
+  rows.number("amplitude", D::acceleration, "gal", 0, 1e3, "largest acceleration").required();
+  rows.numbers("direction", 3, -1e6, 1e6, "of the acceleration; made a unit vector").absent(shake.direction);
+  rows.number("start", D::time, "s", 0, 3600, "begin").absent(shake.start);
+  rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", {"sine"});
+  rows.number("taper", 0, 1e6, "periods of smooth rise and fall").absent(shake.taper).only("type", {"sine"});
+  rows.word("initial_velocity", {"rest", "jump"}, "jump: the floor starts with the velocity of a pure sine")
+      .absent(shake.initial_velocity)
+      .only("type", {"sine"});
+  rows.word("shape", {"half-sine", "full-sine", "rectangle"}, "form of the pulse")
+      .absent(shake.shape)
+      .only("type", {"pulse"});
+  rows.number("duration", D::time, "s", 1e-6, 3600, "length of the pulse").required().only("type", {"pulse"});
+  rows.later("files", "of a record");
+  rows.later("directions", "of a record");
+  rows.later("scale", "of a record");
+}
+
+void add_contact(std::vector<Key>& keys) {
+  Rows rows(keys, "contact");
+  const ContactLaw law{};
+  rows.word("law", {"coulomb", "paper", "printed"}, "contact_law.h").absent(law.kind);
+  rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
+              "penalty coefficient of Eq. 2")
+      .absent(law.alpha);
+  rows.number("q", 0.5, 4, "penalty index of Eq. 2").absent(law.q);
+  rows.number("friction", 0, 1.5, "coefficient of friction").absent(law.friction);
+  rows.later("friction_static", "coefficient of static friction");
+  rows.number("restitution", 0, 1, "coefficient of restitution")
+      .absent(law.restitution)
+      .only("law", {"coulomb"});
+  rows.number("normal_speed", D::velocity, "m/s", 1e-6, 10, "closing speed below which restitution fades")
+      .absent(law.normal_speed)
+      .only("law", {"coulomb"});
+  rows.number("slip_speed", D::velocity, "m/s", 1e-6, 10, "smooths the direction of slip")
+      .absent(law.slip_speed)
+      .only("law", {"paper", "printed"});
+}
+
+void add_floor(std::vector<Key>& keys) {
+  Rows rows(keys, "floor");
+  rows.word("type", {"plane"}, "how it is made").later({"beams"}).absent(0);
+  rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
+      .absent(0);
+  rows.later("section", "of floor beams");
+  rows.later("material", "of floor beams");
+  rows.later("spacing", "of floor beams");
+  rows.later("extent", "of floor beams");
+}
+
+void add_wall(std::vector<Key>& keys) {
+  Rows rows(keys, "wall");
+  rows.plain("name", T::text, "not \"floor\"").absent_means("wall-1, ...");
+  rows.numbers("at", 2, D::length, "m", -k_far, k_far, "x and y of a point on its face, at z = 0").required();
+  rows.numbers("normal", 3, -1e6, 1e6, "towards the bodies; made a unit vector").required();
+  rows.word("type", {"plane"}, "how it is made").later({"beams"}).absent(0);
+  rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
+      .absent(0);
+}
+
+void add_material(std::vector<Key>& keys) {
+  Rows rows(keys, "material");
+  rows.plain("name", T::text, "what cabinets and members call it").required();
+  rows.number("young", D::stress, "Pa", 1e3, 1e13, "Young's modulus").required();
+  rows.number("poisson", 0, 0.5, "Poisson's ratio").required();
+  rows.number("density", D::density, "kg/m^3", 1e-3, 1e5, "density").required();
+  rows.later("yield", "yield stress");
+  rows.later("fracture_strain", "strain at fracture");
+}
+
+void add_section(std::vector<Key>& keys) {
+  Rows rows(keys, "section");
+  rows.plain("name", T::text, "what cabinets and members call it").required();
+  rows.word("shape", {"box", "solid", "pipe", "custom"}, "form").required();
+  rows.numbers("size", 2, D::length, "mm", 1e-3, k_large,
+               "[a, b] along local y and z, outside; pipe: the outer diameter alone, `\"30 mm\"` or `[\"30 "
+               "mm\"]`; custom: twice the distances of the extreme fibres")
+      .or_one()
+      .absent_means("required; custom: width by width");
+  rows.number("thickness", D::length, "mm", 1e-5, k_large, "of the wall; less than half of the smaller size")
+      .required()
+      .only("shape", {"box", "pipe"});
+  rows.number("area", D::area, "m^2", 1e-12, 100, "area").required().only("shape", {"custom"});
+  rows.number("iy", D::second_moment, "m^4", 1e-18, 100, "resists bending in the local x-z plane")
+      .required()
+      .only("shape", {"custom"});
+  rows.number("iz", D::second_moment, "m^4", 1e-18, 100, "resists bending in the local x-y plane")
+      .required()
+      .only("shape", {"custom"});
+  rows.number("j", D::second_moment, "m^4", 1e-18, 100, "torsion constant")
+      .required()
+      .only("shape", {"custom"});
+  rows.number("ky", 1e-3, 1e3, "shear coefficient in y").required().only("shape", {"custom"});
+  rows.number("kz", 1e-3, 1e3, "shear coefficient in z").required().only("shape", {"custom"});
+  rows.number("width", D::length, "mm", 1e-3, k_large, "contact width").required().only("shape", {"custom"});
+  rows.later("zy", "plastic modulus");
+  rows.later("zz", "plastic modulus");
+  rows.later("zt", "plastic modulus in torsion");
+}
+
+void add_probe(std::vector<Key>& keys) {
+  Rows rows(keys, "probe");
+  rows.plain("name", T::text, "name in the summary").absent_means("probe-1, ...");
+  rows.plain("body", T::text, "a cabinet, a frame, or a copy").required();
+  rows.integer("node", 0, 1e6, "node of a frame's list").absent_means("the body itself");
+}
+
+std::vector<Key> build_table() {
+  std::vector<Key> keys;
+  add_top(keys);
+  add_run(keys);
+  add_shake(keys);
+  add_contact(keys);
+  add_floor(keys);
+  add_wall(keys);
+  add_material(keys);
+  add_section(keys);
+  add_body_keys(keys);
+  add_probe(keys);
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<Key>& scene_keys() {
+  static const std::vector<Key> table = build_table();
+  return table;
+}
+
+const Key* find_key(std::string_view table, std::string_view name) {
+  for (const Key& key : scene_keys()) {
+    if (key.table == table && key.name == name) return &key;
+  }
+  return nullptr;
+}
+
+}  // namespace topple::io

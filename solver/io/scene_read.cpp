@@ -1,0 +1,176 @@
+#include "solver/io/scene_read.h"
+
+#include <algorithm>
+
+namespace topple::io {
+namespace {
+
+// In the order of the choices of run.integrator.
+constexpr Integrator k_integrators[] = {Integrator::generalized_alpha, Integrator::generalized_alpha,
+                                        Integrator::central_difference};
+
+// A section's walls against its sides: complete_section() asks for it.
+void check_wall(const Entry& entry, const Section& section) {
+  const double smaller = std::min(section.size_y, section.size_z);
+  if (2 * section.thickness < smaller) return;
+  entry.fail("thickness", "is not less than half of the smaller size");
+}
+
+Section read_section(const Entry& entry) {
+  Section section;
+  section.name = entry.name();
+  section.shape = entry.choice_as<Section::Shape>("shape");
+  const bool pipe = section.shape == Section::Shape::pipe, custom = section.shape == Section::Shape::custom;
+  if (entry.has("size")) {
+    const std::vector<double> size = entry.numbers("size");
+    if (pipe && size.size() != 1) entry.fail("size", "a pipe has one size, its outer diameter");
+    if (!pipe && size.size() != 2) entry.fail("size", "expected [a, b], the sizes along local y and z");
+    section.size_y = size.front();
+    section.size_z = size.back();
+  } else if (!custom) {
+    entry.fail("size", "missing (outer sizes along local y and z; pipe: the diameter)");
+  }
+  if (section.shape == Section::Shape::box || pipe) {
+    section.thickness = entry.number("thickness");
+    check_wall(entry, section);
+  }
+  if (custom) {
+    section.area = entry.number("area");
+    section.iy = entry.number("iy");
+    section.iz = entry.number("iz");
+    section.j = entry.number("j");
+    section.ky = entry.number("ky");
+    section.kz = entry.number("kz");
+    section.width = entry.number("width");
+    if (!entry.has("size")) section.size_y = section.size_z = section.width;
+  }
+  return section;
+}
+
+// Poisson's ratio of the first member made of the section; that of common metals when none is.
+double poisson_of_section(const Entry& root, const Setup& setup, const std::string& section) {
+  std::vector<Entry> users = root.entries("cabinet");
+  for (const Entry& frame : root.entries("frame")) {
+    for (const Entry& member : frame.entries("members")) users.push_back(member);
+  }
+  for (const Entry& user : users) {
+    if (user.text("section") != section) continue;
+    for (const Material& material : setup.model.materials) {
+      if (material.name == user.text("material")) return material.poisson;
+    }
+  }
+  constexpr double k_unused = 0.3;
+  return k_unused;
+}
+
+}  // namespace
+
+void read_run(const Entry& root, Setup& setup) {
+  const Entry run = root.entry("run");
+  setup.run.duration = run.number("duration");
+  setup.run.settle = run.flag("settle");
+  setup.run.output_rate = run.number("output_rate");
+  setup.run.stop_when = run.choice_as<StopWhen>("stop_when");
+  setup.parameters.gravity = run.vector("gravity");
+  setup.parameters.integrator = k_integrators[run.choice("integrator")];
+  setup.parameters.spectral_radius = run.number("spectral_radius");
+  setup.parameters.time_step = run.number("time_step");
+  if (setup.run.settle && setup.parameters.gravity.isZero(0)) {
+    run.fail("gravity", "nothing settles without gravity: write settle = false in [run]");
+  }
+}
+
+void read_actions(const Entry& root, Setup& setup) {
+  for (const Entry& entry : root.entries("shake")) {
+    Shake shake;
+    shake.kind = entry.choice_as<Shake::Kind>("type");
+    shake.amplitude = entry.number("amplitude");
+    shake.direction = entry.direction("direction");
+    shake.start = entry.number("start");
+    if (shake.kind == Shake::Kind::sine) {
+      shake.frequency = entry.number("frequency");
+      if (entry.has("cycles")) shake.cycles = entry.number("cycles");
+      shake.taper = entry.number("taper");
+      shake.initial_velocity = entry.choice_as<Shake::Start>("initial_velocity");
+      if (entry.has("cycles") && 2 * shake.taper > shake.cycles) {
+        entry.fail("taper", "rise and fall together are longer than the cycles");
+      }
+    } else {
+      shake.shape = entry.choice_as<Shake::Shape>("shape");
+      shake.duration = entry.number("duration");
+    }
+    setup.parameters.shakes.push_back(shake);
+  }
+
+  const Entry contact = root.entry("contact");
+  ContactLaw& law = setup.parameters.contact;
+  law.kind = contact.choice_as<ContactLawKind>("law");
+  law.alpha = contact.number("alpha");
+  law.q = contact.number("q");
+  law.friction = contact.number("friction");
+  law.restitution = contact.number("restitution");
+  law.normal_speed = contact.number("normal_speed");
+  law.slip_speed = contact.number("slip_speed");
+}
+
+void read_planes(const Entry& root, Setup& setup) {
+  if (const Entry floor = root.entry("floor"); floor.present()) {
+    setup.model.planes.push_back({"floor", Vec3::Zero(), Vec3::UnitZ(), floor.number("width")});
+  }
+  for (const Entry& wall : root.entries("wall")) {
+    const std::vector<double> at = wall.numbers("at");
+    setup.model.planes.push_back(
+        {wall.name(), Vec3(at[0], at[1], 0), wall.direction("normal"), wall.number("width")});
+  }
+}
+
+void read_materials_and_sections(const Entry& root, Setup& setup) {
+  for (const Entry& entry : root.entries("material")) {
+    setup.model.materials.push_back(
+        {entry.name(), entry.number("young"), entry.number("poisson"), entry.number("density")});
+  }
+  for (const Entry& entry : root.entries("section")) {
+    Section section = read_section(entry);
+    if (section.shape != Section::Shape::custom) {
+      complete_section(section, poisson_of_section(root, setup, section.name));
+    }
+    setup.model.sections.push_back(section);
+  }
+}
+
+void read_probes(const Entry& root, Setup& setup) {
+  const std::vector<Body>& bodies = setup.model.bodies;
+  for (const Entry& entry : root.entries("probe")) {
+    const std::string body_name = entry.text("body");
+    const auto body =
+        std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == body_name; });
+    if (body == bodies.end()) {
+      std::string known;
+      for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
+      entry.fail("body", "there is no body \"" + body_name + "\"; known: " + known);
+    }
+    Probe probe{entry.name(), static_cast<int>(body - bodies.begin()), -1};
+    if (entry.has("node")) {
+      int nodes = 0;  // a copy has the nodes of its frame
+      int first = static_cast<int>(root.entries("cabinet").size());
+      for (const Entry& frame : root.entries("frame")) {
+        const int copies = std::max<int>(1, static_cast<int>(frame.vectors("copies").size()));
+        if (probe.body >= first && probe.body < first + copies) {
+          nodes = static_cast<int>(frame.vectors("nodes").size());
+        }
+        first += copies;
+      }
+      const int node = entry.integer("node");
+      if (nodes == 0)
+        entry.fail("node", "the nodes of a cabinet have no numbers; leave it out to follow the body");
+      if (node >= nodes) {
+        entry.fail("node", std::to_string(node) + " is not a node of \"" + body_name + "\", which has 0.." +
+                               std::to_string(nodes - 1));
+      }
+      probe.node = body->first_node + node;
+    }
+    setup.probes.push_back(probe);
+  }
+}
+
+}  // namespace topple::io

@@ -1,0 +1,28 @@
+// From a checked scene to a Setup, part by part. All throw InputError.
+#pragma once
+
+#include "solver/io/scene_entry.h"
+#include "solver/run.h"
+
+namespace topple::io {
+
+/// [run]: settings, gravity, integrator.
+void read_run(const Entry& root, Setup& setup);
+
+/// [[shake]] and [contact].
+void read_actions(const Entry& root, Setup& setup);
+
+/// [floor] first, then each [[wall]].
+void read_planes(const Entry& root, Setup& setup);
+
+/// [[material]] and [[section]]; sections are completed with the Poisson's ratio of the first member that
+/// uses them.
+void read_materials_and_sections(const Entry& root, Setup& setup);
+
+/// [[cabinet]] in the order of the file, then [[frame]].
+void read_bodies(const Entry& root, Setup& setup);
+
+/// [[probe]]; after the bodies.
+void read_probes(const Entry& root, Setup& setup);
+
+}  // namespace topple::io

@@ -1,0 +1,135 @@
+// Recordings of real runs: what was stepped is what is read, and a run goes on from what was recorded.
+#include <cstdlib>
+
+#include "recording_fixture.h"
+
+namespace topple::io::testing {
+namespace {
+
+/// A cabinet that tips over within two seconds; a step of 0.7 ms divides neither 1 s nor the row interval.
+constexpr const char* k_scene = R"(
+topple = 1
+title = "test"
+[run]
+duration = "2.3 s"
+time_step = "0.7 ms"
+output_rate = "60 Hz"
+[[shake]]
+type = "sine"
+frequency = "0.5 Hz"
+amplitude = "400 gal"
+direction = [1, 0, 0]
+[floor]
+type = "plane"
+width = "90 mm"
+[[material]]
+name = "steel"
+young = "205 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+[[section]]
+name = "post"
+shape = "box"
+size = ["30 mm", "30 mm"]
+thickness = "1 mm"
+[[cabinet]]
+name = "cabinet"
+size = ["380 mm", "880 mm", "1790 mm"]
+mass = "40 kg"
+cg_height = "1.05 m"
+section = "post"
+material = "steel"
+)";
+
+class RunRecordingTest : public RecordingTest {
+ protected:
+  /// Records a run of k_scene and keeps what a reader ought to find.
+  void record() {
+    scene_ = parse_scene(k_scene, "test");
+    topple::Run run(scene_.setup);
+    Recorder recorder(path("run.h5"), scene_.name, scene_.text, scene_.setup.model);
+    std::int64_t interval = -1;
+    const auto keep = [&] {
+      const auto passed = static_cast<std::int64_t>(std::floor(run.state().time * 60 + 1e-6));
+      if (passed > interval) rows_.push_back(frame_row(run));
+      interval = std::max(interval, passed);
+    };
+    recorder.observe(run);
+    keep();
+    while (!run.over()) {
+      const StepStatus status = run.advance();
+      ASSERT_TRUE(status.ok()) << status.message(scene_.setup.model);
+      recorder.observe(run);
+      keep();
+    }
+    if (rows_.back().step != run.state().step) rows_.push_back(frame_row(run));
+    last_hash_ = hash(run.state());
+    events_ = run.events();
+    recorder.finish(run, "completed", "{\"schema\": 1}");
+  }
+  Scene scene_;
+  std::vector<FrameRow> rows_;
+  std::vector<Event> events_;
+  std::uint64_t last_hash_ = 0;
+};
+
+TEST_F(RunRecordingTest, a_recorded_run_reads_back_as_it_was) {
+  record();
+  const Recording recording(path("run.h5"));
+  EXPECT_EQ(recording.status(), "completed");
+  EXPECT_EQ(recording.summary_json(), "{\"schema\": 1}");
+  EXPECT_EQ(recording.scene_text(), scene_.text);
+  ASSERT_EQ(recording.frame_count(), static_cast<std::int64_t>(rows_.size()));
+  EXPECT_GE(rows_.size(), 138u);
+  EXPECT_EQ(rows_.front().step, 0);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    ASSERT_TRUE(same(recording.frame(static_cast<std::int64_t>(i)), rows_[i])) << i;
+  }
+  const auto events = recording.events();
+  ASSERT_EQ(events.size(), events_.size());
+  EXPECT_GT(events.size(), 0u);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EXPECT_EQ(events[i].event.kind, events_[i].kind);
+    EXPECT_EQ(events[i].step, events_[i].step);
+    EXPECT_EQ(events[i].event.value, events_[i].value);
+  }
+}
+
+TEST_F(RunRecordingTest, seek_equals_linear_replay) {
+  record();
+  const Recording recording(path("run.h5"));
+  const Scene scene = parse_scene(recording.scene_text(), recording.scene_name());
+  const std::int64_t count = recording.checkpoint_count();
+  ASSERT_EQ(count, 4);  // 0 s, 1 s, 2 s and the end
+  EXPECT_EQ(recording.checkpoint(0).step, 0);
+  EXPECT_EQ(recording.checkpoint(count - 1).hash, last_hash_);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const Checkpoint checkpoint = recording.checkpoint(i);
+    State state = unpack(scene.setup.model, checkpoint.state);
+    EXPECT_EQ(hash(state), checkpoint.hash) << i;
+    EXPECT_EQ(state.time, checkpoint.time);
+    EXPECT_EQ(state.step, checkpoint.step);
+    if (i + 1 == count) break;
+    const Checkpoint next = recording.checkpoint(i + 1);
+    topple::Run run(scene.setup, std::move(state));
+    while (run.state().step < next.step) ASSERT_TRUE(run.advance().ok());
+    EXPECT_EQ(hash(run.state()), next.hash) << i;
+  }
+}
+
+TEST_F(RunRecordingTest, an_exported_run_has_a_row_for_each_frame_and_thing) {
+  record();
+  export_csv(Recording(path("run.h5")), path("csv"));
+  const Model& model = scene_.setup.model;
+  const auto lines = [this](const char* name) {
+    const std::string text = bytes_of(path(std::string("csv/") + name));
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) - 1;
+  };
+  EXPECT_EQ(lines("bodies.csv"), rows_.size() * model.bodies.size());
+  EXPECT_EQ(lines("nodes.csv"), rows_.size() * model.node_position.size());
+  EXPECT_EQ(lines("elements.csv"), rows_.size() * model.elements.size());
+  EXPECT_EQ(lines("floor.csv"), rows_.size());
+}
+
+}  // namespace
+}  // namespace topple::io::testing

@@ -1,0 +1,353 @@
+// The exact text and place of every kind of error.
+#include <gtest/gtest.h>
+
+#include "scene_samples.h"
+
+namespace topple::io {
+namespace {
+
+// Line 17 and on of a scene with a beam.
+std::string after_beam(const std::string& lines) {
+  return error_of(k_scene + lines);
+}
+// Line 16 and on of a scene with a cabinet, within it.
+std::string in_cabinet(const std::string& lines) {
+  return error_of(k_cabinet_scene + lines);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(SceneErrors, unknown_keys_list_the_known_ones) {
+  EXPECT_EQ(after_beam("[contact]\n  foo = 1\n"),
+            "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, law, normal_speed, q, "
+            "restitution, slip_speed");
+  EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
+            "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
+  EXPECT_EQ(
+      error_of("tople = 1\n" + k_scene),
+      "s.toml:1:1: tople: unknown key; known: cabinet, contact, floor, frame, material, probe, run, section, "
+      "shake, title, topple, wall");
+  EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
+            "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
+}
+
+TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
+  EXPECT_EQ(after_beam("[run]\nbeta = 0.25\n"), "s.toml:18:1: run.beta: is not supported by this version");
+  EXPECT_EQ(after_beam("[run]\nload_steps = 3\n"),
+            "s.toml:18:1: run.load_steps: is not supported by this version");
+  EXPECT_EQ(after_beam("[run]\ntolerance = 3\n"),
+            "s.toml:18:1: run.tolerance: is not supported by this version");
+  EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"),
+            "s.toml:18:1: contact.friction_static: is not supported by this version");
+  EXPECT_EQ(after_beam("[floor]\nspacing = 1\n"),
+            "s.toml:18:1: floor.spacing: is not supported by this version");
+  EXPECT_EQ(after_beam("[[anchor]]\nname = \"a\"\n"),
+            "s.toml:17:3: anchor: is not supported by this version");
+  EXPECT_EQ(in_cabinet("damping = 0.01\n"),
+            "s.toml:16:1: cabinet.free.damping: is not supported by this version");
+  EXPECT_EQ(error_of(replaced(k_scene, "poisson", "yield = 1\npoisson")),
+            "s.toml:5:1: material.steel.yield: is not supported by this version");
+  EXPECT_EQ(error_of(replaced(k_scene, "thickness", "zy = 1\nthickness")),
+            "s.toml:11:1: section.post.zy: is not supported by this version");
+}
+
+TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
+  const auto refused = [](const std::string& lines) {
+    const std::string error = after_beam(lines);
+    return error.find(" is not supported by this version") != std::string::npos
+               ? error.substr(0, error.find(": "))
+               : error;
+  };
+  EXPECT_EQ(after_beam("[run]\nanalysis = \"static\"\n"),
+            "s.toml:18:12: run.analysis: \"static\" is not supported by this version");
+  EXPECT_EQ(refused("[run]\nanalysis = \"modes\"\n"), "s.toml:18:12");
+  EXPECT_EQ(refused("[run]\nintegrator = \"newmark\"\n"), "s.toml:18:14");
+  EXPECT_EQ(refused("[run]\ntime_step = \"auto\"\n"), "s.toml:18:13");
+  EXPECT_EQ(refused("[run]\nelements = \"midpoint\"\n"), "s.toml:18:12");
+  EXPECT_EQ(refused("[[shake]]\nfrequency = [1, 2]\ntype = \"sweep\"\n"), "s.toml:19:8");
+  EXPECT_EQ(refused("[[shake]]\ntype = \"record\"\nfiles = []\n"), "s.toml:18:8");
+  EXPECT_EQ(refused("[floor]\ntype = \"beams\"\n"), "s.toml:18:8");
+  EXPECT_EQ(in_cabinet("model = \"rigid\"\n"),
+            "s.toml:16:9: cabinet.free.model: \"rigid\" is not supported by this version");
+  EXPECT_EQ(in_cabinet("model = \"elastic\"\n"),
+            "s.toml:16:9: cabinet.free.model: \"elastic\" is not supported by this version");
+}
+
+TEST(SceneErrors, keys_of_a_choice_not_made_are_refused) {
+  EXPECT_EQ(after_beam("[contact]\nlaw = \"paper\"\nrestitution = 0.5\n"),
+            "s.toml:19:1: contact.restitution: belongs to law = coulomb, but law is paper");
+  EXPECT_EQ(after_beam("[contact]\nslip_speed = 0.5\n"),
+            "s.toml:18:1: contact.slip_speed: belongs to law = paper or printed, but law is coulomb");
+  EXPECT_EQ(after_beam("[run]\nspectral_radius = 0.5\nintegrator = \"central-difference\"\n"),
+            "s.toml:18:1: run.spectral_radius: belongs to integrator = auto or generalized-alpha, but "
+            "integrator is "
+            "central-difference");
+  EXPECT_EQ(after_beam("[run]\nspectral_radius = 0.5\n"), "no error");
+  EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\nduration = 1\n"),
+            "s.toml:20:1: shake.1.duration: belongs to type = pulse, but type is sine");
+  EXPECT_EQ(in_cabinet("bracing = \"none\"\npanel_thickness = 1e-3\n"),
+            "s.toml:17:1: cabinet.free.panel_thickness: belongs to bracing = panels, but bracing is none");
+  EXPECT_EQ(error_of(replaced(k_scene, "\"box\"", "\"solid\"")),
+            "s.toml:11:1: section.post.thickness: belongs to shape = box or pipe, but shape is solid");
+}
+
+TEST(SceneErrors, missing_keys_are_named_at_their_entry) {
+  EXPECT_EQ(error_of(replaced(k_cabinet_scene, "section = \"post\"\n", "")),
+            "s.toml:12:1: cabinet.free.section: missing (a [[section]])");
+  EXPECT_EQ(after_beam("\n[[shake]]\namplitude = 1\n"),
+            "s.toml:18:1: shake.1.frequency: missing; type = \"sine\" needs it (frequency)");
+  EXPECT_EQ(error_of(replaced(k_scene, "size = [\"30 mm\", \"30 mm\"]\n", "")),
+            "s.toml:7:1: section.post.size: missing (outer sizes along local y and z; pipe: the diameter)");
+  EXPECT_EQ(error_of(replaced(k_scene, "section = \"post\", ", "")),
+            "s.toml:15:12: frame.beam.members.1.section: missing (a [[section]])");
+  EXPECT_EQ(error_of(""), "s.toml:1:1: topple: missing; a scene says topple = 1, the version of its schema");
+  EXPECT_EQ(error_of(k_scene.substr(k_head.size())),
+            "s.toml:1:1: topple: missing; a scene says topple = 1, the version of its schema");
+}
+
+TEST(SceneErrors, other_schema_versions_are_refused) {
+  EXPECT_EQ(error_of("foo = 1\ntopple = 2\n"),
+            "s.toml:2:10: topple: schema 2 is not supported by this version, which reads schema 1");
+  EXPECT_EQ(error_of("topple = \"1\"\n"), "s.toml:1:10: topple: expected an integer, found \"1\"");
+}
+
+TEST(SceneErrors, wrong_types_say_what_was_found) {
+  EXPECT_EQ(after_beam("[contact]\nfriction = true\n"),
+            "s.toml:18:12: contact.friction: expected a plain number, found true");
+  EXPECT_EQ(after_beam("[contact]\nalpha = [1]\n"),
+            "s.toml:18:9: contact.alpha: expected a force (N, kN, MN, kgf), found a list");
+  EXPECT_EQ(after_beam("[contact]\nlaw = 3\n"),
+            "s.toml:18:7: contact.law: expected one of coulomb, paper, printed, found 3");
+  EXPECT_EQ(after_beam("[contact]\nlaw = \"coulom\"\n"),
+            "s.toml:18:7: contact.law: \"coulom\" is not one of coulomb, paper, printed");
+  EXPECT_EQ(after_beam("[run]\nsettle = 1\n"), "s.toml:18:10: run.settle: expected true or false, found 1");
+  EXPECT_EQ(after_beam("[run]\nwant = \"motion\"\n"),
+            "s.toml:18:8: run.want: expected a list of some of motion, stress, found \"motion\"");
+  EXPECT_EQ(after_beam("[run]\nwant = [\"motion\", \"noise\"]\n"),
+            "s.toml:18:19: run.want.2: \"noise\" is not one of motion, stress");
+  EXPECT_EQ(after_beam("[run]\ngravity = [0, 0]\n"),
+            "s.toml:18:11: run.gravity: expected a list of 3 values, found 2");
+  EXPECT_EQ(after_beam("[run]\ngravity = [0, 0, \"down\"]\n"),
+            "s.toml:18:18: run.gravity.3: \"down\" is not a number with a unit, expected an acceleration "
+            "(m/s^2, cm/s^2, gal, g)");
+  EXPECT_EQ(in_cabinet("shelves = 2.5\n"),
+            "s.toml:16:11: cabinet.free.shelves: expected an integer, found 2.5");
+  EXPECT_EQ(
+      in_cabinet("inertia = \"panel\"\n"),
+      "s.toml:16:11: cabinet.free.inertia: \"panel\" is not one of panels, solid, nor a list of 3 values");
+  EXPECT_EQ(after_beam("[[run]]\n"), "s.toml:17:1: run: expected a table [run], found a list");
+  EXPECT_EQ(after_beam("[shake]\n"), "s.toml:17:1: shake: expected [[shake]], found a table");
+  EXPECT_EQ(error_of("title = 3\n" + k_scene), "s.toml:1:9: title: expected text, found 3");
+  EXPECT_EQ(error_of("title = 2020-01-01\n" + k_scene),
+            "s.toml:1:9: title: expected text, found a date or time");
+  EXPECT_EQ(error_of("title = \"a\\nb\"\n" + k_scene), "s.toml:1:9: title: contains a control character");
+  EXPECT_EQ(in_cabinet("[[probe]]\nbody = \"\"\n"), "s.toml:17:8: probe.1.body: is empty");
+}
+
+TEST(SceneErrors, wrong_dimensions_say_which_was_found_and_which_expected) {
+  EXPECT_EQ(after_beam("[contact]\nalpha = \"30 mm\"\n"),
+            "s.toml:18:9: contact.alpha: \"30 mm\" is a length, expected a force (N, kN, MN, kgf)");
+  EXPECT_EQ(
+      after_beam("[contact]\nalpha = \"30 g\"\n"),
+      "s.toml:18:9: contact.alpha: \"30 g\" is a mass or an acceleration, expected a force (N, kN, MN, kgf)");
+  EXPECT_EQ(after_beam("[contact]\nfriction = \"3 mm\"\n"),
+            "s.toml:18:12: contact.friction: \"3 mm\" is a length, expected a plain number");
+  EXPECT_EQ(
+      after_beam("[contact]\nfriction = \"0.3\"\n"),
+      "s.toml:18:12: contact.friction: \"0.3\" is text, expected a plain number: write it without quotes");
+  EXPECT_EQ(in_cabinet("mass = \"40\"\n"),
+            "s.toml:16:8: cabinet.free.mass: \"40\" has no unit, expected a mass (kg, g, t), or a number in "
+            "SI without quotes");
+  EXPECT_EQ(in_cabinet("mass = \"40 stone\"\n"),
+            "s.toml:16:8: cabinet.free.mass: \"40 stone\" has an unknown unit \"stone\", expected a mass "
+            "(kg, g, t)");
+}
+
+TEST(SceneErrors, values_out_of_range_say_the_range) {
+  EXPECT_EQ(after_beam("[contact]\nfriction = 2.4\n"),
+            "s.toml:18:12: contact.friction: 2.4 is outside 0..1.5");
+  EXPECT_EQ(after_beam("[contact]\nalpha = \"2e6 kgf\"\n"),
+            "s.toml:18:9: contact.alpha: \"2e6 kgf\" is outside 0.001..1e+06 kgf");
+  EXPECT_EQ(after_beam("[contact]\nalpha = \"1e6 kgf\"\n"), "no error");
+  EXPECT_EQ(after_beam("[run]\ntime_step = \"0.0001 ms\"\n"), "no error");
+  EXPECT_EQ(after_beam("[run]\nduration = \"61 min\"\n"),
+            "s.toml:18:12: run.duration: \"61 min\" is outside 1e-06..3600 s");
+  EXPECT_EQ(in_cabinet("shelves = -1\n"), "s.toml:16:11: cabinet.free.shelves: -1 is outside 0..20");
+  EXPECT_EQ(in_cabinet("shelves = 9223372036854775807\n"),
+            "s.toml:16:11: cabinet.free.shelves: 9223372036854775807 is outside 0..20");
+  EXPECT_EQ(in_cabinet("size = [1, 1, \"1 mm\"]\n"),
+            "s.toml:16:15: cabinet.free.size.3: \"1 mm\" is outside 10..10000 mm");
+}
+
+TEST(SceneErrors, infinities_are_refused) {
+  EXPECT_EQ(after_beam("[contact]\nfriction = nan\n"),
+            "s.toml:18:12: contact.friction: nan is not a finite number");
+  EXPECT_EQ(after_beam("[contact]\nq = -inf\n"), "s.toml:18:5: contact.q: -inf is not a finite number");
+  EXPECT_EQ(after_beam("[contact]\nalpha = \"inf N\"\n"),
+            "s.toml:18:9: contact.alpha: \"inf N\" is not a finite number");
+  EXPECT_EQ(after_beam("[contact]\nalpha = \"1e999 N\"\n"),
+            "s.toml:18:9: contact.alpha: \"1e999 N\" is not a finite number");
+}
+
+TEST(SceneErrors, names_used_twice_are_refused_within_a_kind) {
+  EXPECT_EQ(
+      after_beam(k_cabinet.substr(0, 12) + "name = \"beam\"\nsection = \"post\"\nmaterial = \"steel\"\n"),
+      "s.toml:13:8: frame.beam.name: \"beam\" is used twice, first in line 18");
+  EXPECT_EQ(after_beam("[[material]]\nname = \"steel\"\nyoung = 1e9\npoisson = 0\ndensity = 1\n"),
+            "s.toml:18:8: material.steel.name: \"steel\" is used twice, first in line 3");
+  EXPECT_EQ(after_beam("[floor]\n[[wall]]\nname = \"floor\"\nat = [0, 0]\nnormal = [1, 0, 0]\n"),
+            "s.toml:19:8: wall.floor.name: \"floor\" is used twice, first in line 17");
+  EXPECT_EQ(after_beam("[[probe]]\nbody = \"beam\"\n[[probe]]\nbody = \"beam\"\nname = \"probe-1\"\n"),
+            "s.toml:21:8: probe.probe-1.name: \"probe-1\" is used twice, first in line 17");
+  EXPECT_EQ(error_of(replaced(k_scene, "supports", "copies = [[0, 0, 0], [0, 1, 0]]\nsupports") +
+                     replaced(k_beam, "\"beam\"", "\"beam-2\"")),
+            "s.toml:19:8: frame.beam-2.name: \"beam-2\" is also the name of a copy");
+}
+
+TEST(SceneErrors, references_to_nothing_list_what_there_is) {
+  EXPECT_EQ(error_of(replaced(k_cabinet_scene, "section = \"post\"", "section = \"pst\"")),
+            "s.toml:14:11: cabinet.free.section: there is no [[section]] \"pst\"; known: post");
+  EXPECT_EQ(error_of(replaced(k_scene, "material = \"steel\"", "material = \"wood\"")),
+            "s.toml:15:59: frame.beam.members.1.material: there is no [[material]] \"wood\"; known: steel");
+  EXPECT_EQ(error_of(k_head + k_cabinet),
+            "s.toml:4:11: cabinet.free.section: there is no [[section]] \"post\" nor any other");
+  EXPECT_EQ(after_beam("[[probe]]\nname = \"p\"\nbody = \"beem\"\n"),
+            "s.toml:19:8: probe.p.body: there is no body \"beem\"; known: beam");
+  EXPECT_EQ(after_beam("[[probe]]\nname = \"p\"\nbody = \"beam\"\nnode = 2\n"),
+            "s.toml:20:8: probe.p.node: 2 is not a node of \"beam\", which has 0..1");
+  EXPECT_EQ(
+      in_cabinet("[[probe]]\nbody = \"free\"\nnode = 2\n"),
+      "s.toml:18:8: probe.1.node: the nodes of a cabinet have no numbers; leave it out to follow the body");
+  EXPECT_EQ(error_of(replaced(k_scene, "nodes = [0, 1]", "nodes = [0, 7]")),
+            "s.toml:15:26: frame.beam.members.1.nodes.2: 7 is not a node of the frame, which has 0..1");
+  EXPECT_EQ(error_of(replaced(k_scene, "{ node = 0,", "{ node = 5,")),
+            "s.toml:16:22: frame.beam.supports.1.node: 5 is not a node of the frame, which has 0..1");
+}
+
+TEST(SceneErrors, settling_from_motion_or_without_gravity_is_refused) {
+  EXPECT_EQ(in_cabinet("tilt = \"5 deg\"\n"),
+            "s.toml:16:8: cabinet.free.tilt: a body that starts tilted cannot settle: write settle = false "
+            "in [run]");
+  EXPECT_EQ(in_cabinet("velocity = [0, 1, 0]\n"),
+            "s.toml:16:12: cabinet.free.velocity: a body that starts in motion cannot settle: write settle = "
+            "false in [run]");
+  EXPECT_EQ(after_beam("angular_velocity = [0, 1, 0]\n"),
+            "s.toml:17:20: frame.beam.angular_velocity: a body that starts in motion cannot settle: write "
+            "settle = false in "
+            "[run]");
+  EXPECT_EQ(after_beam("[run]\ngravity = [0, 0, 0]\nsettle = true\n"),
+            "s.toml:18:11: run.gravity: nothing settles without gravity: write settle = false in [run]");
+  EXPECT_EQ(after_beam("[run]\ngravity = [0, 0, 0]\nsettle = false\n"), "no error");
+  EXPECT_EQ(in_cabinet("tilt = 0\nvelocity = [0, 0, 0]\n"), "no error");
+  EXPECT_EQ(in_cabinet("tilt = \"5 deg\"\nvelocity = [0, 1, 0]\n[run]\nsettle = false\n"), "no error");
+}
+
+TEST(SceneErrors, a_scene_without_bodies_is_refused) {
+  EXPECT_EQ(error_of(k_head + k_library),
+            "s.toml:1:1: there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
+}
+
+TEST(SceneErrors, bodies_that_cannot_be_built_blame_the_key) {
+  EXPECT_EQ(in_cabinet("cg_height = \"1.7 m\"\n").substr(0, 35), "s.toml:16:13: cabinet.free.cg_heigh");
+  EXPECT_EQ(in_cabinet("cg_height = \"3 m\"\n"),
+            "s.toml:16:13: cabinet.free.cg_height: is not below the top");
+  EXPECT_EQ(in_cabinet("inertia = [1, 1, 9]\n").substr(0, 36), "s.toml:16:11: cabinet.free.inertia: ");
+  EXPECT_EQ(error_of(replaced(k_scene, "[1, 0, 0]]", "[0, 0, 0]]")),
+            "s.toml:14:9: frame.beam.nodes: nodes 0 and 1 are in one place");
+  EXPECT_EQ(error_of(replaced(k_scene, "[1, 0, 0]]", "[1, 0, 0], [2, 0, 0]]")),
+            "s.toml:14:9: frame.beam.nodes: node 2 belongs to no member");
+  EXPECT_EQ(error_of(replaced(k_scene, "nodes = [0, 1]", "nodes = [1, 1]")),
+            "s.toml:15:22: frame.beam.members.1.nodes: a member from a node to itself has no length");
+  EXPECT_EQ(error_of(replaced(k_scene, "\"steel\" }", "\"steel\", up = [1, 0, 0] }")),
+            "s.toml:15:73: frame.beam.members.1.up: is parallel to the member");
+  EXPECT_EQ(error_of(replaced(k_scene, "\"steel\" }", "\"steel\", elements = 3 }")),
+            "s.toml:15:79: frame.beam.members.1.elements: 3 is not even");
+  EXPECT_EQ(error_of(replaced(k_scene, "xyzXYZ", "xyw")),
+            "s.toml:16:31: frame.beam.supports.1.fix: expected letters of xyzXYZ, found \"xyw\"");
+  EXPECT_EQ(error_of(replaced(k_scene, "\"1 mm\"", "\"15 mm\"")),
+            "s.toml:11:13: section.post.thickness: is not less than half of the smaller size");
+  EXPECT_EQ(error_of(replaced(k_scene, "\"box\"", "\"pipe\"")),
+            "s.toml:10:8: section.post.size: a pipe has one size, its outer diameter");
+  EXPECT_EQ(error_of(replaced(k_scene, "size = [\"30 mm\", \"30 mm\"]", "size = \"30 mm\"")),
+            "s.toml:10:8: section.post.size: expected [a, b], the sizes along local y and z");
+}
+
+TEST(SceneErrors, directions_and_histories_must_make_sense) {
+  EXPECT_EQ(after_beam("[[wall]]\nat = [0, 0]\nnormal = [0, 0, 0]\n"),
+            "s.toml:19:10: wall.1.normal: a zero vector has no direction");
+  EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\ndirection = [0, 0, 0]\n"),
+            "s.toml:20:13: shake.1.direction: a zero vector has no direction");
+  EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\ncycles = 3\ntaper = 2\n"),
+            "s.toml:21:9: shake.1.taper: rise and fall together are longer than the cycles");
+  EXPECT_EQ(after_beam("loads = [{ node = 1, history = [[0, 1], [0, 2]] }]\n"),
+            "s.toml:17:42: frame.beam.loads.1.history.2.1: times must increase, 0 does not");
+  EXPECT_EQ(
+      after_beam("loads = [{ node = 1, history = [[\"1 m\", 1]] }]\n"),
+      "s.toml:17:34: frame.beam.loads.1.history.1.1: \"1 m\" is a length, expected a time (s, ms, min)");
+}
+
+TEST(SceneErrors, broken_toml_says_where) {
+  EXPECT_EQ(error_of("topple = 1\ntitle = \"open\n").substr(0, 12), "s.toml:2:14:");
+  EXPECT_EQ(error_of("topple = 1\ntopple = 1\n").substr(0, 9), "s.toml:2:");
+  EXPECT_EQ(error_of("topple = 1\ntitle = \"\xff\"\n").substr(0, 9), "s.toml:2:");
+  EXPECT_EQ(error_of("topple = 1\n[ =]\n").substr(0, 12), "s.toml:2:3: ");
+  EXPECT_EQ(error_of(std::string("\xff\xfet\0o\0", 6)).substr(0, 9), "s.toml:1:");
+}
+
+TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
+  const auto error = [](const std::string& text) {
+    return error_of(k_cabinet_scene, {"run.duration=5", text});
+  };
+  EXPECT_EQ(error("contact.friction=9"), "--set contact.friction=9: contact.friction: 9 is outside 0..1.5");
+  EXPECT_EQ(error("cabinet.free.model=rigid"),
+            "--set cabinet.free.model=rigid: cabinet.free.model: \"rigid\" is not supported by this version");
+  EXPECT_EQ(
+      error("cabinet.1.mass=30 mm"),
+      "--set cabinet.1.mass=30 mm: cabinet.free.mass: \"30 mm\" is a length, expected a mass (kg, g, t)");
+  EXPECT_EQ(error("cabinet.walled.mass=30"),
+            "--set cabinet.walled.mass=30: cabinet.walled: no such entry; known: free");
+  EXPECT_EQ(error("contact.foo=30"),
+            "--set contact.foo=30: contact.foo: unknown key; known: alpha, friction, law, normal_speed, q, "
+            "restitution, "
+            "slip_speed");
+  EXPECT_EQ(error("shake.1.amplitude=3"),
+            "--set shake.1.amplitude=3: shake: an override cannot add or replace a [[shake]]");
+  EXPECT_EQ(error("cabinet=[]"),
+            "--set cabinet=[]: cabinet: an override cannot add or replace a [[cabinet]]");
+  EXPECT_EQ(error("cabinet.free=3"),
+            "--set cabinet.free=3: cabinet.free: is a whole entry; set one of its keys");
+  EXPECT_EQ(error("cabinet.free.cg_height=1.7").substr(0, 53),
+            "--set cabinet.free.cg_height=1.7: cabinet.free.cg_hei");
+  EXPECT_EQ(error("topple.x=3"), "--set topple.x=3: topple: is an integer and has no keys");
+  EXPECT_EQ(error("nonsense"), "--set nonsense: expected KEY=VALUE, such as contact.friction=0.5");
+  EXPECT_EQ(error_of(k_cabinet_scene + "[contact]\nrestitution = 0.5\n", {"contact.law=paper"}),
+            "s.toml:17:1: contact.restitution: belongs to law = coulomb, but law is paper");
+}
+
+TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
+  try {
+    load_scene("no-such-scene");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "no-such-scene: no such file or built-in scene; built-in: cantilever, free-rocking, "
+                 "paper-a, paper-b, tumble");
+  }
+  try {
+    load_scene(TOPPLE_SOURCE_DIR "/assets");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), TOPPLE_SOURCE_DIR "/assets: is a folder");
+  }
+}
+
+TEST(SceneErrors, a_huge_text_is_refused) {
+  EXPECT_EQ(error_of(k_scene + std::string(5u << 20, '#')), "s.toml: larger than 4 MiB, which no scene is");
+}
+
+}  // namespace
+}  // namespace topple::io
