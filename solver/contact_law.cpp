@@ -53,10 +53,10 @@ void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp,
   const Vec3 stick = tangent_plane * in.stick;
   const Vec3 trial = k * stick + c * (tangent_plane * in.velocity);
   const double size = trial.norm(), limit = law.friction * out.normal;
-  const bool slips = size > limit;
+  const bool slips = !(size <= limit);  // a NaN must not pass for sticking
   out.tangential = slips ? Vec3(-limit / size * trial) : Vec3(-trial);
   const double spring = k * stick.norm();
-  out.stick = spring > limit ? Vec3(limit / spring * stick) : stick;
+  out.stick = spring <= limit ? stick : Vec3(limit / spring * stick);
   out.stick_energy = 0.5 * k * out.stick.squaredNorm();
   if (!derivatives.by_position) return;
 

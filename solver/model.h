@@ -64,7 +64,7 @@ struct Body {
   Mat3 inertia;                       ///< kg m^2 about the centre of gravity, world axes, reference pose
   std::vector<Vec3> support_polygon;  ///< convex hull of the base's contact points, counter-clockwise seen
                                       ///< from above, world, reference pose; empty when it has no base
-  std::vector<int> base_points;  ///< contact points (global index) on the base
+  std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
   std::vector<std::array<int, 4>> panels;  ///< nodes of flat sheets, for pictures only
 };

@@ -172,10 +172,14 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
         add(Event::Kind::impact, state.time, static_cast<double>(side));
       }
     }
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-      o.peak_stress = std::max(
-          o.peak_stress,
-          equivalent_stress(model.sections[model.members[model.elements[e].member].section], sections[e]));
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+      const Element& element = model.elements[e];
+      const Section& section = model.sections[model.members[element.member].section];
+      for (double end : {-1., 1.})
+        o.peak_stress =
+            std::max(o.peak_stress,
+                     equivalent_stress(section, forces_along(sections[e], element.length, element.s, end)));
+    }
   }
 }
 

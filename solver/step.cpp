@@ -230,6 +230,14 @@ void section_forces(const Model& model, const State& state, std::vector<SectionF
   }
 }
 
+SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
+  SectionForces out = at_point;
+  const double arm = length / 2 * (xi + s);
+  out.moment.y() += out.normal.z() * arm;
+  out.moment.z() -= out.normal.y() * arm;
+  return out;
+}
+
 double equivalent_stress(const Section& section, const SectionForces& forces) {
   const double normal = std::abs(forces.normal.x()) / section.area +
                         std::abs(forces.moment.y()) * section.fibre_z() / section.iy +

@@ -78,7 +78,11 @@ const std::vector<ContactForce>& contact_forces(const Model& model, const Parame
 /// Section forces of every element at `state`.
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
 
-/// Greatest equivalent stress of the element's section at its stress point, Pa: extreme-fibre normal stress
+/// The same at xi in -1..1 along the element, by equilibrium from the stress point r = -s:
+///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
+SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
+
+/// Greatest equivalent stress of a section under these forces, Pa: extreme-fibre normal stress
 /// with torsional shear after von Mises.
 double equivalent_stress(const Section& section, const SectionForces& forces);
 

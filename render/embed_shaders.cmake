@@ -1,0 +1,10 @@
+# Writes the shader files of the list SHADERS as one C++ source to OUTPUT.
+set(text "#include \"render/gl_objects.h\"\n\nnamespace topple::render {\n\n")
+string(APPEND text "std::string_view shader_source(std::string_view name) {\n")
+foreach(shader IN LISTS SHADERS)
+  get_filename_component(name ${shader} NAME)
+  file(READ ${shader} source)
+  string(APPEND text "  if (name == \"${name}\") return R\"glsl(${source})glsl\";\n")
+endforeach()
+string(APPEND text "  return {};\n}\n\n}  // namespace topple::render\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,27 @@
+// Pictures in memory and as PNG files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace topple::render {
+
+/// Rows from top to bottom, four bytes (red, green, blue, alpha; sRGB) a pixel.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;  ///< 4 * width * height bytes
+
+  bool operator==(const Image&) const = default;
+};
+
+/// The PNG file's bytes; the same image gives the same bytes. Alpha is left out when all of it is
+/// opaque. Throws std::runtime_error on an image without pixels or whose size does not fit its bytes.
+std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Writes a PNG file. It appears complete or not at all: an existing file is replaced only when the
+/// new one is written. Throws std::runtime_error with the path and the reason.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace topple::render

@@ -1,0 +1,30 @@
+// Draws Dear ImGui's lists with the own function table: the same for a window and off screen.
+#pragma once
+
+#include "render/gl.h"
+#include "render/gl_objects.h"
+#include "render/scene_painter.h"
+
+struct ImDrawData;
+struct ImFontAtlas;
+
+namespace topple::render {
+
+/// Any call needs the context current that it was made in; `gl` must outlive it.
+class ImguiPainter {
+ public:
+  explicit ImguiPainter(const Gl& gl);
+
+  /// Bakes and uploads the atlas; call again when its fonts change.
+  void upload_fonts(ImFontAtlas& atlas);
+
+  /// Draws over what the target shows. An ImTextureID is the texture's GL name.
+  void draw(const ImDrawData& data, const Target& target);
+
+ private:
+  const Gl& gl_;
+  Program program_;
+  GlObject array_, vertices_, indices_, font_texture_;
+};
+
+}  // namespace topple::render

@@ -1,0 +1,339 @@
+#include "render/overlay.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "render/drawable.h"
+#include "render/text_layout.h"
+
+namespace topple::render {
+namespace {
+
+constexpr ImU32 k_title_colour = IM_COL32(24, 34, 45, 255);
+constexpr ImU32 k_text_colour = IM_COL32(44, 56, 68, 255);
+constexpr ImU32 k_quiet_colour = IM_COL32(84, 97, 110, 255);
+constexpr ImU32 k_frame_colour = IM_COL32(60, 74, 88, 150);
+constexpr ImU32 k_sheet_colour = IM_COL32(255, 255, 255, 205);
+constexpr ImU32 k_trace_colour = IM_COL32(38, 92, 140, 255);
+constexpr ImU32 k_cursor_colour = IM_COL32(200, 70, 30, 255);
+
+struct Layout {
+  ImDrawList& list;
+  const OverlayFonts& fonts;
+  float width, height;
+  float unit;  // px of the picture for one pixel of a design 720 pixels high
+  float margin;
+  float line(const ImFont* font) const { return std::round(1.32f * font->FontSize); }
+
+  void text(const ImFont* font, float x, float y, ImU32 colour, const std::string& words) const {
+    list.AddText(font, font->FontSize, {std::round(x), std::round(y)}, colour, words.data(),
+                 words.data() + words.size());
+  }
+};
+
+std::string number(double value, int decimals) {
+  char digits[64];
+  const bool plain = value == 0 || (std::abs(value) < 1e6 && decimals <= 4);
+  std::snprintf(digits, sizeof digits, plain ? "%.*f" : "%.*e", plain ? decimals : 1, std::abs(value));
+  const bool zero = std::string(digits).find_first_not_of("0.") == std::string::npos;
+  return (value < 0 && !zero ? "\xe2\x88\x92" : "") + std::string(digits);
+}
+
+// ---- title and lines
+
+float draw_words(const Layout& at, const Caption& caption, float right, float bottom,
+                 std::vector<OverlayBox>& boxes) {
+  float y = at.margin;
+  const float room = right - at.margin;
+  const auto add_box = [&](const char* name, float top, float widest) {
+    if (y > top) boxes.push_back({name, at.margin, top, at.margin + widest, y});
+  };
+  float widest = 0;
+  float top = y;
+  if (!caption.title.empty()) {
+    for (const std::string& line : wrapped(*at.fonts.title, caption.title, room, 2)) {
+      if (y + at.line(at.fonts.title) > bottom) break;
+      at.text(at.fonts.title, at.margin, y, k_title_colour, line);
+      widest = std::max(widest, text_width(*at.fonts.title, line));
+      y += at.line(at.fonts.title);
+    }
+    add_box("title", top, widest);
+    y += std::round(2 * at.unit);
+  }
+  top = y;
+  widest = 0;
+  const float step = at.line(at.fonts.text);
+  for (std::size_t i = 0; i < caption.lines.size() && y + step <= bottom; ++i) {
+    const bool cut = y + 2 * step > bottom && i + 1 < caption.lines.size();
+    const std::string line = shortened(*at.fonts.text, cut ? "\xe2\x80\xa6" : caption.lines[i], room);
+    at.text(at.fonts.text, at.margin, y, k_text_colour, line);
+    widest = std::max(widest, text_width(*at.fonts.text, line));
+    y += step;
+  }
+  add_box("lines", top, widest);
+  return y;
+}
+
+/// Returns the note's upper edge.
+float draw_note(const Layout& at, const std::string& note, std::vector<OverlayBox>& boxes) {
+  float y = at.height - std::round(0.75f * at.margin);
+  if (note.empty()) return y;
+  const std::vector<std::string> lines = wrapped(*at.fonts.small, note, at.width - 2 * at.margin, 2);
+  const float bottom = y;
+  y -= static_cast<float>(lines.size()) * at.line(at.fonts.small);
+  const float top = y;
+  float widest = 0;
+  for (const std::string& line : lines) {
+    at.text(at.fonts.small, at.margin, y, k_quiet_colour, line);
+    widest = std::max(widest, text_width(*at.fonts.small, line));
+    y += at.line(at.fonts.small);
+  }
+  boxes.push_back({"note", at.margin, top, at.margin + widest, bottom});
+  return top;
+}
+
+// ---- legend
+
+void draw_colour_bar(const Layout& at, ColourMap map, float left, float top, float right, float bottom) {
+  const ColourTable& table = colour_table(map);
+  const auto colour = [&](int i) {
+    const auto& c = table[static_cast<std::size_t>(std::clamp(i, 0, k_colour_map_size - 1))];
+    return IM_COL32(c[0], c[1], c[2], 255);
+  };
+  constexpr int k_pieces = 32;
+  for (int i = 0; i < k_pieces; ++i) {
+    const auto edge = [&](int n) { return bottom + (top - bottom) * static_cast<float>(n) / k_pieces; };
+    const ImU32 low = colour(i * k_colour_map_size / k_pieces);
+    const ImU32 high = colour((i + 1) * k_colour_map_size / k_pieces);
+    at.list.AddRectFilledMultiColor({left, edge(i + 1)}, {right, edge(i)}, high, high, low, low);
+  }
+  at.list.AddRect({left - 0.5f, top - 0.5f}, {right + 0.5f, bottom + 0.5f}, k_frame_colour);
+}
+
+/// The mark at `value`, from its label at the left of the bar.
+void draw_mark(const Layout& at, const Legend& legend, float column_left, float bar_left, float bar_right,
+               float top, float bottom) {
+  const bool above = legend.mark > legend.maximum;
+  const bool below = legend.mark < legend.minimum;
+  const float share = colour_position(legend.mark, legend.minimum, legend.maximum);
+  const float y = std::round(bottom + (top - bottom) * share);
+  const float size = 6 * at.unit;
+  const float tip = bar_left - 2 * at.unit;
+  if (above || below) {  // it lies beyond the bar: the triangle points there
+    const float toward = above ? -size : size;
+    at.list.AddTriangleFilled({tip - size, y - toward / 2}, {tip, y - toward / 2},
+                              {tip - size / 2, y + toward / 2}, k_title_colour);
+  } else {
+    at.list.AddTriangleFilled({tip - size, y - 0.6f * size}, {tip, y}, {tip - size, y + 0.6f * size},
+                              k_title_colour);
+    at.list.AddRectFilled({bar_left, y - std::max(1.0f, at.unit)}, {bar_right, y + std::max(1.0f, at.unit)},
+                          k_title_colour);
+  }
+  const float right = tip - size - 4 * at.unit;
+  const std::vector<std::string> lines = wrapped(*at.fonts.small, legend.mark_label, right - column_left, 2);
+  float line_y = y - at.fonts.small->FontSize * 0.5f -
+                 static_cast<float>(lines.size() - 1) * at.line(at.fonts.small) / 2;
+  line_y =
+      std::clamp(line_y, top - at.fonts.small->FontSize * 0.5f, bottom - at.fonts.small->FontSize * 0.5f);
+  for (const std::string& line : lines) {
+    at.text(at.fonts.small, right - text_width(*at.fonts.small, line), line_y, k_title_colour, line);
+    line_y += at.line(at.fonts.small);
+  }
+}
+
+void draw_legend(const Layout& at, const Legend& legend, ColourMap map, float column_left, float lowest,
+                 std::vector<OverlayBox>& boxes) {
+  const float right = at.width - at.margin;
+  const float top = at.margin;
+  float y = top;
+  const auto add_line = [&](const ImFont* font, ImU32 colour, const std::string& words) {
+    if (words.empty()) return;
+    at.text(font, right - text_width(*font, words), y, colour, words);
+    y += at.line(font);
+  };
+  // What stands above and below the bar is known before it is drawn, so that the bar fits between.
+  const std::vector<std::string> heading = wrapped(*at.fonts.text, legend.quantity, right - column_left, 2);
+  const float small_line = at.line(at.fonts.small);
+  const float bar_top = y + static_cast<float>(heading.size()) * at.line(at.fonts.text) +
+                        (legend.unit.empty() ? 0 : small_line) + std::round(12 * at.unit);
+  const float below_bar = legend.range_policy.empty() ? small_line / 2 : 1.9f * small_line;
+  const float bar_bottom = std::round(std::min(bar_top + 0.44f * at.height, lowest - below_bar));
+  if (bar_bottom - bar_top < 4 * small_line) return;
+
+  for (const std::string& line : heading) add_line(at.fonts.text, k_text_colour, line);
+  add_line(at.fonts.small, k_quiet_colour, shortened(*at.fonts.small, legend.unit, right - column_left));
+
+  const Ticks ticks = nice_ticks(legend.minimum, legend.maximum, 5);
+  float label_width = 0;
+  for (const double tick : ticks.values) {
+    label_width = std::max(label_width, text_width(*at.fonts.small, number(tick, ticks.decimals)));
+  }
+  const float bar_right = std::round(right - label_width - 9 * at.unit);
+  const float bar_left = std::round(bar_right - 18 * at.unit);
+  draw_colour_bar(at, map, bar_left, bar_top, bar_right, bar_bottom);
+  for (const double tick : ticks.values) {
+    const double share = (tick - legend.minimum) / (static_cast<double>(legend.maximum) - legend.minimum);
+    const float tick_y = std::round(bar_bottom + (bar_top - bar_bottom) * static_cast<float>(share));
+    at.list.AddRectFilled({bar_right, tick_y},
+                          {bar_right + std::round(4 * at.unit), tick_y + std::max(1.0f, std::round(at.unit))},
+                          k_quiet_colour);
+    const std::string label = number(tick, ticks.decimals);
+    at.text(at.fonts.small, bar_right + std::round(8 * at.unit), tick_y - 0.5f * at.fonts.small->FontSize,
+            k_text_colour, label);
+  }
+  if (!legend.mark_label.empty() && std::isfinite(legend.mark)) {
+    draw_mark(at, legend, column_left, bar_left, bar_right, bar_top, bar_bottom);
+  }
+  y = bar_bottom + 0.9f * small_line;
+  add_line(at.fonts.small, k_quiet_colour,
+           shortened(*at.fonts.small, legend.range_policy, right - column_left));
+  boxes.push_back({"legend", column_left, top, right, std::max(y, bar_bottom + small_line / 2)});
+}
+
+// ---- trace
+
+struct Sample {
+  float time, value;
+};
+
+std::vector<Sample> drawable_samples(const Trace& trace, LeftOut& left_out) {
+  std::vector<Sample> samples;
+  const std::size_t count = std::min(trace.time_s.size(), trace.value.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool ordered = samples.empty() || trace.time_s[i] > samples.back().time;
+    if (std::isfinite(trace.time_s[i]) && std::abs(trace.value[i]) < 1e30f && ordered) {
+      samples.push_back({trace.time_s[i], trace.value[i]});
+    } else {
+      ++left_out.trace_points;
+    }
+  }
+  left_out.trace_points += static_cast<int>(std::max(trace.time_s.size(), trace.value.size()) - count);
+  return samples;
+}
+
+/// The samples as a line, with no more than the least and greatest of each pixel column.
+std::vector<ImVec2> polyline(const std::vector<Sample>& samples, float left, float right, float zero_y,
+                             float scale) {
+  const float begin = samples.front().time;
+  const float span = samples.back().time - begin;
+  std::vector<ImVec2> points;
+  const auto place = [&](const Sample& s) {
+    return ImVec2(left + (right - left) * ((s.time - begin) / span), zero_y - scale * s.value);
+  };
+  for (std::size_t i = 0; i < samples.size();) {
+    const float column = std::floor(place(samples[i]).x);
+    std::size_t least = i;
+    std::size_t greatest = i;
+    std::size_t next = i;
+    while (next < samples.size() && std::floor(place(samples[next]).x) == column) {
+      if (samples[next].value < samples[least].value) least = next;
+      if (samples[next].value > samples[greatest].value) greatest = next;
+      ++next;
+    }
+    points.push_back(place(samples[std::min(least, greatest)]));
+    if (least != greatest) points.push_back(place(samples[std::max(least, greatest)]));
+    i = next;
+  }
+  return points;
+}
+
+void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<OverlayBox>& boxes,
+                LeftOut& left_out, float top) {
+  const std::vector<Sample> samples = drawable_samples(trace, left_out);
+  const float left = at.margin;
+  const float right = std::round(at.margin + 0.29f * at.width);
+  const float small_line = at.line(at.fonts.small);
+  if (samples.size() < 2 || bottom - top < 3.5f * small_line) return;
+  const float span = samples.back().time - samples.front().time;
+  if (!std::isfinite(span)) return;
+
+  at.list.AddRectFilled({left, top}, {right, bottom}, k_sheet_colour, 4 * at.unit);
+  at.list.AddRect({left + 0.5f, top + 0.5f}, {right - 0.5f, bottom - 0.5f}, IM_COL32(60, 74, 88, 60),
+                  4 * at.unit);
+  const float inset = std::round(9 * at.unit);
+  const float plot_left = left + inset;
+  const float plot_right = right - inset;
+  const std::string label = shortened(*at.fonts.small, trace.label, plot_right - plot_left);
+  at.text(at.fonts.small, plot_left, top + std::round(5 * at.unit), k_text_colour, label);
+
+  const float plot_top = top + std::round(5 * at.unit) + small_line;
+  const float plot_bottom = bottom - std::round(3 * at.unit) - small_line;
+  float peak = 0;
+  bool negative = false;
+  for (const Sample& s : samples) {
+    peak = std::max(peak, std::abs(s.value));
+    negative = negative || s.value < 0;
+  }
+  const float zero_y = std::round(negative ? (plot_top + plot_bottom) / 2 : plot_bottom);
+  const float scale = peak > 0 ? (zero_y - plot_top) / peak : 0;
+  at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, IM_COL32(60, 74, 88, 90));
+  const std::vector<ImVec2> points = polyline(samples, plot_left, plot_right, zero_y, scale);
+  at.list.AddPolyline(points.data(), static_cast<int>(points.size()), k_trace_colour, 0,
+                      std::max(1.0f, 1.3f * at.unit));
+
+  const auto time_label = [&](float seconds) { return number(seconds, span < 10 ? 1 : 0) + " s"; };
+  const std::string first = time_label(samples.front().time);
+  const std::string last = time_label(samples.back().time);
+  const float label_y = plot_bottom + std::round(1 * at.unit);
+  at.text(at.fonts.small, plot_left, label_y, k_quiet_colour, first);
+  at.text(at.fonts.small, plot_right - text_width(*at.fonts.small, last), label_y, k_quiet_colour, last);
+
+  const float share = (trace.cursor_s - samples.front().time) / span;
+  if (share >= 0 && share <= 1) {
+    const float x = std::round(plot_left + (plot_right - plot_left) * share);
+    const float half = std::max(0.5f, 0.75f * at.unit);
+    at.list.AddRectFilled({x - half, plot_top}, {x + half, plot_bottom}, k_cursor_colour);
+    const auto after = std::ranges::lower_bound(samples, trace.cursor_s, {}, &Sample::time);
+    if (after != samples.end()) {
+      at.list.AddCircleFilled({x, zero_y - scale * after->value}, 3.5f * at.unit, k_cursor_colour, 16);
+    }
+  }
+  boxes.push_back({"trace", left, top, right, bottom});
+}
+
+}  // namespace
+
+Ticks nice_ticks(double minimum, double maximum, int count) {
+  const double rough = (maximum - minimum) / std::max(count, 1);
+  if (!(rough > 0) || !std::isfinite(rough)) return {};
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough * (1 - 1e-9)) {
+      step = factor * power;
+      break;
+    }
+  }
+  Ticks ticks;
+  ticks.decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  const double first = std::ceil(minimum / step - 1e-6);
+  const double last = std::floor(maximum / step + 1e-6);
+  for (double n = first; n <= last && ticks.values.size() <= 100; ++n) ticks.values.push_back(n * step);
+  return ticks;
+}
+
+std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
+                                     ColourMap map, float width, float height, LeftOut& left_out) {
+  const float unit = fonts.text->FontSize / 17;
+  const Layout at{list, fonts, width, height, unit, std::round(26 * unit)};
+  std::vector<OverlayBox> boxes;
+  const bool has_legend = !frame.legend.quantity.empty() && has_value_range(frame.legend);
+  if (!frame.legend.quantity.empty() && !has_legend) ++left_out.legends;
+  const float column_left = has_legend ? std::round(0.825f * width) : width - at.margin;
+  const float note_top = draw_note(at, frame.caption.note, boxes);
+  const bool has_trace = !frame.trace.time_s.empty();
+  const float trace_bottom = note_top - std::round(8 * unit);
+  const float trace_top = has_trace ? std::round(trace_bottom - 0.165f * height) : trace_bottom;
+  const float words_bottom = draw_words(at, frame.caption, has_legend ? column_left - at.margin : column_left,
+                                        trace_top - at.margin / 2, boxes);
+  if (has_trace && trace_top >= words_bottom)
+    draw_trace(at, frame.trace, trace_bottom, boxes, left_out, trace_top);
+  if (has_legend) draw_legend(at, frame.legend, map, column_left, note_top - 8 * unit, boxes);
+  return boxes;
+}
+
+}  // namespace topple::render

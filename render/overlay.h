@@ -1,0 +1,36 @@
+// Words, legend and trace of a picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/colour_map.h"
+#include "render/font.h"
+#include "render/mesh.h"
+#include "render/scene_frame.h"
+
+struct ImDrawList;
+
+namespace topple::render {
+
+/// Where a part of the overlay lies, px from the upper left corner of the picture.
+struct OverlayBox {
+  std::string name;  ///< "title", "lines", "legend", "trace", "note"
+  float left, top, right, bottom;
+};
+
+/// Round numbers for a scale from minimum to maximum, at most `count` + 1 of them, with as many
+/// decimals as tell them apart.
+struct Ticks {
+  std::vector<double> values;
+  int decimals = 0;
+};
+Ticks nice_ticks(double minimum, double maximum, int count);
+
+/// Adds the overlay to `list` for a picture of width x height px: title and lines at the upper left,
+/// legend at the right, trace and note at the lower left. Text that is too long is wrapped or
+/// shortened; a part without room is not drawn. Returns the parts drawn; they do not overlap.
+std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
+                                     ColourMap map, float width, float height, LeftOut& left_out);
+
+}  // namespace topple::render

@@ -1,0 +1,105 @@
+// What a picture is made of: plain arrays that the bridge in app/ fills, for live frames and for
+// recordings alike.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace topple::render {
+
+using Float3 = std::array<float, 3>;
+using Float4 = std::array<float, 4>;
+
+/// Closed outline of a cross-section in the local y-z plane of a beam, m, counter-clockwise seen
+/// from the +x end. Drawn with flat facets (box) or smooth normals (pipe).
+struct Profile {
+  std::vector<std::array<float, 2>> outline;
+  bool smooth = false;
+};
+
+/// One point of a beam's centre line. Consecutive stations of a tube are joined.
+struct Station {
+  Float3 position;  ///< m, in the picture's frame (z up)
+  Float4 rotation;  ///< unit quaternion (w, x, y, z): local axes (x along the beam) to the picture's frame
+  float value;      ///< the coloured quantity, in the legend's unit
+};
+
+/// A beam drawn as its real section swept along its stations.
+struct Tube {
+  std::uint32_t first_station = 0;
+  std::uint32_t station_count = 0;
+  std::uint32_t profile = 0;  ///< index into SceneFrame::profiles
+  std::uint32_t member = 0;   ///< what picking reports
+  std::uint32_t body = 0;
+  float lead = 0;   ///< m, how far the section is drawn on before its first station: closes a corner
+  float trail = 0;  ///< m, the same after its last station
+};
+
+/// A translucent sheet of a cabinet: a quadrilateral, corners in order.
+struct Panel {
+  std::array<Float3, 4> corners;
+};
+
+/// A floor or wall: a rectangle with a metric grid (1 m bold, 0.1 m faint). `normal` points to the
+/// side on which bodies live; `along` is one in-plane direction.
+struct Ground {
+  Float3 centre;
+  Float3 normal;
+  Float3 along;
+  float half_length = 0;  ///< m, in the direction of `along`
+  float half_width = 0;   ///< m, across it
+  bool is_floor = false;
+};
+
+/// An arrow, m.
+struct Arrow {
+  Float3 from;
+  Float3 to;
+  Float4 colour;
+};
+
+/// Colour scale of Station::value.
+struct Legend {
+  std::string quantity;      ///< "von Mises stress"
+  std::string unit;          ///< "MPa"
+  std::string range_policy;  ///< "whole run"
+  float minimum = 0;
+  float maximum = 1;
+  bool is_signed = false;  ///< diverging map, symmetric range
+  float mark = 0;          ///< value of the mark (yield); drawn when mark_label is not empty
+  std::string mark_label;  ///< "yield 235 MPa"
+};
+
+/// A trace of the floor's motion, drawn small in a corner with a cursor at `cursor_s`.
+struct Trace {
+  std::string label;          ///< "floor acceleration, gal"
+  std::vector<float> time_s;  ///< increasing
+  std::vector<float> value;   ///< same length
+  float cursor_s = 0;
+};
+
+/// Words of the picture.
+struct Caption {
+  std::string title;               ///< top left, large
+  std::vector<std::string> lines;  ///< below the title: time, excitation, what is happening
+  std::string note;                ///< bottom, small: assumptions
+};
+
+/// One recorded instant as a renderer needs it.
+struct SceneFrame {
+  std::vector<Profile> profiles;
+  std::vector<Station> stations;
+  std::vector<Tube> tubes;
+  std::vector<Panel> panels;
+  std::vector<Ground> grounds;
+  std::vector<Arrow> arrows;
+  Legend legend;
+  Trace trace;
+  Caption caption;
+  Float3 bounds_min{-1, -1, 0};  ///< box that holds the bodies over the whole run: the camera fits it
+  Float3 bounds_max{1, 1, 2};
+};
+
+}  // namespace topple::render

@@ -1,0 +1,72 @@
+#include "render/text_layout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace topple::render {
+namespace {
+
+constexpr const char* k_ellipsis = "\xe2\x80\xa6";
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return line;
+}
+
+void drop_last_letter(std::string& text) {
+  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
+  if (!text.empty()) text.pop_back();
+}
+
+}  // namespace
+
+float text_width(const ImFont& font, std::string_view text) {
+  return font
+      .CalcTextSizeA(font.FontSize, std::numeric_limits<float>::max(), 0, text.data(),
+                     text.data() + text.size())
+      .x;
+}
+
+std::string shortened(const ImFont& font, std::string_view text, float width) {
+  std::string line = one_line(text);
+  if (text_width(font, line) <= width) return line;
+  const float room = width - text_width(font, k_ellipsis);
+  while (!line.empty() && text_width(font, line) > room) drop_last_letter(line);
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return room > 0 ? line + k_ellipsis : std::string();
+}
+
+std::vector<std::string> wrapped(const ImFont& font, std::string_view text, float width, int most) {
+  std::vector<std::string> lines;
+  const std::string all = one_line(text);
+  std::size_t start = 0;
+  while (start < all.size() && static_cast<int>(lines.size()) < most) {
+    const std::string_view rest = std::string_view(all).substr(start);
+    if (static_cast<int>(lines.size()) + 1 == most || text_width(font, rest) <= width) {
+      lines.push_back(shortened(font, rest, width));
+      break;
+    }
+    std::size_t fits = 0;  // length of the longest beginning that ends at a space and fits
+    for (std::size_t space = rest.find(' '); space != std::string_view::npos;
+         space = rest.find(' ', space + 1)) {
+      if (text_width(font, rest.substr(0, space)) > width) break;
+      fits = space;
+    }
+    if (fits == 0) {  // one word is wider than the line
+      const std::size_t space = rest.find(' ');
+      fits = std::min(space, rest.size());
+      lines.push_back(shortened(font, rest.substr(0, fits), width));
+    } else {
+      lines.emplace_back(rest.substr(0, fits));
+    }
+    start += fits;
+    while (start < all.size() && all[start] == ' ') ++start;
+  }
+  return lines;
+}
+
+}  // namespace topple::render

@@ -1,0 +1,22 @@
+// Fitting text into a width.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct ImFont;
+
+namespace topple::render {
+
+/// Width of one line in px.
+float text_width(const ImFont& font, std::string_view text);
+
+/// The text on one line (control characters become spaces), cut with an ellipsis when it is wider
+/// than `width` px.
+std::string shortened(const ImFont& font, std::string_view text, float width);
+
+/// The text broken at spaces into at most `most` lines, the last one shortened.
+std::vector<std::string> wrapped(const ImFont& font, std::string_view text, float width, int most);
+
+}  // namespace topple::render

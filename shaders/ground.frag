@@ -1,0 +1,67 @@
+in vec3 v_position;
+in vec2 v_plane;
+uniform vec2 u_half;
+uniform vec3 u_normal;
+uniform vec2 u_grid_origin;    // in plane coordinates
+uniform vec3 u_focus;          // middle of the bodies
+uniform float u_fade_radius;
+uniform float u_line_width;    // pixels
+uniform float u_strength;      // 1, or little where the ground is seen from behind
+uniform float u_is_floor;
+uniform vec4 u_wall;            // plane of the wall behind which the floor ends: normal, offset
+uniform mat4 u_contact_matrix;
+uniform float u_contact_size;   // m, side of the contact map
+uniform sampler2D u_contact;
+out vec4 o_colour;
+
+// Cover of a square grid of lines, 0..1: as wide as a pixel allows, gone where lines would merge.
+float grid(vec2 p, float spacing, float width) {
+  vec2 pixel = fwidth(p);
+  vec2 away = abs(fract(p / spacing - 0.5) - 0.5) * spacing;
+  vec2 line = 1.0 - smoothstep(0.5 * (width - 1.0) * pixel, 0.5 * (width + 1.0) * pixel, away);
+  line *= 1.0 - smoothstep(0.12, 0.4, pixel / spacing);
+  return max(line.x, line.y);
+}
+
+vec2 nearness(vec2 at, vec2 offset, float radius) {
+  float level = log2(max(radius * float(textureSize(u_contact, 0).x) / u_contact_size, 1.0));
+  return textureLod(u_contact, at + offset / u_contact_size, level).rg;
+}
+
+// Shade where bodies touch or nearly touch the floor.
+float contact_shade(vec3 p) {
+  vec2 at = 0.5 + 0.5 * (u_contact_matrix * vec4(p, 1.0)).xy;
+  bool inside = all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
+  int taps = inside ? 8 : 0;
+  float tight = 0.0;
+  float wide = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    float angle = 0.785398 * float(i);
+    vec2 direction = vec2(cos(angle), sin(angle));
+    tight += nearness(at, 0.007 * direction, 0.008).r / 8.0;
+    wide += (0.6 * nearness(at, 0.030 * direction, 0.030).g + 0.4 * nearness(at, 0.075 * direction, 0.060).g) / 8.0;
+  }
+  // A beam covers little of its surroundings, and yet its foot must be seen: small covers count more.
+  tight = 1.0 - (1.0 - tight) * (1.0 - tight);
+  wide = 1.0 - (1.0 - wide) * (1.0 - wide);
+  return (1.0 - 0.66 * tight) * (1.0 - 0.36 * wide);
+}
+
+void main() {
+  vec3 paint = linear_of(u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935));
+  float shade = mix(0.66, 1.0, key_visibility(v_position + 0.002 * u_normal, 5.0));
+  if (u_is_floor > 0.5) shade *= contact_shade(v_position);
+  vec3 colour = coded_of(paint * shade);
+
+  vec2 p = v_plane - u_grid_origin;
+  float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));
+  colour = mix(colour, vec3(0.30, 0.36, 0.43), lines);
+
+  vec2 edge = v_plane / u_half;
+  if (u_is_floor < 0.5) edge.y = max(edge.y, 0.0);   // a wall stands on the floor: no fading below
+  vec2 inside = 1.0 - smoothstep(0.60, 1.0, abs(edge));
+  float fade = inside.x * inside.y;
+  if (u_is_floor > 0.5) fade *= smoothstep(-0.25, 0.0, dot(u_wall.xyz, v_position) - u_wall.w);
+  fade *= 1.0 - smoothstep(0.45, 1.0, distance(v_position, u_focus) / u_fade_radius);
+  o_colour = vec4(colour, fade * u_strength);
+}

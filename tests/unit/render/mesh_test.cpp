@@ -1,0 +1,100 @@
+#include "render/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "tests/unit/render/synthetic_cabinet.h"
+
+namespace topple::render {
+namespace {
+
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto p = [&](std::size_t k) -> Eigen::Vector3d {
+      return mesh.vertices[mesh.indices[i + k]].position.cast<double>();
+    };
+    sum += p(0).dot(p(1).cross(p(2))) / 6;
+  }
+  return sum;
+}
+
+SceneFrame one_beam(const Profile& profile) {
+  SceneFrame frame;
+  frame.profiles = {profile};
+  add_beam(frame, {0.3f, -1, 0.2f}, {0.9f, 1, 0.7f}, {0, 0, 0}, 0, 1, 0);
+  return frame;
+}
+
+TEST(Mesh, swept_section_is_closed_and_holds_area_times_length) {
+  const double length = std::sqrt(0.6 * 0.6 + 4 + 0.25);
+  LeftOut left_out;
+  const Profile l_section{{{0, 0}, {0.05f, 0}, {0.05f, 0.01f}, {0.01f, 0.01f}, {0.01f, 0.04f}, {0, 0.04f}},
+                          false};
+  const double l_area = 0.05 * 0.01 + 0.01 * 0.03;
+  EXPECT_NEAR(volume(solid_mesh(one_beam(box_profile(0.02f)), left_out)), 0.04 * 0.04 * length, 1e-8);
+  EXPECT_NEAR(volume(solid_mesh(one_beam(l_section), left_out)), l_area * length, 1e-8);
+  EXPECT_EQ(left_out.total(), 0);
+}
+
+TEST(Mesh, outline_drawn_clockwise_is_turned) {
+  Profile clockwise = box_profile(0.02f);
+  std::reverse(clockwise.outline.begin(), clockwise.outline.end());
+  LeftOut left_out;
+  EXPECT_GT(volume(solid_mesh(one_beam(clockwise), left_out)), 0);
+}
+
+TEST(Mesh, lead_and_trail_draw_the_section_on) {
+  SceneFrame frame = one_beam(box_profile(0.02f));
+  frame.tubes[0].lead = 0.1f;
+  frame.tubes[0].trail = 0.3f;
+  LeftOut left_out;
+  const double length = std::sqrt(0.6 * 0.6 + 4 + 0.25) + 0.4;
+  EXPECT_NEAR(volume(solid_mesh(frame, left_out)), 0.04 * 0.04 * length, 1e-8);
+}
+
+TEST(Mesh, every_triangle_faces_the_way_its_normals_point) {
+  SceneFrame frame = synthetic_cabinet(6);
+  add_words(frame);
+  LeftOut left_out;
+  const Mesh mesh = solid_mesh(frame, left_out);
+  ASSERT_GT(mesh.indices.size(), 3000u);
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto v = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]]; };
+    const Eigen::Vector3f faces = (v(1).position - v(0).position).cross(v(2).position - v(0).position);
+    if (faces.norm() < 1e-12f) continue;  // the tip of an arrow
+    const Eigen::Vector3f normal = v(0).normal + v(1).normal + v(2).normal;
+    ASSERT_GT(faces.normalized().dot(normal.normalized()), 0.7f) << "triangle " << i / 3;
+  }
+}
+
+TEST(Mesh, tubes_that_point_outside_the_arrays_are_left_out) {
+  for (int kind = 0; kind < 4; ++kind) {
+    SceneFrame frame = one_beam(box_profile(0.02f));
+    if (kind == 0) frame.tubes[0].profile = 7;
+    if (kind == 1) frame.tubes[0].station_count = 1000;
+    if (kind == 2) frame.tubes[0].first_station = 0xfffffff0u;
+    if (kind == 3) frame.tubes[0].station_count = 1;
+    LeftOut left_out;
+    EXPECT_TRUE(solid_mesh(frame, left_out).vertices.empty()) << "kind " << kind;
+    EXPECT_EQ(left_out.tubes, 1) << "kind " << kind;
+  }
+}
+
+TEST(Mesh, panels_come_farthest_first) {
+  const SceneFrame frame = synthetic_cabinet(0);
+  const Eigen::Vector3f eye(0, 0, 5);
+  LeftOut left_out;
+  const std::vector<PanelVertex> vertices = panel_mesh(frame, eye, left_out);
+  ASSERT_EQ(vertices.size(), 6 * frame.panels.size());
+  for (std::size_t i = 6; i < vertices.size(); i += 6) {
+    EXPECT_GE(vertices[i].position.z(), vertices[i - 6].position.z());
+  }
+}
+
+}  // namespace
+}  // namespace topple::render

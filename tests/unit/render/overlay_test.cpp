@@ -1,0 +1,107 @@
+#include "render/overlay.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <limits>
+
+#include "render/text_layout.h"
+#include "tests/unit/render/off_screen.h"
+#include "tests/unit/render/synthetic_cabinet.h"
+
+namespace topple::render {
+namespace {
+
+void expect_tidy(const std::vector<OverlayBox>& boxes, int width, int height) {
+  for (const OverlayBox& a : boxes) {
+    EXPECT_GE(a.left, 0) << a.name;
+    EXPECT_GE(a.top, 0) << a.name;
+    EXPECT_LE(a.right, static_cast<float>(width)) << a.name;
+    EXPECT_LE(a.bottom, static_cast<float>(height)) << a.name;
+    for (const OverlayBox& b : boxes) {
+      if (&a == &b) continue;
+      const bool apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+      EXPECT_TRUE(apart) << a.name << " overlaps " << b.name;
+    }
+  }
+}
+
+TEST(Overlay, parts_stay_inside_and_apart_at_every_size_with_any_length_of_text) {
+  const int sizes[][2] = {{1280, 720}, {640, 360}, {1920, 1080}, {320, 180}, {720, 1280}, {64, 64}};
+  for (const auto& size : sizes) {
+    for (const bool verbose : {false, true}) {
+      SCOPED_TRACE(testing::Message() << size[0] << " x " << size[1] << (verbose ? ", long texts" : ""));
+      SceneFrame frame = synthetic_cabinet(6);
+      add_words(frame);
+      if (verbose) {
+        const std::string much(400, 'W');
+        frame.caption.title +=
+            " with a title that goes on for much longer than any picture is wide, and then some " + much;
+        for (int i = 0; i < 40; ++i) frame.caption.lines.push_back("line with α and β " + much);
+        frame.caption.note += much + " " + frame.caption.note + frame.caption.note + much;
+        frame.legend.quantity = "quantity of a rather long name that wraps " + much;
+        frame.legend.unit = much;
+        frame.legend.range_policy = much;
+        frame.legend.mark_label = "mark with a long name too " + much;
+        frame.legend.maximum = 1.5e7f;
+        frame.trace.label = much;
+      }
+      Picture picture(off_screen(), size[0], size[1]);
+      picture.draw(frame, fit_camera(NamedView::iso, frame, picture.aspect()));
+      expect_tidy(picture.overlay_boxes(), size[0], size[1]);
+      if (size[1] >= 360 && size[0] >= 640) {
+        EXPECT_EQ(picture.overlay_boxes().size(), 5u);
+      }
+    }
+  }
+}
+
+TEST(Overlay, ticks_are_round_and_inside) {
+  const Ticks ticks = nice_ticks(0, 270, 5);
+  EXPECT_EQ(ticks.values, (std::vector<double>{0, 100, 200}));
+  EXPECT_EQ(ticks.decimals, 0);
+  const Ticks fine = nice_ticks(-0.003, 0.003, 6);
+  EXPECT_EQ(fine.decimals, 3);
+  EXPECT_EQ(fine.values.size(), 7u);
+  EXPECT_TRUE(nice_ticks(1, 1, 5).values.empty());
+  EXPECT_TRUE(nice_ticks(0, std::numeric_limits<double>::infinity(), 5).values.empty());
+}
+
+class TextLayout : public testing::Test {
+ protected:
+  TextLayout() {
+    fonts_ = add_overlay_fonts(atlas_, 720);
+    atlas_.Build();
+  }
+  ImFontAtlas atlas_;
+  OverlayFonts fonts_;
+};
+
+TEST_F(TextLayout, wrapped_lines_fit_and_keep_the_words) {
+  const std::string text = "the floor moves and the cabinet answers, slowly at first";
+  const std::vector<std::string> lines = wrapped(*fonts_.text, text, 160, 9);
+  std::string joined;
+  for (const std::string& line : lines) {
+    EXPECT_LE(text_width(*fonts_.text, line), 160) << line;
+    joined += (joined.empty() ? "" : " ") + line;
+  }
+  EXPECT_EQ(joined, text);
+  EXPECT_EQ(wrapped(*fonts_.text, text, 160, 2).size(), 2u);
+}
+
+TEST_F(TextLayout, shortened_text_ends_with_an_ellipsis_between_letters) {
+  const std::string cut = shortened(*fonts_.text, "ααααααααααααααααααααααααα", 100);
+  EXPECT_LE(text_width(*fonts_.text, cut), 100);
+  EXPECT_EQ(cut.size() % 2, 1u);  // two bytes a letter and three for the ellipsis
+  EXPECT_EQ(cut.substr(cut.size() - 3), "…");
+  EXPECT_EQ(shortened(*fonts_.text, "two\nlines", 500), "two lines");
+}
+
+TEST_F(TextLayout, captions_have_their_signs) {
+  for (const ImWchar sign : {0x3b1, 0x3bc, 0xb2, 0x207b, 0x2076, 0xb0, 0xd7, 0x2212, 0x2264, 0x2026}) {
+    EXPECT_NE(fonts_.text->FindGlyphNoFallback(sign), nullptr) << std::hex << sign;
+  }
+}
+
+}  // namespace
+}  // namespace topple::render
