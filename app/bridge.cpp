@@ -122,7 +122,15 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
 }
 
 Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene), extent_(extent) {
-  for (const Section& section : scene.setup.model.sections) profiles_.push_back(profile(section));
+  const Model& model = scene.setup.model;
+  for (const Section& section : model.sections) profiles_.push_back(profile(section));
+  std::vector<int> members_at(model.node_position.size(), 0);
+  for (const Member& member : model.members) {
+    if (model.sections[member.section].shape == Section::Shape::custom) continue;
+    ++members_at[model.elements[member.first_element].node[0]];
+    ++members_at[model.elements[member.first_element + member.element_count - 1].node[1]];
+  }
+  for (int count : members_at) joint_.push_back(count > 1);
 }
 
 render::SceneFrame Bridge::frame(const io::FrameRow& row) const {
@@ -157,6 +165,13 @@ void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) cons
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
+    if (section.shape != Section::Shape::custom) {
+      const int first = model.elements[member.first_element].node[0];
+      const int last = model.elements[member.first_element + member.element_count - 1].node[1];
+      const float half = static_cast<float>(std::min(section.size_y, section.size_z) / 2);
+      if (joint_[first]) tube.lead = half;
+      if (joint_[last]) tube.trail = half;
+    }
     for (int k = 0; k < member.element_count; ++k) {
       const std::size_t e = static_cast<std::size_t>(member.first_element + k);
       const Element& element = model.elements[e];
@@ -184,6 +199,7 @@ void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) cons
   out.legend.unit = "MPa";
   out.legend.range_policy = "95 % of the run";
   out.legend.minimum = 0;
+  out.legend.square_root = true;
   out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
 }
 
@@ -259,10 +275,13 @@ void Bridge::add_captions(const io::FrameRow& row, render::SceneFrame& out) cons
     if (critical > 0) line += fmt::format(", slide {:.0f} mm", 1e3 * slide);
     out.caption.lines.push_back(line);
   }
+  std::string contact;
+  if (!setup.model.planes.empty())
+    contact = fmt::format(" · contact α = {:g} kgf, q = {:g}, μ = {:g}",
+                          setup.parameters.contact.alpha / k_standard_gravity, setup.parameters.contact.q,
+                          setup.parameters.contact.friction);
   out.caption.note =
-      fmt::format("topple {} · scene {} · contact α = {:g} kgf, q = {:g}, μ = {:g} · deformation ×1",
-                  TOPPLE_VERSION, scene_.name, setup.parameters.contact.alpha / k_standard_gravity,
-                  setup.parameters.contact.q, setup.parameters.contact.friction);
+      fmt::format("topple {} · scene {}{} · deformation ×1", TOPPLE_VERSION, scene_.name, contact);
 }
 
 }  // namespace topple::app

@@ -45,6 +45,7 @@ class Bridge {
   const io::Scene& scene_;
   const RunExtent& extent_;
   std::vector<render::Profile> profiles_;  ///< one per section
+  std::vector<bool> joint_;  ///< per node: ends of several members, whose sections are drawn through it
 };
 
 }  // namespace topple::app

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "render/colour_map.h"
 #include "render/scene_frame.h"
 
 namespace topple::render {
@@ -27,6 +28,12 @@ bool drawable(const std::array<float, N>& v) {
 inline bool has_value_range(const Legend& legend) {
   return std::isfinite(legend.minimum) && std::isfinite(legend.maximum) && legend.minimum < legend.maximum &&
          std::isfinite(legend.maximum - legend.minimum);
+}
+
+/// Where `value` lies on the legend's colour bar, 0..1.
+inline float legend_position(const Legend& legend, float value) {
+  const float share = colour_position(value, legend.minimum, legend.maximum);
+  return legend.square_root ? std::sqrt(share) : share;
 }
 
 /// Low and high corner of the frame's bounds; the default ones where they cannot be drawn or hold

@@ -127,9 +127,7 @@ bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Section>& 
         Eigen::Quaternionf(s.rotation[0], s.rotation[1], s.rotation[2], s.rotation[3])
             .normalized()
             .toRotationMatrix();
-    const float at = has_value_range(frame.legend)
-                         ? colour_position(s.value, frame.legend.minimum, frame.legend.maximum)
-                         : 0.0f;
+    const float at = has_value_range(frame.legend) ? legend_position(frame.legend, s.value) : 0.0f;
     rings.push_back({Vector3f(s.position.data()), turn.col(0), turn.col(1), turn.col(2), at});
   }
   rings.front().centre -= tube.lead * rings.front().axis;

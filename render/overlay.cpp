@@ -119,7 +119,7 @@ void draw_mark(const Layout& at, const Legend& legend, float column_left, float 
                float top, float bottom) {
   const bool above = legend.mark > legend.maximum;
   const bool below = legend.mark < legend.minimum;
-  const float share = colour_position(legend.mark, legend.minimum, legend.maximum);
+  const float share = legend_position(legend, legend.mark);
   const float y = std::round(bottom + (top - bottom) * share);
   const float size = 6 * at.unit;
   const float tip = bar_left - 2 * at.unit;
@@ -167,23 +167,29 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, float co
   for (const std::string& line : heading) add_line(at.fonts.text, k_text_colour, line);
   add_line(at.fonts.small, k_quiet_colour, shortened(*at.fonts.small, legend.unit, right - column_left));
 
-  const Ticks ticks = nice_ticks(legend.minimum, legend.maximum, 5);
+  const Ticks ticks =
+      legend.square_root ? root_ticks(legend.maximum) : nice_ticks(legend.minimum, legend.maximum, 5);
+  const auto label_of = [&](double tick) {
+    // on a scale of roots, 10 and 0.5 stand side by side
+    const int decimals =
+        tick > 0 && legend.square_root ? static_cast<int>(std::ceil(-std::log10(tick) - 1e-9)) : 0;
+    return number(tick, legend.square_root ? std::max(decimals, 0) : ticks.decimals);
+  };
   float label_width = 0;
   for (const double tick : ticks.values) {
-    label_width = std::max(label_width, text_width(*at.fonts.small, number(tick, ticks.decimals)));
+    label_width = std::max(label_width, text_width(*at.fonts.small, label_of(tick)));
   }
   const float bar_right = std::round(right - label_width - 9 * at.unit);
   const float bar_left = std::round(bar_right - 18 * at.unit);
   draw_colour_bar(at, map, bar_left, bar_top, bar_right, bar_bottom);
   for (const double tick : ticks.values) {
-    const double share = (tick - legend.minimum) / (static_cast<double>(legend.maximum) - legend.minimum);
-    const float tick_y = std::round(bar_bottom + (bar_top - bar_bottom) * static_cast<float>(share));
+    const float share = legend_position(legend, static_cast<float>(tick));
+    const float tick_y = std::round(bar_bottom + (bar_top - bar_bottom) * share);
     at.list.AddRectFilled({bar_right, tick_y},
                           {bar_right + std::round(4 * at.unit), tick_y + std::max(1.0f, std::round(at.unit))},
                           k_quiet_colour);
-    const std::string label = number(tick, ticks.decimals);
     at.text(at.fonts.small, bar_right + std::round(8 * at.unit), tick_y - 0.5f * at.fonts.small->FontSize,
-            k_text_colour, label);
+            k_text_colour, label_of(tick));
   }
   if (!legend.mark_label.empty() && std::isfinite(legend.mark)) {
     draw_mark(at, legend, column_left, bar_left, bar_right, bar_top, bar_bottom);
@@ -313,6 +319,24 @@ Ticks nice_ticks(double minimum, double maximum, int count) {
   const double first = std::ceil(minimum / step - 1e-6);
   const double last = std::floor(maximum / step + 1e-6);
   for (double n = first; n <= last && ticks.values.size() <= 100; ++n) ticks.values.push_back(n * step);
+  return ticks;
+}
+
+Ticks root_ticks(double maximum) {
+  Ticks ticks;
+  if (!(maximum > 0) || !std::isfinite(maximum)) return ticks;
+  constexpr double k_apart = 0.12;  // of the bar, least
+  double last = 1 + k_apart;
+  double power = std::pow(10.0, std::floor(std::log10(maximum)));
+  for (int decade = 0; decade < 4; ++decade, power /= 10) {
+    for (const double factor : {5.0, 2.0, 1.0}) {
+      const double share = std::sqrt(factor * power / maximum);
+      if (factor * power > maximum || last - share < k_apart || share < k_apart) continue;
+      ticks.values.push_back(factor * power);
+      last = share;
+    }
+  }
+  ticks.values.push_back(0);
   return ticks;
 }
 

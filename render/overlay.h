@@ -27,6 +27,10 @@ struct Ticks {
 };
 Ticks nice_ticks(double minimum, double maximum, int count);
 
+/// Round numbers for a scale of square roots from 0 to maximum, far enough apart to be read; without
+/// `decimals`.
+Ticks root_ticks(double maximum);
+
 /// Adds the overlay to `list` for a picture of width x height px: title and lines at the upper left,
 /// legend at the right, trace and note at the lower left. Text that is too long is wrapped or
 /// shortened; a part without room is not drawn. Returns the parts drawn; they do not overlap.

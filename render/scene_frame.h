@@ -67,9 +67,10 @@ struct Legend {
   std::string range_policy;  ///< "whole run"
   float minimum = 0;
   float maximum = 1;
-  bool is_signed = false;  ///< diverging map, symmetric range
-  float mark = 0;          ///< value of the mark (yield); drawn when mark_label is not empty
-  std::string mark_label;  ///< "yield 235 MPa"
+  bool is_signed = false;    ///< diverging map, symmetric range
+  float mark = 0;            ///< value of the mark (yield); drawn when mark_label is not empty
+  std::string mark_label;    ///< "yield 235 MPa"
+  bool square_root = false;  ///< colours go with the root of the share of the range: small values stay apart
 };
 
 /// A trace of the floor's motion, drawn small in a corner with a cursor at `cursor_s`.

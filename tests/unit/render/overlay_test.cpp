@@ -67,6 +67,19 @@ TEST(Overlay, ticks_are_round_and_inside) {
   EXPECT_TRUE(nice_ticks(0, std::numeric_limits<double>::infinity(), 5).values.empty());
 }
 
+TEST(Ticks, of_a_root_scale_are_round_and_stand_apart_on_the_bar) {
+  const Ticks ticks = root_ticks(17.5);
+  EXPECT_EQ(ticks.values, (std::vector<double>{10, 5, 2, 0.5, 0}));
+  for (const double maximum : {0.03, 1.0, 7.0, 270.0, 1e6}) {
+    SCOPED_TRACE(maximum);
+    const std::vector<double> values = root_ticks(maximum).values;
+    ASSERT_GE(values.size(), 3u);
+    for (std::size_t i = 1; i < values.size(); ++i)
+      EXPECT_GE(std::sqrt(values[i - 1] / maximum) - std::sqrt(values[i] / maximum), 0.119);
+  }
+  EXPECT_TRUE(root_ticks(0).values.empty());
+}
+
 class TextLayout : public testing::Test {
  protected:
   TextLayout() {
