@@ -197,7 +197,7 @@ void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) cons
   }
   out.legend.quantity = "equivalent stress";
   out.legend.unit = "MPa";
-  out.legend.range_policy = "95 % of the run";
+  out.legend.range_policy = "covers 95 % of the run";
   out.legend.minimum = 0;
   out.legend.square_root = true;
   out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
