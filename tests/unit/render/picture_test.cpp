@@ -192,20 +192,9 @@ TEST(Picture, size_that_will_not_do_is_refused) {
   EXPECT_THROW(Picture(off_screen(), 100, 100000), std::runtime_error);
 }
 
-// Not a test by itself: writes the picture that the next one compares.
-TEST(Picture, DISABLED_write_one) {
-  SceneFrame frame = synthetic_cabinet(6);
-  add_words(frame);
-  write_png(std::getenv("TOPPLE_TEST_PICTURE"), drawn(frame));
-}
-
-/// In a process of its own: Mesa reads the number of its threads once.
 std::string bytes_with_threads(const char* threads, const std::filesystem::path& path) {
   const std::string command =
-      "LP_NUM_THREADS=" + std::string(threads) + " TOPPLE_TEST_PICTURE='" + path.string() + "' '" +
-      std::filesystem::read_symlink("/proc/self/exe").string() +
-      "' --gtest_also_run_disabled_tests --gtest_filter=Picture.DISABLED_write_one >'" + path.string() +
-      ".log'";
+      "LP_NUM_THREADS=" + std::string(threads) + " '" TOPPLE_DRAW_ONE "' '" + path.string() + "'";
   return std::system(command.c_str()) == 0 ? file_bytes(path) : std::string();
 }
 
