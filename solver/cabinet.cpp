@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 #include "solver/body_builder.h"
@@ -41,19 +42,19 @@ Distribution solid(const Vec3& size) {
   return {6 / size.z(), size.cwiseProduct(size) / 12};
 }
 
+// Farthest that positive densities move the centre of gravity off the middle of the box, m.
+double density_reach(const CabinetSpec& spec) {
+  if (spec.inertia == CabinetSpec::Inertia::given) return std::numeric_limits<double>::infinity();
+  const bool thin = spec.inertia == CabinetSpec::Inertia::panels;
+  return 1 / (thin ? panels(spec.size) : solid(spec.size)).gradient_per_metre;
+}
+
 // Inertia about the centre of gravity at `cg_height` of what inertia = panels | solid | given asks for.
-Vec3 target_inertia(const CabinetSpec& spec) {
+Vec3 target_inertia(const CabinetSpec& spec, double cg_height) {
   if (spec.inertia == CabinetSpec::Inertia::given) return spec.inertia_given;
   const bool thin = spec.inertia == CabinetSpec::Inertia::panels;
   const Distribution shape = thin ? panels(spec.size) : solid(spec.size);
-  const double offset = spec.cg_height - spec.size.z() / 2;
-  if (!(std::abs(offset * shape.gradient_per_metre) < 1)) {
-    const double reach = 1 / shape.gradient_per_metre;
-    throw BuildError("cg_height",
-                     number(spec.cg_height) + " m cannot be reached with positive densities; inertia = \"" +
-                         (thin ? "panels" : "solid") + "\" allows " + number(spec.size.z() / 2 - reach) +
-                         ".." + number(spec.size.z() / 2 + reach) + " m");
-  }
+  const double offset = cg_height - spec.size.z() / 2;
   const double z2 = shape.second.z() - offset * offset;
   return spec.mass * Vec3(shape.second.y() + z2, shape.second.x() + z2, shape.second.x() + shape.second.y());
 }
@@ -199,8 +200,9 @@ class CabinetBuilder {
   // Masses by symmetry class: nodes with the same |x|, |y| and z in the cabinet's own axes weigh the same.
   void distribute_mass() {
     const Body body = builder_.body();
-    const Vec3 inertia = target_inertia(spec_);
-    if (!(inertia.minCoeff() > 0) || 2 * inertia.maxCoeff() > inertia.sum())
+    const bool within = std::abs(spec_.cg_height - spec_.size.z() / 2) < density_reach(spec_);
+    const Vec3 inertia = target_inertia(spec_, spec_.cg_height);
+    if (within && (!(inertia.minCoeff() > 0) || 2 * inertia.maxCoeff() > inertia.sum()))
       throw BuildError(
           "inertia",
           "no mass distribution has this inertia: each value must be less than the other two together");
@@ -222,23 +224,29 @@ class CabinetBuilder {
               .first->second;
     }
     const int groups = static_cast<int>(group_of.size());
-    MomentProblem problem;
-    problem.moments = Eigen::MatrixXd::Zero(5, groups);
-    problem.nominal = problem.count = Eigen::VectorXd::Zero(groups);
-    for (int i = 0; i < body.node_count; ++i) {
-      const Vec3 r = local[i] - Vec3(0, 0, spec_.cg_height), r2 = r.cwiseProduct(r);
-      Eigen::Matrix<double, 5, 1> moments;
-      moments << 1, r.z(), r2.y() + r2.z(), r2.x() + r2.z(), r2.x() + r2.y();
-      problem.moments.col(group[i]) += moments;
-      problem.nominal[group[i]] += nominal[i];
-      problem.count[group[i]] += 1;
+    const auto problem_at = [&](double cg_height) {
+      MomentProblem problem;
+      problem.moments = Eigen::MatrixXd::Zero(5, groups);
+      problem.nominal = problem.count = Eigen::VectorXd::Zero(groups);
+      for (int i = 0; i < body.node_count; ++i) {
+        const Vec3 r = local[i] - Vec3(0, 0, cg_height), r2 = r.cwiseProduct(r);
+        Eigen::Matrix<double, 5, 1> moments;
+        moments << 1, r.z(), r2.y() + r2.z(), r2.x() + r2.z(), r2.x() + r2.y();
+        problem.moments.col(group[i]) += moments;
+        problem.nominal[group[i]] += nominal[i];
+        problem.count[group[i]] += 1;
+      }
+      problem.nominal = problem.nominal.cwiseQuotient(problem.count);
+      problem.least = Eigen::VectorXd::Constant(groups, k_least_share * spec_.mass / body.node_count);
+      problem.target.resize(5);
+      problem.target << spec_.mass, 0, target_inertia(spec_, cg_height) - Vec3::Constant(rotary_sum);
+      return problem;
+    };
+    const auto masses = within ? fit_masses(problem_at(spec_.cg_height)) : std::nullopt;
+    if (!masses) {
+      refuse_height(problem_at);
+      refuse_inertia(problem_at(spec_.cg_height), rotary_sum);
     }
-    problem.nominal = problem.nominal.cwiseQuotient(problem.count);
-    problem.least = Eigen::VectorXd::Constant(groups, k_least_share * spec_.mass / body.node_count);
-    problem.target.resize(5);
-    problem.target << spec_.mass, 0, inertia - Vec3::Constant(rotary_sum);
-    const auto masses = fit_masses(problem);
-    if (!masses) throw_unreachable(problem, rotary_sum);
     for (int i = 0; i < body.node_count; ++i) {
       model_.node_mass[body.first_node + i] = (*masses)[group[i]];
       model_.node_inertia[body.first_node + i] = rotary[i] * Mat3::Identity();
@@ -262,16 +270,35 @@ class CabinetBuilder {
     return mass;
   }
 
-  // Says how far the inertia or the centre of gravity can go: scales the inertia about the asked one, else
-  // gives up on the centre of gravity.
-  [[noreturn]] void throw_unreachable(MomentProblem problem, double rotary_sum) const {
-    const Vec3 inertia = target_inertia(spec_);
+  // Says how far the members' densities can move the centre of gravity. Returns when nowhere will do.
+  template <class ProblemAt>
+  void refuse_height(const ProblemAt& problem_at) const {
+    if (spec_.inertia == CabinetSpec::Inertia::given) return;
+    constexpr int k_tries = 200;
+    const double middle = spec_.size.z() / 2, reach = density_reach(spec_);
+    double least = 1e300, most = -1e300;
+    for (int k = 1 - k_tries; k < k_tries; ++k) {
+      const double height = middle + reach * k / k_tries;
+      if (!fit_masses(problem_at(height))) continue;
+      least = std::min(least, height);
+      most = std::max(most, height);
+    }
+    if (least > most) return;
+    throw BuildError("cg_height", number(spec_.cg_height) +
+                                      " m cannot be reached with positive densities; inertia = \"" +
+                                      (spec_.inertia == CabinetSpec::Inertia::panels ? "panels" : "solid") +
+                                      "\" allows " + number(least) + ".." + number(most) + " m");
+  }
+
+  // Says how far the inertia can be scaled, else gives up on the centre of gravity.
+  [[noreturn]] void refuse_inertia(MomentProblem problem, double rotary_sum) const {
+    const Vec3 inertia = target_inertia(spec_, spec_.cg_height);
     const auto fits = [&](double factor) {
       problem.target.tail<3>() = factor * inertia - Vec3::Constant(rotary_sum);
       return fit_masses(problem).has_value();
     };
     double least = 0, most = 0;
-    for (double factor = 0.3; factor < 3.5; factor *= 1.02)
+    for (double factor = 1e-3; factor < 1e3; factor *= 1.02)
       if (fits(factor)) {
         if (least == 0) least = factor;
         most = factor;

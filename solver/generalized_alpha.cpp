@@ -13,6 +13,9 @@ constexpr int k_most_iterations = 25;
 constexpr double k_convergence = 1e-11;
 // A factorisation is used again while each correction is below this part of the one before.
 constexpr double k_good_rate = 0.1;
+// From this iteration on corrections that shrink no faster than this are halved.
+constexpr int k_patience = 6;
+constexpr double k_cycling_rate = 0.7;
 
 enum class Outcome { converged, diverged, not_finite, singular };
 
@@ -146,7 +149,7 @@ Attempt ImplicitStep::solve() {
   const std::span<const Vec3> stick(state_.stick);
   const double tolerance = k_convergence * s_.size;
   double last = 0;
-  bool fresh = true;
+  bool fresh = true, cycling = false;
   int node = s_.first;
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     update_trial();
@@ -158,12 +161,19 @@ Attempt ImplicitStep::solve() {
         for (int k = 0; k < 6; ++k)
           if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
       const int singular = s_.lu.factor();
-      if (singular >= 0) return {Outcome::singular, iteration, s_.first + singular};
+      if (singular >= 0) {
+        fill_residual();
+        const double* const left = &w_.right_hand_side[6 * singular];
+        const bool finite = std::all_of(left, left + 6, [](double x) { return std::isfinite(x); });
+        return {finite ? Outcome::singular : Outcome::not_finite, iteration, s_.first + singular};
+      }
     } else {
       s_.evaluate(p_, t_ + h_, w_.trial, stick, w_.start.position);
     }
     fill_residual();
     s_.lu.solve(w_.right_hand_side.data());
+    if (cycling)
+      for (double& x : w_.right_hand_side) x *= 0.5;
     const double size = correct(node);
     if (!std::isfinite(size)) return {Outcome::not_finite, iteration, node};
     if (size > 10 * s_.size) return {Outcome::diverged, iteration, node};
@@ -172,6 +182,8 @@ Attempt ImplicitStep::solve() {
       update_trial();
       return {Outcome::converged, iteration, node};
     }
+    // Newton jumps to and fro over the edge between open and closed, stick and slip: half a step lands there
+    cycling = iteration >= k_patience && rate > k_cycling_rate;
     fresh = rate > k_good_rate && iteration > 1;
     last = size;
   }

@@ -34,6 +34,11 @@ bool has_floor(const Model& model) {
   return std::any_of(model.planes.begin(), model.planes.end(), is_floor);
 }
 
+bool is_supported(const Model& model, int body) {
+  return std::any_of(model.supports.begin(), model.supports.end(),
+                     [&](const Support& support) { return model.node_body[support.node] == body; });
+}
+
 }  // namespace
 
 BodyPose body_pose(const Model& model, const State& state, int index) {
@@ -74,7 +79,8 @@ double tilt(const BodyPose& pose) {
 
 double critical_angle(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
-  if (body.support_polygon.empty() || !has_floor(model)) return std::numeric_limits<double>::infinity();
+  if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index))
+    return std::numeric_limits<double>::infinity();
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = std::hypot(up.x(), up.y());

@@ -25,6 +25,60 @@ double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
   return 8 * std::numeric_limits<double>::epsilon() * reach * stiffness;
 }
 
+// K + M/sigma^2 of the last evaluation's tangent, and its fixed rows, into the solver.
+void add_mass(BodySystem& s, double sigma) {
+  for (int i = 0; i < s.count; ++i) {
+    const int g = s.first + i;
+    Mat6 block = Mat6::Zero();
+    block.diagonal().head<3>().setConstant(s.model.node_mass[g] / (sigma * sigma));
+    block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
+    s.lu.add(i, i, block);
+    for (int k = 0; k < 6; ++k)
+      if (s.fixed[i] >> k & 1) s.lu.fix(i, k);
+  }
+}
+
+// A balance that tips over by itself: (K + M/sigma^2)^-1 M/sigma^2 enlarges some small motion. Newton finds
+// such balances as readily as stable ones. sigma: half the time in which a body of this size falls over.
+bool tips_over(BodySystem& s, const Parameters& still, const State& state, IntegratorScratch& w) {
+  constexpr int k_rounds = 60;
+  const double g = still.gravity.norm();
+  if (!(g > 0)) return false;
+  const double sigma = 0.5 * std::sqrt(s.size / g);
+  s.lu.set_zero();
+  s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
+  add_mass(s, sigma);
+  if (s.lu.factor() >= 0) return true;
+  std::vector<double>& v = w.right_hand_side;
+  for (int i = 0; i < 6 * s.count; ++i) v[i] = std::sin(1 + 2.7 * i);  // no symmetry of a body shares it
+  double growth = 1;
+  for (int round = 0; round < k_rounds; ++round) {
+    double before = 0, after = 0;
+    for (int i = 0; i < s.count; ++i) {
+      Eigen::Map<Vec3> shift(&v[6 * i]), spin(&v[6 * i + 3]);
+      for (int k = 0; k < 6; ++k)
+        if (s.fixed[i] >> k & 1) v[6 * i + k] = 0;
+      const Vec3 impulse = s.model.node_mass[s.first + i] * shift,
+                 turn = s.model.node_inertia[s.first + i] * spin;
+      before += impulse.dot(shift) + turn.dot(spin);
+      shift = impulse / (sigma * sigma);
+      spin = turn / (sigma * sigma);
+      for (int k = 0; k < 6; ++k)
+        if (s.fixed[i] >> k & 1) v[6 * i + k] = 0;
+    }
+    s.lu.solve(v.data());
+    for (int i = 0; i < s.count; ++i) {
+      const Vec3 shift(&v[6 * i]), spin(&v[6 * i + 3]);
+      after += s.model.node_mass[s.first + i] * shift.squaredNorm() +
+               spin.dot(s.model.node_inertia[s.first + i] * spin);
+    }
+    if (!(after > 0)) return false;  // held everywhere
+    growth = std::sqrt(after / before);
+    for (double& x : v) x /= std::sqrt(after);
+  }
+  return !(growth < 1 + 1e-3);  // free sliding has a growth of one
+}
+
 }  // namespace
 
 StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
@@ -50,22 +104,17 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
     s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
     double left = 0;
     for (int i = 0; i < n; ++i) {
-      const int g = s.first + i;
-      Mat6 block = Mat6::Zero();
-      block.diagonal().head<3>().setConstant(s.model.node_mass[g] / (sigma * sigma));
-      block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
-      s.lu.add(i, i, block);
       for (int k = 0; k < 3; ++k) {
         w.right_hand_side[6 * i + k] = s.fixed[i] >> k & 1 ? 0 : s.force[i][k];
         w.right_hand_side[6 * i + 3 + k] = s.fixed[i] >> (3 + k) & 1 ? 0 : s.moment[i][k];
         left = std::max({left, std::abs(w.right_hand_side[6 * i + k]),
                          std::abs(w.right_hand_side[6 * i + 3 + k]) / s.size});
       }
-      for (int k = 0; k < 6; ++k)
-        if (s.fixed[i] >> k & 1) s.lu.fix(i, k);
     }
+    add_mass(s, sigma);
     s.store_stick(s.pairs, state.stick);
     if (left < balanced && sigma > 1) {
+      if (tips_over(s, still, state, w)) return status;
       for (int i = 0; i < n; ++i) {
         const int g = s.first + i;
         state.position[g] = w.start.position[i];

@@ -1,0 +1,176 @@
+#include "solver/excitation.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "unit/solver/fixtures.h"
+
+namespace topple::test {
+namespace {
+
+Shake sine(double amplitude, double frequency) {
+  Shake s;
+  s.amplitude = amplitude;
+  s.frequency = frequency;
+  return s;
+}
+
+double derivative(const Shake& s, double t) {
+  const double h = 1e-5;
+  return (shake_acceleration(s, t + h) - shake_acceleration(s, t - h)) / (2 * h);
+}
+
+TEST(Excitation, sine_is_a_sin_of_2_pi_f_since_its_start) {
+  Shake s = sine(3, 0.7);
+  s.start = 1.3;
+  EXPECT_EQ(shake_acceleration(s, 1.2999), 0);
+  EXPECT_EQ(shake_acceleration(s, 1.3), 0);
+  for (double tau : {0.01, 0.4, 1.7, 20.})
+    EXPECT_NEAR(shake_acceleration(s, 1.3 + tau), 3 * std::sin(2 * k_pi * 0.7 * tau), 1e-13);
+  // it starts rising with A w
+  EXPECT_NEAR((shake_acceleration(s, 1.3 + 1e-6)) / 1e-6, 3 * 2 * k_pi * 0.7, 1e-6);
+}
+
+TEST(Excitation, cycles_end_the_sine_without_a_step) {
+  Shake s = sine(3, 2);
+  s.cycles = 5;
+  EXPECT_EQ(shake_acceleration(s, 2.5), 0);
+  EXPECT_EQ(shake_acceleration(s, 7), 0);
+  EXPECT_NEAR(shake_acceleration(s, 2.5 - 1e-9), 0, 1e-6);
+  EXPECT_NEAR(shake_acceleration(s, 2.375), -3, 1e-12);
+}
+
+TEST(Excitation, taper_rises_and_falls_smoothly) {
+  Shake s = sine(3, 2);
+  s.cycles = 10;
+  s.taper = 2;  // cycles: 1 s
+  // full in the middle
+  EXPECT_NEAR(shake_acceleration(s, 2.125), 3, 1e-12);
+  // envelope at a quarter of a cycle in: (1 - cos(pi/8))/2
+  EXPECT_NEAR(shake_acceleration(s, 0.125), 3 * (1 - std::cos(k_pi / 8)) / 2, 1e-12);
+  // mirrored at the end
+  for (double t : {0.05, 0.3, 0.7, 1.2})
+    EXPECT_NEAR(shake_acceleration(s, t), -shake_acceleration(s, 5 - t), 1e-12) << t;
+  // value and slope vanish at both ends, and the slope has no step where the taper meets the plateau
+  for (double t : {1e-4, 5 - 1e-4}) {
+    EXPECT_LT(std::abs(shake_acceleration(s, t)), 1e-8);
+    EXPECT_LT(std::abs(derivative(s, t)), 1e-4);
+  }
+  for (double t : {1., 4.}) EXPECT_NEAR(derivative(s, t - 1e-4), derivative(s, t + 1e-4), 0.01);
+}
+
+TEST(Excitation, pulses_have_the_integrals_of_their_shapes) {
+  Shake s;
+  s.kind = Shake::Kind::pulse;
+  s.amplitude = 2;
+  s.duration = 0.8;
+  s.start = 0.3;
+  const auto integral = [&] {
+    const int n = 8000;
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += shake_acceleration(s, (i + 0.5) * 2 / n) * 2 / n;
+    return sum;
+  };
+  s.shape = Shake::Shape::half_sine;
+  EXPECT_NEAR(integral(), 2 * 2 * 0.8 / k_pi, 1e-6);
+  s.shape = Shake::Shape::full_sine;
+  EXPECT_NEAR(integral(), 0, 1e-6);
+  EXPECT_NEAR(shake_acceleration(s, 0.3 + 0.2), 2, 1e-12);
+  s.shape = Shake::Shape::rectangle;
+  EXPECT_NEAR(integral(), 2 * 0.8, 1e-6);
+  for (auto shape : {Shake::Shape::half_sine, Shake::Shape::full_sine, Shake::Shape::rectangle}) {
+    s.shape = shape;
+    EXPECT_EQ(shake_acceleration(s, 0.2999), 0);
+    EXPECT_EQ(shake_acceleration(s, 1.1001), 0);
+  }
+}
+
+TEST(Excitation, shakes_add_up_along_their_directions) {
+  Shake a = sine(1, 1), b = sine(2, 3);
+  b.direction = Vec3(0, 0.6, 0.8);
+  const Vec3 sum = floor_acceleration({a, b}, 0.1);
+  const Vec3 exact = std::sin(0.2 * k_pi) * Vec3::UnitX() + 2 * std::sin(0.6 * k_pi) * b.direction;
+  EXPECT_LT((sum - exact).norm(), 1e-14);
+  EXPECT_EQ(floor_acceleration({}, 1), Vec3(Vec3::Zero()));
+}
+
+TEST(Excitation, jump_makes_the_floors_displacement_a_pure_sine) {
+  // method.md 5
+  for (const auto& [gal, f, speed, travel] :
+       {std::tuple{190., 0.5, 0.605, 0.193}, std::tuple{700., 2., 0.557, 0.0443}}) {
+    SCOPED_TRACE(f);
+    Shake s = sine(gal * k_gal, f);
+    s.initial_velocity = Shake::Start::jump;
+    double v = floor_velocity_jump({s}, -1e-9, 1e-9).x(), x = 0, greatest = 0;
+    EXPECT_NEAR(v, -speed, 5e-4);
+    const int n = 20000;
+    const double w = 2 * k_pi * f, h = 2 / f / n;
+    for (int i = 0; i < n; ++i) {
+      const double a = shake_acceleration(s, (i + 0.5) * h);
+      x += h * (v + h / 2 * a);
+      v += h * a;
+      ASSERT_NEAR(x, -gal * k_gal / (w * w) * std::sin(w * (i + 1) * h), 1e-6);
+      greatest = std::max(greatest, std::abs(x));
+    }
+    EXPECT_NEAR(greatest, travel, 5e-4);
+    s.initial_velocity = Shake::Start::rest;
+    EXPECT_EQ(floor_velocity_jump({s}, -1, 1), Vec3(Vec3::Zero()));
+  }
+}
+
+TEST(Excitation, a_floating_body_stays_where_it_is_while_the_floor_jumps_into_a_sine) {
+  // in the floor's frame it moves as the floor's displacement with the other sign
+  for (double start : {0., 0.3, 0.1 * 3, 0.12345}) {
+    SCOPED_TRACE(start);
+    Parameters p = weightless();
+    Shake s = sine(1.9, 0.5);
+    s.initial_velocity = Shake::Start::jump;
+    s.direction = Vec3(0.6, 0.8, 0);
+    s.start = start;
+    p.shakes.push_back(s);
+    p.time_step = 5e-4;
+    Simulation sim(sled(1, 0.06, 1), {BodyStart{}}, p);
+    const Vec3 x0 = sim.state.position[1];
+    ASSERT_TRUE(sim.advance(3000));
+    const double w = k_pi, tau = 1.5 - start;
+    const Vec3 exact = 1.9 / (w * w) * std::sin(w * tau) * s.direction;
+    // second order in h, and a start between two steps is rounded to one: v h/2
+    const double off_grid = std::abs(start - 5e-4 * std::round(start / 5e-4));
+    EXPECT_LT((sim.state.position[1] - x0 - exact).norm(), 1e-6 + 1.3 * 0.605 * off_grid);
+    EXPECT_LT(sim.state.energy.balance_error(), 1e-6);
+  }
+}
+
+TEST(Excitation, floor_filter_reaches_the_closed_form_of_its_steady_state) {
+  const double c = std::sqrt(2.) * 2 * k_pi * k_floor_corner, k = std::pow(2 * k_pi * k_floor_corner, 2);
+  for (double f : {0.02, 0.05, 0.5, 2.}) {
+    SCOPED_TRACE(f);
+    const double w = 2 * k_pi * f, h = std::min(1e-2, 1 / (400 * f));
+    Vec3 d = Vec3::Zero(), v = Vec3::Zero();
+    // 100 s: the free part decays with exp(-c t/2), to 2e-10
+    int i = 0;
+    const Vec3 along(1, -2, 0.5);
+    for (; i * h < 100; ++i)
+      advance_floor(d, v, std::sin(w * i * h) * along, std::sin(w * (i + 1) * h) * along, h);
+    const double t = i * h, real = k - w * w, imaginary = c * w, size2 = real * real + imaginary * imaginary;
+    const double exact = (real * std::sin(w * t) - imaginary * std::cos(w * t)) / size2;
+    const double speed = w * (real * std::cos(w * t) + imaginary * std::sin(w * t)) / size2;
+    // trapezoidal rule: (w h)^2/12 of the amplitude
+    const double tolerance = (w * h) * (w * h) / 6 + 1e-6;
+    EXPECT_LT((d - exact * along).norm(), tolerance / std::sqrt(size2) * along.norm());
+    EXPECT_LT((v - speed * along).norm(), tolerance * w / std::sqrt(size2) * along.norm());
+  }
+  // far above the corner the displacement is that of the bare double integral: 0.193 m at 190 gal, 0.5 Hz
+  const double w = k_pi;
+  EXPECT_NEAR(1.9 / std::hypot(k - w * w, c * w), 0.193, 1e-3);
+}
+
+TEST(Excitation, floor_filter_forgets_a_constant_and_is_linear) {
+  Vec3 d = Vec3::Zero(), v(0.1, 0, 0);
+  for (int i = 0; i < 10000; ++i) advance_floor(d, v, Vec3::Zero(), Vec3::Zero(), 1e-2);
+  EXPECT_LT(d.norm() + v.norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace topple::test

@@ -1,0 +1,297 @@
+#include "solver/overturn.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "unit/solver/fixtures.h"
+
+namespace topple::test {
+namespace {
+
+constexpr double k_depth = 0.38, k_breadth = 0.88, k_height = 1.05;  // of the centre of gravity
+const double k_edge_angle = std::atan2(k_depth / 2, k_height);
+
+struct Standing {
+  Model model = steel_model();
+  BodyStart start;
+};
+
+Standing standing(double tilt_angle = 0) {
+  Standing s;
+  CabinetSpec spec = tall_cabinet();
+  spec.tilt = tilt_angle;
+  s.start = add_cabinet(s.model, spec);
+  s.model.planes.push_back(ground());
+  return s;
+}
+
+BodyPose turned(const Model& model, const Vec3& rotation) {
+  return {model.bodies[0].centre_of_gravity, exp_quaternion(rotation)};
+}
+
+TEST(Overturn, pose_of_a_rigidly_moved_body_is_its_motion) {
+  std::mt19937 rng(61);
+  const Standing s = standing();
+  for (int i = 0; i < 20; ++i) {
+    BodyStart start;
+    start.pivot = random_vector(rng);
+    start.rotation = 3 * random_direction(rng);
+    SCOPED_TRACE(start.rotation.transpose());
+    const BodyPose pose = body_pose(s.model, start_state(s.model, {start}), 0);
+    const Quat exact = exp_quaternion(start.rotation);
+    EXPECT_LT((exact.conjugate() * pose.rotation).vec().norm(), 1e-12);
+    const Vec3 centre = start.pivot + exact * (s.model.bodies[0].centre_of_gravity - start.pivot);
+    EXPECT_LT((pose.centre - centre).norm(), 1e-12);
+  }
+}
+
+TEST(Overturn, pose_fits_the_nodes_best) {
+  std::mt19937 rng(62);
+  const Standing s = standing();
+  State state = start_state(s.model, {BodyStart{}});
+  for (Vec3& x : state.position) x += random_vector(rng, 0.02);
+  const BodyPose pose = body_pose(s.model, state, 0);
+  const auto misfit = [&](const Quat& q) {
+    double sum = 0;
+    for (int i = 0; i < s.model.node_total(); ++i)
+      sum += s.model.node_mass[i] * (state.position[i] - pose.centre -
+                                     q * (s.model.node_position[i] - s.model.bodies[0].centre_of_gravity))
+                                        .squaredNorm();
+    return sum;
+  };
+  for (int i = 0; i < 20; ++i)
+    EXPECT_GT(misfit(exp_quaternion(1e-4 * random_direction(rng)) * pose.rotation), misfit(pose.rotation));
+}
+
+TEST(Overturn, tilt_is_the_angle_of_the_vertical_axis_whatever_the_yaw) {
+  const Standing s = standing();
+  for (double angle : {0., 1e-9, 0.1, 1.5, 3.}) {
+    const Quat lean = exp_quaternion(angle * Vec3(0.6, 0.8, 0));
+    for (double yaw : {0., 1., -2.}) {
+      const BodyPose pose{Vec3::Zero(), exp_quaternion(yaw * Vec3::UnitZ()) * lean};
+      EXPECT_NEAR(tilt(pose), angle, 1e-14) << yaw;
+    }
+  }
+}
+
+TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
+  const Standing s = standing();
+  const auto critical = [&](double direction, double angle) {  // direction of the lean from +x towards +y
+    const Vec3 axis(-std::sin(direction), std::cos(direction), 0);
+    return critical_angle(s.model, 0, turned(s.model, angle * axis));
+  };
+  const double hx = k_depth / 2, hy = k_breadth / 2, corner = std::atan2(hy, hx);
+  for (double angle : {1e-6, 0.1, 0.5}) {
+    SCOPED_TRACE(angle);
+    EXPECT_NEAR(critical(0, angle), std::atan2(hx, k_height), 1e-9);
+    EXPECT_NEAR(critical(k_pi, angle), std::atan2(hx, k_height), 1e-9);
+    EXPECT_NEAR(critical(k_pi / 2, angle), std::atan2(hy, k_height), 1e-9);
+    EXPECT_NEAR(critical(corner, angle), std::atan2(std::hypot(hx, hy), k_height), 1e-9);
+    // between: the distance to the edge that is met first
+    for (double direction : {0.3, 0.9, 1.3, 2.2, 4.}) {
+      const double distance =
+          std::min(hx / std::abs(std::cos(direction)), hy / std::abs(std::sin(direction)));
+      EXPECT_NEAR(critical(direction, angle), std::atan2(distance, k_height), 1e-9) << direction;
+    }
+  }
+  // upright: the nearest edge
+  EXPECT_NEAR(critical_angle(s.model, 0, turned(s.model, Vec3::Zero())), k_edge_angle, 1e-9);
+}
+
+TEST(Overturn, critical_angle_tells_front_from_back) {
+  // a tripod: far to its foot on +x, near to its edge on -x; also to the left and right of its middle
+  Model model = steel_model();
+  FrameSpec spec;
+  spec.name = "tripod";
+  spec.nodes = {{1, 0.1, 0}, {-0.5, 0.8, 0}, {-0.5, -0.6, 0}, {0, 0, 1}};
+  for (int leg = 0; leg < 3; ++leg) spec.members.push_back({{leg, 3}, 0, 0});
+  add_frame(model, spec);
+  model.planes.push_back(ground());
+  const Vec3 c = model.bodies[0].centre_of_gravity;
+  // distance along d from c to the side a-b
+  const auto ahead = [&](int a, int b, const Vec3& d) {
+    const Vec3 edge = spec.nodes[b] - spec.nodes[a], outward(edge.y(), -edge.x(), 0);
+    return outward.dot(spec.nodes[a] - c) / outward.dot(d);
+  };
+  const auto critical = [&](const Vec3& d) {
+    return critical_angle(model, 0, turned(model, 0.1 * Vec3::UnitZ().cross(d)));
+  };
+  EXPECT_NEAR(critical(-Vec3::UnitX()), std::atan2(c.x() + 0.5, c.z()), 1e-9);
+  EXPECT_NEAR(critical(Vec3::UnitY()), std::atan2(ahead(0, 1, Vec3::UnitY()), c.z()), 1e-9);
+  EXPECT_NEAR(critical(-Vec3::UnitY()), std::atan2(ahead(2, 0, -Vec3::UnitY()), c.z()), 1e-9);
+  EXPECT_GT(critical(Vec3::UnitX()), critical(-Vec3::UnitX()) + 0.1);
+}
+
+TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_cannot_overturn) {
+  const BodyPose upright{Vec3::Zero(), Quat::Identity()};
+  EXPECT_TRUE(std::isinf(critical_angle(sled(1, 0.06, 0.03), 0, upright)));
+  Standing s = standing();
+  EXPECT_FALSE(std::isinf(critical_angle(s.model, 0, upright)));
+  s.model.supports.push_back({0, 0x7});
+  EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
+  s.model.supports.clear();
+  s.model.planes[0].normal = Vec3::UnitX();
+  EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
+}
+
+TEST(Overturn, slide_is_the_horizontal_travel_of_the_base) {
+  const Standing s = standing();
+  const Vec3 centre = s.model.bodies[0].centre_of_gravity;
+  EXPECT_NEAR(slide(s.model, 0, {centre + Vec3(0.3, -0.4, 2), Quat::Identity()}), 0.5, 1e-12);
+  // turning about the base's middle does not slide it
+  const Quat turn = exp_quaternion(Vec3(0.2, 0.1, 1));
+  const Vec3 base = s.model.bodies[0].base_centre;
+  EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}), 0, 1e-12);
+}
+
+struct Observed {
+  std::vector<Event> events;
+  BodyOutcome outcome;
+  double final_tilt = 0;
+};
+
+Observed watch(Simulation& sim, double seconds) {
+  Observed o;
+  Outcome outcome(sim.model);
+  std::vector<SectionForces> sections;
+  const int steps = static_cast<int>(std::lround(seconds / sim.parameters.time_step));
+  for (int i = 0; i <= steps; ++i) {
+    if (i > 0 && !sim.advance(1)) break;
+    section_forces(sim.model, sim.state, sections);
+    outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), sections, o.events);
+  }
+  o.outcome = outcome.bodies()[0];
+  o.final_tilt = o.outcome.tilt;
+  return o;
+}
+
+Simulation released(double angle, double alpha_kgf) {
+  const Standing s = standing(angle);
+  Parameters p;
+  p.contact.alpha = alpha_kgf * k_g;
+  return Simulation(s.model, {s.start}, p);
+}
+
+TEST(Overturn, block_released_below_the_critical_angle_returns_and_above_it_falls) {
+  for (double alpha : {50., 1000.})
+    for (double side : {1., -1.}) {
+      SCOPED_TRACE(testing::Message() << "alpha " << alpha << " kgf, side " << side);
+      // the centre of gravity stands 2 % of the half depth beside the edge; landing on the contacts shifts it
+      // less
+      Simulation below = released(side * 0.98 * k_edge_angle, alpha);
+      const Observed returned = watch(below, 2);
+      EXPECT_FALSE(returned.outcome.beyond_since);
+      EXPECT_GE(returned.outcome.impacts, 1);
+      EXPECT_LT(returned.final_tilt, k_edge_angle);
+      Simulation above = released(side * 1.02 * k_edge_angle, alpha);
+      const Observed fallen = watch(above, 3);
+      EXPECT_TRUE(fallen.outcome.beyond_since);
+      EXPECT_GT(fallen.final_tilt, 1.3);
+      EXPECT_TRUE(fallen.outcome.over_60_since);
+      EXPECT_GT(fallen.outcome.peak_stress, 0);
+    }
+}
+
+TEST(Overturn, rocking_run_lifts_and_lands_on_alternate_sides) {
+  Simulation sim = released(0.6 * k_edge_angle, 500);
+  const Observed o = watch(sim, 2.5);
+  int uplifts = 0, impacts = 0;
+  double last = -1;
+  std::vector<bool> lifted(4, false);
+  for (const Event& e : o.events) {
+    EXPECT_GE(e.time, last);
+    last = e.time;
+    EXPECT_EQ(e.body, 0);
+    ASSERT_NE(e.kind, Event::Kind::overturn);
+    const auto side = static_cast<std::size_t>(e.value);
+    ASSERT_LT(side, 4u);
+    if (e.kind == Event::Kind::uplift) {
+      ++uplifts;
+      EXPECT_FALSE(lifted[side]);
+      lifted[side] = true;
+    } else {
+      ++impacts;
+      EXPECT_TRUE(lifted[side]);
+      lifted[side] = false;
+    }
+    // it rocks about the edges along y: the sides that run along x never leave the floor alone
+    const auto& polygon = sim.model.bodies[0].support_polygon;
+    const Vec3 edge = polygon[(side + 1) % 4] - polygon[side];
+    EXPECT_GT(std::abs(edge.y()), std::abs(edge.x()));
+  }
+  EXPECT_GE(uplifts, 2);
+  EXPECT_GE(impacts, 2);
+  EXPECT_EQ(o.outcome.impacts, impacts);
+  ASSERT_TRUE(o.outcome.first_uplift);
+  EXPECT_EQ(*o.outcome.first_uplift, o.events.front().time);
+  EXPECT_NEAR(o.outcome.peak_tilt, 0.6 * k_edge_angle, 0.05 * k_edge_angle);
+}
+
+TEST(Overturn, resting_cabinet_has_no_events) {
+  const Standing s = standing();
+  Simulation sim(s.model, {s.start}, {}, true);
+  const Observed o = watch(sim, 1);
+  EXPECT_TRUE(o.events.empty());
+  EXPECT_LT(o.outcome.peak_tilt, 1e-6);
+  EXPECT_LT(o.outcome.peak_slide, 1e-6);
+}
+
+TEST(Overturn, time_of_overturning_is_that_of_the_critical_angle) {
+  // thrown with an angular velocity in free flight, without gravity: the tilt grows linearly
+  Standing s = standing();
+  s.model.planes[0].point.z() = -10;
+  s.start.angular_velocity = {0, 0.5, 0};
+  Parameters p;
+  p.gravity.setZero();
+  p.time_step = 7e-3;
+  Simulation sim(s.model, {s.start}, p);
+  const Observed o = watch(sim, 1);
+  ASSERT_TRUE(o.outcome.beyond_since);
+  // linear between steps; the spin stretches the posts a little
+  EXPECT_NEAR(*o.outcome.beyond_since, k_edge_angle / 0.5, 1e-4);
+  ASSERT_EQ(o.events.size(), 1u);
+  EXPECT_EQ(o.events[0].kind, Event::Kind::overturn);
+}
+
+// A push that grows so slowly that the balance is static: the rigid block on its edge lifts for good at
+// g b/h. On springs in three rows its far side is unloaded from 2/3 of that on.
+TEST(Overturn, slow_push_lifts_a_side_between_two_thirds_and_all_of_g_b_over_h_and_topples_just_above) {
+  const double threshold = k_g * (k_depth / 2) / k_height;
+  EXPECT_NEAR(threshold / k_gal, 177.4, 0.1);  // method.md 5: 177 gal
+  for (double share : {0.97, 1.03}) {
+    SCOPED_TRACE(share);
+    const Standing s = standing();
+    Parameters p;
+    p.contact.alpha = 5000 * k_g;
+    p.contact.friction = 0.9;
+    p.time_step = 2e-3;
+    Shake push;
+    push.kind = Shake::Kind::pulse;
+    push.shape = Shake::Shape::rectangle;
+    push.duration = 100;
+    p.shakes.push_back(push);
+    Simulation sim(s.model, {s.start}, p, true);
+    Outcome outcome(sim.model);
+    std::vector<SectionForces> sections;
+    std::vector<Event> events;
+    double lifted_at = 0;
+    for (int i = 0; i < 3500; ++i) {
+      sim.parameters.shakes[0].amplitude = share * threshold * std::min(1., i / 2000.);
+      if (outcome.bodies()[0].beyond_since) break;
+      ASSERT_TRUE(sim.advance(1));
+      section_forces(sim.model, sim.state, sections);
+      outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), sections, events);
+      if (!events.empty() && lifted_at == 0) lifted_at = sim.parameters.shakes[0].amplitude;
+    }
+    EXPECT_GT(lifted_at, 0.65 * threshold);
+    EXPECT_LT(lifted_at, threshold);
+    if (share < 1)
+      EXPECT_LT(outcome.bodies()[0].peak_tilt, 0.2 * k_edge_angle);
+    else
+      EXPECT_TRUE(outcome.bodies()[0].beyond_since);
+  }
+}
+
+}  // namespace
+}  // namespace topple::test

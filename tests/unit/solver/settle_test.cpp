@@ -1,0 +1,174 @@
+#include "solver/settle.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/solver/fixtures.h"
+
+namespace topple::test {
+namespace {
+
+struct Settled {
+  Model model = steel_model();
+  Parameters parameters;
+  State state;
+  StepStatus status;
+};
+
+Settled settled(const CabinetSpec& spec, Parameters parameters, bool floor = true) {
+  Settled s;
+  const BodyStart start = add_cabinet(s.model, spec);
+  if (floor) s.model.planes.push_back(ground());
+  s.parameters = std::move(parameters);
+  s.state = start_state(s.model, {start});
+  Workspace workspace(s.model);
+  s.status = settle(s.model, s.parameters, s.state, workspace);
+  if (s.status.ok()) prepare(s.model, s.parameters, s.state, workspace);
+  return s;
+}
+
+// Greatest force that the balance lacks on a node, and greatest moment over 1 m, N.
+double imbalance(const Settled& s) {
+  double worst = 0;
+  for (int i = 0; i < s.model.node_total(); ++i) {
+    worst = std::max(worst, s.model.node_mass[i] * s.state.acceleration[i].norm());
+    worst = std::max(worst, (s.model.node_inertia[i] * s.state.angular_acceleration[i]).norm());
+  }
+  return worst;
+}
+
+TEST(Settle, leaves_a_billionth_of_the_weight_out_of_balance) {
+  for (double alpha : {30., 50., 1000.})
+    for (double q : {1., 2.})
+      for (auto pose : {CabinetSpec::Pose::upright, CabinetSpec::Pose::on_back, CabinetSpec::Pose::on_side}) {
+        SCOPED_TRACE(testing::Message()
+                     << "alpha " << alpha << " kgf, q " << q << ", pose " << static_cast<int>(pose));
+        Parameters p;
+        p.contact.alpha = alpha * k_g;
+        p.contact.q = q;
+        CabinetSpec spec = tall_cabinet();
+        spec.pose = pose;
+        const Settled s = settled(spec, p);
+        ASSERT_TRUE(s.status.ok()) << s.status.message(s.model);
+        const double weight = 40 * k_g;
+        // plus the rounding of 2e8 N/m bars at 1 m, 4e-7 N
+        EXPECT_LT(imbalance(s), 1e-9 * weight + 4e-7);
+        for (const Vec3& v : s.state.velocity) EXPECT_EQ(v, Vec3(Vec3::Zero()));
+      }
+}
+
+TEST(Settle, laws_without_stick_springs_rest_at_the_same_depth) {
+  const Settled coulomb = settled(tall_cabinet(), {});
+  for (auto kind : {ContactLawKind::paper, ContactLawKind::printed}) {
+    Parameters p;
+    p.contact.kind = kind;
+    const Settled other = settled(tall_cabinet(), p);
+    ASSERT_TRUE(other.status.ok());
+    for (std::size_t i = 0; i < other.state.position.size(); ++i)
+      EXPECT_EQ(other.state.position[i], coulomb.state.position[i]);
+  }
+}
+
+TEST(Settle, floor_carries_the_weight_and_nothing_sideways) {
+  Settled s = settled(tall_cabinet(), {});
+  ASSERT_TRUE(s.status.ok());
+  Workspace workspace(s.model);
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  const Vec3 centre = centre_of_mass(s.model, s.state);
+  for (const ContactForce& f : contact_forces(s.model, s.parameters, s.state, workspace)) {
+    sum += f.force;
+    moment += (s.state.position[s.model.contact_points[f.point].node] - centre).cross(f.force);
+  }
+  EXPECT_LT((sum - Vec3(0, 0, 40 * k_g)).norm(), 1e-5);
+  EXPECT_LT(moment.norm(), 1e-5);
+}
+
+TEST(Settle, stays_where_it_settled) {
+  Settled s = settled(tall_cabinet(), {});
+  ASSERT_TRUE(s.status.ok());
+  Workspace workspace(s.model);
+  const std::vector<Vec3> before = s.state.position;
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(step(s.model, s.parameters, s.state, workspace).ok());
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LT((s.state.position[i] - before[i]).norm(), 1e-9);
+  EXPECT_LT(s.state.energy.kinetic, 1e-12);
+}
+
+TEST(Settle, small_lean_comes_upright) {
+  CabinetSpec spec = tall_cabinet();
+  spec.tilt = 0.02;
+  const Settled s = settled(spec, {});
+  ASSERT_TRUE(s.status.ok());
+  EXPECT_LT(log_quaternion(s.state.rotation[0]).norm(), 5e-3);
+}
+
+TEST(Settle, never_ends_balanced_on_an_edge) {
+  // Newton finds the balance at the critical angle, 0.179, as readily as a stable one
+  for (double alpha : {50., 2000.})
+    for (double tilt : {0.05, 0.1, 0.15, 0.17, 0.179, 0.19, 0.21, 0.3, -0.17, -0.2, -0.3}) {
+      SCOPED_TRACE(testing::Message() << "alpha " << alpha << " kgf, tilt " << tilt);
+      CabinetSpec spec = tall_cabinet();
+      spec.tilt = tilt;
+      Parameters p;
+      p.contact.alpha = alpha * k_g;
+      const Settled s = settled(spec, p);
+      if (s.status.ok()) {
+        EXPECT_LT(log_quaternion(s.state.rotation[0]).norm(), 0.02);
+      } else {
+        EXPECT_EQ(s.status.kind, StepStatus::Kind::not_settled);
+      }
+    }
+}
+
+TEST(Settle, floor_too_soft_for_a_tall_body_lets_it_tip_over) {
+  // six contacts of stiffness alpha/L stand half a depth from the middle: upright is a balance only while
+  // 6 (alpha/L) b^2 > m g h, here alpha > 11.6 kgf
+  const double least = 40 * 1.05 * 0.06 / (6 * 0.19 * 0.19);
+  EXPECT_NEAR(least, 11.6, 0.1);
+  Parameters p;
+  p.contact.alpha = 0.8 * least * k_g;
+  EXPECT_EQ(settled(tall_cabinet(), p).status.kind, StepStatus::Kind::not_settled);
+  p.contact.alpha = 1.3 * least * k_g;
+  EXPECT_TRUE(settled(tall_cabinet(), p).status.ok());
+}
+
+TEST(Settle, free_sliding_is_no_reason_to_refuse) {
+  Parameters p;
+  p.contact.friction = 0;
+  const Settled s = settled(tall_cabinet(), p);
+  EXPECT_TRUE(s.status.ok()) << s.status.message(s.model);
+}
+
+TEST(Settle, body_that_leans_too_far_floats_or_has_no_floor_is_not_settled) {
+  CabinetSpec leaning = tall_cabinet();
+  leaning.tilt = 0.3;
+  CabinetSpec upright = tall_cabinet();
+  for (const Settled& s : {settled(leaning, {}), settled(upright, {}, false)}) {
+    EXPECT_EQ(s.status.kind, StepStatus::Kind::not_settled);
+    EXPECT_EQ(s.status.body, 0);
+    EXPECT_NE(s.status.message(s.model).find("\"cabinet\""), std::string::npos);
+  }
+  Model model = steel_model();
+  add_cabinet(model, upright);
+  model.planes.push_back(ground());
+  model.planes[0].point.z() = -2;
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  EXPECT_EQ(settle(model, {}, state, workspace).kind, StepStatus::Kind::not_settled);
+}
+
+TEST(Settle, supported_frame_sags_as_the_static_solution) {
+  Model model =
+      cantilever(plain_section(3e-4, 4e-8, 9e-8, 6e-8, 0.7, 0.6), steel(), 1, 2, Vec3::Zero(), Vec3::Zero());
+  Parameters p;
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  ASSERT_TRUE(settle(model, p, state, workspace).ok());
+  BodySystem system(model, 0);
+  BodyMotion motion = reference_motion(model);
+  ASSERT_GT(solve_statics(system, p, 0, motion), 0);
+  for (int i = 0; i < model.node_total(); ++i)
+    EXPECT_LT((state.position[i] - motion.position[i]).norm(), 1e-9);
+  EXPECT_LT(state.position[2].z(), -1e-6);
+}
+
+}  // namespace
+}  // namespace topple::test
