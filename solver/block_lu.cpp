@@ -9,27 +9,45 @@ namespace {
 
 constexpr int k_stride = 8;
 
-// c -= a b; padding columns stay zero.
-inline void subtract_product(double* __restrict c, const double* __restrict a, const double* __restrict b) {
-  for (int r = 0; r < 6; ++r) {
-    double row[k_stride];
-    for (int j = 0; j < k_stride; ++j) row[j] = c[k_stride * r + j];
-    for (int k = 0; k < 6; ++k) {
-      const double f = a[k_stride * r + k];
-      for (int j = 0; j < k_stride; ++j) row[j] -= f * b[k_stride * k + j];
-    }
-    for (int j = 0; j < k_stride; ++j) c[k_stride * r + j] = row[j];
+using Four = double __attribute__((vector_size(32)));  // GNU vectors: the same operations in every build type
+
+inline Four load(const double* from) {
+  Four v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+
+inline void store(double* to, Four v) {
+  __builtin_memcpy(to, &v, sizeof v);
+}
+
+// Row r of the product a b, in two vectors; padding columns stay zero.
+inline void row_product(const double* a_row, const double* b, Four& low, Four& high) {
+  low = a_row[0] * load(b);
+  high = a_row[0] * load(b + 4);
+  for (int k = 1; k < 6; ++k) {
+    low += a_row[k] * load(b + k_stride * k);
+    high += a_row[k] * load(b + k_stride * k + 4);
   }
 }
 
+// c -= a b
+inline void subtract_product(double* __restrict c, const double* __restrict a, const double* __restrict b) {
+  for (int r = 0; r < 6; ++r, c += k_stride, a += k_stride) {
+    Four low, high;
+    row_product(a, b, low, high);
+    store(c, load(c) - low);
+    store(c + 4, load(c + 4) - high);
+  }
+}
+
+// c = a b
 inline void multiply(double* __restrict c, const double* __restrict a, const double* __restrict b) {
-  for (int r = 0; r < 6; ++r) {
-    double row[k_stride] = {};
-    for (int k = 0; k < 6; ++k) {
-      const double f = a[k_stride * r + k];
-      for (int j = 0; j < k_stride; ++j) row[j] += f * b[k_stride * k + j];
-    }
-    for (int j = 0; j < k_stride; ++j) c[k_stride * r + j] = row[j];
+  for (int r = 0; r < 6; ++r, c += k_stride, a += k_stride) {
+    Four low, high;
+    row_product(a, b, low, high);
+    store(c, low);
+    store(c + 4, high);
   }
 }
 
@@ -43,22 +61,29 @@ bool invert(double* block) {
       if (std::abs(block[k_stride * i + k]) > std::abs(block[k_stride * pivot + k])) pivot = i;
     const double value = block[k_stride * pivot + k];
     if (!(std::abs(value) > 1e-300)) return false;
-    for (int j = 0; j < 6; ++j) {
-      std::swap(block[k_stride * k + j], block[k_stride * pivot + j]);
-      std::swap(inverse[k_stride * k + j], inverse[k_stride * pivot + j]);
-    }
+    if (pivot != k)
+      for (int j = 0; j < k_stride; ++j) {
+        std::swap(block[k_stride * k + j], block[k_stride * pivot + j]);
+        std::swap(inverse[k_stride * k + j], inverse[k_stride * pivot + j]);
+      }
     const double reciprocal = 1 / value;
-    for (int j = 0; j < 6; ++j) {
-      block[k_stride * k + j] *= reciprocal;
-      inverse[k_stride * k + j] *= reciprocal;
-    }
+    const auto scaled = [&](double* row) {
+      const Four low = reciprocal * load(row), high = reciprocal * load(row + 4);
+      store(row, low);
+      store(row + 4, high);
+      return std::pair(low, high);
+    };
+    const auto [left_low, left_high] = scaled(block + k_stride * k);
+    const auto [right_low, right_high] = scaled(inverse + k_stride * k);
     for (int i = 0; i < 6; ++i) {
       if (i == k) continue;
       const double f = block[k_stride * i + k];
-      for (int j = 0; j < 6; ++j) {
-        block[k_stride * i + j] -= f * block[k_stride * k + j];
-        inverse[k_stride * i + j] -= f * inverse[k_stride * k + j];
-      }
+      double* const left = block + k_stride * i;
+      double* const right = inverse + k_stride * i;
+      store(left, load(left) - f * left_low);
+      store(left + 4, load(left + 4) - f * left_high);
+      store(right, load(right) - f * right_low);
+      store(right + 4, load(right + 4) - f * right_high);
     }
   }
   std::copy(inverse, inverse + 6 * k_stride, block);

@@ -161,7 +161,8 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
-                              const std::vector<TouchingPair>& contacts) const {
+                              const std::vector<TouchingPair>& contacts,
+                              std::vector<SectionForces>& sections) const {
   BodyEnergy sum;
   for (int i = 0; i < count; ++i) {
     const Vec3& w = motion.angular_velocity[i];
@@ -174,7 +175,10 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
     const int i = element.node[0] - first, j = element.node[1] - first;
     const BeamEnds ends =
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
-    sum.strain += beam_energy(element, beam_strain(element, element.s, ends));
+    const BeamStrain strain = beam_strain(element, element.s, ends);
+    sections[e] = section_forces(element, strain);
+    sum.strain +=
+        element.length / 2 * (strain.gamma.dot(sections[e].normal) + strain.kappa.dot(sections[e].moment));
   }
   for (const TouchingPair& pair : contacts) {
     // the printed law has no spring: what it takes in is dissipated

@@ -8,6 +8,7 @@
 #include "solver/contact_law.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
+#include "solver/section_forces.h"
 #include "solver/state.h"
 
 namespace topple {
@@ -56,8 +57,9 @@ class BodySystem {
   /// Contacts alone, into `found`.
   void find_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                      std::span<const Vec3> start, std::vector<TouchingPair>& found) const;
+  /// Also fills this body's part of `sections`, one per element of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion,
-                    const std::vector<TouchingPair>& contacts) const;
+                    const std::vector<TouchingPair>& contacts, std::vector<SectionForces>& sections) const;
   /// Copies this body's part of the state.
   void load(const State& state, BodyMotion& motion) const;
   /// Writes stick springs of `contacts`; open contacts forget theirs.

@@ -39,9 +39,17 @@ struct ExpCoefficients {
 
 /// exp([psi]) as a unit quaternion.
 inline Quat exp_quaternion(const Vec3& psi) {
-  const double x = psi.squaredNorm() / 4;
-  const double half_sinc = 0.5 * ExpCoefficients(x).f0;
-  Quat q(std::cos(std::sqrt(x)), half_sinc * psi.x(), half_sinc * psi.y(), half_sinc * psi.z());
+  const double x = psi.squaredNorm() / 4;  // of the half angle
+  double cosine, sinc;
+  if (x < 0.01) {
+    cosine = 1 + x * (-0.5 + x * (1. / 24 + x * (-1. / 720 + x * (1. / 40320 - x / 3628800))));
+    sinc = 1 + x * (-1. / 6 + x * (1. / 120 + x * (-1. / 5040 + x * (1. / 362880 - x / 39916800))));
+  } else {
+    const double a = std::sqrt(x);
+    cosine = std::cos(a);
+    sinc = std::sin(a) / a;
+  }
+  Quat q(cosine, 0.5 * sinc * psi.x(), 0.5 * sinc * psi.y(), 0.5 * sinc * psi.z());
   q.normalize();
   return q;
 }
@@ -50,8 +58,14 @@ inline Quat exp_quaternion(const Vec3& psi) {
 inline Vec3 log_quaternion(const Quat& rotation) {
   Quat q = rotation;
   if (q.w() < 0) q.coeffs() = -q.coeffs();
-  const double s = q.vec().norm();
-  if (s < 1e-8) return 2 / q.w() * (1 - s * s / (3 * q.w() * q.w())) * q.vec();
+  const double s2 = q.vec().squaredNorm(), x = s2 / (q.w() * q.w());
+  if (x < 0.01) {  // atan z / z in x = z^2
+    const double series =
+        1 +
+        x * (-1. / 3 + x * (1. / 5 + x * (-1. / 7 + x * (1. / 9 + x * (-1. / 11 + x * (1. / 13 - x / 15))))));
+    return 2 / q.w() * series * q.vec();
+  }
+  const double s = std::sqrt(s2);
   return 2 * std::atan2(s, q.w()) / s * q.vec();
 }
 

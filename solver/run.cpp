@@ -33,6 +33,7 @@ Run::Run(const Setup& setup, State state)
       workspace_(setup.model),
       outcome_(setup.model),
       probes_(setup.probes.size()) {
+  resume(setup.model, state_, workspace_);
   observe();
 }
 
@@ -52,7 +53,7 @@ bool Run::over() const {
 void Run::observe() {
   const Model& model = setup_->model;
   contacts_ = contact_forces(model, setup_->parameters, state_, workspace_);
-  section_forces(model, state_, sections_);
+  sections_ = section_forces(workspace_);
   outcome_.observe(model, setup_->parameters, state_, contacts_, sections_, events_);
 
   for (std::size_t k = 0; k < probes_.size(); ++k) {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 
-#include "solver/beam.h"
 #include "solver/body_system.h"
 #include "solver/central_difference.h"
 #include "solver/energy.h"
@@ -25,10 +24,31 @@ std::string format(const char* pattern, double a) {
   return text;
 }
 
+// The floor's velocity jumps: bodies keep their own, so they move the other way in the floor's frame.
+double jump(const Model& model, const std::vector<Shake>& shakes, double t, double h, State& state) {
+  const Vec3 floor = floor_velocity_jump(shakes, t - h / 2, t + h / 2);
+  if (floor.isZero(0)) return 0;
+  double gain = 0;
+  for (int i = 0; i < model.node_total(); ++i) {
+    gain -= 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
+    state.velocity[i] -= floor;
+    gain += 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
+  }
+  for (const Support& support : model.supports)
+    for (int k = 0; k < 3; ++k)
+      if (support.fixed >> k & 1) {
+        double& v = state.velocity[support.node][k];
+        gain -= 0.5 * model.node_mass[support.node] * v * v;
+        v = 0;
+      }
+  state.floor_velocity += floor;
+  return gain;
+}
+
 }  // namespace
 
 struct Workspace::Impl {
-  explicit Impl(const Model& model) {
+  explicit Impl(const Model& model) : sections(model.elements.size()) {
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
       systems.push_back(std::make_unique<BodySystem>(model, b));
   }
@@ -37,6 +57,7 @@ struct Workspace::Impl {
   BodyMotion motion;
   std::vector<TouchingPair> pairs;
   std::vector<ContactForce> contact_forces;
+  std::vector<SectionForces> sections;
   State next;
   std::optional<double> explicit_limit;  // s, and the body that sets it
   int limiting_body = -1;
@@ -104,7 +125,7 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
       state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] =
           j.inverse() * (state.rotation[g].conjugate() * s.moment[i] - omega.cross(j * omega));
     }
-    const BodyEnergy part = s.energy(parameters.contact, w.motion, s.pairs);
+    const BodyEnergy part = s.energy(parameters.contact, w.motion, s.pairs, w.sections);
     energy.kinetic += part.kinetic;
     energy.strain += part.strain;
     energy.contact += part.contact;
@@ -113,30 +134,9 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
   energy.largest = std::max({energy.kinetic, energy.strain + energy.contact});
 }
 
-namespace {
-
-// The floor's velocity jumps: bodies keep their own, so they move the other way in the floor's frame.
-double jump(const Model& model, const std::vector<Shake>& shakes, double t, double h, State& state) {
-  const Vec3 floor = floor_velocity_jump(shakes, t - h / 2, t + h / 2);
-  if (floor.isZero(0)) return 0;
-  double gain = 0;
-  for (int i = 0; i < model.node_total(); ++i) {
-    gain -= 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
-    state.velocity[i] -= floor;
-    gain += 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
-  }
-  for (const Support& support : model.supports)
-    for (int k = 0; k < 3; ++k)
-      if (support.fixed >> k & 1) {
-        double& v = state.velocity[support.node][k];
-        gain -= 0.5 * model.node_mass[support.node] * v * v;
-        v = 0;
-      }
-  state.floor_velocity += floor;
-  return gain;
+void resume(const Model& model, const State& state, Workspace& workspace) {
+  section_forces(model, state, workspace.impl().sections);
 }
-
-}  // namespace
 
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
@@ -172,7 +172,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
     iterations += status.newton_iterations;
     rejected += status.rejected;
     if (!status.ok()) break;
-    const BodyEnergy part = system->energy(parameters.contact, w.scratch.trial, system->pairs);
+    const BodyEnergy part = system->energy(parameters.contact, w.scratch.trial, system->pairs, w.sections);
     held.kinetic += part.kinetic;
     held.strain += part.strain;
     held.contact += part.contact;
@@ -217,34 +217,8 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
   return w.contact_forces;
 }
 
-void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
-  forces.resize(model.elements.size());
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    const Element& element = model.elements[e];
-    const int i = element.node[0], j = element.node[1];
-    const BeamStrain strain = beam_strain(
-        element, element.s,
-        beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
-    forces[e] = {element.normal_stiffness.cwiseProduct(strain.gamma),
-                 element.bending_stiffness.cwiseProduct(strain.kappa)};
-  }
-}
-
-SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
-  SectionForces out = at_point;
-  const double arm = length / 2 * (xi + s);
-  out.moment.y() += out.normal.z() * arm;
-  out.moment.z() -= out.normal.y() * arm;
-  return out;
-}
-
-double equivalent_stress(const Section& section, const SectionForces& forces) {
-  const double normal = std::abs(forces.normal.x()) / section.area +
-                        std::abs(forces.moment.y()) * section.fibre_z() / section.iy +
-                        std::abs(forces.moment.z()) * section.fibre_y() / section.iz;
-  const double shear =
-      std::abs(forces.moment.x()) * std::max(section.fibre_y(), section.fibre_z()) / section.j;
-  return std::sqrt(normal * normal + 3 * shear * shear);
+const std::vector<SectionForces>& section_forces(Workspace& workspace) {
+  return workspace.impl().sections;
 }
 
 }  // namespace topple

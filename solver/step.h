@@ -7,6 +7,7 @@
 
 #include "solver/model.h"
 #include "solver/parameters.h"
+#include "solver/section_forces.h"
 #include "solver/state.h"
 
 namespace topple {
@@ -37,12 +38,6 @@ struct ContactForce {
   Vec3 force;     ///< N, on the point, normal and tangential
 };
 
-/// Section forces of one element at its stress point r = -s.
-struct SectionForces {
-  Vec3 normal;  ///< N, Vy, Vz, N
-  Vec3 moment;  ///< Mx, My, Mz, N m
-};
-
 /// Scratch of the integrators; may be thrown away at any time. Sized for one model.
 class Workspace {
  public:
@@ -66,6 +61,9 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
 /// Parameters that is not seen by step.
 void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
 
+/// Fills the workspace from a state that was stepped before, such as a checkpoint; leaves the state as it is.
+void resume(const Model& model, const State& state, Workspace& workspace);
+
 /// Advances `state` by parameters.time_step. On failure `state` is as before the call. generalized-alpha
 /// halves its step within the call (down to 1/64) when Newton does not converge.
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
@@ -75,15 +73,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
 
-/// Section forces of every element at `state`.
-void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
-
-/// The same at xi in -1..1 along the element, by equilibrium from the stress point r = -s:
-///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
-SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
-
-/// Greatest equivalent stress of a section under these forces, Pa: extreme-fibre normal stress
-/// with torsional shear after von Mises.
-double equivalent_stress(const Section& section, const SectionForces& forces);
+/// Section forces of every element at the state that prepare, resume or the last successful step left.
+const std::vector<SectionForces>& section_forces(Workspace& workspace);
 
 }  // namespace topple

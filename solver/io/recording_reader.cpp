@@ -43,6 +43,7 @@ FirstBytes first_bytes(const std::string& path) {
 }
 
 FirstBytes expect_recording(const std::string& path) {
+  if (path.empty()) throw InputError("the name of the recording is empty");
   std::error_code error;
   if (fs::is_directory(path, error)) throw InputError(path + ": is a folder, not a recording");
   const FirstBytes found = first_bytes(path);
@@ -101,11 +102,16 @@ struct Recording::Impl {
         return;
       } catch (const Hdf5Error& error) {
         // Beside a writer that is at work, what looks damaged may be a matter of moments.
-        if (!live || attempt == k_open_attempts) fail(error.what());
+        if (!live || attempt == k_open_attempts) fail(in_words(error.what()));
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         live = first_bytes(path).being_written;
       }
     }
+  }
+
+  /// HDF5's own sentence on a file that was cut off holds nothing but its internal names.
+  static std::string in_words(const std::string& why) {
+    return why.rfind("truncated file", 0) == 0 ? "the file is cut off; its end is missing" : why;
   }
 
   [[noreturn]] void fail(const std::string& why) const { throw InputError(path + ": cannot read: " + why); }

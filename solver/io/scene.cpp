@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "solver/io/recording.h"
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_read.h"
@@ -56,8 +57,11 @@ Scene parse_scene(std::string_view text, const std::string& origin,
 }
 
 Scene load_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+  if (path_or_name.empty()) throw InputError("the name of the scene is empty");
   std::error_code status;
   if (fs::is_directory(path_or_name, status)) throw InputError(path_or_name + ": is a folder");
+  if (is_recording(path_or_name))
+    throw InputError(path_or_name + ": is a recording, not a scene; topple info describes it");
   if (fs::exists(path_or_name, status)) return parse_scene(read_text(path_or_name), path_or_name, overrides);
   std::string names;
   for (const BuiltinScene& scene : builtin_scenes()) {

@@ -1,0 +1,42 @@
+#include "solver/section_forces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topple {
+
+SectionForces section_forces(const Element& element, const BeamStrain& strain) {
+  return {element.normal_stiffness.cwiseProduct(strain.gamma),
+          element.bending_stiffness.cwiseProduct(strain.kappa)};
+}
+
+void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
+  forces.resize(model.elements.size());
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    const int i = element.node[0], j = element.node[1];
+    const BeamStrain strain = beam_strain(
+        element, element.s,
+        beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
+    forces[e] = section_forces(element, strain);
+  }
+}
+
+SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
+  SectionForces out = at_point;
+  const double arm = length / 2 * (xi + s);
+  out.moment.y() += out.normal.z() * arm;
+  out.moment.z() -= out.normal.y() * arm;
+  return out;
+}
+
+double equivalent_stress(const Section& section, const SectionForces& forces) {
+  const double normal = std::abs(forces.normal.x()) / section.area +
+                        std::abs(forces.moment.y()) * section.fibre_z() / section.iy +
+                        std::abs(forces.moment.z()) * section.fibre_y() / section.iz;
+  const double shear =
+      std::abs(forces.moment.x()) * std::max(section.fibre_y(), section.fibre_z()) / section.j;
+  return std::sqrt(normal * normal + 3 * shear * shear);
+}
+
+}  // namespace topple

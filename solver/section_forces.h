@@ -1,0 +1,31 @@
+// Forces in the sections of members, and the stress that they make.
+#pragma once
+
+#include <vector>
+
+#include "solver/beam.h"
+#include "solver/model.h"
+#include "solver/state.h"
+
+namespace topple {
+
+/// Section forces of one element at its stress point r = -s, local axes.
+struct SectionForces {
+  Vec3 normal;  ///< N, Vy, Vz, N
+  Vec3 moment;  ///< Mx, My, Mz, N m
+};
+
+SectionForces section_forces(const Element& element, const BeamStrain& strain);
+
+/// Section forces of every element at `state`.
+void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
+
+/// The same at xi in -1..1 along the element, by equilibrium from the stress point r = -s:
+///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
+SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
+
+/// Greatest equivalent stress of a section under these forces, Pa: extreme-fibre normal stress with torsional
+/// shear after von Mises.
+double equivalent_stress(const Section& section, const SectionForces& forces);
+
+}  // namespace topple
