@@ -37,6 +37,13 @@ Vec3 floor_shift(const io::FrameRow& row) {
   return Vec3(row.floor_displacement);
 }
 
+void expect_same_model(const Model& model, const io::FrameRow& row) {
+  const std::size_t nodes = model.node_position.size(), elements = model.elements.size();
+  if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
+      row.section_force.size() != 6 * elements || row.body.size() != 11 * model.bodies.size())
+    throw io::InputError("the scene in the recording gives another model than the one it was recorded with");
+}
+
 SectionForces forces_at(const io::FrameRow& row, const Element& element, std::size_t e, double xi) {
   const float* f = &row.section_force[6 * e];
   return forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, element.length, row.s[e], xi);
@@ -64,6 +71,7 @@ render::Profile profile(const Section& section) {
 RunExtent::RunExtent(const Model&) : low(Vec3::Constant(1e30)), high(Vec3::Constant(-1e30)) {}
 
 void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
+  expect_same_model(model, row);
   const Vec3 shift = floor_shift(row);
   for (int i = 0; i < model.node_total(); ++i) {
     low = low.cwiseMin(position(row, i) + shift);

@@ -11,7 +11,8 @@
 namespace topple::app {
 
 /// What pictures of one run share: the range of the colours, the space that bodies move through and the trace
-/// of the floor. Rows are added one after the other.
+/// of the floor. Rows are added one after the other; add() throws io::InputError on a row of another model,
+/// such as an older version may have built from the same scene.
 class RunExtent {
  public:
   explicit RunExtent(const Model& model);

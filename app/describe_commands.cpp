@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/log.h"
+#include "app/summary.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
 
@@ -40,6 +42,18 @@ ordered_json describe(const io::Scene& scene) {
   return out;
 }
 
+ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies) {
+  static const char* const k_kinds[] = {"uplift", "impact", "overturn"};
+  const auto kind = static_cast<std::size_t>(e.event.kind), body = static_cast<std::size_t>(e.event.body);
+  if (kind >= std::size(k_kinds) || body >= bodies.size())
+    throw io::InputError("the recording has an event of a kind or a body that it does not describe");
+  return {{"kind", k_kinds[kind]},
+          {"time_s", e.time},
+          {"step", e.step},
+          {"body", bodies[body]["name"]},
+          {"value", e.event.value}};
+}
+
 ordered_json describe(const io::Recording& recording) {
   ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
   out["kind"] = "recording";
@@ -50,14 +64,8 @@ ordered_json describe(const io::Recording& recording) {
   if (recording.checkpoint_count() > 0)
     out["last_state_hash"] =
         fmt::format("{:016x}", recording.checkpoint(recording.checkpoint_count() - 1).hash);
-  static const char* const k_kinds[] = {"uplift", "impact", "overturn"};
   out["events"] = ordered_json::array();
-  for (const io::RecordedEvent& e : recording.events())
-    out["events"].push_back({{"kind", k_kinds[static_cast<int>(e.event.kind)]},
-                             {"time_s", e.time},
-                             {"step", e.step},
-                             {"body", out["bodies"][e.event.body]["name"]},
-                             {"value", e.event.value}});
+  for (const io::RecordedEvent& e : recording.events()) out["events"].push_back(describe(e, out["bodies"]));
   if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());
   return out;
 }
@@ -95,7 +103,7 @@ int check_command(const std::vector<std::string>& scenes, const std::vector<std:
       io::load_scene(scene, overrides);
       fmt::print("{}: ok\n", scene);
     } catch (const io::InputError& error) {
-      fmt::print(stderr, "topple: {}\n", error.what());
+      say(error.what());
       code = k_bad_input;
     }
   }
@@ -103,12 +111,13 @@ int check_command(const std::vector<std::string>& scenes, const std::vector<std:
 }
 
 int info_command(const std::string& file, const std::string& json) {
+  if (!json.empty() && json != "-") require_writable_text("--json", json, file);
   const ordered_json description =
       io::is_recording(file) ? describe(io::Recording(file)) : describe(io::load_scene(file));
   if (json == "-")
-    fmt::print("{}\n", description.dump(2));
+    fmt::print("{}\n", json_text(description, 2));
   else if (!json.empty())
-    write_whole_file(json, description.dump(2) + "\n");
+    write_whole_file(json, json_text(description, 2) + "\n");
   else
     fmt::print("{}", table(description));
   return k_done;

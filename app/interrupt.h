@@ -3,11 +3,15 @@
 
 namespace topple::app {
 
-/// From now on SIGINT and SIGTERM only set a flag, the first time; a second one ends the program at once. A
-/// write past a size limit fails instead of killing the program.
+/// From now on SIGINT and SIGTERM end the program with exit code 130, and a write past a size limit fails
+/// instead of killing it.
 void catch_interrupts();
 
-/// Whether SIGINT or SIGTERM has come.
+/// From now on they only set a flag, the first time: there are files to close. A second one ends the program
+/// at once.
+void defer_interrupts();
+
+/// Whether one has come since.
 bool interrupted();
 
 }  // namespace topple::app

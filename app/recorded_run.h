@@ -10,12 +10,14 @@ namespace topple::app {
 
 struct RecordedRun {
   nlohmann::ordered_json summary;
-  int exit_code;  ///< as in commands.h
+  int exit_code;        ///< as in commands.h
+  std::string trouble;  ///< why the run ended before its time, one line; empty: it did not
+  bool recorded;        ///< there is a recording, closed
 };
 
-/// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C. What went wrong
-/// with the run is said on stderr. Throws BadInput when `path` cannot be written to, io::WriteError when
-/// writing fails later.
+/// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C, which is
+/// deferred (interrupt.h). Throws io::WriteError when the recording cannot be written; it says what can still
+/// be read.
 RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet);
 
 }  // namespace topple::app

@@ -2,8 +2,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/interrupt.h"
+#include "app/log.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "render/osmesa_context.h"
@@ -27,9 +29,13 @@ namespace fs = std::filesystem;
 /// A file that goes when its owner goes.
 class TemporaryFile {
  public:
-  TemporaryFile() : path_((fs::temp_directory_path() / "topple-XXXXXX").string()) {
+  TemporaryFile() {
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (error) throw std::runtime_error("TMPDIR is no folder; a scene is recorded there before it is drawn");
+    path_ = (folder / "topple-XXXXXX").string();
     const int file = mkstemp(path_.data());
-    if (file < 0) throw std::runtime_error(path_ + ": no temporary file can be created");
+    if (file < 0) throw std::runtime_error(path_ + ": cannot be created: " + std::strerror(errno));
     close(file);
   }
   ~TemporaryFile() { unlink(path_.c_str()); }
@@ -58,70 +64,110 @@ class Replay {
   const io::Recording& recording_;
 };
 
-void check_outputs(const RenderOptions& o) {
-  if (!o.png.empty()) {
-    std::error_code error;
-    fs::create_directories(o.png, error);
-    if (error) throw BadInput(o.png + ": cannot be created: " + error.message());
-    require_writable_folder(o.png, o.png);
-  } else {
-    const std::string& file = o.mp4.empty() ? o.still : o.mp4;
-    require_writable_folder(fs::absolute(file).parent_path().string(), file);
-  }
+/// Refuses what can be refused before anything runs. `last`: time of the last instant, s.
+void check_times(const RenderOptions& o, double first, double last, const std::string& what) {
+  constexpr double k_slack = 1e-6;  // s, times are sums of rounded steps
+  if (o.at && (*o.at < first - k_slack || *o.at > last + k_slack))
+    throw BadInput(fmt::format("--at: {:g} s is outside {}, {:g}..{:g} s", *o.at, what, first, last));
+  const double from = std::max(o.from.value_or(first), first), to = std::min(o.to.value_or(last), last);
+  if (from > to + k_slack)
+    throw BadInput(fmt::format("--from, --to: nothing lies between {:g} and {:g} s; {} has {:g}..{:g} s",
+                               o.from.value_or(first), o.to.value_or(last), what, first, last));
 }
 
-// Pictures of one recording, one after the other.
-int draw(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene) {
-  if (recording.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
-  const double first = recording.times().front(), last = recording.times().back();
-  RunExtent extent(scene.setup.model);
-  for (std::int64_t i = 0; i < recording.frame_count(); ++i)
-    extent.add(scene.setup.model, scene.setup.parameters, recording.frame(i));
-  const Bridge bridge(scene, extent);
-  const Replay replay(recording);
-  const double at = o.at.value_or(first);
-  const double from = std::max(o.from.value_or(first), first), to = std::min(o.to.value_or(last), last);
-  const auto outside = [&](double t) { return t < first - 1e-9 || t > last + 1e-9; };
-  if (!o.still.empty() && outside(at))
-    throw BadInput(fmt::format("--at: {:g} s is outside the recording, {:g}..{:g} s", at, first, last));
-  if (from > to)
-    throw BadInput(fmt::format("--from, --to: nothing between; the recording has {:g}..{:g} s", first, last));
-
-  const std::unique_ptr<render::Context> context = render::make_osmesa_context();
-  render::Picture picture(context->get_proc(), o.width, o.height);
-  const auto draw_at = [&](double time) {
-    const render::SceneFrame frame = bridge.frame(replay.at(time));
-    return picture.draw(frame, render::fit_camera(o.view, frame, picture.aspect()));
-  };
-  if (!o.still.empty()) {
-    render::write_png(o.still, draw_at(at));
-    return k_done;
+void check_outputs(const RenderOptions& o) {
+  if (o.png.empty()) {
+    require_writable_file(o.mp4.empty() ? "--still" : "--mp4", o.mp4.empty() ? o.still : o.mp4, o.source);
+    return;
   }
+  std::error_code error;
+  fs::create_directories(o.png, error);
+  if (error) throw BadInput(o.png + ": cannot be created: " + error.message());
+  require_writable_folder(o.png, o.png);
+}
+
+/// Draws one instant after the other.
+class Drawing {
+ public:
+  Drawing(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene)
+      : options_(o),
+        extent_(extent_of(recording, scene)),
+        bridge_(scene, extent_),
+        replay_(recording),
+        context_(render::make_osmesa_context()),
+        picture_(context_->get_proc(), o.width, o.height) {}
+
+  render::Image at(double time) {
+    const render::SceneFrame frame = bridge_.frame(replay_.at(time));
+    return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()));
+  }
+
+ private:
+  static RunExtent extent_of(const io::Recording& recording, const io::Scene& scene) {
+    RunExtent extent(scene.setup.model);
+    for (std::int64_t i = 0; i < recording.frame_count() && !interrupted(); ++i)
+      extent.add(scene.setup.model, scene.setup.parameters, recording.frame(i));
+    return extent;
+  }
+
+  const RenderOptions& options_;
+  const RunExtent extent_;
+  const Bridge bridge_;
+  const Replay replay_;
+  const std::unique_ptr<render::Context> context_;
+  render::Picture picture_;
+};
+
+int draw_still(const RenderOptions& o, Drawing& drawing) {
+  if (interrupted()) return k_interrupted;
+  render::write_png(o.still, drawing.at(*o.at));
+  return k_done;
+}
+
+/// Pictures from `from` to `to`, as files in a folder or as a video.
+int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double to) {
   std::optional<render::VideoWriter> video;
   if (!o.mp4.empty()) video.emplace(o.mp4, o.width, o.height, o.fps);
   const int count = static_cast<int>(std::floor((to - from) * o.fps + 1e-6)) + 1;
   Progress progress("drawing", "pictures", count, o.quiet);
-  for (int i = 0; i < count; ++i) {
-    if (interrupted()) {
-      fmt::print(stderr, "topple: interrupted; {}\n",
-                 video ? o.mp4 + " is not written" : fmt::format("{} pictures are in {}", i, o.png));
-      return k_interrupted;
-    }
-    const render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
+  for (int i = 0; i < count && !interrupted(); ++i) {
+    const render::Image image = drawing.at(std::min(from + static_cast<double>(i) / o.fps, to));
     if (video)
       video->write(image);
     else
       render::write_png(fs::path(o.png) / fmt::format("frame-{:06}.png", i), image);
     progress.update(i + 1);
   }
-  if (video) video->finish();
-  return k_done;
+  if (video && !interrupted()) video->finish();
+  return interrupted() ? k_interrupted : k_done;
+}
+
+int draw(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene) {
+  if (recording.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
+  const double first = recording.times().front(), last = recording.times().back();
+  check_times(o, first, last, "the recording");
+  defer_interrupts();
+  check_outputs(o);
+  int code = k_done;
+  try {
+    Drawing drawing(o, recording, scene);
+    code = o.still.empty() ? draw_sequence(o, drawing, std::max(o.from.value_or(first), first),
+                                           std::min(o.to.value_or(last), last))
+                           : draw_still(o, drawing);
+  } catch (const std::runtime_error&) {
+    // Ctrl+C on a terminal reaches ffmpeg as well: that its pipe broke is then no error.
+    if (!interrupted()) throw;
+    code = k_interrupted;
+  }
+  if (code == k_interrupted)
+    say("interrupted; " +
+        (o.png.empty() ? o.still + o.mp4 + " is not written" : "the pictures drawn so far are in " + o.png));
+  return code;
 }
 
 }  // namespace
 
 int render_command(const RenderOptions& options) {
-  check_outputs(options);
   if (io::is_recording(options.source)) {
     if (!options.overrides.empty())
       throw BadInput("--set: " + options.source + " is a recording; only a scene can be changed");
@@ -129,15 +175,35 @@ int render_command(const RenderOptions& options) {
     return draw(options, recording, io::parse_scene(recording.scene_text(), recording.scene_name()));
   }
   const io::Scene scene = io::load_scene(options.source, options.overrides);
+  check_times(options, 0, scene.setup.run.duration, "the scene");
+  defer_interrupts();
+  check_outputs(options);
   const TemporaryFile file;
   const RecordedRun run = record(scene, file.path(), options.quiet);
-  if (run.exit_code == k_interrupted) return k_interrupted;
-  const int drawn = draw(options, io::Recording(file.path()), scene);
-  return drawn == k_done ? run.exit_code : drawn;
+  if (!run.trouble.empty())
+    say(run.trouble + (run.exit_code == k_failed && run.recorded ? "; drawing up to there" : ""));
+  if (run.exit_code == k_interrupted || !run.recorded) return run.exit_code;
+  try {
+    const int drawn = draw(options, io::Recording(file.path()), scene);
+    return drawn == k_done ? run.exit_code : drawn;
+  } catch (const BadInput& error) {  // an instant that a failed run never reached
+    if (run.exit_code == k_done) throw;
+    say(error.what());
+    return run.exit_code;
+  }
 }
 
 int export_command(const ExportOptions& options) {
+  if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
+    for (const io::BuiltinScene& scene : io::builtin_scenes())
+      if (scene.name == options.recording)
+        throw BadInput(
+            fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
   const io::Recording recording(options.recording);
+  std::error_code error;
+  fs::create_directories(options.csv, error);
+  if (error) throw BadInput(options.csv + ": cannot be created: " + error.message());
+  require_writable_folder(options.csv, options.csv);
   io::export_csv(recording, options.csv);
   return k_done;
 }

@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/interrupt.h"
+#include "app/log.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/summary.h"
@@ -18,55 +16,91 @@
 
 namespace topple::app {
 
+namespace {
+
+/// Steps to the end of `run`, a failure or Ctrl+C.
+void step_through(Run& run, io::Recorder* recorder, Progress& progress) {
+  while (!run.over() && !interrupted()) {
+    if (!run.advance().ok()) break;
+    if (recorder) recorder->observe(run);
+    progress.update(run.state().time);
+  }
+}
+
+/// The error of a recording that broke off, and how far it can be read.
+io::WriteError with_remains(const io::WriteError& error, const std::string& path) {
+  try {
+    const io::Recording left(path);
+    if (left.frame_count() == 0) return error;
+    return io::WriteError(
+        fmt::format("{}; it can be read up to {:.6g} s", error.what(), left.times().back()));
+  } catch (const io::InputError&) {
+    return error;
+  }
+}
+
+std::string status_of(const Run& run) {
+  return !run.status().ok()    ? "diverged"
+         : run.stopped_early() ? "stopped"
+         : run.over()          ? "completed"
+                               : "interrupted";
+}
+
+}  // namespace
+
 RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) {
   std::optional<io::Recorder> recorder;
-  if (!path.empty()) {
-    require_writable_folder(std::filesystem::absolute(path).parent_path().string(), path);
-    recorder.emplace(path, scene.name, scene.text, scene.setup.model);
-  }
+  if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model);
   const auto start = std::chrono::steady_clock::now();
   Run run(scene.setup);
-  const bool started = run.status().ok();
-  if (recorder && started) recorder->observe(run);
-  {
-    Progress progress(scene.name, "s simulated", scene.setup.run.duration, quiet);
-    while (!run.over() && !interrupted()) {
-      if (!run.advance().ok()) break;
-      if (recorder) recorder->observe(run);
-      progress.update(run.state().time);
+  const bool recorded = recorder && run.status().ok();  // what does not settle has no first instant
+  RecordedRun result;
+  bool begun = false;
+  try {
+    if (run.status().ok()) {
+      if (recorded) recorder->observe(run);
+      begun = recorded;
+      Progress progress(scene.name, "s simulated", scene.setup.run.duration, quiet);
+      step_through(run, recorded ? &*recorder : nullptr, progress);
     }
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::string status = status_of(run);
+    result.summary = summary(scene, run, status, wall);
+    if (recorded) recorder->finish(run, status, json_text(result.summary));
+    result.recorded = recorded;
+    result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
+    if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);
+    if (status == "interrupted") result.trouble = fmt::format("interrupted at {:.6g} s", run.state().time);
+  } catch (const io::WriteError& error) {
+    if (!begun) throw;
+    throw with_remains(error, path);
   }
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::string status = !run.status().ok()    ? "diverged"
-                             : run.stopped_early() ? "stopped"
-                             : run.over()          ? "completed"
-                                                   : "interrupted";
-  nlohmann::ordered_json result = summary(scene, run, status, wall);
-  if (recorder && started) recorder->finish(run, status, result.dump());
-  const int exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
-  if (status == "diverged") {
-    fmt::print(stderr, "topple: {}: {}\n", scene.name, run.status().message(scene.setup.model));
-    if (recorder && started)
-      fmt::print(stderr, "topple: {}: holds everything up to {:.6g} s\n", path, run.state().time);
-  }
-  if (status == "interrupted")
-    fmt::print(stderr, "topple: interrupted at {:.6g} s{}\n", run.state().time,
-               recorder ? "; " + path + " holds everything up to there" : std::string());
-  return {std::move(result), exit_code};
+  return result;
 }
 
 int run_command(const RunOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
-  if (!options.json.empty() && options.json != "-")
-    require_writable_folder(std::filesystem::absolute(options.json).parent_path().string(), options.json);
+  const bool json_to_output = options.json == "-";
+  defer_interrupts();
+  if (!options.recording.empty()) require_writable_file("--output", options.recording, options.scene);
+  if (!options.json.empty() && !json_to_output) {
+    require_writable_text("--json", options.json, options.scene);
+    if (same_file(options.json, options.recording))
+      throw BadInput("--json: " + options.json + " is the recording; choose another name");
+  }
   const RecordedRun result = record(scene, options.recording, options.quiet);
-  if (options.json == "-") {
-    fmt::print("{}\n", result.summary.dump(2));
+  if (!result.trouble.empty())
+    say(result.trouble + (result.recorded
+                              ? fmt::format("; {} holds everything up to {:.6g} s", options.recording,
+                                            result.summary["simulated_s"].get<double>())
+                              : ""));
+  for (const auto& warning : result.summary["warnings"]) say("warning: " + warning.get<std::string>());
+  if (json_to_output) {
+    fmt::print("{}\n", json_text(result.summary, 2));
   } else {
     fmt::print("{}", summary_table(result.summary));
-    if (!options.recording.empty() && std::filesystem::exists(options.recording))
-      fmt::print("recording: {}\n", options.recording);
-    if (!options.json.empty()) write_whole_file(options.json, result.summary.dump(2) + "\n");
+    if (result.recorded) fmt::print("recording: {}\n", options.recording);
+    if (!options.json.empty()) write_whole_file(options.json, json_text(result.summary, 2) + "\n");
   }
   return result.exit_code;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -60,6 +61,12 @@ ordered_json warnings(const Run& run) {
   return list;
 }
 
+/// Characters of a UTF-8 text.
+int characters(const std::string& text) {
+  return static_cast<int>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
@@ -108,6 +115,10 @@ ordered_json summary(const io::Scene& scene, const Run& run, const std::string& 
   return out;
 }
 
+std::string json_text(const ordered_json& value, int indent) {
+  return value.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
 std::string summary_table(const ordered_json& s) {
   std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
                                 s["status"].get<std::string>(), s["simulated_s"].get<double>());
@@ -122,13 +133,15 @@ std::string summary_table(const ordered_json& s) {
   out +=
       fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
                   text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
-  out += fmt::format("{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", "overturned",
+  int width = 14;
+  for (const auto& b : s["bodies"]) width = std::max(width, characters(b["name"].get<std::string>()));
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
                      "uplift", "impacts", "peak tilt", "final tilt", "slide", "peak stress");
-  out += fmt::format("{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", "s", "s", "", "deg",
-                     "deg", "mm", "MPa");
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",
+                     "deg", "deg", "mm", "MPa");
   for (const auto& b : s["bodies"]) {
     out += fmt::format(
-        "{:<14} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", b["name"].get<std::string>(),
+        "{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", b["name"].get<std::string>(), width,
         b["overturned"].get<bool>() ? text(b["overturn_time_s"], "{:.4f}") : "no",
         text(b["first_uplift_s"], "{:.3f}"), b["impacts"].get<int>(), text(b["peak_tilt_deg"], "{:.3f}"),
         text(b["final_tilt_deg"], "{:.3f}"),
@@ -141,7 +154,6 @@ std::string summary_table(const ordered_json& s) {
     out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),
                        text(d[1], "{:.6g}"), text(d[2], "{:.6g}"));
   }
-  for (const auto& w : s["warnings"]) out += "warning: " + w.get<std::string>() + "\n";
   return out;
 }
 

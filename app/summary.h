@@ -14,7 +14,10 @@ namespace topple::app {
 nlohmann::ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status,
                                double wall_s);
 
-/// The same as a table of a few lines.
+/// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
+std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
+
+/// The summary as a table of a few lines, without its warnings.
 std::string summary_table(const nlohmann::ordered_json& summary);
 
 }  // namespace topple::app

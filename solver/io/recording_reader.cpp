@@ -342,7 +342,8 @@ Checkpoint Recording::checkpoint(std::int64_t index) const {
 }
 
 bool is_recording(const std::string& path) {
-  return first_bytes(path).is_hdf5;
+  std::error_code error;
+  return fs::is_regular_file(path, error) && first_bytes(path).is_hdf5;  // reading a pipe would use it up
 }
 
 }  // namespace topple::io

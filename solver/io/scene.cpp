@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "solver/io/recording.h"
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_read.h"
@@ -29,6 +28,8 @@ std::string read_text(const std::string& path) {
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad()) throw InputError(path + ": cannot be read");
   text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.starts_with("\x89HDF\r\n"))
+    throw InputError(path + ": is a recording (an HDF5 file), not a scene; topple info describes it");
   refuse_large(text.size(), path);
   return text;
 }
@@ -60,8 +61,6 @@ Scene load_scene(const std::string& path_or_name, const std::vector<std::string>
   if (path_or_name.empty()) throw InputError("the name of the scene is empty");
   std::error_code status;
   if (fs::is_directory(path_or_name, status)) throw InputError(path_or_name + ": is a folder");
-  if (is_recording(path_or_name))
-    throw InputError(path_or_name + ": is a recording, not a scene; topple info describes it");
   if (fs::exists(path_or_name, status)) return parse_scene(read_text(path_or_name), path_or_name, overrides);
   std::string names;
   for (const BuiltinScene& scene : builtin_scenes()) {

@@ -1,0 +1,12 @@
+// What the program says besides its results.
+#pragma once
+
+#include <string>
+
+namespace topple::app {
+
+/// One line on stderr after the program's name. Control characters, which names of files may hold, are
+/// written out, so that it stays one line.
+void say(const std::string& message);
+
+}  // namespace topple::app

@@ -1,0 +1,104 @@
+// Places that cannot be written to: refused before anything runs, with exit code 2.
+#include "program.h"
+#include "scenes.h"
+#include "small_disk.h"
+
+namespace topple::app {
+namespace {
+
+class BadOutputTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_bytes("s.toml", k_shaken);
+    ASSERT_EQ(topple({"run", "s.toml", "-o", "a.h5"}).code, 0);
+    before_ = files();
+  }
+  /// What has to do with one file.
+  void expect_file_refused(const std::string& file, const std::string& part) {
+    expect_one_line({"run", "s.toml", "-o", file}, 2, part);
+    expect_one_line({"run", "s.toml", "--json", file}, 2, part);
+    expect_one_line({"info", "a.h5", "--json", file}, 2, part);
+    expect_one_line({"render", "a.h5", "--mp4", file}, 2, part);
+    expect_one_line({"render", "a.h5", "--still", file, "--at", "0"}, 2, part);
+    expect_one_line({"render", "s.toml", "--still", file, "--at", "0"}, 2, part);
+  }
+  void expect_folder_refused(const std::string& folder) {
+    expect_one_line({"render", "a.h5", "--png", folder}, 2, folder + ": cannot be ");
+    expect_one_line({"render", "s.toml", "--png", folder}, 2, folder + ": cannot be ");
+    expect_one_line({"export", "a.h5", "--csv", folder}, 2, folder + ": cannot be ");
+  }
+  std::vector<std::string> before_;
+};
+
+TEST_F(BadOutputTest, a_missing_folder) {
+  expect_file_refused("none/a", "none/a: cannot be written: there is no folder ");
+  EXPECT_EQ(files(), before_);
+}
+
+TEST_F(BadOutputTest, a_file_in_the_way_of_a_folder) {
+  expect_file_refused("s.toml/a", "s.toml/a: cannot be written: there is no folder ");
+  expect_folder_refused("s.toml");
+  expect_folder_refused("s.toml/folder");
+  EXPECT_EQ(files(), before_);
+}
+
+TEST_F(BadOutputTest, a_folder_in_the_way_of_a_file) {
+  std::filesystem::create_directory("folder");
+  expect_file_refused("folder", "folder: cannot be written: is a folder");
+  EXPECT_TRUE(std::filesystem::is_empty("folder"));
+}
+
+TEST_F(BadOutputTest, proc_where_even_root_makes_no_files) {
+  expect_file_refused("/proc/a", "/proc/a: cannot be written: ");
+  expect_folder_refused("/proc/a");
+}
+
+TEST_F(BadOutputTest, a_read_only_disk) {
+  if (!mount_disk("disk", "64k", true)) GTEST_SKIP() << "may not mount a disk";
+  expect_file_refused("disk/a", "disk/a: cannot be written: Read-only file system");
+  expect_folder_refused("disk/folder");
+  unmount_disk("disk");
+}
+
+TEST_F(BadOutputTest, a_device_is_not_replaced) {
+  expect_one_line({"run", "s.toml", "-o", "/dev/null"}, 2,
+                  "/dev/null: cannot be written: is not an ordinary");
+  expect_one_line({"render", "a.h5", "--mp4", "/dev/null"}, 2, "/dev/null: cannot be written");
+  expect_one_line({"render", "a.h5", "--still", "/dev/null", "--at", "0"}, 2, "/dev/null: cannot be written");
+  EXPECT_EQ(topple({"run", "s.toml", "--json", "/dev/null"}).code, 0);  // text may go there
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(BadOutputTest, what_is_being_read_is_not_replaced) {
+  const std::string scene = bytes_of("s.toml"), recording = bytes_of("a.h5");
+  std::filesystem::create_symlink("s.toml", "link.toml");
+  for (const char* name : {"s.toml", "./s.toml", "link.toml"}) {
+    expect_one_line({"run", "s.toml", "-o", name}, 2, "is what is being read");
+    expect_one_line({"run", "s.toml", "--json", name}, 2, "is what is being read");
+    expect_one_line({"info", "s.toml", "--json", name}, 2, "is what is being read");
+  }
+  expect_one_line({"render", "a.h5", "--still", "a.h5", "--at", "0"}, 2, "is what is being read");
+  expect_one_line({"render", "a.h5", "--mp4", "./a.h5"}, 2, "is what is being read");
+  expect_one_line({"run", "s.toml", "-o", "b.h5", "--json", "./b.h5"}, 2, "is the recording");
+  EXPECT_EQ(bytes_of("s.toml"), scene);
+  EXPECT_EQ(bytes_of("a.h5"), recording);
+}
+
+TEST_F(BadOutputTest, a_scene_cannot_be_drawn_without_a_place_for_its_recording) {
+  const Circumstances nowhere{.set = {{"TMPDIR", "/proc/none"}}};
+  expect_one_line({"render", "s.toml", "--still", "a.png", "--at", "0"}, 1, "TMPDIR", nowhere);
+  EXPECT_EQ(files(), before_);
+}
+
+TEST_F(BadOutputTest, a_start_that_fails_leaves_an_older_recording_as_it_was) {
+  const std::string older = bytes_of("a.h5");
+  std::string unstable = k_shaken;
+  unstable.replace(unstable.find("[floor]"), 7, "[[wall]]\nat = [-9, 0]\nnormal = [1, 0, 0]");
+  write_bytes("falls.toml", unstable);
+  EXPECT_EQ(topple({"run", "falls.toml", "-o", "a.h5"}).code, 1);
+  EXPECT_EQ(bytes_of("a.h5"), older);
+}
+
+}  // namespace
+}  // namespace topple::app

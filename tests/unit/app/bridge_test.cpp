@@ -1,0 +1,126 @@
+#include "app/bridge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.h"
+
+namespace topple::app {
+namespace {
+
+using render::Float3;
+
+class BridgeTest : public ::testing::Test {
+ protected:
+  BridgeTest()
+      : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup), extent_(scene_.setup.model) {
+    start_ = io::frame_row(run_);
+    extent_.add(model(), scene_.setup.parameters, start_);
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(run_.advance().ok());
+    end_ = io::frame_row(run_);
+    extent_.add(model(), scene_.setup.parameters, end_);
+  }
+  const Model& model() const { return scene_.setup.model; }
+  static double distance(const Float3& a, const Vec3& b) { return (Vec3(a[0], a[1], a[2]) - b).norm(); }
+  static Vec3 seen(const io::FrameRow& row, int node) {
+    return Vec3(row.position[3 * node], row.position[3 * node + 1], row.position[3 * node + 2]) +
+           Vec3(row.floor_displacement);
+  }
+
+  io::Scene scene_;
+  topple::Run run_;
+  io::FrameRow start_, end_;
+  RunExtent extent_;
+};
+
+TEST_F(BridgeTest, members_are_drawn_from_their_first_to_their_last_node) {
+  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_);
+  ASSERT_EQ(frame.tubes.size(), model().members.size());
+  for (std::size_t m = 0; m < frame.tubes.size(); ++m) {
+    const Member& member = model().members[m];
+    const render::Tube& tube = frame.tubes[m];
+    const Element& first = model().elements[member.first_element];
+    const Element& last = model().elements[member.first_element + member.element_count - 1];
+    EXPECT_LT(distance(frame.stations[tube.first_station].position, seen(end_, first.node[0])), 1e-6);
+    EXPECT_LT(distance(frame.stations[tube.first_station + tube.station_count - 1].position,
+                       seen(end_, last.node[1])),
+              1e-6);
+    EXPECT_EQ(tube.member, m);
+    EXPECT_LT(tube.profile, frame.profiles.size());
+  }
+}
+
+TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
+  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_);
+  for (const render::Station& station : frame.stations) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GE(station.position[k], frame.bounds_min[k]);
+      EXPECT_LE(station.position[k], frame.bounds_max[k]);
+    }
+    EXPECT_TRUE(std::isfinite(station.value));
+    EXPECT_GE(station.value, 0);
+    double square = 0;
+    for (const float q : station.rotation) square += static_cast<double>(q) * static_cast<double>(q);
+    EXPECT_NEAR(square, 1, 1e-5);
+  }
+  EXPECT_GT(frame.legend.maximum, 0);
+  EXPECT_EQ(frame.trace.time_s.size(), 2u);
+  EXPECT_FLOAT_EQ(frame.trace.cursor_s, 0.1f);
+}
+
+TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
+  io::FrameRow moved = end_;
+  moved.floor_displacement[0] += 0.25;
+  const Bridge bridge(scene_, extent_);
+  const render::SceneFrame before = bridge.frame(end_), after = bridge.frame(moved);
+  ASSERT_EQ(after.grounds.size(), 1u);
+  EXPECT_TRUE(after.grounds[0].is_floor);
+  EXPECT_NEAR(after.grounds[0].centre[0] - before.grounds[0].centre[0], 0.25, 1e-6);
+  EXPECT_NEAR(after.stations[0].position[0] - before.stations[0].position[0], 0.25, 1e-6);
+}
+
+TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
+  const render::Caption caption = Bridge(scene_, extent_).frame(end_).caption;
+  EXPECT_EQ(caption.title, "A cabinet for tests");
+  ASSERT_EQ(caption.lines.size(), 3u);
+  EXPECT_EQ(caption.lines[0], "t = 0.10 s");
+  EXPECT_TRUE(caption.lines[1].starts_with("floor: 2 Hz, 400 gal;  now ")) << caption.lines[1];
+  EXPECT_TRUE(caption.lines[2].starts_with("free: tilt ")) << caption.lines[2];
+}
+
+TEST_F(BridgeTest, a_row_of_another_model_is_refused) {
+  io::FrameRow foreign = end_;
+  foreign.position.resize(foreign.position.size() - 3);
+  EXPECT_THROW(extent_.add(model(), scene_.setup.parameters, foreign), io::InputError);
+}
+
+TEST_F(BridgeTest, blends_begin_and_end_in_their_rows_and_stay_between_them) {
+  EXPECT_EQ(blend(start_, end_, start_.time).position, start_.position);
+  EXPECT_EQ(blend(start_, end_, end_.time).position, end_.position);
+  EXPECT_EQ(blend(start_, end_, -1).position, start_.position);
+  EXPECT_EQ(blend(start_, start_, 0).position, start_.position);
+  const io::FrameRow half = blend(start_, end_, 0.05);
+  EXPECT_EQ(half.time, 0.05);
+  for (std::size_t i = 0; i < half.position.size(); ++i)
+    EXPECT_NEAR(half.position[i], (start_.position[i] + end_.position[i]) / 2, 1e-6);
+  for (std::size_t i = 0; i < half.rotation.size(); i += 4) {
+    double square = 0;
+    for (std::size_t k = 0; k < 4; ++k) square += std::pow(half.rotation[i + k], 2);
+    EXPECT_NEAR(square, 1, 1e-6);
+  }
+}
+
+TEST_F(BridgeTest, the_colour_scale_ends_below_a_rare_peak) {
+  RunExtent extent(model());
+  for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
+  const double usual = extent.colour_top();
+  io::FrameRow peak = start_;
+  for (float& force : peak.section_force) force = 1e6f;
+  extent.add(model(), scene_.setup.parameters, peak);
+  EXPECT_EQ(extent.colour_top(), usual);
+  EXPECT_EQ(RunExtent(model()).colour_top(), 0);
+}
+
+}  // namespace
+}  // namespace topple::app

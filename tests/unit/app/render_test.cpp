@@ -1,0 +1,114 @@
+// Pictures and videos: the same every time, from a scene as from its recording.
+#include "program.h"
+#include "scenes.h"
+
+namespace topple::app {
+namespace {
+
+class RenderTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_bytes("s.toml", k_shaken);
+    ASSERT_EQ(topple({"run", "s.toml", "-o", "a.h5"}).code, 0);
+  }
+  static void draw(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "render");
+    for (const char* more : {"--size", "320x180"}) arguments.emplace_back(more);
+    const Ended ended = topple(arguments);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.out + ended.err, "");
+  }
+  /// Width or height of a PNG file, from its header.
+  static int side_at(const std::string& png, std::size_t at) {
+    int side = 0;
+    for (std::size_t k = 0; k < 4; ++k) side = 256 * side + static_cast<unsigned char>(png.at(at + k));
+    return side;
+  }
+};
+
+TEST_F(RenderTest, a_still_has_the_asked_size_and_the_same_bytes_every_time) {
+  draw({"a.h5", "--still", "a.png", "--at", "0.155"});
+  draw({"a.h5", "--still", "b.png", "--at", "0.155"});
+  draw({"s.toml", "--still", "c.png", "--at", "0.155"});
+  const std::string png = bytes_of("a.png");
+  ASSERT_GT(png.size(), 1000u);
+  EXPECT_EQ(side_at(png, 16), 320);
+  EXPECT_EQ(side_at(png, 20), 180);
+  EXPECT_EQ(bytes_of("b.png"), png);
+  EXPECT_EQ(bytes_of("c.png"), png) << "a scene drawn on the fly differs from its recording";
+  draw({"a.h5", "--still", "d.png", "--at", "0.3"});
+  EXPECT_NE(bytes_of("d.png"), png);
+}
+
+TEST_F(RenderTest, a_sequence_covers_the_recording_and_is_the_same_every_time) {
+  draw({"a.h5", "--png", "p", "--fps", "20"});
+  draw({"s.toml", "--png", "q", "--fps", "20"});
+  std::vector<std::string> names;
+  for (int i = 0; i <= 6; ++i) names.push_back("/frame-00000" + std::to_string(i) + ".png");
+  for (const std::string& name : names) {
+    EXPECT_FALSE(bytes_of("p" + name).empty());
+    EXPECT_EQ(bytes_of("p" + name), bytes_of("q" + name)) << name;
+  }
+  EXPECT_EQ(files().size(), 2 + 2 * (1 + names.size()));
+  draw({"a.h5", "--still", "still.png", "--at", "0.15"});
+  EXPECT_EQ(bytes_of("still.png"), bytes_of("p" + names[3]));
+}
+
+TEST_F(RenderTest, from_and_to_cut_a_sequence_out) {
+  draw({"a.h5", "--png", "all", "--fps", "20"});
+  draw({"a.h5", "--png", "part", "--fps", "20", "--from", "0.1", "--to", "0.2"});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator("part"), {}), 3);
+  EXPECT_EQ(bytes_of("part/frame-000000.png"), bytes_of("all/frame-000002.png"));
+  EXPECT_EQ(bytes_of("part/frame-000002.png"), bytes_of("all/frame-000004.png"));
+  draw({"a.h5", "--png", "beyond", "--fps", "20", "--from", "-5", "--to", "99"});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator("beyond"), {}), 7);
+}
+
+TEST_F(RenderTest, a_video_is_the_same_every_time) {
+  draw({"a.h5", "--mp4", "a.mp4", "--fps", "20"});
+  draw({"a.h5", "--mp4", "b.mp4", "--fps", "20"});
+  draw({"s.toml", "--mp4", "c.mp4", "--fps", "20"});
+  const std::string video = bytes_of("a.mp4");
+  EXPECT_EQ(video.substr(4, 4), "ftyp");
+  EXPECT_EQ(bytes_of("b.mp4"), video);
+  EXPECT_EQ(bytes_of("c.mp4"), video);
+}
+
+TEST_F(RenderTest, cameras_differ) {
+  std::vector<std::string> pictures;
+  for (const char* camera : {"front", "side", "top", "iso"}) {
+    draw({"a.h5", "--still", "a.png", "--at", "0", "--camera", camera});
+    pictures.push_back(bytes_of("a.png"));
+    EXPECT_EQ(std::count(pictures.begin(), pictures.end(), pictures.back()), 1) << camera;
+  }
+}
+
+TEST_F(RenderTest, instants_outside_the_recording_are_refused) {
+  for (const char* time : {"-0.1", "0.31", "1e300"})
+    expect_one_line({"render", "a.h5", "--still", "a.png", "--at", time}, 2,
+                    "is outside the recording, 0..0.3 s");
+  expect_one_line({"render", "a.h5", "--png", "p", "--from", "0.2", "--to", "0.1"}, 2,
+                  "nothing lies between");
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "s.toml"}));
+}
+
+TEST_F(RenderTest, what_a_failed_run_computed_is_drawn_and_the_failure_told) {
+  write_bytes("beam.toml", k_beam);
+  const std::vector<std::string> set{"--set", "run.integrator=central-difference", "--size", "320x180"};
+  const auto with = [&](std::vector<std::string> call) {
+    call.insert(call.end(), set.begin(), set.end());
+    return topple(call);
+  };
+  const Ended drawn = with({"render", "beam.toml", "--still", "a.png", "--at", "0"});
+  EXPECT_EQ(drawn.code, 1);
+  EXPECT_NE(drawn.err.find("central-difference is stable up to"), std::string::npos) << drawn.err;
+  EXPECT_TRUE(std::filesystem::exists("a.png"));
+  const Ended beyond = with({"render", "beam.toml", "--still", "b.png", "--at", "0.1"});
+  EXPECT_EQ(beyond.code, 1);
+  EXPECT_NE(beyond.err.find("--at: 0.1 s is outside the recording"), std::string::npos) << beyond.err;
+  EXPECT_FALSE(std::filesystem::exists("b.png"));
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,63 @@
+// Short scenes for the tests of the program.
+#pragma once
+
+#include <string>
+
+namespace topple::app {
+
+inline const std::string k_library = R"(
+[[material]]
+name = "steel"
+young = "205 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+[[section]]
+name = "post"
+shape = "box"
+size = ["30 mm", "30 mm"]
+thickness = "1 mm"
+)";
+
+inline const std::string k_cabinet = R"(
+[[cabinet]]
+name = "free"
+size = ["380 mm", "880 mm", "1790 mm"]
+mass = "40 kg"
+section = "post"
+material = "steel"
+)";
+
+/// A cabinet that is shaken for 0.3 s, with one probe.
+inline const std::string k_shaken = R"(topple = 1
+title = "A cabinet for tests"
+[run]
+duration = "0.3 s"
+[[shake]]
+name = "table"
+frequency = "2 Hz"
+amplitude = "400 gal"
+[floor]
+width = "90 mm"
+)" + k_library + k_cabinet +
+                                    R"(
+[[probe]]
+name = "middle"
+body = "free"
+)";
+
+/// A clamped beam under a load that central-difference cannot step at 1 ms.
+inline const std::string k_beam = R"(topple = 1
+[run]
+duration = "0.1 s"
+settle = false
+gravity = [0, 0, 0]
+)" + k_library + R"(
+[[frame]]
+name = "beam"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "post", material = "steel" }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 1, force = [0, 0, "-100 N"] }]
+)";
+
+}  // namespace topple::app

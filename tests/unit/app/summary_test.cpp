@@ -1,0 +1,81 @@
+#include "app/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scenes.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SummaryTest : public ::testing::Test {
+ protected:
+  SummaryTest() : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup) {
+    for (int i = 0; i < 50; ++i) EXPECT_TRUE(run_.advance().ok());
+  }
+  io::Scene scene_;
+  topple::Run run_;
+};
+
+TEST_F(SummaryTest, numbers_are_those_of_the_run) {
+  const Json s = summary(scene_, run_, "interrupted", 0.5);
+  EXPECT_EQ(s["status"], "interrupted");
+  EXPECT_EQ(s["simulated_s"], run_.state().time);
+  EXPECT_EQ(s["wall_s"], 0.5);
+  EXPECT_DOUBLE_EQ(s["realtime_factor"], run_.state().time / 0.5);
+  EXPECT_EQ(s["steps"], 50);
+  const EnergyLedger& e = run_.state().energy;
+  EXPECT_EQ(s["energy"]["dissipated_J"], e.dissipated());
+  const BodyOutcome& body = run_.outcome().bodies()[0];
+  EXPECT_DOUBLE_EQ(s["bodies"][0]["peak_tilt_deg"], body.peak_tilt * 180 / k_pi);
+  EXPECT_EQ(s["bodies"][0]["peak_stress_Pa"], body.peak_stress);
+  EXPECT_EQ(s["probes"][0]["final"]["displacement_m"][0], run_.probes()[0].displacement.x());
+  EXPECT_FALSE(s.contains("message"));
+}
+
+TEST_F(SummaryTest, energies_add_up_to_the_balance_error) {
+  const Json s = summary(scene_, run_, "completed", 1);
+  const auto energy = [&](const char* key) { return s["energy"][key].get<double>(); };
+  const EnergyLedger& e = run_.state().energy;
+  const double unexplained = energy("kinetic_J") + energy("strain_J") + energy("contact_J") +
+                             energy("gravity_J") + energy("dissipated_J") - energy("input_J") - e.start_total;
+  EXPECT_NEAR(std::abs(unexplained), energy("balance_error") * e.largest, 1e-9 * e.largest);
+}
+
+TEST_F(SummaryTest, what_does_not_exist_is_null) {
+  Json s = summary(scene_, run_, "completed", 0);
+  EXPECT_TRUE(s["realtime_factor"].is_null());
+  EXPECT_TRUE(s["bodies"][0]["overturn_time_s"].is_null());
+  EXPECT_TRUE(summary(scene_, run_, "completed", NAN)["wall_s"].is_null());
+  s["bodies"][0]["peak_stress_Pa"] = nullptr;  // of a rigid body
+  s["energy"]["balance_error"] = nullptr;
+  EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
+}
+
+TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
+  const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
+  EXPECT_NE(table.find("\nfree "), std::string::npos) << table;
+  EXPECT_NE(table.find("\nprobe middle: "), std::string::npos) << table;
+}
+
+TEST_F(SummaryTest, columns_stay_in_line_under_long_names) {
+  Json s = summary(scene_, run_, "completed", 0.5);
+  s["bodies"][0]["name"] = "a cabinet with a grown-up näme";
+  s["probes"] = Json::array();
+  const std::string table = summary_table(s), header = table.substr(table.find("\nbody") + 1);
+  const std::string row = header.substr(header.find("a cabinet"));
+  EXPECT_EQ(header.find('\n') + 1, row.find('\n')) << table;  // one byte more for the umlaut
+}
+
+TEST_F(SummaryTest, text_that_is_not_utf_8_does_not_spoil_the_json) {
+  scene_.name = "a\xff";
+  const std::string text = json_text(summary(scene_, run_, "completed", 1), 2);
+  EXPECT_EQ(Json::parse(text)["scene"], "a\xef\xbf\xbd");
+}
+
+}  // namespace
+}  // namespace topple::app

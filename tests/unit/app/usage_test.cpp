@@ -1,0 +1,143 @@
+// Calls that are wrong in themselves, and help.
+#include "program.h"
+#include "scenes.h"
+
+namespace topple::app {
+namespace {
+
+class UsageTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_bytes("s.toml", k_shaken);
+  }
+  void TearDown() override {
+    EXPECT_EQ(files(), std::vector<std::string>{"s.toml"});  // nothing was begun
+    ProgramTest::TearDown();
+  }
+};
+
+TEST_F(UsageTest, help_and_version_go_to_standard_output) {
+  EXPECT_EQ(topple({"--version"}).out, "topple " TOPPLE_VERSION "\n");
+  for (const char* command : {"", "run", "render", "export", "check", "info", "scenes"}) {
+    SCOPED_TRACE(command);
+    const Ended ended =
+        topple(*command ? std::vector<std::string>{command, "--help"} : std::vector<std::string>{"--help"});
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_EQ(ended.err, "");
+    EXPECT_NE(ended.out.find("Usage: topple"), std::string::npos);
+    EXPECT_NE(ended.out.find(std::string("Example")), std::string::npos);
+    EXPECT_NE(ended.out.find(std::string("  topple ") + command), std::string::npos);
+    EXPECT_EQ(ended.out.find("not supported"), std::string::npos);
+  }
+}
+
+TEST_F(UsageTest, unknown_words_are_named) {
+  expect_one_line({}, 2, "subcommand is required");
+  expect_one_line({"frob"}, 2, "\"frob\" is not a command; known: run, render, ");
+  expect_one_line({""}, 2, "\"\" is not a command");
+  expect_one_line({"--frob"}, 2, "--frob: unknown option");
+  expect_one_line({"--quiet", "run", "s.toml"}, 2, "--quiet: unknown option; a command comes first");
+  expect_one_line({"run", "s.toml", "--frob"}, 2, "not expected: --frob (topple run --help)");
+  expect_one_line({"run", "s.toml", "more"}, 2, "not expected: more");
+  expect_one_line({"scenes", "more"}, 2, "not expected: more");
+}
+
+TEST_F(UsageTest, what_is_missing_is_named) {
+  expect_one_line({"run"}, 2, "SCENE is required");
+  expect_one_line({"render", "s.toml"}, 2, "[--png,--mp4,--still] is required");
+  expect_one_line({"render", "s.toml", "--still", "a.png"}, 2, "--still requires --at");
+  expect_one_line({"render", "s.toml", "--at", "0"}, 2, "--at requires --still");
+  expect_one_line({"render", "s.toml", "--png", "p", "--mp4", "a.mp4"}, 2, "2 were given");
+  expect_one_line({"export", "a.h5"}, 2, "--csv is required");
+  expect_one_line({"check"}, 2, "SCENES is required");
+  expect_one_line({"info"}, 2, "FILE is required");
+  expect_one_line({"run", "s.toml", "--json"}, 2, "--json: needs a value, FILE|-");
+  expect_one_line({"run", "s.toml", "--set"}, 2, "--set: needs a value, KEY=VALUE");
+  expect_one_line({"run", "s.toml", "-o", "a.h5", "-o", "b.h5"}, 2, "--output: given more than once");
+}
+
+TEST_F(UsageTest, empty_names_are_refused) {
+  expect_one_line({"run", ""}, 2, "is empty");
+  expect_one_line({"run", "s.toml", "-o", ""}, 2, "--output: is empty");
+  expect_one_line({"run", "s.toml", "--json", ""}, 2, "--json: is empty");
+  expect_one_line({"render", "s.toml", "--png", ""}, 2, "--png: is empty");
+  expect_one_line({"render", "s.toml", "--mp4", ""}, 2, "--mp4: is empty");
+  expect_one_line({"render", "s.toml", "--still", "", "--at", "0"}, 2, "--still: is empty");
+  expect_one_line({"export", "", "--csv", "c"}, 2, "is empty");
+  expect_one_line({"export", "a.h5", "--csv", ""}, 2, "--csv: is empty");
+  expect_one_line({"info", ""}, 2, "is empty");
+  expect_one_line({"check", ""}, 2, "is empty");
+}
+
+TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
+  for (const char* command : {"view", "study", "verify", "modes", "compare", "report", "recover"}) {
+    const std::string refusal = std::string(command) + ": not supported by this version";
+    expect_one_line({command}, 2, refusal);
+    expect_one_line({command, "s.toml", "-o", "out"}, 2, refusal);
+  }
+  expect_one_line({"run", "s.toml", "--estimate"}, 2, "--estimate: not supported by this version");
+  expect_one_line({"render", "s.toml", "--png", "p", "--ui"}, 2, "--ui: not supported by this version");
+  expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
+  expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
+  expect_one_line({"info", "s.toml", "--verify"}, 2, "--verify: not supported by this version");
+}
+
+TEST_F(UsageTest, sizes_that_no_picture_has_are_refused) {
+  for (const char* size : {"", "1", "0x0", "-320x180", "320x", "x180", "320x180x", "320x180p", "63x64",
+                           "320X180", " 320x180", "320 x 180", "8193x64", "99999999999999x64", "1e3x64"})
+    expect_one_line({"render", "s.toml", "--png", "p", "--size", size}, 2,
+                    "--size: \"" + std::string(size) + "\" is not WIDTHxHEIGHT with 64..8192 each");
+  expect_one_line({"render", "s.toml", "--mp4", "a.mp4", "--size", "321x180"}, 2, "even width and height");
+}
+
+TEST_F(UsageTest, numbers_that_are_none_are_refused) {
+  for (const char* rate : {"0", "-1", "1001", "29.97", "abc", "nan", "1e9"})
+    expect_one_line({"render", "s.toml", "--png", "p", "--fps", rate}, 2,
+                    "--fps: \"" + std::string(rate) + "\" is not a whole number in 1..1000");
+  for (const char* time : {"", "abc", "nan", "inf", "1 s", "0x1"}) {
+    const std::string refusal = std::string(": \"") + time + "\" is not a number of seconds";
+    expect_one_line({"render", "s.toml", "--still", "a.png", "--at", time}, 2, "--at" + refusal);
+    expect_one_line({"render", "s.toml", "--png", "p", "--from", time}, 2, "--from" + refusal);
+    expect_one_line({"render", "s.toml", "--png", "p", "--to", time}, 2, "--to" + refusal);
+  }
+}
+
+TEST_F(UsageTest, instants_outside_the_scene_are_refused_before_it_runs) {
+  for (const char* time : {"-1", "0.31", "1e9"})
+    expect_one_line({"render", "s.toml", "--still", "a.png", "--at", time}, 2,
+                    "is outside the scene, 0..0.3 s");
+  expect_one_line({"render", "s.toml", "--png", "p", "--from", "0.2", "--to", "0.1"}, 2,
+                  "nothing lies between 0.2 and 0.1 s");
+  expect_one_line({"render", "s.toml", "--png", "p", "--from", "0.5"}, 2, "--from");
+  expect_one_line({"render", "s.toml", "--png", "p", "--to", "-0.5"}, 2, "--to");
+}
+
+TEST_F(UsageTest, unknown_cameras_are_refused) {
+  for (const char* camera : {"", "up", "Front"})
+    expect_one_line({"render", "s.toml", "--png", "p", "--camera", camera}, 2,
+                    "--camera: \"" + std::string(camera) + "\" is not one of front, side, top, iso");
+}
+
+TEST_F(UsageTest, overrides_that_do_not_fit_are_refused) {
+  const auto expect = [](const std::string& change, const std::string& part) {
+    expect_one_line({"run", "s.toml", "-o", "a.h5", "--set", change}, 2, "--set " + change + ": ");
+    expect_one_line({"check", "s.toml", "--set", change}, 2, part);
+  };
+  expect("run.duration", "expected KEY=VALUE");
+  expect("=1", "expected KEY=VALUE");
+  expect("", "expected KEY=VALUE");
+  expect("run.length=1", "run.length: unknown key");
+  expect("run.duration=", "run.duration: \"\" is not a number with a unit");
+  expect("run.duration=1 m", "run.duration: \"1 m\" is a length, expected a time");
+  expect("contact.friction=-1", "contact.friction: -1 is outside 0..1.5");
+  expect("cabinet.other.mass=1", "cabinet.other: no such entry; known: free");
+  expect("cabinet.free.model=rigid", "not supported by this version");
+}
+
+TEST_F(UsageTest, a_line_break_in_a_name_does_not_break_the_line) {
+  expect_one_line({"run", "a\nb"}, 2, "a\\x0ab: no such file or built-in scene");
+}
+
+}  // namespace
+}  // namespace topple::app
