@@ -58,6 +58,7 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& output, i
   return {"ffmpeg",
           "-hide_banner",
           "-nostdin",
+          "-xerror",  // or a trailer that a full disk swallows passes for success
           "-loglevel",
           "error",
           "-y",

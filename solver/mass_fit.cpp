@@ -6,85 +6,66 @@
 namespace topple {
 namespace {
 
-// Nonnegative least squares |A x - b| -> min, x >= 0 (Lawson & Hanson 1974, ch. 23).
-Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  const Eigen::Index n = a.cols();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  std::vector<bool> free(n, false);
-  const double tolerance = 1e-12 * a.norm() * (b.norm() + 1);
-  const auto solve_free = [&] {
-    std::vector<Eigen::Index> columns;
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (free[j]) columns.push_back(j);
-    const Eigen::VectorXd part = a(Eigen::all, columns).colPivHouseholderQr().solve(b);
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(n);
-    for (std::size_t k = 0; k < columns.size(); ++k) z[columns[k]] = part[k];
-    return z;
-  };
-  for (Eigen::Index outer = 0; outer < 10 * n; ++outer) {
-    const Eigen::VectorXd gradient = a.transpose() * (b - a * x);
-    Eigen::Index best = -1;
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (!free[j] && gradient[j] > tolerance && (best < 0 || gradient[j] > gradient[best])) best = j;
-    if (best < 0) break;
-    free[best] = true;
-    Eigen::VectorXd z = solve_free();
-    for (Eigen::Index inner = 0; inner <= n; ++inner) {
-      double step = 1;
-      for (Eigen::Index j = 0; j < n; ++j)
-        if (free[j] && z[j] <= 0 && x[j] - z[j] > 0) step = std::min(step, x[j] / (x[j] - z[j]));
-      const bool whole = (z.array() >= 0).all();
-      if (whole) break;
-      x += step * (z - x);
-      for (Eigen::Index j = 0; j < n; ++j)
-        if (free[j] && x[j] <= 1e-15 * (1 + std::abs(z[j]))) {
-          free[j] = false;
-          x[j] = 0;
-        }
-      z = solve_free();
-    }
-    x = z.cwiseMax(0);
+constexpr int k_most_iterations = 200;
+
+/// The dual of the fit: masses follow from one multiplier per moment,
+///   m_g(lambda) = max(least_g, nominal_g + (A^T lambda)_g / w_g),  w_g = count_g / nominal_g^2,
+/// and the moments are met where the convex function below is least.
+struct Dual {
+  const Eigen::MatrixXd& moments;
+  const Eigen::VectorXd& target;
+  const Eigen::VectorXd& least;
+  const Eigen::VectorXd& nominal;
+  const Eigen::VectorXd weight;
+
+  Eigen::VectorXd masses(const Eigen::VectorXd& lambda) const {
+    return least.cwiseMax(nominal + (moments.transpose() * lambda).cwiseQuotient(weight));
   }
-  return x;
-}
+  double value(const Eigen::VectorXd& lambda) const {
+    const Eigen::VectorXd z = moments.transpose() * lambda;
+    double sum = -target.dot(lambda);
+    for (Eigen::Index g = 0; g < z.size(); ++g) {
+      const double bound = weight[g] * (least[g] - nominal[g]);
+      const auto curve = [&](double x) { return nominal[g] * x + x * x / (2 * weight[g]); };
+      sum += z[g] >= bound ? curve(z[g]) : curve(bound) + least[g] * (z[g] - bound);
+    }
+    return sum;
+  }
+};
 
 }  // namespace
 
 std::optional<Eigen::VectorXd> fit_masses(const MomentProblem& problem) {
-  const Eigen::Index groups = problem.nominal.size(), rows = problem.target.size();
-  // Unknown y = (mass - least) / nominal >= 0; moments scaled to targets of one, weighted far above the
-  // departure.
-  const double weight = 1e5;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows + groups, groups);
-  Eigen::VectorXd b(rows + groups);
-  const Eigen::VectorXd rest = problem.target - problem.moments * problem.least;
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double scale = weight / problem.moments.row(i).cwiseAbs().dot(problem.nominal);
-    a.row(i) = scale * problem.moments.row(i).cwiseProduct(problem.nominal.transpose());
-    b[i] = scale * rest[i];
+  const Eigen::VectorXd scale = (problem.moments.cwiseAbs() * problem.nominal).cwiseInverse();
+  const Eigen::MatrixXd moments = scale.asDiagonal() * problem.moments;
+  const Eigen::VectorXd target = scale.cwiseProduct(problem.target);
+  const Dual dual{moments, target, problem.least, problem.nominal,
+                  problem.count.cwiseQuotient(problem.nominal.cwiseProduct(problem.nominal))};
+  // No masses that add up to the total depart further than this: a lower dual value proves that none fit.
+  const Eigen::VectorXd most = (problem.target[0] * problem.moments.row(0).cwiseInverse()).transpose();
+  const double floor = -0.5 * dual.weight.dot(most.cwiseMax(problem.nominal).cwiseAbs2());
+  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(target.size());
+  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+    const Eigen::VectorXd mass = dual.masses(lambda);
+    const Eigen::VectorXd miss = moments * mass - target;
+    if (!miss.allFinite()) return std::nullopt;
+    if (miss.cwiseAbs().maxCoeff() < 1e-13) return mass;
+    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(target.size(), target.size());
+    for (Eigen::Index g = 0; g < mass.size(); ++g)
+      if (mass[g] > problem.least[g]) slope += moments.col(g) * moments.col(g).transpose() / dual.weight[g];
+    slope.diagonal().array() += 1e-12;  // too few groups off their bound to meet every moment
+    const Eigen::VectorXd step = -slope.ldlt().solve(miss);
+    const double here = dual.value(lambda), descent = miss.dot(step);
+    if (!(here >= floor)) return std::nullopt;
+    double length = 1;
+    // at the bottom the values differ by rounding alone, and Newton's own step is right
+    if (-descent > 1e-12 * std::abs(here))
+      while (length > 1e-8 && !(dual.value(lambda + length * step) <= here + 1e-4 * length * descent))
+        length /= 2;
+    lambda += length * step;
   }
-  for (Eigen::Index g = 0; g < groups; ++g) {
-    a(rows + g, g) = std::sqrt(problem.count[g]);
-    b[rows + g] = a(rows + g, g) * (1 - problem.least[g] / problem.nominal[g]);
-  }
-  const Eigen::VectorXd y = nonnegative_least_squares(a, b);
-  Eigen::VectorXd mass = problem.least + y.cwiseProduct(problem.nominal);
-
-  // The weighted fit leaves a small miss: remove it within the groups that are off their bound.
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index g = 0; g < groups; ++g)
-    if (y[g] > 1e-9) free.push_back(g);
-  for (int pass = 0; pass < 3; ++pass) {
-    const Eigen::VectorXd miss = problem.target - problem.moments * mass;
-    const Eigen::MatrixXd moments = problem.moments(Eigen::all, free);
-    const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(miss);
-    for (std::size_t k = 0; k < free.size(); ++k) mass[free[k]] += correction[k];
-  }
-  const Eigen::VectorXd miss = problem.target - problem.moments * mass;
-  for (Eigen::Index i = 0; i < rows; ++i)
-    if (!(std::abs(miss[i]) <= 1e-10 * problem.moments.row(i).cwiseAbs().dot(mass))) return std::nullopt;
-  if ((mass.array() < 0.5 * problem.least.array()).any()) return std::nullopt;
-  return mass;
+  const Eigen::VectorXd mass = dual.masses(lambda);
+  return (moments * mass - target).cwiseAbs().maxCoeff() < 1e-11 ? std::optional(mass) : std::nullopt;
 }
 
 }  // namespace topple

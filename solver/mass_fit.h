@@ -10,7 +10,8 @@ namespace topple {
 
 /// Rows of moments (target values) over groups of nodes that share one mass by symmetry.
 struct MomentProblem {
-  Eigen::MatrixXd moments;  ///< constraints x groups: what one kilogram on every node of the group adds
+  Eigen::MatrixXd moments;  ///< constraints x groups: what one kilogram on every node of the group
+                            ///< adds; the first row is the mass itself
   Eigen::VectorXd target;   ///< constraints
   Eigen::VectorXd nominal;  ///< groups, kg per node: the distribution to stay close to
   Eigen::VectorXd least;    ///< groups, kg per node: lower bound, > 0

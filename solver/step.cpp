@@ -24,10 +24,27 @@ std::string format(const char* pattern, double a) {
   return text;
 }
 
-// The floor's velocity jumps: bodies keep their own, so they move the other way in the floor's frame.
-double jump(const Model& model, const std::vector<Shake>& shakes, double t, double h, State& state) {
-  const Vec3 floor = floor_velocity_jump(shakes, t - h / 2, t + h / 2);
-  if (floor.isZero(0)) return 0;
+// Accelerations from the balance of forces at `state`. Leaves the body's motion in `motion`.
+void balance_accelerations(BodySystem& s, const Parameters& parameters, State& state, BodyMotion& motion) {
+  s.load(state, motion);
+  s.evaluate(parameters, state.time, motion, state.stick, motion.position);
+  for (int i = 0; i < s.count; ++i) {
+    const int g = s.first + i;
+    for (int k = 0; k < 3; ++k) {
+      if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
+      if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
+    }
+    const Mat3& j = s.model.node_inertia[g];
+    const Vec3& omega = state.angular_velocity[g];
+    state.acceleration[g] = state.algorithmic_acceleration[g] = s.force[i] / s.model.node_mass[g];
+    state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] =
+        j.inverse() * (state.rotation[g].conjugate() * s.moment[i] - omega.cross(j * omega));
+  }
+}
+
+// The floor's velocity jumps by `floor`: bodies keep their own, so they move the other way in the floor's
+// frame. Returns the kinetic energy that they gain there.
+double jump(const Model& model, const Vec3& floor, State& state) {
   double gain = 0;
   for (int i = 0; i < model.node_total(); ++i) {
     gain -= 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
@@ -70,7 +87,7 @@ Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
 std::string StepStatus::message(const Model& model) const {
   if (ok()) return "ok";
-  std::string where = body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor";
+  std::string where = body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor or an energy";
   if (element >= 0) {
     const Member& member = model.members[model.elements[element].member];
     where += ", member \"" + member.name + "\" (element " + std::to_string(element) + ")";
@@ -85,11 +102,11 @@ std::string StepStatus::message(const Model& model) const {
       return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
     case Kind::not_settled:
       return where +
-             " does not come to rest under gravity; does it stand on something? settle = false starts it as "
-             "it is";
+             " does not come to rest under gravity; does it stand on something, and can alpha "
+             "carry it? settle = false starts it as it is";
     case Kind::step_too_long:
-      return where + format(": central-difference is stable up to a time_step of %.4g s", limit) +
-             "; try a smaller one, or generalized-alpha";
+      return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
+             when + "; try a smaller one, or generalized-alpha";
     case Kind::ok:
       break;
   }
@@ -105,33 +122,19 @@ StepStatus settle(const Model&, const Parameters& parameters, State& state, Work
   return status;
 }
 
-void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
+void prepare(const Model&, const Parameters& parameters, State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
   EnergyLedger& energy = state.energy;
   energy.kinetic = energy.strain = energy.contact = 0;
   for (auto& system : w.systems) {
-    BodySystem& s = *system;
-    s.load(state, w.motion);
-    s.evaluate(parameters, state.time, w.motion, state.stick, w.motion.position);
-    for (int i = 0; i < s.count; ++i) {
-      const int g = s.first + i;
-      for (int k = 0; k < 3; ++k) {
-        if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
-        if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
-      }
-      const Mat3& j = model.node_inertia[g];
-      const Vec3& omega = state.angular_velocity[g];
-      state.acceleration[g] = state.algorithmic_acceleration[g] = s.force[i] / model.node_mass[g];
-      state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] =
-          j.inverse() * (state.rotation[g].conjugate() * s.moment[i] - omega.cross(j * omega));
-    }
-    const BodyEnergy part = s.energy(parameters.contact, w.motion, s.pairs, w.sections);
+    balance_accelerations(*system, parameters, state, w.motion);
+    const BodyEnergy part = system->energy(parameters.contact, w.motion, system->pairs, w.sections);
     energy.kinetic += part.kinetic;
     energy.strain += part.strain;
     energy.contact += part.contact;
   }
   energy.start_total = energy.kinetic + energy.strain + energy.contact;
-  energy.largest = std::max({energy.kinetic, energy.strain + energy.contact});
+  energy.largest = std::max(energy.kinetic, energy.strain + energy.contact);
 }
 
 void resume(const Model& model, const State& state, Workspace& workspace) {
@@ -161,7 +164,10 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   State& next = w.next;
   next = state;
   StepEnergy exchanged;
-  exchanged.input = jump(model, parameters.shakes, t, h, next);
+  if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - h / 2, t + h / 2); !floor.isZero(0)) {
+    exchanged.input = jump(model, floor, next);
+    for (auto& system : w.systems) balance_accelerations(*system, parameters, next, w.motion);
+  }
 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
@@ -197,6 +203,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   e.largest = std::max({e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact});
   if (!is_finite(next)) {
     status.kind = StepStatus::Kind::not_finite;
+    status.time = next.time;
     status.body = -1;
     return status;
   }
