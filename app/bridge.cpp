@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "solver/excitation.h"
 
 namespace topple::app {
 namespace {
@@ -67,8 +64,6 @@ render::Profile profile(const Section& section) {
 }
 
 }  // namespace
-
-RunExtent::RunExtent(const Model&) : low(Vec3::Constant(1e30)), high(Vec3::Constant(-1e30)) {}
 
 void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
   expect_same_model(model, row);

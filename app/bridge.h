@@ -15,15 +15,14 @@ namespace topple::app {
 /// such as an older version may have built from the same scene.
 class RunExtent {
  public:
-  explicit RunExtent(const Model& model);
   void add(const Model& model, const Parameters& parameters, const io::FrameRow& row);
 
   /// Top of the colour scale, Pa: few instants of the run have a greater stress anywhere, so that an impact
   /// of milliseconds does not darken all the rest.
   double colour_top() const;
 
-  Vec3 low, high;                               ///< m, box of all nodes, floor's displacement included
-  std::vector<float> time_s, acceleration_gal;  ///< along the first shake's direction
+  Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of all nodes, floor's displacement included
+  std::vector<float> time_s, acceleration_gal;   ///< along the first shake's direction
 
  private:
   std::vector<double> peak_stress_;  ///< Pa, of each row

@@ -104,7 +104,7 @@ class Drawing {
 
  private:
   static RunExtent extent_of(const io::Recording& recording, const io::Scene& scene) {
-    RunExtent extent(scene.setup.model);
+    RunExtent extent;
     for (std::int64_t i = 0; i < recording.frame_count() && !interrupted(); ++i)
       extent.add(scene.setup.model, scene.setup.parameters, recording.frame(i));
     return extent;
@@ -124,6 +124,10 @@ int draw_still(const RenderOptions& o, Drawing& drawing) {
   return k_done;
 }
 
+std::string picture_name(int number) {
+  return fmt::format("frame-{:06}.png", number);
+}
+
 /// Pictures from `from` to `to`, as files in a folder or as a video.
 int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double to) {
   std::optional<render::VideoWriter> video;
@@ -135,10 +139,13 @@ int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double 
     if (video)
       video->write(image);
     else
-      render::write_png(fs::path(o.png) / fmt::format("frame-{:06}.png", i), image);
+      render::write_png(fs::path(o.png) / picture_name(i), image);
     progress.update(i + 1);
   }
   if (video && !interrupted()) video->finish();
+  if (!video && fs::exists(fs::path(o.png) / picture_name(count)))
+    say(fmt::format("warning: {} also holds pictures of an earlier, longer sequence, from {} on", o.png,
+                    picture_name(count)));
   return interrupted() ? k_interrupted : k_done;
 }
 

@@ -13,8 +13,7 @@ using render::Float3;
 
 class BridgeTest : public ::testing::Test {
  protected:
-  BridgeTest()
-      : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup), extent_(scene_.setup.model) {
+  BridgeTest() : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup) {
     start_ = io::frame_row(run_);
     extent_.add(model(), scene_.setup.parameters, start_);
     for (int i = 0; i < 100; ++i) EXPECT_TRUE(run_.advance().ok());
@@ -112,14 +111,14 @@ TEST_F(BridgeTest, blends_begin_and_end_in_their_rows_and_stay_between_them) {
 }
 
 TEST_F(BridgeTest, the_colour_scale_ends_below_a_rare_peak) {
-  RunExtent extent(model());
+  RunExtent extent;
   for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
   const double usual = extent.colour_top();
   io::FrameRow peak = start_;
   for (float& force : peak.section_force) force = 1e6f;
   extent.add(model(), scene_.setup.parameters, peak);
   EXPECT_EQ(extent.colour_top(), usual);
-  EXPECT_EQ(RunExtent(model()).colour_top(), 0);
+  EXPECT_EQ(RunExtent().colour_top(), 0);
 }
 
 }  // namespace
