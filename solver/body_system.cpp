@@ -177,8 +177,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
     const BeamStrain strain = beam_strain(element, element.s, ends);
     sections[e] = section_forces(element, strain);
-    sum.strain +=
-        element.length / 2 * (strain.gamma.dot(sections[e].normal) + strain.kappa.dot(sections[e].moment));
+    sum.strain += beam_energy(element, strain);
   }
   for (const TouchingPair& pair : contacts) {
     // the printed law has no spring: what it takes in is dissipated
