@@ -76,7 +76,7 @@ std::string text(const ordered_json& value, const char* format) {
 ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status, double wall_s) {
   const State& state = run.state();
   const EnergyLedger& e = state.energy;
-  const Parameters& p = run.setup().parameters;
+  const Parameters& p = run.parameters();
   ordered_json out;
   out["topple"] = TOPPLE_VERSION;
   out["schema"] = 1;

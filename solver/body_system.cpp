@@ -131,7 +131,7 @@ void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMoti
     force[j] -= g.force2;
     moment[j] -= g.moment2;
   }
-  add_contacts<false>(parameters.contact, motion, stick_start, start, 0);
+  add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
 }
 
 void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
@@ -157,7 +157,7 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
     lu.add(j, i, tangent.block<6, 6>(6, 0));
     lu.add(j, j, tangent.block<6, 6>(6, 6));
   }
-  add_contacts<true>(parameters.contact, motion, stick_start, start, velocity_factor);
+  add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,

@@ -57,7 +57,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   w.trial.resize(n);
   w.travel.resize(n);
   const std::span<const Vec3> stick(state.stick);
-  s.find_contacts(p.contact, w.start, stick, w.start.position, w.contacts_start);
+  s.find_contacts(contact_law(p, t), w.start, stick, w.start.position, w.contacts_start);
   for (int i = 0; i < n; ++i) {
     const int g = s.first + i;
     w.trial.velocity[i] = w.start.velocity[i] + h / 2 * state.acceleration[g];
@@ -82,8 +82,8 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     }
     const std::span<TouchingPair> own(s.pairs.data() + k, end - k);
     const double mass = s.model.node_mass[s.first + i];
-    const Vec3 v =
-        solve_velocity(s, p.contact, i, mass, h, w.trial.velocity[i], rest, own, {sticks, own.size()});
+    const Vec3 v = solve_velocity(s, contact_law(p, t + h), i, mass, h, w.trial.velocity[i], rest, own,
+                                  {sticks, own.size()});
     s.force[i] = 2 * mass / h * (v - w.trial.velocity[i]);
     k = end;
   }

@@ -104,6 +104,19 @@ ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivative
 
 }  // namespace
 
+ContactLaw contact_law(const Parameters& parameters, double t) {
+  ContactLaw law = parameters.contact;
+  const double share = parameters.contact_passage.share(t);
+  if (share == 1) return law;
+  const ContactLaw& before = parameters.contact_before;
+  const auto mix = [share](double a, double b) { return (1 - share) * a + share * b; };
+  law.alpha = before.alpha * std::pow(law.alpha / before.alpha, share);
+  law.q = mix(before.q, law.q);
+  law.friction = mix(before.friction, law.friction);
+  law.restitution = mix(before.restitution, law.restitution);
+  return law;
+}
+
 double penalty_force(const ContactLaw& law, double depth) {
   return depth > 0 ? law.alpha * power(depth, law.q) : 0;
 }

@@ -13,6 +13,10 @@ inline constexpr double k_stick_stiffness = 10;
 /// Damping ratio of a sticking contact that carries its share of the body's mass.
 inline constexpr double k_stick_damping = 0.2;
 
+/// The law at time t: between an edit's earlier and new numbers during its passage, alpha evenly in its
+/// logarithm.
+ContactLaw contact_law(const Parameters& parameters, double t);
+
 /// P = alpha (1 - l/L)^q for l <= L, else 0, N (Eq. 2; the direction is the geometric normal).
 /// depth: 1 - l/L.
 double penalty_force(const ContactLaw& law, double depth);

@@ -37,6 +37,21 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
   };
   book(contacts_start, -1);
   book(contacts_end, 1);
+
+  const ContactLaw law0 = contact_law(parameters, t), law1 = contact_law(parameters, t + h);
+  if (law0.alpha == law1.alpha && law0.q == law1.q) return;
+  // what a law that changes puts into springs that do not move
+  const auto book_change = [&](const TouchingPair& pair, double stick) {
+    if (parameters.contact.kind != ContactLawKind::printed)
+      energy.input +=
+          0.5 * (penalty_energy(law1, pair.depth, pair.L) - penalty_energy(law0, pair.depth, pair.L));
+    energy.input += 0.5 * stick;
+    energy.friction += 0.5 * stick;
+  };
+  for (const TouchingPair& pair : contacts_start)
+    book_change(pair, pair.out.stick_energy * (law1.alpha / law0.alpha - 1));
+  for (const TouchingPair& pair : contacts_end)
+    book_change(pair, pair.out.stick_energy * (1 - law0.alpha / law1.alpha));
 }
 
 double EnergyLedger::balance_error() const {

@@ -14,7 +14,7 @@ struct StepEnergy {
 
 /// Work of gravity, floor, loads and contacts on one body over a step from t to t + h between two evaluations
 /// of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick springs are not booked:
-/// their energy is known at both ends.
+/// their energy is known at both ends. What an edit of the contact law puts into them counts as input.
 void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
                const BodyMotion& start, const BodyMotion& end,
                const std::vector<TouchingPair>& contacts_start, const std::vector<TouchingPair>& contacts_end,

@@ -6,42 +6,59 @@
 namespace topple {
 namespace {
 
-double sine(const Shake& shake, double tau) {
-  const double phase = shake.frequency * tau;  // cycles since the start
-  if (shake.cycles > 0 && phase >= shake.cycles) return 0;
+// Of amplitude 1.
+double sine(const Shake& shake, double t) {
+  const double turns = shake_turns(shake, t);
+  if (shake.cycles > 0 && turns >= shake.cycles) return 0;
   double window = 1;
   if (shake.taper > 0) {
     const auto rise = [](double x) { return x >= 1 ? 1 : (1 - std::cos(k_pi * x)) / 2; };
-    window = rise(phase / shake.taper);
-    if (shake.cycles > 0) window *= rise((shake.cycles - phase) / shake.taper);
+    window = rise(turns / shake.taper);
+    if (shake.cycles > 0) window *= rise((shake.cycles - turns) / shake.taper);
   }
-  return shake.amplitude * window * std::sin(2 * k_pi * phase);
+  return window * std::sin(2 * k_pi * turns);
 }
 
 double pulse(const Shake& shake, double tau) {
   if (tau >= shake.duration) return 0;
   switch (shake.shape) {
     case Shake::Shape::half_sine:
-      return shake.amplitude * std::sin(k_pi * tau / shake.duration);
+      return std::sin(k_pi * tau / shake.duration);
     case Shake::Shape::full_sine:
-      return shake.amplitude * std::sin(2 * k_pi * tau / shake.duration);
+      return std::sin(2 * k_pi * tau / shake.duration);
     case Shake::Shape::rectangle:
-      return shake.amplitude;
+      return 1;
   }
   return 0;
 }
 
 }  // namespace
 
-double shake_acceleration(const Shake& shake, double t) {
-  const double tau = t - shake.start;
-  if (tau < 0) return 0;
-  return shake.kind == Shake::Kind::sine ? sine(shake, tau) : pulse(shake, tau);
+double Passage::share(double t) const {
+  if (t >= since + over) return 1;
+  return (1 - std::cos(k_pi * std::max(t - since, 0.) / over)) / 2;
+}
+
+Vec3 shake_amplitude(const Shake& shake, double t) {
+  const Vec3 now = shake.amplitude * shake.direction;
+  if (shake.passage.over == 0) return now;
+  const double share = shake.passage.share(t);
+  return (1 - share) * shake.amplitude_before + share * now;
+}
+
+double shake_turns(const Shake& shake, double t) {
+  return shake.turns + shake.frequency * (t - shake.start - shake.turned);
+}
+
+Vec3 shake_acceleration(const Shake& shake, double t) {
+  if (t < shake.start) return Vec3::Zero();
+  return (shake.kind == Shake::Kind::sine ? sine(shake, t) : pulse(shake, t - shake.start)) *
+         shake_amplitude(shake, t);
 }
 
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {
   Vec3 sum = Vec3::Zero();
-  for (const Shake& shake : shakes) sum += shake_acceleration(shake, t) * shake.direction;
+  for (const Shake& shake : shakes) sum += shake_acceleration(shake, t);
   return sum;
 }
 

@@ -6,8 +6,15 @@
 
 namespace topple {
 
-/// Acceleration of one shake at time t, m/s^2: A sin(2 pi f (t - start)) times a smooth taper, or a pulse.
-double shake_acceleration(const Shake& shake, double t);
+/// Acceleration of one shake at time t, m/s^2, world axes: A sin(2 pi f (t - start)) times a smooth taper, or
+/// a pulse. After an edit of the frequency the phase goes on from where it was.
+Vec3 shake_acceleration(const Shake& shake, double t);
+
+/// Amplitude along its direction at time t, between two edits as between two values, m/s^2.
+Vec3 shake_amplitude(const Shake& shake, double t);
+
+/// Cycles that a sine has passed at time t.
+double shake_turns(const Shake& shake, double t);
 
 /// Sum of all shakes, m/s^2, world axes.
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t);

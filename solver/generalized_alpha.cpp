@@ -192,8 +192,8 @@ Attempt ImplicitStep::solve() {
 
 void ImplicitStep::accept(StepEnergy& energy) {
   const std::span<const Vec3> stick(state_.stick);
-  s_.find_contacts(p_.contact, w_.start, stick, w_.start.position, w_.contacts_start);
-  s_.find_contacts(p_.contact, w_.trial, stick, w_.start.position, s_.pairs);
+  s_.find_contacts(contact_law(p_, t_), w_.start, stick, w_.start.position, w_.contacts_start);
+  s_.find_contacts(contact_law(p_, t_ + h_), w_.trial, stick, w_.start.position, s_.pairs);
   book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.pairs, energy);
   // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
   // takes out.

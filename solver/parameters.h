@@ -20,6 +20,14 @@ struct ContactLaw {
   double slip_speed = 0.01;  ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
 };
 
+/// The way from earlier values to those edited while it runs: what jumped would put energy in.
+struct Passage {
+  double since = 0;  ///< s
+  double over = 0;   ///< s; 0: no passage
+  /// Share of the new values at time t: 0..1, smooth.
+  double share(double t) const;
+};
+
 /// One floor acceleration; several add up.
 struct Shake {
   enum class Kind { sine, pulse };
@@ -35,6 +43,12 @@ struct Shake {
   Start initial_velocity = Start::rest;
   Shape shape = Shape::half_sine;  ///< pulse
   double duration = 1;             ///< s, pulse
+
+  // Of edits while it runs (edit.h).
+  double turned = 0;                     ///< s after `start`: `frequency` holds since
+  double turns = 0;                      ///< cycles passed by then
+  Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, along its direction
+  Passage passage;                       ///< from it to `amplitude` along `direction`
 };
 
 enum class Integrator { central_difference, generalized_alpha };
@@ -43,6 +57,8 @@ enum class Integrator { central_difference, generalized_alpha };
 /// sliders and fuzzers.
 struct Parameters {
   ContactLaw contact;
+  ContactLaw contact_before;  ///< until an edit
+  Passage contact_passage;    ///< from it to `contact`
   std::vector<Shake> shakes;
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;

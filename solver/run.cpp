@@ -17,73 +17,88 @@ constexpr double k_rest_for = 0.5;     // s
 
 Run::Run(const Setup& setup)
     : setup_(&setup),
-      state_(start_state(setup.model, setup.starts)),
-      workspace_(setup.model),
-      outcome_(setup.model),
-      probes_(setup.probes.size()) {
-  if (setup.run.settle) status_ = settle(setup.model, setup.parameters, state_, workspace_);
+      now_{.state = start_state(setup.model, setup.starts),
+           .parameters = setup.parameters,
+           .outcome = Outcome(setup.model),
+           .probes = std::vector<ProbeOutcome>(setup.probes.size())},
+      workspace_(setup.model) {
+  if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
   if (!status_.ok()) return;
-  prepare(setup.model, setup.parameters, state_, workspace_);
+  prepare(setup.model, now_.parameters, now_.state, workspace_);
   observe();
 }
 
-Run::Run(const Setup& setup, State state)
-    : setup_(&setup),
-      state_(std::move(state)),
-      workspace_(setup.model),
-      outcome_(setup.model),
-      probes_(setup.probes.size()) {
-  resume(setup.model, state_, workspace_);
+Run::Run(const Setup& setup, State state, Parameters parameters)
+    : Run(setup, {.state = std::move(state),
+                  .parameters = std::move(parameters),
+                  .outcome = Outcome(setup.model),
+                  .probes = std::vector<ProbeOutcome>(setup.probes.size())}) {
   observe();
+  events_.clear();
+}
+
+Run::Run(const Setup& setup, RunPoint point)
+    : setup_(&setup), now_(std::move(point)), workspace_(setup.model) {
+  resume(setup.model, now_.state, workspace_);
+  see_forces();
 }
 
 StepStatus Run::advance() {
-  status_ = step(setup_->model, setup_->parameters, state_, workspace_);
-  newton_iterations_ += status_.newton_iterations;
-  rejected_steps_ += status_.rejected;
+  status_ = step(setup_->model, now_.parameters, now_.state, workspace_);
+  now_.newton_iterations += status_.newton_iterations;
+  now_.rejected_steps += status_.rejected;
   if (status_.ok()) observe();
   return status_;
 }
 
+void Run::edit(const Edit& edit) {
+  apply(edit, setup_->model, now_.state.time, now_.parameters);
+}
+
 bool Run::over() const {
-  return !status_.ok() || stopped_early_ ||
-         state_.time > setup_->run.duration - setup_->parameters.time_step / 2;
+  return !status_.ok() || now_.stopped_early ||
+         now_.state.time > setup_->run.duration - now_.parameters.time_step / 2;
+}
+
+void Run::see_forces() {
+  contacts_ = contact_forces(setup_->model, now_.parameters, now_.state, workspace_);
+  sections_ = section_forces(workspace_);
 }
 
 void Run::observe() {
   const Model& model = setup_->model;
-  contacts_ = contact_forces(model, setup_->parameters, state_, workspace_);
-  sections_ = section_forces(workspace_);
-  outcome_.observe(model, setup_->parameters, state_, contacts_, sections_, events_);
+  const State& state = now_.state;
+  see_forces();
+  now_.outcome.observe(model, now_.parameters, state, contacts_, sections_, events_);
 
-  for (std::size_t k = 0; k < probes_.size(); ++k) {
+  for (std::size_t k = 0; k < now_.probes.size(); ++k) {
     const Probe& probe = setup_->probes[k];
-    ProbeOutcome& out = probes_[k];
+    ProbeOutcome& out = now_.probes[k];
     if (probe.node >= 0) {
-      out.displacement = state_.position[probe.node] - model.node_position[probe.node];
-      out.rotation = log_quaternion(state_.rotation[probe.node]);
+      out.displacement = state.position[probe.node] - model.node_position[probe.node];
+      out.rotation = log_quaternion(state.rotation[probe.node]);
     } else {
-      const BodyPose pose = body_pose(model, state_, probe.body);
+      const BodyPose pose = body_pose(model, state, probe.body);
       out.displacement = pose.centre - model.bodies[probe.body].centre_of_gravity;
       out.rotation = log_quaternion(pose.rotation);
     }
     for (int i = 0; i < 3; ++i)
       if (std::abs(out.displacement[i]) > std::abs(out.peak[i])) {
         out.peak[i] = out.displacement[i];
-        out.peak_time[i] = state_.time;
+        out.peak_time[i] = state.time;
       }
   }
 
   if (setup_->run.stop_when == StopWhen::all_overturned)
-    stopped_early_ = outcome_.all_overturned(state_.time);
+    now_.stopped_early = now_.outcome.all_overturned(state.time);
   if (setup_->run.stop_when == StopWhen::at_rest) {
-    double speed = floor_acceleration(setup_->parameters.shakes, state_.time).norm() > k_rest_floor ? 1 : 0;
-    for (const Vec3& v : state_.velocity) speed = std::max(speed, v.norm());
+    double speed = floor_acceleration(now_.parameters.shakes, state.time).norm() > k_rest_floor ? 1 : 0;
+    for (const Vec3& v : state.velocity) speed = std::max(speed, v.norm());
     if (speed > k_rest_speed)
-      rest_since_.reset();
-    else if (!rest_since_)
-      rest_since_ = state_.time;
-    stopped_early_ = rest_since_ && state_.time - *rest_since_ >= k_rest_for;
+      now_.rest_since.reset();
+    else if (!now_.rest_since)
+      now_.rest_since = state.time;
+    now_.stopped_early = now_.rest_since && state.time - *now_.rest_since >= k_rest_for;
   }
 }
 

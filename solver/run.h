@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "solver/edit.h"
 #include "solver/model.h"
 #include "solver/overturn.h"
 #include "solver/parameters.h"
@@ -46,46 +47,58 @@ struct ProbeOutcome {
   Vec3 peak_time = Vec3::Zero();  ///< s
 };
 
-/// A run in progress. The model is shared and never changes.
+/// Where a run is and what became of it so far: a run made from it goes on bit for bit.
+struct RunPoint {
+  State state;
+  Parameters parameters;
+  Outcome outcome;
+  std::vector<ProbeOutcome> probes;
+  std::int64_t newton_iterations = 0, rejected_steps = 0;
+  std::optional<double> rest_since = {};
+  bool stopped_early = false;
+};
+
+/// A run in progress. The setup is shared and never changes; it must outlive the run.
 class Run {
  public:
   /// Settles when asked to; `status()` tells what became of it.
   explicit Run(const Setup& setup);
-  /// Continues from a checkpoint of the same setup.
-  Run(const Setup& setup, State state);
+  /// Continues from a checkpoint of the same setup; the outcome is counted from there.
+  Run(const Setup& setup, State state, Parameters parameters);
+  Run(const Setup& setup, RunPoint point);
 
   /// One accepted step. Must not be called when over().
   StepStatus advance();
+  /// Changes a parameter from the present state on.
+  void edit(const Edit& edit);
   /// Time is up, a stop condition holds or the last step failed.
   bool over() const;
-  bool stopped_early() const { return stopped_early_; }
+  bool stopped_early() const { return now_.stopped_early; }
 
   const Setup& setup() const { return *setup_; }
-  const State& state() const { return state_; }
+  const RunPoint& point() const { return now_; }
+  const State& state() const { return now_.state; }
+  const Parameters& parameters() const { return now_.parameters; }
   const StepStatus& status() const { return status_; }
-  const Outcome& outcome() const { return outcome_; }
-  const std::vector<ProbeOutcome>& probes() const { return probes_; }
+  const Outcome& outcome() const { return now_.outcome; }
+  const std::vector<ProbeOutcome>& probes() const { return now_.probes; }
   const std::vector<Event>& events() const { return events_; }
   const std::vector<ContactForce>& contacts() const { return contacts_; }
   const std::vector<SectionForces>& sections() const { return sections_; }
-  std::int64_t newton_iterations() const { return newton_iterations_; }
-  std::int64_t rejected_steps() const { return rejected_steps_; }
+  std::int64_t newton_iterations() const { return now_.newton_iterations; }
+  std::int64_t rejected_steps() const { return now_.rejected_steps; }
 
  private:
+  void see_forces();
   void observe();
 
   const Setup* setup_;
-  State state_;
+  RunPoint now_;
   Workspace workspace_;
-  Outcome outcome_;
-  std::vector<ProbeOutcome> probes_;
   StepStatus status_;
   std::vector<Event> events_;
   std::vector<ContactForce> contacts_;
   std::vector<SectionForces> sections_;
-  std::int64_t newton_iterations_ = 0, rejected_steps_ = 0;
-  std::optional<double> rest_since_;
-  bool stopped_early_ = false;
 };
 
 }  // namespace topple

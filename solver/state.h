@@ -14,7 +14,8 @@ namespace topple {
 /// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity and contact are what is
 /// there or came in; dissipated is what went out.
 struct EnergyLedger {
-  double input = 0;  ///< work of the floor's acceleration and of loads on the bodies, in the floor's frame
+  double input =
+      0;  ///< work of the floor's acceleration, loads and edits on the bodies, in the floor's frame
   double kinetic = 0;
   double strain = 0;
   double gravity = 0;         ///< relative to the start

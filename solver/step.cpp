@@ -128,7 +128,8 @@ void prepare(const Model&, const Parameters& parameters, State& state, Workspace
   energy.kinetic = energy.strain = energy.contact = 0;
   for (auto& system : w.systems) {
     balance_accelerations(*system, parameters, state, w.motion);
-    const BodyEnergy part = system->energy(parameters.contact, w.motion, system->pairs, w.sections);
+    const BodyEnergy part =
+        system->energy(contact_law(parameters, state.time), w.motion, system->pairs, w.sections);
     energy.kinetic += part.kinetic;
     energy.strain += part.strain;
     energy.contact += part.contact;
@@ -178,7 +179,8 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
     iterations += status.newton_iterations;
     rejected += status.rejected;
     if (!status.ok()) break;
-    const BodyEnergy part = system->energy(parameters.contact, w.scratch.trial, system->pairs, w.sections);
+    const BodyEnergy part =
+        system->energy(contact_law(parameters, t + h), w.scratch.trial, system->pairs, w.sections);
     held.kinetic += part.kinetic;
     held.strain += part.strain;
     held.contact += part.contact;
@@ -217,7 +219,8 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
   w.contact_forces.clear();
   for (auto& system : w.systems) {
     system->load(state, w.motion);
-    system->find_contacts(parameters.contact, w.motion, state.stick, w.motion.position, w.pairs);
+    system->find_contacts(contact_law(parameters, state.time), w.motion, state.stick, w.motion.position,
+                          w.pairs);
     for (const TouchingPair& pair : w.pairs)
       w.contact_forces.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
   }

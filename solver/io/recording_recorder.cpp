@@ -46,7 +46,7 @@ double body_energy(const Run& run, const Body& body) {
     const Vec3& w = state.angular_velocity[k];
     energy +=
         0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() + 0.5 * w.dot(model.node_inertia[k] * w) -
-        model.node_mass[k] * run.setup().parameters.gravity.dot(state.position[k] - model.node_position[k]);
+        model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
   }
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[static_cast<std::size_t>(e)];
@@ -129,7 +129,7 @@ FrameRow frame_row(const Run& run) {
   const EnergyLedger& e = state.energy;
   row.energy = {e.input,    e.kinetic,        e.strain,    e.gravity,        e.contact,
                 e.friction, e.normal_damping, e.numerical, e.balance_error()};
-  const Vec3 acceleration = floor_acceleration(run.setup().parameters.shakes, state.time);
+  const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
   for (int k = 0; k < 3; ++k) {
     row.floor_acceleration[k] = acceleration[k];
     row.floor_displacement[k] = state.floor_displacement[k];

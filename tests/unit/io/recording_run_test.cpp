@@ -111,7 +111,7 @@ TEST_F(RunRecordingTest, seek_equals_linear_replay) {
     EXPECT_EQ(state.step, checkpoint.step);
     if (i + 1 == count) break;
     const Checkpoint next = recording.checkpoint(i + 1);
-    topple::Run run(scene.setup, std::move(state));
+    topple::Run run(scene.setup, std::move(state), scene.setup.parameters);
     while (run.state().step < next.step) ASSERT_TRUE(run.advance().ok());
     EXPECT_EQ(hash(run.state()), next.hash) << i;
   }

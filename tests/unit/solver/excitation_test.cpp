@@ -16,29 +16,33 @@ Shake sine(double amplitude, double frequency) {
   return s;
 }
 
+double along(const Shake& s, double t) {
+  return shake_acceleration(s, t).dot(s.direction);
+}
+
 double derivative(const Shake& s, double t) {
   const double h = 1e-5;
-  return (shake_acceleration(s, t + h) - shake_acceleration(s, t - h)) / (2 * h);
+  return (along(s, t + h) - along(s, t - h)) / (2 * h);
 }
 
 TEST(Excitation, sine_is_a_sin_of_2_pi_f_since_its_start) {
   Shake s = sine(3, 0.7);
   s.start = 1.3;
-  EXPECT_EQ(shake_acceleration(s, 1.2999), 0);
-  EXPECT_EQ(shake_acceleration(s, 1.3), 0);
+  EXPECT_EQ(along(s, 1.2999), 0);
+  EXPECT_EQ(along(s, 1.3), 0);
   for (double tau : {0.01, 0.4, 1.7, 20.})
-    EXPECT_NEAR(shake_acceleration(s, 1.3 + tau), 3 * std::sin(2 * k_pi * 0.7 * tau), 1e-13);
+    EXPECT_NEAR(along(s, 1.3 + tau), 3 * std::sin(2 * k_pi * 0.7 * tau), 1e-13);
   // it starts rising with A w
-  EXPECT_NEAR((shake_acceleration(s, 1.3 + 1e-6)) / 1e-6, 3 * 2 * k_pi * 0.7, 1e-6);
+  EXPECT_NEAR((along(s, 1.3 + 1e-6)) / 1e-6, 3 * 2 * k_pi * 0.7, 1e-6);
 }
 
 TEST(Excitation, cycles_end_the_sine_without_a_step) {
   Shake s = sine(3, 2);
   s.cycles = 5;
-  EXPECT_EQ(shake_acceleration(s, 2.5), 0);
-  EXPECT_EQ(shake_acceleration(s, 7), 0);
-  EXPECT_NEAR(shake_acceleration(s, 2.5 - 1e-9), 0, 1e-6);
-  EXPECT_NEAR(shake_acceleration(s, 2.375), -3, 1e-12);
+  EXPECT_EQ(along(s, 2.5), 0);
+  EXPECT_EQ(along(s, 7), 0);
+  EXPECT_NEAR(along(s, 2.5 - 1e-9), 0, 1e-6);
+  EXPECT_NEAR(along(s, 2.375), -3, 1e-12);
 }
 
 TEST(Excitation, taper_rises_and_falls_smoothly) {
@@ -46,15 +50,14 @@ TEST(Excitation, taper_rises_and_falls_smoothly) {
   s.cycles = 10;
   s.taper = 2;  // cycles: 1 s
   // full in the middle
-  EXPECT_NEAR(shake_acceleration(s, 2.125), 3, 1e-12);
+  EXPECT_NEAR(along(s, 2.125), 3, 1e-12);
   // envelope at a quarter of a cycle in: (1 - cos(pi/8))/2
-  EXPECT_NEAR(shake_acceleration(s, 0.125), 3 * (1 - std::cos(k_pi / 8)) / 2, 1e-12);
+  EXPECT_NEAR(along(s, 0.125), 3 * (1 - std::cos(k_pi / 8)) / 2, 1e-12);
   // mirrored at the end
-  for (double t : {0.05, 0.3, 0.7, 1.2})
-    EXPECT_NEAR(shake_acceleration(s, t), -shake_acceleration(s, 5 - t), 1e-12) << t;
+  for (double t : {0.05, 0.3, 0.7, 1.2}) EXPECT_NEAR(along(s, t), -along(s, 5 - t), 1e-12) << t;
   // value and slope vanish at both ends, and the slope has no step where the taper meets the plateau
   for (double t : {1e-4, 5 - 1e-4}) {
-    EXPECT_LT(std::abs(shake_acceleration(s, t)), 1e-8);
+    EXPECT_LT(std::abs(along(s, t)), 1e-8);
     EXPECT_LT(std::abs(derivative(s, t)), 1e-4);
   }
   for (double t : {1., 4.}) EXPECT_NEAR(derivative(s, t - 1e-4), derivative(s, t + 1e-4), 0.01);
@@ -69,20 +72,20 @@ TEST(Excitation, pulses_have_the_integrals_of_their_shapes) {
   const auto integral = [&] {
     const int n = 8000;
     double sum = 0;
-    for (int i = 0; i < n; ++i) sum += shake_acceleration(s, (i + 0.5) * 2 / n) * 2 / n;
+    for (int i = 0; i < n; ++i) sum += along(s, (i + 0.5) * 2 / n) * 2 / n;
     return sum;
   };
   s.shape = Shake::Shape::half_sine;
   EXPECT_NEAR(integral(), 2 * 2 * 0.8 / k_pi, 1e-6);
   s.shape = Shake::Shape::full_sine;
   EXPECT_NEAR(integral(), 0, 1e-6);
-  EXPECT_NEAR(shake_acceleration(s, 0.3 + 0.2), 2, 1e-12);
+  EXPECT_NEAR(along(s, 0.3 + 0.2), 2, 1e-12);
   s.shape = Shake::Shape::rectangle;
   EXPECT_NEAR(integral(), 2 * 0.8, 1e-6);
   for (auto shape : {Shake::Shape::half_sine, Shake::Shape::full_sine, Shake::Shape::rectangle}) {
     s.shape = shape;
-    EXPECT_EQ(shake_acceleration(s, 0.2999), 0);
-    EXPECT_EQ(shake_acceleration(s, 1.1001), 0);
+    EXPECT_EQ(along(s, 0.2999), 0);
+    EXPECT_EQ(along(s, 1.1001), 0);
   }
 }
 
@@ -107,7 +110,7 @@ TEST(Excitation, jump_makes_the_floors_displacement_a_pure_sine) {
     const int n = 20000;
     const double w = 2 * k_pi * f, h = 2 / f / n;
     for (int i = 0; i < n; ++i) {
-      const double a = shake_acceleration(s, (i + 0.5) * h);
+      const double a = along(s, (i + 0.5) * h);
       x += h * (v + h / 2 * a);
       v += h * a;
       ASSERT_NEAR(x, -gal * k_gal / (w * w) * std::sin(w * (i + 1) * h), 1e-6);

@@ -58,7 +58,7 @@ TEST(Run, continued_from_a_checkpoint_gives_the_same_hashes) {
   shake(setup, 1, 2);
   topple::Run whole(setup);
   for (int i = 0; i < 350; ++i) ASSERT_TRUE(whole.advance().ok());
-  topple::Run rest(setup, unpack(setup.model, pack(whole.state())));
+  topple::Run rest(setup, unpack(setup.model, pack(whole.state())), setup.parameters);
   EXPECT_EQ(hash(rest.state()), hash(whole.state()));
   ASSERT_EQ(rest.contacts().size(), whole.contacts().size());
   for (int i = 0; i < 350; ++i) {

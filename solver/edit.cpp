@@ -1,0 +1,108 @@
+#include "solver/edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/contact_law.h"
+#include "solver/excitation.h"
+
+namespace topple {
+namespace {
+
+void start_passage(Shake& shake, double t) {
+  if (t <= shake.start) return;
+  shake.amplitude_before = shake_amplitude(shake, t);
+  const double period = shake.kind == Shake::Kind::sine ? 1 / shake.frequency : shake.duration;
+  shake.passage = {t, period / 4};
+}
+
+void start_contact_passage(const ContactLaw& law, const Model& model, double t, Parameters& parameters) {
+  const ContactLaw before = contact_law(parameters, t);
+  const double over = std::max(contact_period(model, before, parameters.gravity),
+                               contact_period(model, law, parameters.gravity));
+  parameters.contact = law;
+  parameters.contact_before = before;
+  parameters.contact_passage = {t, over};
+}
+
+}  // namespace
+
+Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake) {
+  const auto number = [](double x) { return Vec3(x, 0, 0); };
+  switch (key) {
+    case Edit::Key::frequency:
+      return number(parameters.shakes[shake].frequency);
+    case Edit::Key::amplitude:
+      return number(parameters.shakes[shake].amplitude);
+    case Edit::Key::direction:
+      return parameters.shakes[shake].direction;
+    case Edit::Key::alpha:
+      return number(parameters.contact.alpha);
+    case Edit::Key::q:
+      return number(parameters.contact.q);
+    case Edit::Key::friction:
+      return number(parameters.contact.friction);
+    case Edit::Key::restitution:
+      return number(parameters.contact.restitution);
+    case Edit::Key::time_step:
+      return number(parameters.time_step);
+  }
+  return Vec3::Zero();
+}
+
+void apply(const Edit& edit, const Model& model, double t, Parameters& parameters) {
+  ContactLaw law = parameters.contact;
+  const double value = edit.value.x();
+  switch (edit.key) {
+    case Edit::Key::frequency: {
+      Shake& shake = parameters.shakes[edit.shake];
+      if (t > shake.start) {
+        shake.turns = shake_turns(shake, t);
+        shake.turned = t - shake.start;
+      }
+      shake.frequency = value;
+      return;
+    }
+    case Edit::Key::amplitude:
+      start_passage(parameters.shakes[edit.shake], t);
+      parameters.shakes[edit.shake].amplitude = value;
+      return;
+    case Edit::Key::direction:
+      start_passage(parameters.shakes[edit.shake], t);
+      parameters.shakes[edit.shake].direction = edit.value.normalized();
+      return;
+    case Edit::Key::time_step:
+      parameters.time_step = value;
+      return;
+    case Edit::Key::alpha:
+      law.alpha = value;
+      break;
+    case Edit::Key::q:
+      law.q = value;
+      break;
+    case Edit::Key::friction:
+      law.friction = value;
+      break;
+    case Edit::Key::restitution:
+      law.restitution = value;
+      break;
+  }
+  start_contact_passage(law, model, t, parameters);
+}
+
+double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  double longest = 0;
+  if (model.planes.empty() || gravity.isZero(0)) return longest;
+  for (const Body& body : model.bodies) {
+    if (body.contact_point_count == 0) continue;
+    const double points = static_cast<double>(std::max<std::size_t>(1, body.base_points.size()));
+    const ContactPoint& point = model.contact_points[body.first_contact_point];
+    const double width = model.planes.front().width > 0 ? model.planes.front().width : point.width;
+    const double L = (point.width + width) / 2, g = gravity.norm();
+    const double depth = std::pow(body.mass * g / (points * law.alpha), 1 / law.q);
+    longest = std::max(longest, 2 * k_pi * std::sqrt(L * depth / (law.q * g)));
+  }
+  return longest;
+}
+
+}  // namespace topple

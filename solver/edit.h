@@ -1,0 +1,30 @@
+// Changes of parameters while it runs.
+#pragma once
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+
+namespace topple {
+
+/// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, only `direction`
+/// uses all three.
+struct Edit {
+  enum class Key { frequency, amplitude, direction, alpha, q, friction, restitution, time_step };
+  Key key;
+  int shake = 0;  ///< of frequency, amplitude and direction
+  Vec3 value = Vec3::Zero();
+};
+
+/// The value that an edit of this key and shake sets.
+Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
+
+/// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude and direction
+/// change over a quarter of a period (at once before the shake starts), numbers of the contact law over
+/// contact_period. The result depends on nothing but the arguments, so that edits can be repeated.
+void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
+
+/// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with
+/// depth = (W / (n alpha))^(1/q) on the n contact points of its base. 0 without gravity or planes.
+double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity);
+
+}  // namespace topple
