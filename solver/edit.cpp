@@ -9,6 +9,10 @@
 namespace topple {
 namespace {
 
+// Periods of the slowest bounce. Over a single one, an alpha made 25 times as great still lifts what stands
+// on the floor off it; over two, one made 100 times as great does not.
+constexpr double k_contact_passage = 2;
+
 void start_passage(Shake& shake, double t) {
   if (t <= shake.start) return;
   shake.amplitude_before = shake_amplitude(shake, t);
@@ -18,14 +22,27 @@ void start_passage(Shake& shake, double t) {
 
 void start_contact_passage(const ContactLaw& law, const Model& model, double t, Parameters& parameters) {
   const ContactLaw before = contact_law(parameters, t);
-  const double over = std::max(contact_period(model, before, parameters.gravity),
-                               contact_period(model, law, parameters.gravity));
+  const double period = std::max(contact_period(model, before, parameters.gravity),
+                                 contact_period(model, law, parameters.gravity));
   parameters.contact = law;
   parameters.contact_before = before;
-  parameters.contact_passage = {t, over};
+  parameters.contact_passage = {t, k_contact_passage * period};
 }
 
 }  // namespace
+
+std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters) {
+  std::vector<std::pair<Edit::Key, int>> keys;
+  for (int i = 0; i < static_cast<int>(parameters.shakes.size()); ++i) {
+    if (parameters.shakes[i].kind == Shake::Kind::sine) keys.emplace_back(Edit::Key::frequency, i);
+    keys.emplace_back(Edit::Key::amplitude, i);
+    keys.emplace_back(Edit::Key::direction, i);
+  }
+  for (const Edit::Key key :
+       {Edit::Key::alpha, Edit::Key::q, Edit::Key::friction, Edit::Key::restitution, Edit::Key::time_step})
+    keys.emplace_back(key, 0);
+  return keys;
+}
 
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake) {
   const auto number = [](double x) { return Vec3(x, 0, 0); };
@@ -69,7 +86,7 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& parameter
       return;
     case Edit::Key::direction:
       start_passage(parameters.shakes[edit.shake], t);
-      parameters.shakes[edit.shake].direction = edit.value.normalized();
+      parameters.shakes[edit.shake].direction = edit.value.stableNormalized();
       return;
     case Edit::Key::time_step:
       parameters.time_step = value;

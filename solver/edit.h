@@ -1,6 +1,9 @@
 // Changes of parameters while it runs.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "solver/model.h"
 #include "solver/parameters.h"
 
@@ -15,12 +18,15 @@ struct Edit {
   Vec3 value = Vec3::Zero();
 };
 
+/// Every key, and shake that it is for, that can be edited.
+std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters);
+
 /// The value that an edit of this key and shake sets.
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 
 /// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude and direction
-/// change over a quarter of a period (at once before the shake starts), numbers of the contact law over
-/// contact_period. The result depends on nothing but the arguments, so that edits can be repeated.
+/// change over a quarter of a period (at once before the shake starts), numbers of the contact law over two
+/// of contact_period. The result depends on nothing but the arguments, so that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 
 /// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with

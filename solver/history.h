@@ -33,7 +33,7 @@ struct Stretch {
 /// Edits in the order in which they were posted; a branch that has been left gets no more.
 struct History {
   std::vector<Branch> branches;
-  std::vector<LoggedEdit> edits;
+  std::vector<LoggedEdit> edits = {};
 
   /// Root first. Throws std::invalid_argument when the branch or an ancestor of it does not exist.
   std::vector<Stretch> way_to(std::int32_t branch) const;

@@ -53,6 +53,7 @@ StepStatus Run::advance() {
 
 void Run::edit(const Edit& edit) {
   apply(edit, setup_->model, now_.state.time, now_.parameters);
+  status_ = {};
 }
 
 bool Run::over() const {

@@ -69,7 +69,7 @@ class Run {
 
   /// One accepted step. Must not be called when over().
   StepStatus advance();
-  /// Changes a parameter from the present state on.
+  /// Changes a parameter from the present state on; after it a step that failed may be tried again.
   void edit(const Edit& edit);
   /// Time is up, a stop condition holds or the last step failed.
   bool over() const;

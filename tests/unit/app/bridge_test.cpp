@@ -34,7 +34,7 @@ class BridgeTest : public ::testing::Test {
 };
 
 TEST_F(BridgeTest, members_are_drawn_from_their_first_to_their_last_node) {
-  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_);
+  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters);
   ASSERT_EQ(frame.tubes.size(), model().members.size());
   for (std::size_t m = 0; m < frame.tubes.size(); ++m) {
     const Member& member = model().members[m];
@@ -51,7 +51,7 @@ TEST_F(BridgeTest, members_are_drawn_from_their_first_to_their_last_node) {
 }
 
 TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
-  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_);
+  const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters);
   for (const render::Station& station : frame.stations) {
     for (int k = 0; k < 3; ++k) {
       EXPECT_GE(station.position[k], frame.bounds_min[k]);
@@ -72,7 +72,8 @@ TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
   io::FrameRow moved = end_;
   moved.floor_displacement[0] += 0.25;
   const Bridge bridge(scene_, extent_);
-  const render::SceneFrame before = bridge.frame(end_), after = bridge.frame(moved);
+  const render::SceneFrame before = bridge.frame(end_, scene_.setup.parameters),
+                           after = bridge.frame(moved, scene_.setup.parameters);
   ASSERT_EQ(after.grounds.size(), 1u);
   EXPECT_TRUE(after.grounds[0].is_floor);
   EXPECT_NEAR(after.grounds[0].centre[0] - before.grounds[0].centre[0], 0.25, 1e-6);
@@ -80,12 +81,12 @@ TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
 }
 
 TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
-  const render::Caption caption = Bridge(scene_, extent_).frame(end_).caption;
+  const render::Caption caption = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters).caption;
   EXPECT_EQ(caption.title, "A cabinet for tests");
   ASSERT_EQ(caption.lines.size(), 3u);
   EXPECT_EQ(caption.lines[0], "t = 0.10 s");
   EXPECT_TRUE(caption.lines[1].starts_with("floor: 2 Hz, 400 gal;  now ")) << caption.lines[1];
-  EXPECT_TRUE(caption.lines[2].starts_with("free: tilt ")) << caption.lines[2];
+  EXPECT_TRUE(caption.lines[2].starts_with("free: rocking, ")) << caption.lines[2];
 }
 
 TEST_F(BridgeTest, a_row_of_another_model_is_refused) {

@@ -7,10 +7,12 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/usage_test.cpp)
+target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(app_test PRIVATE topple_app GTest::gtest_main)
 target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>")
 add_dependencies(app_test topple)

@@ -1,0 +1,303 @@
+#include "app/player.h"
+
+#include <algorithm>
+
+namespace topple::app {
+namespace {
+
+io::FrameRow row_at(const std::vector<RowPtr>& rows, double time) {
+  const auto after = std::upper_bound(rows.begin(), rows.end(), time,
+                                      [](double t, const RowPtr& row) { return t < row->time; });
+  if (after == rows.begin()) return *rows.front();
+  const RowPtr& before = *(after - 1);
+  return after == rows.end() || before->time == time ? *before : blend(*before, **after, time);
+}
+
+/// The last row that is not later.
+const RowPtr& row_before(const std::vector<RowPtr>& rows, double time) {
+  const auto after = std::upper_bound(rows.begin(), rows.end(), time,
+                                      [](double t, const RowPtr& row) { return t < row->time; });
+  return after == rows.begin() ? rows.front() : *(after - 1);
+}
+
+double nearest_time(const std::vector<RowPtr>& rows, double time) {
+  const auto after = std::lower_bound(rows.begin(), rows.end(), time,
+                                      [](const RowPtr& row, double t) { return row->time < t; });
+  if (after == rows.begin()) return rows.front()->time;
+  if (after == rows.end()) return rows.back()->time;
+  const double before = (*(after - 1))->time;
+  return time - before < (*after)->time - time ? before : (*after)->time;
+}
+
+}  // namespace
+
+Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run)
+    : scene_(std::move(scene)), run_(run), parameters_(scene_->setup.parameters) {}
+
+bool Player::update(double wall_s) {
+  const double before = cursor_;
+  const std::size_t rows_before = way_.size();
+  LiveReport report = run_.take();
+  bool news = report.head || !report.rows.empty() || !report.edits.empty() || !report.branches.empty() ||
+              !report.events.empty() || report.status.kind != status_.kind ||
+              report.status.message != status_.message || report.status.achieved != status_.achieved ||
+              report.status.record_failure != status_.record_failure;
+  take(std::move(report));
+  if (following_ && head_ && live_shown()) {
+    cursor_ = head_->time;
+    if (playing_ && (status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::failed))
+      playing_ = false;
+  } else if (playing_ && !forking_) {
+    cursor_ = std::min(cursor_ + speed_ * wall_s, end());
+    if (cursor_ >= end()) {
+      following_ = live_shown();
+      playing_ = following_ && status_.kind == LiveStatus::Kind::halted;
+      if (playing_) run_.go(speed_);
+    }
+  }
+  news = news || cursor_ != before || way_.size() != rows_before;
+  if (news) update_parameters();
+  return news;
+}
+
+void Player::take(LiveReport&& report) {
+  status_ = std::move(report.status);
+  bool rebuild = false;
+  for (const Branch& branch : report.branches) {
+    history_.branches.push_back(branch);
+    if (branch.id != status_.branch) continue;
+    left_ = branch.parent;
+    shown_ = branch.id;
+    head_ = nullptr;
+    following_ = !replay();
+    forking_ = false;
+    rebuild = true;
+  }
+  for (const LoggedEdit& edit : report.edits) {
+    history_.edits.push_back(edit);
+    if (!posted_.empty() && !replay()) posted_.erase(posted_.begin());
+  }
+  events_.insert(events_.end(), report.events.begin(), report.events.end());
+  if (report.head) head_ = std::move(report.head);
+  for (RowPtr& row : report.rows) {
+    std::vector<RowPtr>& own = rows_[row->branch];
+    own.push_back(row);
+    if (row->branch == shown_ && !rebuild) extend_way(own.back());
+  }
+  if (rebuild) rebuild_way();
+  if (status_.kind == LiveStatus::Kind::failed || status_.kind == LiveStatus::Kind::over) forking_ = false;
+}
+
+std::vector<RowPtr> Player::rows_on_way_to(std::int32_t branch) const {
+  std::vector<RowPtr> found;
+  for (const Stretch& stretch : history_.way_to(branch)) {
+    const auto own = rows_.find(stretch.branch);
+    if (own == rows_.end()) continue;
+    for (const RowPtr& row : own->second)
+      if (stretch.branch == branch || row->step < stretch.last_step) found.push_back(row);
+  }
+  return found;
+}
+
+void Player::rebuild_way() {
+  way_.clear();
+  extent_ = {};
+  for (const RowPtr& row : rows_on_way_to(shown_)) extend_way(row);
+  const bool other = left_ >= 0 && left_ != shown_;
+  ghost_way_ = other ? rows_on_way_to(left_) : std::vector<RowPtr>();
+}
+
+void Player::extend_way(const RowPtr& row) {
+  way_.push_back(row);
+  extent_.add(scene_->setup.model, scene_->setup.parameters, *row);
+}
+
+void Player::update_parameters() {
+  if (history_.branches.empty() || way_.empty()) return;
+  const bool head = following_ && head_;
+  const io::FrameRow& here = head ? *head_ : *row_before(way_, cursor_);
+  parameters_ = parameters_at(scene_->setup, history_, head ? status_.branch : here.branch, here.step);
+  if (head)
+    for (const Edit& edit : posted_) apply(edit, scene_->setup.model, here.time, parameters_);
+}
+
+bool Player::busy() const {
+  return forking_ || status_.kind == LiveStatus::Kind::starting ||
+         status_.kind == LiveStatus::Kind::returning;
+}
+
+double Player::end() const {
+  const double recorded = way_.empty() ? 0 : way_.back()->time;
+  return live_shown() && head_ ? std::max(recorded, head_->time) : recorded;
+}
+
+double Player::length() const {
+  return std::max({end(), live_shown() ? scene_->setup.run.duration : 0, 1e-3});
+}
+
+void Player::play() {
+  if (busy() || playing_ || way_.empty()) return;
+  if (following_) {
+    if (status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::failed) return;
+    run_.go(speed_);
+  } else if (cursor_ >= end()) {
+    cursor_ = way_.front()->time;
+  }
+  playing_ = true;
+}
+
+void Player::pause() {
+  if (following_) run_.halt();
+  playing_ = false;
+}
+
+void Player::step(int rows) {
+  if (way_.empty() || busy()) return;
+  pause();
+  if (following_) {
+    if (rows > 0) {
+      run_.one_step();
+      return;
+    }
+    if (cursor_ > way_.back()->time) {
+      scrub(way_.back()->time);
+      return;
+    }
+  }
+  const auto here = std::upper_bound(way_.begin(), way_.end(), cursor_,
+                                     [](double t, const RowPtr& row) { return t < row->time; }) -
+                    way_.begin() - 1;
+  const auto last = static_cast<std::ptrdiff_t>(way_.size()) - 1;
+  if (here + rows > last)
+    to_end();
+  else
+    scrub(way_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(here + rows, 0))]->time);
+}
+
+void Player::set_speed(double speed) {
+  speed_ = std::clamp(speed, k_least_speed, k_most_speed);
+  if (playing_ && following_) run_.go(speed_);
+}
+
+void Player::faster() {
+  set_speed(speed_ * 2);
+}
+
+void Player::slower() {
+  set_speed(speed_ / 2);
+}
+
+void Player::scrub(double time) {
+  if (way_.empty()) return;
+  pause();
+  following_ = live_shown() && time >= end();
+  cursor_ = following_ ? end() : nearest_time(way_, time);
+  update_parameters();
+}
+
+void Player::to_start() {
+  scrub(0);
+}
+
+void Player::to_end() {
+  scrub(end());
+}
+
+void Player::restart() {
+  if (way_.empty() || busy()) return;
+  if (replay()) {
+    to_start();
+    return;
+  }
+  pause();
+  const io::FrameRow& first = *way_.front();
+  const Parameters there = parameters_at(scene_->setup, history_, first.branch, first.step);
+  std::vector<Edit> edits;
+  for (const auto& [key, shake] : editable(there)) {
+    const Vec3 value = edited_value(parameters_, key, shake);
+    if (value != edited_value(there, key, shake)) edits.push_back({key, shake, value});
+  }
+  forking_ = true;
+  run_.fork(first.branch, first.step, edits);
+}
+
+void Player::continue_from_here() {
+  if (!can_continue()) return;
+  playing_ = false;
+  const io::FrameRow& here = *row_before(way_, cursor_);
+  cursor_ = here.time;
+  forking_ = true;
+  run_.fork(here.branch, here.step);
+}
+
+void Player::show_branch(std::int32_t branch) {
+  if (branch == shown_ || busy()) return;
+  pause();
+  left_ = shown_;
+  shown_ = branch;
+  rebuild_way();
+  following_ = false;
+  scrub(cursor_);
+}
+
+bool Player::can_edit() const {
+  return following_ && live_shown() && head_ && !busy();
+}
+
+void Player::post(const Edit& edit) {
+  posted_.push_back(edit);
+  run_.edit(edit);
+  update_parameters();
+}
+
+void Player::edit(const Edit& edit) {
+  if (!can_edit()) return;
+  if (new_undo_ || undo_.empty())
+    undo_.push_back({{edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)}, edit});
+  else
+    undo_.back().again = edit;
+  new_undo_ = false;
+  redo_.clear();
+  post(edit);
+}
+
+void Player::undo() {
+  if (!can_undo()) return;
+  new_undo_ = true;
+  post(undo_.back().back);
+  redo_.push_back(undo_.back());
+  undo_.pop_back();
+}
+
+void Player::redo() {
+  if (!can_redo()) return;
+  new_undo_ = true;
+  post(redo_.back().again);
+  undo_.push_back(redo_.back());
+  redo_.pop_back();
+}
+
+std::optional<io::FrameRow> Player::row() const {
+  if (following_ && head_ && live_shown()) return *head_;
+  if (way_.empty()) return std::nullopt;
+  return row_at(way_, cursor_);
+}
+
+std::optional<io::FrameRow> Player::ghost() const {
+  if (ghost_way_.empty() || cursor_ > ghost_way_.back()->time) return std::nullopt;
+  return row_at(ghost_way_, cursor_);
+}
+
+std::vector<io::RecordedEvent> Player::events() const {
+  std::vector<io::RecordedEvent> found;
+  for (const Stretch& stretch : history_.way_to(shown_))
+    for (const io::RecordedEvent& event : events_)
+      if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
+  return found;
+}
+
+std::vector<LoggedEdit> Player::edits() const {
+  return history_.edits_on_way_to(shown_);
+}
+
+}  // namespace topple::app

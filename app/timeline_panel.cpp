@@ -1,0 +1,247 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "app/panels.h"
+#include "render/overlay.h"
+#include "solver/io/edit_text.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_degrees = 180 / k_pi;
+constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
+constexpr double k_least_gal = 10, k_least_tilt = 1;
+
+// Okabe and Ito's colours, told apart by everybody.
+constexpr ImU32 k_colours[] = {IM_COL32(0, 114, 178, 255),  IM_COL32(213, 94, 0, 255),
+                               IM_COL32(0, 158, 115, 255),  IM_COL32(204, 121, 167, 255),
+                               IM_COL32(86, 180, 233, 255), IM_COL32(230, 159, 0, 255)};
+constexpr ImU32 k_axis = IM_COL32(60, 74, 88, 110), k_faint = IM_COL32(60, 74, 88, 45);
+constexpr ImU32 k_text = IM_COL32(52, 62, 72, 255), k_ghost = IM_COL32(120, 128, 136, 150);
+constexpr ImU32 k_floor_colours[] = {IM_COL32(70, 82, 94, 255), IM_COL32(140, 90, 60, 255),
+                                     IM_COL32(110, 110, 170, 255)};
+
+ImU32 body_colour(std::size_t body) {
+  return k_colours[body % std::size(k_colours)];
+}
+
+/// Time to the right, one quantity upwards.
+struct Lane {
+  float left, right, top, bottom;
+  double length;     // s
+  double low, high;  // of the quantity
+  float x(double t) const { return left + static_cast<float>(t / length) * (right - left); }
+  float y(double value) const {
+    return bottom - static_cast<float>((value - low) / (high - low)) * (bottom - top);
+  }
+};
+
+using Value = std::function<double(const io::FrameRow&)>;
+
+// No more than the least and greatest value of each pixel column.
+void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const Value& value,
+               ImU32 colour, float thickness) {
+  std::vector<ImVec2> points;
+  for (std::size_t i = 0; i < rows.size();) {
+    const float column = std::floor(lane.x(rows[i]->time));
+    double least = 1e300, greatest = -1e300;
+    std::size_t next = i;
+    for (; next < rows.size() && std::floor(lane.x(rows[next]->time)) == column; ++next) {
+      const double v = value(*rows[next]);
+      least = std::min(least, v);
+      greatest = std::max(greatest, v);
+    }
+    const bool rises = value(*rows[next - 1]) >= value(*rows[i]);
+    points.emplace_back(lane.x(rows[i]->time), lane.y(rises ? least : greatest));
+    if (least != greatest)
+      points.emplace_back(lane.x(rows[next - 1]->time), lane.y(rises ? greatest : least));
+    i = next;
+  }
+  list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);
+  list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+  list.PopClipRect();
+}
+
+double peak(const std::vector<RowPtr>& rows, const Value& value) {
+  double most = 0;
+  for (const RowPtr& row : rows) most = std::max(most, std::abs(value(*row)));
+  return most;
+}
+
+void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text) {
+  list.AddText({std::round(x), std::round(y)}, colour, text.c_str());
+}
+
+float text_width(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
+  const auto component = [](int k) {
+    return [k](const io::FrameRow& row) { return row.floor_acceleration[k] / k_gal; };
+  };
+  double most = k_least_gal;
+  for (int k = 0; k < 3; ++k) most = std::max(most, 1.08 * peak(rows, component(k)));
+  lane.low = -most;
+  lane.high = most;
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
+  std::string moving;
+  for (int k = 0; k < 3; ++k) {
+    if (!rows.empty() && peak(rows, component(k)) == 0) continue;
+    add_curve(list, lane, rows, component(k), k_floor_colours[k], 1.3f);
+    moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
+  }
+  const float line = ImGui::GetTextLineHeight();
+  add_text(list, label_left, lane.top, k_text, "floor, gal");
+  if (!moving.empty()) add_text(list, label_left, lane.top + line, k_text, moving);
+  const std::string top = fmt::format("{:.0f}", most);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_text, top);
+}
+
+void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
+  const std::vector<RowPtr>& rows = player.way();
+  const auto& bodies = player.scene().setup.model.bodies;
+  const auto tilt = [](std::size_t b) {
+    return [b](const io::FrameRow& row) { return row.body[11 * b + 7] * k_degrees; };
+  };
+  double critical = 0, most = k_least_tilt;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!rows.empty()) critical = std::max(critical, rows.back()->body[11 * b + 10] * k_degrees);
+    most = std::max(most, 1.1 * peak(rows, tilt(b)));
+  }
+  lane.low = 0;
+  lane.high = critical > 0 ? k_tilt_room * critical : most;
+  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, k_axis);
+  if (critical > 0) {
+    for (float x = lane.left; x < lane.right; x += 9)
+      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, k_axis);
+    const std::string label = fmt::format("{:.1f}°", critical);
+    add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
+             k_text, label);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    add_curve(list, lane, player.ghost_way(), tilt(b), k_ghost, 1);
+    add_curve(list, lane, rows, tilt(b), body_colour(b), 1.6f);
+  }
+  const float line = ImGui::GetTextLineHeight();
+  float y = lane.top - 2;
+  add_text(list, label_left, y, k_text, critical > 0 ? "tilt" : "tilt, °");
+  for (std::size_t b = 0; b < bodies.size() && y + 2 * line < lane.bottom + line; ++b) {
+    y += line;
+    list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
+                       body_colour(b));
+    add_text(list, label_left + 14, y, k_text, bodies[b].name);
+  }
+}
+
+std::string event_text(const Model& model, const io::RecordedEvent& event) {
+  const char* what = event.event.kind == Event::Kind::uplift   ? "lifts off"
+                     : event.event.kind == Event::Kind::impact ? "strikes the floor"
+                                                               : "passes its critical angle";
+  return fmt::format("{:.3f} s: {} {}", event.time,
+                     model.bodies[static_cast<std::size_t>(event.event.body)].name, what);
+}
+
+std::string edit_text(const LoggedEdit& edit) {
+  const io::Key& key = io::key_of(edit.edit.key);
+  const Vec3& v = edit.edit.value;
+  const std::string value =
+      edit.edit.key == Edit::Key::direction
+          ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
+          : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
+  return fmt::format("{:.3f} s: {} = {}", edit.time, io::edit_key(edit.edit), value);
+}
+
+/// Marks along the top of the tilt lane; the one under the mouse says what it is.
+void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
+  constexpr float k_size = 4;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  std::string hovered;
+  const auto mark = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
+    const float x = lane.x(time);
+    if (x < lane.left || x > lane.right) return;
+    shape(ImVec2(x, y));
+    if (std::abs(mouse.x - x) < k_size && std::abs(mouse.y - y) < 2 * k_size) hovered = text();
+  };
+  const Model& model = player.scene().setup.model;
+  const float y = lane.bottom + k_size + 2;
+  for (const io::RecordedEvent& event : player.events()) {
+    const ImU32 colour = body_colour(static_cast<std::size_t>(event.event.body));
+    mark(
+        event.time, y, [&] { return event_text(model, event); },
+        [&](ImVec2 p) {
+          if (event.event.kind == Event::Kind::uplift)
+            list.AddTriangleFilled({p.x - k_size, p.y + k_size}, {p.x, p.y - k_size},
+                                   {p.x + k_size, p.y + k_size}, colour);
+          else if (event.event.kind == Event::Kind::impact)
+            list.AddLine({p.x, p.y - k_size}, {p.x, p.y + k_size}, colour, 2);
+          else
+            list.AddRectFilled({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
+        });
+  }
+  for (const LoggedEdit& edit : player.edits())
+    mark(
+        edit.time, lane.top, [&] { return edit_text(edit); },
+        [&](ImVec2 p) { list.AddNgonFilled(p, k_size, IM_COL32(150, 60, 140, 255), 4); });
+  for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
+    for (const Branch& branch : player.history().branches) {
+      if (branch.id != stretch.branch || branch.parent < 0 || branch.fork_step == 0) continue;
+      const auto at = std::find_if(player.way().begin(), player.way().end(),
+                                   [&](const RowPtr& row) { return row->branch == branch.id; });
+      if (at == player.way().end()) continue;
+      const float x = lane.x((*at)->time);
+      list.AddLine({x, lane.top}, {x, lane.bottom}, k_axis);
+    }
+  if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
+}
+
+void add_times(ImDrawList& list, const Lane& lane) {
+  const render::Ticks ticks = render::nice_ticks(0, lane.length, 10);
+  for (double t : ticks.values) {
+    t = std::max(t, 0.);  // no -0
+    const float x = lane.x(t);
+    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
+    const std::string label = fmt::format("{:.{}f} s", t, ticks.decimals);
+    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_text, label);
+  }
+}
+
+}  // namespace
+
+void draw_timeline(Player& player, const Box& box) {
+  begin_panel("timeline", box);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float line = ImGui::GetTextLineHeight();
+  const float label_left = box.left + 10;
+  Lane lane{box.left + 7.5f * line,
+            box.left + box.width - 12,
+            box.top + 8,
+            box.top + box.height - line - 14,
+            player.length(),
+            0,
+            1};
+  const float height = lane.bottom - lane.top;
+  Lane upper = lane, lower = lane;
+  upper.bottom = lane.top + 0.4f * height;
+  lower.top = lane.top + 0.46f * height;
+  add_acceleration(list, upper, player.way(), label_left);
+  add_tilts(list, lower, player, label_left);
+  add_times(list, lower);
+
+  const float x = lane.x(player.time());
+  list.AddLine({x, lane.top}, {x, lane.bottom}, IM_COL32(200, 40, 40, 255), 1.5f);
+  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3},
+                         IM_COL32(200, 40, 40, 255));
+  ImGui::SetCursorScreenPos({lane.left, lane.top});
+  ImGui::InvisibleButton("scrub", {lane.right - lane.left, height + line});
+  if (ImGui::IsItemActive())
+    player.scrub((ImGui::GetIO().MousePos.x - lane.left) / (lane.right - lane.left) * player.length());
+  add_marks(list, lower, player);
+  ImGui::End();
+}
+
+}  // namespace topple::app

@@ -1,0 +1,72 @@
+#include "app/words.h"
+
+#include <fmt/format.h>
+
+namespace topple::app {
+namespace {
+
+constexpr double k_degrees = 180 / k_pi;
+constexpr double k_upright = 0.1;  // degrees: less is standing
+constexpr double k_lying = 60;     // degrees
+constexpr double k_slid = 1e-3;    // m
+
+}  // namespace
+
+std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body) {
+  const double* const values = &row.body[11 * body];
+  const double tilt = values[7] * k_degrees, slide = values[8], critical = values[10] * k_degrees;
+  std::string line = model.bodies[body].name + ": ";
+  if (critical == 0) return line + fmt::format("tilt {:.1f}°", tilt);
+  if (tilt > k_lying)
+    line += fmt::format("fallen, tilt {:.0f}°", tilt);
+  else if (tilt > critical)
+    line += fmt::format("toppling, {:.1f}° beyond {:.1f}°", tilt, critical);
+  else if (tilt > k_upright)
+    line += fmt::format("rocking, {:.1f}° of {:.1f}°", tilt, critical);
+  else
+    line += "standing";
+  if (slide > k_slid) line += fmt::format(", slid {:.0f} mm", 1e3 * slide);
+  return line;
+}
+
+std::string shake_in_words(const Parameters& parameters) {
+  if (parameters.shakes.empty()) return "";
+  const Shake& shake = parameters.shakes.front();
+  const double gal = shake.amplitude / k_gal;
+  return shake.kind == Shake::Kind::sine
+             ? fmt::format("floor: {:.4g} Hz, {:.4g} gal", shake.frequency, gal)
+             : fmt::format("floor: pulse {:g} s, {:.4g} gal", shake.duration, gal);
+}
+
+std::string status_in_words(const Player& player) {
+  const LiveStatus& status = player.status();
+  switch (status.kind) {
+    case LiveStatus::Kind::starting:
+      return "Bringing the bodies to rest under gravity …";
+    case LiveStatus::Kind::returning:
+      return "Going back to the state at this instant …";
+    case LiveStatus::Kind::failed:
+      if (player.at_head()) return "Diverged: " + status.message;
+      break;
+    case LiveStatus::Kind::over:
+      if (player.at_head())
+        return fmt::format("The run ended at {:.2f} s. R runs it again, dragging on the timeline looks back.",
+                           player.time());
+      break;
+    default:
+      break;
+  }
+  if (player.way().empty())
+    return status.message.empty() ? "The recording holds no instants." : status.message;
+  if (player.at_head())
+    return player.playing() ? fmt::format("Running: {:.2f} times real time asked, {:.2f} reached.",
+                                          player.speed(), status.achieved)
+                            : "Paused. Space goes on; parameters can be changed now and while it runs.";
+  std::string words = player.replay() ? "Recording" : "Looking back";
+  words += player.playing() ? fmt::format(", played at {:g} times real time", player.speed()) : "";
+  if (!status.message.empty()) return words + "; " + status.message;
+  return words + ". C continues from here as a new branch" +
+         (player.replay() ? "." : ", End returns to the newest instant.");
+}
+
+}  // namespace topple::app

@@ -1,0 +1,19 @@
+// What is happening, in words.
+#pragma once
+
+#include <string>
+
+#include "app/player.h"
+
+namespace topple::app {
+
+/// "free: rocking, 4.2° of 10.9°".
+std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
+
+/// "floor: 0.5 Hz, 190 gal" of the first shake; empty without one.
+std::string shake_in_words(const Parameters& parameters);
+
+/// One sentence for the status line: what plays, and how it stands with it.
+std::string status_in_words(const Player& player);
+
+}  // namespace topple::app

@@ -1,0 +1,360 @@
+#include "app/player.h"
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+
+#include "live.h"
+#include "solver/io/rerun.h"
+#include "unit/render/scratch.h"
+
+namespace topple::app {
+namespace {
+
+class PlayerTest : public ::testing::Test {
+ protected:
+  void start(const std::string& text = k_rocking, LiveRun::Advance advance = &topple::Run::advance) {
+    start({.scene = live_scene(text), .recording = {}, .output = path("live.h5")}, std::move(advance));
+  }
+  void start(LiveSource source, LiveRun::Advance advance = &topple::Run::advance) {
+    const auto scene = source.scene;
+    run_.emplace(
+        std::move(source), [] {}, std::move(advance));
+    player_.emplace(scene, *run_);
+    ASSERT_TRUE(until([this] { return player().row().has_value(); }));
+  }
+  template <typename Done>
+  ::testing::AssertionResult until(Done done) {
+    return eventually([this] { player_->update(0.01); }, done);
+  }
+  /// Runs the live branch to `time`, and stops there or soon after.
+  void run_to(double time) {
+    while (player().speed() < k_most_speed) player().faster();
+    player().play();
+    ASSERT_TRUE(until([&] { return player().time() >= time; }));
+    player().pause();
+    ASSERT_TRUE(until([&] { return player().status().kind != LiveStatus::Kind::going; }));
+  }
+  void run_to_end() {
+    while (player().speed() < k_most_speed) player().faster();
+    player().play();
+    ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::over; }));
+  }
+  Player& player() { return *player_; }
+  std::string path(const char* name) const { return (scratch_ / name).string(); }
+
+  /// Row of the branch shown at a step; the last one when there is none.
+  RowPtr row_at_step(std::int64_t step) {
+    for (const RowPtr& row : player().way())
+      if (row->step == step) return row;
+    return player().way().back();
+  }
+  void expect_same_motion(const io::FrameRow& a, const io::FrameRow& b) {
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.time, b.time);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.rotation, b.rotation);
+    EXPECT_EQ(a.body, b.body);
+  }
+  void expect_repeatable(const char* name, int branches) {
+    const io::Recording recording(path(name));
+    EXPECT_EQ(recording.history().branches.size(), static_cast<std::size_t>(branches));
+    const io::Rerun rerun = io::rerun(recording, [](std::int64_t) {});
+    EXPECT_TRUE(rerun.differences.empty());
+    EXPECT_GT(rerun.checkpoints, branches);
+  }
+
+  const render::Scratch scratch_;
+  std::optional<LiveRun> run_;
+  std::optional<Player> player_;
+};
+
+Edit amplitude(double gal) {
+  return {Edit::Key::amplitude, 0, Vec3(gal * k_gal, 0, 0)};
+}
+
+TEST_F(PlayerTest, plays_to_the_end_and_closes_a_recording_that_can_be_run_again) {
+  start();
+  EXPECT_FALSE(player().playing());
+  EXPECT_EQ(player().time(), 0);
+  run_to_end();
+  EXPECT_FALSE(player().playing());
+  EXPECT_NEAR(player().time(), 1, 1e-9);
+  EXPECT_EQ(player().way().size(), 101u);
+  run_->close("stopped");
+  const io::Recording recording(path("live.h5"));
+  EXPECT_EQ(recording.status(), "completed");
+  EXPECT_FALSE(recording.summary_json().empty());
+  expect_repeatable("live.h5", 1);
+}
+
+TEST_F(PlayerTest, a_run_closed_early_says_so_and_holds_everything_up_to_there) {
+  start();
+  run_to(0.3);
+  const io::FrameRow last = *player().row();
+  run_->close("stopped");
+  const io::Recording recording(path("live.h5"));
+  EXPECT_EQ(recording.status(), "stopped");
+  expect_same_motion(recording.frame(recording.frame_count() - 1), last);
+}
+
+TEST_F(PlayerTest, pauses_steps_and_goes_on) {
+  start();
+  player().step(1);
+  ASSERT_TRUE(until([&] { return player().row()->step == 1; }));
+  player().step(1);
+  ASSERT_TRUE(until([&] { return player().row()->step == 2; }));
+  player().step(-1);
+  EXPECT_EQ(player().row()->step, 0);
+  EXPECT_FALSE(player().at_head());
+  player().step(1);
+  EXPECT_TRUE(player().at_head());
+  EXPECT_EQ(player().row()->step, 2);
+  run_to(0.2);
+  const std::int64_t step = player().row()->step;
+  for (int i = 0; i < 20; ++i) player().update(0.01);
+  EXPECT_EQ(player().row()->step, step);
+}
+
+TEST_F(PlayerTest, runs_at_the_speed_asked_for) {
+  start();
+  player().slower();  // half
+  const auto begin = std::chrono::steady_clock::now();
+  player().play();
+  ASSERT_TRUE(until([&] { return player().time() >= 0.1; }));
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GE(wall, 0.19);  // never faster than asked: 0.1 s at half the speed, less a report of 8 ms
+}
+
+TEST_F(PlayerTest, any_instant_of_the_past_is_shown_as_it_was) {
+  start();
+  run_to(0.5);
+  const RowPtr past = row_at_step(200);
+  ASSERT_EQ(past->step, 200);
+  player().scrub(past->time);
+  EXPECT_FALSE(player().at_head());
+  expect_same_motion(*player().row(), *past);
+  player().to_start();
+  EXPECT_EQ(player().row()->step, 0);
+  player().to_end();
+  EXPECT_TRUE(player().at_head());
+  EXPECT_GE(player().time(), 0.5);
+}
+
+TEST_F(PlayerTest, what_was_recorded_is_played_up_to_the_newest_instant_and_the_run_goes_on) {
+  start();
+  run_to(0.3);
+  player().scrub(0.1);
+  player().play();
+  EXPECT_FALSE(player().at_head());
+  player().update(0.01);
+  EXPECT_NEAR(player().time(), 0.1 + 0.01 * player().speed(), 1e-12);
+  ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::over; }));
+  EXPECT_NEAR(player().time(), 1, 1e-9);
+}
+
+TEST_F(PlayerTest, continuing_without_a_change_repeats_the_future_bit_for_bit) {
+  start();
+  run_to_end();
+  const std::vector<RowPtr> before = player().way();
+  player().scrub(0.4);
+  ASSERT_TRUE(player().can_continue());
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && player().at_head(); }));
+  EXPECT_EQ(player().history().branches[1].parent, 0);
+  EXPECT_EQ(player().history().branches[1].fork_step, 400);
+  EXPECT_NEAR(player().time(), 0.4, 1e-9);
+  run_to_end();
+  ASSERT_EQ(player().way().size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) expect_same_motion(*player().way()[i], *before[i]);
+  EXPECT_TRUE(player().ghost().has_value());
+  run_->close("stopped");
+  expect_repeatable("live.h5", 2);
+}
+
+TEST_F(PlayerTest, an_edit_changes_the_future_and_is_recorded_with_its_step) {
+  start();
+  run_to(0.2);
+  const std::int64_t step = player().row()->step;
+  ASSERT_TRUE(player().can_edit());
+  player().edit(amplitude(600));
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 600 * k_gal, 1e-12);
+  run_to_end();
+  ASSERT_EQ(player().edits().size(), 1u);
+  EXPECT_EQ(player().edits()[0].step, step);
+  EXPECT_EQ(player().edits()[0].branch, 0);
+  player().scrub(0.1);
+  EXPECT_FALSE(player().can_edit());
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 300 * k_gal, 1e-12);
+  player().scrub(0.9);
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 600 * k_gal, 1e-12);
+  run_->close("stopped");
+  EXPECT_EQ(io::Recording(path("live.h5")).history().edits.size(), 1u);
+  expect_repeatable("live.h5", 1);
+}
+
+TEST_F(PlayerTest, undo_posts_the_inverse_and_redo_the_edit_again) {
+  start();
+  run_to(0.1);
+  player().begin_edit();
+  player().edit(amplitude(400));
+  player().edit(amplitude(500));  // the same drag of a slider
+  player().begin_edit();
+  player().edit({Edit::Key::friction, 0, Vec3(0.3, 0, 0)});
+  const auto value = [&](Edit::Key key) { return edited_value(player().parameters(), key, 0).x(); };
+  EXPECT_EQ(value(Edit::Key::friction), 0.3);
+  player().undo();
+  EXPECT_EQ(value(Edit::Key::friction), 0.6);
+  EXPECT_NEAR(value(Edit::Key::amplitude), 500 * k_gal, 1e-12);
+  player().undo();
+  EXPECT_NEAR(value(Edit::Key::amplitude), 300 * k_gal, 1e-12);
+  EXPECT_FALSE(player().can_undo());
+  player().redo();
+  EXPECT_NEAR(value(Edit::Key::amplitude), 500 * k_gal, 1e-12);
+  player().redo();
+  EXPECT_EQ(value(Edit::Key::friction), 0.3);
+  EXPECT_FALSE(player().can_redo());
+  run_to(0.2);
+  EXPECT_EQ(player().edits().size(), 7u);  // 3 edits, 2 inverse ones, 2 again: all of them happened
+  EXPECT_EQ(value(Edit::Key::friction), 0.3);
+  run_->close("stopped");
+  expect_repeatable("live.h5", 1);
+}
+
+TEST_F(PlayerTest, restart_keeps_the_sliders_and_is_a_branch_from_the_start) {
+  start();
+  run_to(0.2);
+  player().edit(amplitude(450));
+  run_to(0.3);
+  player().restart();
+  ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && player().can_edit(); }));
+  EXPECT_EQ(player().time(), 0);
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 450 * k_gal, 1e-12);
+  run_to(0.3);
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 450 * k_gal, 1e-12);
+  const RowPtr row = row_at_step(125);
+  EXPECT_EQ(player().shown_branch(), 1);
+  player().show_branch(0);
+  EXPECT_FALSE(player().can_edit());
+  EXPECT_EQ(player().shown_branch(), 0);
+  EXPECT_EQ(player().way().front()->branch, 0);
+  run_->close("stopped");
+  expect_repeatable("live.h5", 2);
+}
+
+TEST_F(PlayerTest, a_recording_is_replayed_and_comes_to_life_in_a_file_of_its_own) {
+  start();
+  run_to(0.2);
+  player().edit(amplitude(500));
+  run_to(0.6);
+  run_->close("stopped");
+  const std::vector<RowPtr> before = player().way();
+  player_.reset();
+  run_.reset();
+
+  io::Recording recording(path("live.h5"));
+  start({.scene = live_scene(recording.scene_text()),
+         .recording = std::move(recording),
+         .output = path("again.h5")});
+  EXPECT_TRUE(player().replay());
+  EXPECT_FALSE(player().can_edit());
+  ASSERT_GE(player().way().size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) expect_same_motion(*player().way()[i], *before[i]);
+  player().play();
+  ASSERT_TRUE(until([&] { return !player().playing(); }));
+  EXPECT_EQ(player().time(), player().end());
+  EXPECT_FALSE(std::filesystem::exists(path("again.h5")));
+
+  player().scrub(0.3);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit(); }));
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 500 * k_gal, 1e-12);
+  run_to(0.5);
+  expect_same_motion(
+      *row_at_step(450), *[&] {
+        for (const RowPtr& row : before)
+          if (row->step == 450) return row;
+        return before.back();
+      }());
+  run_->close("stopped");
+  expect_repeatable("again.h5", 2);
+}
+
+TEST_F(PlayerTest, a_failed_step_keeps_the_last_good_state_and_may_be_tried_again) {
+  start(k_beam, [](topple::Run& run) {
+    if (run.state().step >= 5 && run.parameters().time_step > 6e-4) {
+      return StepStatus{
+          .kind = StepStatus::Kind::newton_diverged, .time = run.state().time, .body = 0, .element = 1};
+    }
+    return run.advance();
+  });
+  player().play();
+  ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::failed; }));
+  EXPECT_FALSE(player().playing());
+  EXPECT_EQ(player().row()->step, 5);
+  EXPECT_NE(player().status().message.find("smaller time_step"), std::string::npos);
+  player().begin_edit();
+  player().edit({Edit::Key::time_step, 0, Vec3(5e-4, 0, 0)});
+  ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::halted; }));
+  run_to_end();
+  run_->close("stopped");
+  EXPECT_EQ(io::Recording(path("live.h5")).status(), "completed");
+}
+
+TEST_F(PlayerTest, nobody_waits_for_a_step_that_takes_long) {
+  Gate gate;
+  start(k_rocking, gate.advance());
+  run_to(0.1);
+  gate.shut();
+  player().play();
+  ASSERT_TRUE(eventually([] {}, [&] { return gate.held(); }));
+  const double time = player().time();
+  // All of this happens while one step does.
+  for (int i = 0; i < 100; ++i) player().update(0.01);
+  EXPECT_LE(player().time() - time, 0.02);
+  player().edit(amplitude(500));
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 500 * k_gal, 1e-12);
+  player().scrub(0.05);
+  EXPECT_TRUE(player().row().has_value());
+  player().to_end();
+  ASSERT_TRUE(gate.held());
+  gate.open();
+  ASSERT_TRUE(until([&] { return player().edits().size() == 1; }));
+}
+
+TEST_F(PlayerTest, closing_does_not_wait_for_a_step_that_takes_long) {
+  Gate gate;
+  start(k_rocking, gate.advance());
+  run_to(0.1);
+  gate.shut();
+  player().play();
+  ASSERT_TRUE(eventually([] {}, [&] { return gate.held(); }));
+  const auto begin = std::chrono::steady_clock::now();
+  run_->close("interrupted");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+  ASSERT_TRUE(gate.held());
+  const io::Recording recording(path("live.h5"));
+  EXPECT_EQ(recording.status(), "interrupted");
+  EXPECT_GE(recording.frame_count(), 10);
+  gate.open();
+  ASSERT_TRUE(eventually([] {}, [&] { return !gate.held(); }));
+}
+
+TEST_F(PlayerTest, what_does_not_come_to_rest_is_explained) {
+  const auto scene = live_scene(k_rocking, {"contact.alpha=\"0.001 kgf\""});
+  LiveRun run({.scene = scene, .recording = {}, .output = path("never.h5")});
+  Player player(scene, run);
+  ASSERT_TRUE(eventually([&] { player.update(0.01); },
+                         [&] { return player.status().kind == LiveStatus::Kind::failed; }));
+  EXPECT_NE(player.status().message.find("does not come to rest"), std::string::npos);
+  player.play();
+  player.edit(amplitude(10));
+  player.restart();
+  player.scrub(1);
+  EXPECT_FALSE(player.row().has_value());
+  run.close("stopped");
+  EXPECT_FALSE(std::filesystem::exists(path("never.h5")));
+}
+
+}  // namespace
+}  // namespace topple::app
