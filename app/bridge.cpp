@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/words.h"
+
 namespace topple::app {
 namespace {
 
@@ -13,7 +15,6 @@ constexpr double k_floor_margin = 2.2;  // m, floor beyond where bodies go
 constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
-constexpr double k_degrees = 180 / k_pi;
 constexpr double k_mega = 1e-6;
 constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
 
@@ -38,12 +39,7 @@ void expect_same_model(const Model& model, const io::FrameRow& row) {
   const std::size_t nodes = model.node_position.size(), elements = model.elements.size();
   if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
       row.section_force.size() != 6 * elements || row.body.size() != 11 * model.bodies.size())
-    throw io::InputError("the scene in the recording gives another model than the one it was recorded with");
-}
-
-SectionForces forces_at(const io::FrameRow& row, const Element& element, std::size_t e, double xi) {
-  const float* f = &row.section_force[6 * e];
-  return forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, element.length, row.s[e], xi);
+    throw io::InputError(io::k_another_model);
 }
 
 render::Profile profile(const Section& section) {
@@ -65,6 +61,11 @@ render::Profile profile(const Section& section) {
 
 }  // namespace
 
+SectionForces forces_at(const Model& model, const io::FrameRow& row, std::size_t e, double xi) {
+  const float* f = &row.section_force[6 * e];
+  return forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, model.elements[e].length, row.s[e], xi);
+}
+
 void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
   expect_same_model(model, row);
   const Vec3 shift = floor_shift(row);
@@ -77,7 +78,7 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
     const Element& element = model.elements[e];
     for (double xi : {-1., 1.})
       peak = std::max(peak, equivalent_stress(model.sections[model.members[element.member].section],
-                                              forces_at(row, element, e, xi)));
+                                              forces_at(model, row, e, xi)));
   }
   peak_stress_.push_back(peak);
   if (parameters.shakes.empty()) return;
@@ -136,11 +137,17 @@ Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene),
   for (int count : members_at) joint_.push_back(count > 1);
 }
 
-render::SceneFrame Bridge::frame(const io::FrameRow& row) const {
+render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& parameters) const {
   render::SceneFrame out;
   out.profiles = profiles_;
   const Vec3 shift = floor_shift(row);
-  add_stations(row, out);
+  add_tubes(row, out.stations, out.tubes);
+  out.legend.quantity = "equivalent stress";
+  out.legend.unit = "MPa";
+  out.legend.range_policy = "covers 95 % of the run";
+  out.legend.minimum = 0;
+  out.legend.square_root = true;
+  out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
   for (const Body& body : scene_.setup.model.bodies)
     for (const auto& corners : body.panels) {
       render::Panel panel;
@@ -148,23 +155,28 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row) const {
       out.panels.push_back(panel);
     }
   add_grounds(shift, out);
-  add_captions(row, out);
+  add_captions(row, parameters, out);
   const Vec3 skin = Vec3::Constant(0.05);
   out.bounds_min = to_float(extent_.low - skin);
   out.bounds_max = to_float(extent_.high + skin);
   return out;
 }
 
+void Bridge::add_ghost(const io::FrameRow& row, render::SceneFrame& out) const {
+  add_tubes(row, out.ghost_stations, out.ghost_tubes);
+}
+
 // Between its nodes an element is a cubic in space with the nodes' directions at its ends, its section
 // turning evenly.
-void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) const {
+void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
+                       std::vector<render::Tube>& tubes) const {
   const Model& model = scene_.setup.model;
   const Vec3 shift = floor_shift(row);
   for (std::size_t m = 0; m < model.members.size(); ++m) {
     const Member& member = model.members[m];
     const Section& section = model.sections[member.section];
     render::Tube tube;
-    tube.first_station = static_cast<std::uint32_t>(out.stations.size());
+    tube.first_station = static_cast<std::uint32_t>(stations.size());
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
@@ -188,22 +200,16 @@ void Bridge::add_stations(const io::FrameRow& row, render::SceneFrame& out) cons
         const Vec3 x =
             (2 * t3 - 3 * t2 + 1) * x1 + (t3 - 2 * t2 + t) * d1 + (3 * t2 - 2 * t3) * x2 + (t3 - t2) * d2;
         const Quat q = q1.slerp(t, q2);
-        const double stress = equivalent_stress(section, forces_at(row, element, e, 2 * t - 1));
-        out.stations.push_back({to_float(x),
-                                {static_cast<float>(q.w()), static_cast<float>(q.x()),
-                                 static_cast<float>(q.y()), static_cast<float>(q.z())},
-                                static_cast<float>(stress * k_mega)});
+        const double stress = equivalent_stress(section, forces_at(model, row, e, 2 * t - 1));
+        stations.push_back({to_float(x),
+                            {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
+                             static_cast<float>(q.z())},
+                            static_cast<float>(stress * k_mega)});
       }
     }
-    tube.station_count = static_cast<std::uint32_t>(out.stations.size()) - tube.first_station;
-    out.tubes.push_back(tube);
+    tube.station_count = static_cast<std::uint32_t>(stations.size()) - tube.first_station;
+    tubes.push_back(tube);
   }
-  out.legend.quantity = "equivalent stress";
-  out.legend.unit = "MPa";
-  out.legend.range_policy = "covers 95 % of the run";
-  out.legend.minimum = 0;
-  out.legend.square_root = true;
-  out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
 }
 
 void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
@@ -250,39 +256,27 @@ void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
   }
 }
 
-void Bridge::add_captions(const io::FrameRow& row, render::SceneFrame& out) const {
+void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
+                          render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
   out.caption.title = scene_.title;
   out.caption.lines.push_back(fmt::format("t = {:.2f} s", row.time));
-  if (!setup.parameters.shakes.empty()) {
-    const Shake& shake = setup.parameters.shakes.front();
-    std::string what =
-        shake.kind == Shake::Kind::sine
-            ? fmt::format("floor: {:g} Hz, {:g} gal", shake.frequency, shake.amplitude / k_gal)
-            : fmt::format("floor: pulse {:g} s, {:g} gal", shake.duration, shake.amplitude / k_gal);
+  if (!parameters.shakes.empty()) {
+    const Shake& shake = parameters.shakes.front();
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
-    out.caption.lines.push_back(fmt::format("{};  now {:+.0f} gal, {:+.0f} mm", what, a, 1e3 * d));
+    out.caption.lines.push_back(
+        fmt::format("{};  now {:+.0f} gal, {:+.0f} mm", shake_in_words(parameters), a, 1e3 * d));
     out.trace = {"floor acceleration, gal", extent_.time_s, extent_.acceleration_gal,
                  static_cast<float>(row.time)};
   }
-  for (std::size_t b = 0; b < setup.model.bodies.size(); ++b) {
-    const double tilt = row.body[11 * b + 7], slide = row.body[11 * b + 8], critical = row.body[11 * b + 10];
-    std::string line = setup.model.bodies[b].name + ": ";
-    if (critical == 0)
-      line += fmt::format("tilt {:.1f}°", tilt * k_degrees);
-    else if (tilt > critical)
-      line += fmt::format("overturning, tilt {:.1f}°", tilt * k_degrees);
-    else
-      line += fmt::format("tilt {:.1f}° of {:.1f}°", tilt * k_degrees, critical * k_degrees);
-    if (critical > 0) line += fmt::format(", slide {:.0f} mm", 1e3 * slide);
-    out.caption.lines.push_back(line);
-  }
+  for (std::size_t b = 0; b < setup.model.bodies.size(); ++b)
+    out.caption.lines.push_back(body_in_words(setup.model, row, b));
   std::string contact;
   if (!setup.model.planes.empty())
     contact = fmt::format(" · contact α = {:g} kgf, q = {:g}, μ = {:g}",
-                          setup.parameters.contact.alpha / k_standard_gravity, setup.parameters.contact.q,
-                          setup.parameters.contact.friction);
+                          parameters.contact.alpha / k_standard_gravity, parameters.contact.q,
+                          parameters.contact.friction);
   out.caption.note =
       fmt::format("topple {} · scene {}{} · deformation ×1", TOPPLE_VERSION, scene_.name, contact);
 }

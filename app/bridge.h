@@ -28,6 +28,9 @@ class RunExtent {
   std::vector<double> peak_stress_;  ///< Pa, of each row
 };
 
+/// Section forces of element `e` at xi in -1..1 along it.
+SectionForces forces_at(const Model& model, const io::FrameRow& row, std::size_t e, double xi);
+
 /// The row at `time` between two neighbours: positions and numbers linear, rotations by the shorter arc.
 io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 
@@ -35,12 +38,16 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 class Bridge {
  public:
   Bridge(const io::Scene& scene, const RunExtent& extent);
-  render::SceneFrame frame(const io::FrameRow& row) const;
+  /// `parameters`: those that held at the row.
+  render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters) const;
+  /// The bodies of another row as a ghost in `out`.
+  void add_ghost(const io::FrameRow& row, render::SceneFrame& out) const;
 
  private:
-  void add_stations(const io::FrameRow& row, render::SceneFrame& out) const;
+  void add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
+                 std::vector<render::Tube>& tubes) const;
   void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
-  void add_captions(const io::FrameRow& row, render::SceneFrame& out) const;
+  void add_captions(const io::FrameRow& row, const Parameters& parameters, render::SceneFrame& out) const;
 
   const io::Scene& scene_;
   const RunExtent& extent_;

@@ -23,7 +23,7 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"view", "study", "verify", "modes", "compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"study", "verify", "modes", "compare", "report", "recover"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -75,6 +75,7 @@ class CommandLine {
         "paper-a.mp4\n"
         "Exit codes: 0 done, 1 the run failed, 2 bad usage or bad input, 130 interrupted.");
     add_run();
+    add_view();
     add_render();
     add_export();
     add_check();
@@ -130,6 +131,16 @@ class CommandLine {
     command.add_flag("--quiet", run_.quiet, "no progress");
     add_later_flag(command, "--estimate");
     command.callback([this] { action_ = [this] { return run_command(run_); }; });
+  }
+
+  void add_view() {
+    CLI::App& command = add_command("view", "watch a scene in a window, shake it, rewind it; or a recording",
+                                    "view paper-a --set contact.alpha=\"500 kgf\"");
+    add_path(command, "SOURCE", view_.source, "", "scene or recording").required();
+    add_path(command, "-o,--output", view_.recording, "REC.h5",
+             "recording to write, default in the state folder");
+    add_set(command, view_.overrides);
+    command.callback([this] { action_ = [this] { return view_command(view_); }; });
   }
 
   void add_render() {
@@ -188,11 +199,12 @@ class CommandLine {
   }
 
   void add_info() {
-    CLI::App& command = add_command("info", "describe a scene or a recording", "info paper-a.h5 --json -");
-    add_path(command, "FILE", info_file_, "", "scene or recording").required();
-    add_path(command, "--json", info_json_, "FILE|-", "write JSON; - for standard output");
-    add_later_flag(command, "--verify");
-    command.callback([this] { action_ = [this] { return info_command(info_file_, info_json_); }; });
+    CLI::App& command =
+        add_command("info", "describe a scene or a recording", "info paper-a.h5 --verify --json -");
+    add_path(command, "FILE", info_.file, "", "scene or recording").required();
+    add_path(command, "--json", info_.json, "FILE|-", "write JSON; - for standard output");
+    command.add_flag("--verify", info_.verify, "run the recording again and compare its state hashes");
+    command.callback([this] { action_ = [this] { return info_command(info_); }; });
   }
 
   void add_scenes() {
@@ -238,11 +250,12 @@ class CommandLine {
   std::function<int()> action_;
   RunOptions run_;
   RenderOptions render_;
+  ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;
   std::vector<std::string> scenes_, check_overrides_;
-  std::string info_file_, info_json_;
+  InfoOptions info_;
 };
 
 /// What went to standard output may still wait to be written, to a full disk for instance.

@@ -43,6 +43,13 @@ struct RenderOptions {
 };
 int render_command(const RenderOptions& options);
 
+struct ViewOptions {
+  std::string source;                  ///< scene or recording
+  std::vector<std::string> overrides;  ///< of a scene
+  std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
+};
+int view_command(const ViewOptions& options);
+
 struct ExportOptions {
   std::string recording;
   std::string csv;
@@ -50,7 +57,13 @@ struct ExportOptions {
 int export_command(const ExportOptions& options);
 
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
-int info_command(const std::string& file, const std::string& json);
+
+struct InfoOptions {
+  std::string file;     ///< scene or recording
+  std::string json;     ///< file, "-" or empty
+  bool verify = false;  ///< run a recording again
+};
+int info_command(const InfoOptions& options);
 int scenes_command();
 
 }  // namespace topple::app

@@ -7,8 +7,11 @@
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/log.h"
+#include "app/progress.h"
 #include "app/summary.h"
+#include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
+#include "solver/io/rerun.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {
@@ -54,19 +57,66 @@ ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies) {
           {"value", e.event.value}};
 }
 
+ordered_json describe(const LoggedEdit& logged) {
+  const Edit& edit = logged.edit;
+  return {{"branch", logged.branch},
+          {"step", logged.step},
+          {"time_s", logged.time},
+          {"key", io::edit_key(edit)},
+          {"value", edit.key == Edit::Key::direction ? vector(edit.value) : ordered_json(edit.value.x())}};
+}
+
 ordered_json describe(const io::Recording& recording) {
   ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  const std::int32_t newest = recording.newest_branch();
+  const std::vector<std::int64_t> shown = recording.frames_on_way_to(newest);
   out["kind"] = "recording";
   out["status"] = recording.status();
   out["frames"] = recording.frame_count();
-  out["recorded_s"] = recording.times().empty() ? 0 : recording.times().back();
+  out["recorded_s"] = shown.empty() ? 0 : recording.index()[shown.back()].time;
   out["checkpoints"] = recording.checkpoint_count();
   if (recording.checkpoint_count() > 0)
     out["last_state_hash"] =
         fmt::format("{:016x}", recording.checkpoint(recording.checkpoint_count() - 1).hash);
+  out["branches"] = ordered_json::array();
+  for (const Branch& b : recording.history().branches)
+    out["branches"].push_back({{"id", b.id}, {"parent", b.parent}, {"fork_step", b.fork_step}});
+  out["edits"] = ordered_json::array();
+  for (const LoggedEdit& e : recording.history().edits) out["edits"].push_back(describe(e));
   out["events"] = ordered_json::array();
-  for (const io::RecordedEvent& e : recording.events()) out["events"].push_back(describe(e, out["bodies"]));
+  for (const io::RecordedEvent& e : recording.events_on_way_to(newest))
+    out["events"].push_back(describe(e, out["bodies"]));
   if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());
+  return out;
+}
+
+std::string counted(std::int64_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+ordered_json verify(const io::Recording& recording) {
+  const auto total = static_cast<double>(recording.checkpoint_count());
+  Progress progress("re-run", "checkpoints", std::max(total, 1.), false);
+  const io::Rerun rerun =
+      io::rerun(recording, [&](std::int64_t seen) { progress.update(static_cast<double>(seen)); });
+  ordered_json out{{"checkpoints", rerun.checkpoints},
+                   {"branches", recording.history().branches.size()},
+                   {"same", rerun.differences.empty()},
+                   {"differences", ordered_json::array()}};
+  for (const io::Instant& d : rerun.differences)
+    out["differences"].push_back({{"branch", d.branch}, {"step", d.step}, {"time_s", d.time}});
+  return out;
+}
+
+std::string verdict(const ordered_json& v) {
+  const auto checkpoints = v["checkpoints"].get<std::int64_t>();
+  std::string out = fmt::format("re-run: {} of {} {} the same state {}\n",
+                                counted(checkpoints, "checkpoint", "checkpoints"),
+                                counted(v["branches"].get<std::int64_t>(), "branch", "branches"),
+                                checkpoints == 1 ? "has" : "have", checkpoints == 1 ? "hash" : "hashes");
+  for (const auto& d : v["differences"])
+    out += fmt::format("branch {} differs first at {:.6g} s (step {})\n", d["branch"].get<int>(),
+                       d["time_s"].get<double>(), d["step"].get<std::int64_t>());
   return out;
 }
 
@@ -88,6 +138,9 @@ std::string table(const ordered_json& d) {
   out += fmt::format("{}: {} frames to {:g} s, {} checkpoints, last state {}\n",
                      d["status"].get<std::string>(), d["frames"].get<long>(), d["recorded_s"].get<double>(),
                      d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
+  if (d["branches"].size() > 1 || !d["edits"].empty())
+    out += fmt::format("{}, {}\n", counted(d["branches"].size(), "branch", "branches"),
+                       counted(d["edits"].size(), "edit", "edits"));
   for (const auto& e : d["events"])
     out += fmt::format("{:>10.4f} s  {} {}\n", e["time_s"].get<double>(), e["body"].get<std::string>(),
                        e["kind"].get<std::string>());
@@ -110,17 +163,26 @@ int check_command(const std::vector<std::string>& scenes, const std::vector<std:
   return code;
 }
 
-int info_command(const std::string& file, const std::string& json) {
+int info_command(const InfoOptions& options) {
+  const auto& [file, json, verified] = options;
   if (!json.empty() && json != "-") require_writable_text("--json", json, file);
-  const ordered_json description =
-      io::is_recording(file) ? describe(io::Recording(file)) : describe(io::load_scene(file));
+  ordered_json description;
+  if (io::is_recording(file)) {
+    const io::Recording recording(file);
+    description = describe(recording);
+    if (verified) description["verify"] = verify(recording);
+  } else {
+    description = describe(io::load_scene(file));
+    if (verified) throw BadInput("--verify: " + file + " is a scene; only a recording can be run again");
+  }
+  const bool differs = verified && !description["verify"]["same"].get<bool>();
   if (json == "-")
     fmt::print("{}\n", json_text(description, 2));
   else if (!json.empty())
     write_whole_file(json, json_text(description, 2) + "\n");
   else
-    fmt::print("{}", table(description));
-  return k_done;
+    fmt::print("{}{}", table(description), verified ? verdict(description["verify"]) : "");
+  return differs ? k_failed : k_done;
 }
 
 int scenes_command() {

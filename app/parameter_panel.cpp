@@ -124,10 +124,6 @@ class Row {
   const Vec3 scene_value_, value_;
 };
 
-bool has_effect(const Slider& slider, const Parameters& parameters) {
-  return slider.key != Edit::Key::restitution || parameters.contact.kind == ContactLawKind::coulomb;
-}
-
 }  // namespace
 
 void draw_parameters(Player& player, std::string& refused) {
@@ -151,9 +147,7 @@ void draw_parameters(Player& player, std::string& refused) {
                                       : fmt::format("Floor, shake {}", shake + 1).c_str());
       heading = group;
     }
-    ImGui::BeginDisabled(!has_effect(*slider, parameters));
     Row(player, *slider, shake).draw(refused);
-    ImGui::EndDisabled();
   }
   ImGui::EndDisabled();
   if (!player.can_edit() && !player.way().empty())

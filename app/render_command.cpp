@@ -20,6 +20,7 @@
 #include "render/picture.h"
 #include "render/video.h"
 #include "solver/io/recording.h"
+#include "solver/io/rerun.h"
 
 namespace topple::app {
 namespace {
@@ -47,21 +48,33 @@ class TemporaryFile {
   std::string path_;
 };
 
-/// Rows of a recording by time.
+/// What a recording shows of its newest branch, by time.
 class Replay {
  public:
-  explicit Replay(const io::Recording& recording) : recording_(recording) {}
+  explicit Replay(const io::Recording& recording)
+      : recording_(recording), frames_(recording.frames_on_way_to(recording.newest_branch())) {
+    for (const std::int64_t frame : frames_) times_.push_back(recording.index()[frame].time);
+  }
+  std::int64_t frame_count() const { return static_cast<std::int64_t>(frames_.size()); }
+  double first() const { return times_.front(); }
+  double last() const { return times_.back(); }
+  io::FrameRow frame(std::int64_t number) const { return recording_.frame(frames_[number]); }
+  /// Those that held at a row.
+  Parameters parameters(const io::Scene& scene, const io::FrameRow& row) const {
+    return parameters_at(scene.setup, recording_.history(), row.branch, row.step);
+  }
   io::FrameRow at(double time) const {
-    const std::vector<double>& times = recording_.times();
-    const auto after = std::upper_bound(times.begin(), times.end(), time);
-    const std::int64_t next = std::min<std::int64_t>(after - times.begin(), recording_.frame_count() - 1);
+    const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+    const std::int64_t next = std::min<std::int64_t>(after - times_.begin(), frame_count() - 1);
     const std::int64_t here = std::max<std::int64_t>(next - 1, 0);
-    if (times[here] == time || here == next) return recording_.frame(here);
-    return blend(recording_.frame(here), recording_.frame(next), time);
+    if (times_[here] == time || here == next) return frame(here);
+    return blend(frame(here), frame(next), time);
   }
 
  private:
   const io::Recording& recording_;
+  std::vector<std::int64_t> frames_;
+  std::vector<double> times_;
 };
 
 /// Refuses what can be refused before anything runs. `last`: time of the last instant, s.
@@ -89,31 +102,34 @@ void check_outputs(const RenderOptions& o) {
 /// Draws one instant after the other.
 class Drawing {
  public:
-  Drawing(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene)
+  Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene)
       : options_(o),
-        extent_(extent_of(recording, scene)),
+        extent_(extent_of(replay, scene)),
+        scene_(scene),
         bridge_(scene, extent_),
-        replay_(recording),
+        replay_(replay),
         context_(render::make_osmesa_context()),
         picture_(context_->get_proc(), o.width, o.height) {}
 
   render::Image at(double time) {
-    const render::SceneFrame frame = bridge_.frame(replay_.at(time));
+    const io::FrameRow row = replay_.at(time);
+    const render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row));
     return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()));
   }
 
  private:
-  static RunExtent extent_of(const io::Recording& recording, const io::Scene& scene) {
+  static RunExtent extent_of(const Replay& replay, const io::Scene& scene) {
     RunExtent extent;
-    for (std::int64_t i = 0; i < recording.frame_count() && !interrupted(); ++i)
-      extent.add(scene.setup.model, scene.setup.parameters, recording.frame(i));
+    for (std::int64_t i = 0; i < replay.frame_count() && !interrupted(); ++i)
+      extent.add(scene.setup.model, scene.setup.parameters, replay.frame(i));
     return extent;
   }
 
   const RenderOptions& options_;
   const RunExtent extent_;
+  const io::Scene& scene_;
   const Bridge bridge_;
-  const Replay replay_;
+  const Replay& replay_;
   const std::unique_ptr<render::Context> context_;
   render::Picture picture_;
 };
@@ -150,14 +166,16 @@ int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double 
 }
 
 int draw(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene) {
-  if (recording.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
-  const double first = recording.times().front(), last = recording.times().back();
+  io::check_edits(recording.history(), scene.setup);
+  const Replay replay(recording);
+  if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
+  const double first = replay.first(), last = replay.last();
   check_times(o, first, last, "the recording");
   defer_interrupts();
   check_outputs(o);
   int code = k_done;
   try {
-    Drawing drawing(o, recording, scene);
+    Drawing drawing(o, replay, scene);
     code = o.still.empty() ? draw_sequence(o, drawing, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))
                            : draw_still(o, drawing);

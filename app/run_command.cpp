@@ -18,13 +18,17 @@ namespace topple::app {
 
 namespace {
 
-/// Steps to the end of `run`, a failure or Ctrl+C.
-void step_through(Run& run, io::Recorder* recorder, Progress& progress) {
+/// Steps to the end of `run`, a failure or Ctrl+C. `recorder`: null, or what has the first instant already.
+void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Progress& progress) {
   while (!run.over() && !interrupted()) {
     if (!run.advance().ok()) break;
-    if (recorder) recorder->observe(run);
+    if (recorder) {
+      recorder->write(observer.observe(run));
+      recorder->flush_if_due();
+    }
     progress.update(run.state().time);
   }
+  if (recorder) recorder->write(observer.last(run));
 }
 
 /// The error of a recording that broke off, and how far it can be read.
@@ -33,7 +37,7 @@ io::WriteError with_remains(const io::WriteError& error, const std::string& path
     const io::Recording left(path);
     if (left.frame_count() == 0) return error;
     return io::WriteError(
-        fmt::format("{}; it can be read up to {:.6g} s", error.what(), left.times().back()));
+        fmt::format("{}; it can be read up to {:.6g} s", error.what(), left.index().back().time));
   } catch (const io::InputError&) {
     return error;
   }
@@ -58,15 +62,19 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
   bool begun = false;
   try {
     if (run.status().ok()) {
-      if (recorded) recorder->observe(run);
+      io::Observer observer;
+      if (recorded) {
+        recorder->write(observer.observe(run));
+        recorder->flush();
+      }
       begun = recorded;
       Progress progress(scene.name, "s simulated", scene.setup.run.duration, quiet);
-      step_through(run, recorded ? &*recorder : nullptr, progress);
+      step_through(run, observer, recorded ? &*recorder : nullptr, progress);
     }
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::string status = status_of(run);
     result.summary = summary(scene, run, status, wall);
-    if (recorded) recorder->finish(run, status, json_text(result.summary));
+    if (recorded) recorder->finish(status, json_text(result.summary));
     result.recorded = recorded;
     result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
     if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);

@@ -202,7 +202,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
 void add_times(ImDrawList& list, const Lane& lane) {
   const render::Ticks ticks = render::nice_ticks(0, lane.length, 10);
   for (double t : ticks.values) {
-    t = std::max(t, 0.);  // no -0
+    t += 0.;  // makes 0 of -0
     const float x = lane.x(t);
     list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
     const std::string label = fmt::format("{:.{}f} s", t, ticks.decimals);

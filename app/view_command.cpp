@@ -80,7 +80,7 @@ LiveSource open_source(const ViewOptions& o) {
 void show(render::Window& window, render::Stage& stage, Viewer& viewer, Player& player) {
   int frames_due = k_frames_of_input;
   Clock::time_point last = Clock::now(), next_frame = last;
-  while (!window.should_close() && !interrupted()) {
+  while (!window.should_close() && !viewer.wants_to_close() && !interrupted()) {
     const double wait = frames_due > 0     ? Seconds(next_frame - Clock::now()).count()
                         : player.playing() ? k_frame
                                            : k_look;
@@ -91,6 +91,7 @@ void show(render::Window& window, render::Stage& stage, Viewer& viewer, Player& 
     const Clock::time_point now = Clock::now();
     if (viewer.update(Seconds(now - last).count())) frames_due = std::max(frames_due, 1);
     last = now;
+    for (const render::KeyPress& press : window.take_keys()) viewer.press(press);
     if (window.take_input()) frames_due = k_frames_of_input;
     if (ImGui::GetIO().WantTextInput) frames_due = std::max(frames_due, 1);  // the caret blinks
     if (frames_due == 0 || now < next_frame || window.iconified()) continue;

@@ -109,7 +109,7 @@ void Viewer::build() {
   const Box before = scene_;
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
-  handle_keys();
+  handle_characters();
   std::optional<io::FrameRow> row = player_.row();
   if (!same_instant(row, row_)) scene_changed_ = true;
   row_ = std::move(row);
@@ -161,6 +161,7 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
+  view_ = view;
   from_ = orbit_;
   to_ = render::Orbit::fit(view, frame, aspect());
   flight_ = 0;
@@ -226,6 +227,9 @@ void Viewer::draw_words(const io::FrameRow& row) {
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
   render::LeftOut left_out;
   const float legend = 190 * scale_;
+  // A picture's legend has nothing behind it; here the scene may be anywhere.
+  list.AddRectFilled({scene_.left + scene_.width - 130 * scale_, scene_.top},
+                     {scene_.left + scene_.width, scene_.top + scene_.height}, IM_COL32(244, 246, 248, 190));
   render::draw_legend_in(list, fonts_, frame_.legend, render::ColourMap::viridis,
                          {"", scene_.left + scene_.width - legend, scene_.top + margin,
                           scene_.left + scene_.width - margin, scene_.top + scene_.height - margin},

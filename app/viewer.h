@@ -9,6 +9,7 @@
 #include "app/panels.h"
 #include "app/player.h"
 #include "render/font.h"
+#include "render/key_press.h"
 #include "render/orbit.h"
 #include "render/stage.h"
 
@@ -22,22 +23,25 @@ class Viewer {
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
+  /// Does what the key is for.
+  void press(const render::KeyPress& press);
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
   /// when it changed.
   void build();
   /// Where things lie, for Stage::present.
   render::Surface surface() const;
 
+  bool wants_to_close() const { return wants_to_close_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
   std::optional<std::size_t> picked_member() const { return picked_; }
-  /// How long the last frames took, ms; the caller measures.
+  /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
  private:
   void lay_out();
-  void handle_keys();
+  void handle_characters();
   void handle_mouse();
   void look(render::NamedView view);
   void move_camera(double wall_s);
@@ -59,11 +63,13 @@ class Viewer {
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;  // of the camera from one place to the other, 0..1
   bool fitted_ = false;
+  render::NamedView view_ = render::NamedView::iso;
   std::optional<std::size_t> picked_;
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
+  bool wants_to_close_ = false;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
   double frame_ms_ = 0;

@@ -5,17 +5,10 @@
 namespace topple::app {
 namespace {
 
-// Numbers of keys as GLFW gives them; letters and digits are their capitals in ASCII.
-constexpr int k_space = 32, k_escape = 256, k_end = 269, k_home = 268, k_f1 = 290;
-
 bool character(char c) {
   for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters)
     if (typed == static_cast<ImWchar>(c)) return true;
   return false;
-}
-
-bool pressed(int key) {
-  return ImGui::IsKeyPressed(key, false);
 }
 
 struct KeyLine {
@@ -38,37 +31,58 @@ constexpr KeyLine k_lines[] = {
     {"click", "inspect a member; Esc lets go"},
     {"Ctrl+click on a slider", "type a value"},
     {"F1", "this table"},
+    {"Ctrl+Q", "close the recording and the window"},
 };
 
 }  // namespace
 
-void Viewer::handle_keys() {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (pressed(k_f1)) keys_shown_ = !keys_shown_;
-  if (io.WantTextInput) return;
-  if (io.KeyCtrl) {
-    if (pressed('Z')) io.KeyShift ? player_.redo() : player_.undo();
-    if (pressed('Y')) player_.redo();
+void Viewer::press(const render::KeyPress& press) {
+  if (press.key == render::key::f1) keys_shown_ = !keys_shown_;
+  if (ImGui::GetIO().WantTextInput) return;
+  if (press.control) {
+    if (press.key == 'Z') press.shift ? player_.redo() : player_.undo();
+    if (press.key == 'Y') player_.redo();
+    if (press.key == 'Q') wants_to_close_ = true;
     return;
   }
-  if (pressed(k_space)) player_.toggle();
+  switch (press.key) {
+    case ' ':
+      return player_.toggle();
+    case render::key::home:
+      return player_.to_start();
+    case render::key::end:
+      return player_.to_end();
+    case 'R':
+      return player_.restart();
+    case 'C':
+      return player_.continue_from_here();
+    case 'F':
+      return look(view_);
+    case '1':
+      return look(render::NamedView::front);
+    case '2':
+      return look(render::NamedView::side);
+    case '3':
+      return look(render::NamedView::top);
+    case '4':
+      return look(render::NamedView::iso);
+    case render::key::escape:
+      keys_shown_ = false;
+      picked_.reset();
+      scene_changed_ = true;
+      return;
+    default:
+      return;
+  }
+}
+
+// These repeat while they are held down, and stand on different keys of different keyboards.
+void Viewer::handle_characters() {
+  if (ImGui::GetIO().WantTextInput) return;
   if (character(',')) player_.step(-1);
   if (character('.')) player_.step(1);
   if (character('[')) player_.slower();
   if (character(']')) player_.faster();
-  if (pressed(k_home)) player_.to_start();
-  if (pressed(k_end)) player_.to_end();
-  if (pressed('R')) player_.restart();
-  if (pressed('C')) player_.continue_from_here();
-  if (pressed('F') || pressed('4')) look(render::NamedView::iso);
-  if (pressed('1')) look(render::NamedView::front);
-  if (pressed('2')) look(render::NamedView::side);
-  if (pressed('3')) look(render::NamedView::top);
-  if (pressed(k_escape)) {
-    keys_shown_ = false;
-    picked_.reset();
-    scene_changed_ = true;
-  }
 }
 
 void Viewer::draw_key_table() {

@@ -34,10 +34,39 @@ struct Camera {
 /// Opening of the lens from bottom to top, radians: long enough to keep upright things upright.
 inline constexpr float k_vertical_fov = 0.42f;
 
+/// Camera at `eye` whose right, up and towards-the-viewer directions are the rows of `axes`.
+/// near, far: planes, m, 0 < near < far.
+Camera camera_at(const Eigen::Vector3f& eye, const Eigen::Matrix3f& axes, float aspect, float near,
+                 float far);
+
 /// Camera at `eye` that looks at `target`. `up` must not be parallel to the line of sight.
 /// near, far: planes, m, 0 < near < far.
 Camera look_at(const Eigen::Vector3f& eye, const Eigen::Vector3f& target, const Eigen::Vector3f& up,
                float aspect, float near, float far);
+
+/// Direction of sight, by the line from what is looked at to the eye, radians. At an elevation of a
+/// right angle the azimuth still tells which way is up in the picture.
+struct Sight {
+  float azimuth;    ///< about z, 0 on the +x side, positive towards +y
+  float elevation;  ///< above the floor's plane
+};
+Sight sight_of(NamedView view);
+
+/// Rows: right, up, and towards the viewer.
+Eigen::Matrix3f sight_axes(const Sight& sight);
+
+/// Part of a picture that the bodies may take, in normalized device coordinates (-1..1).
+struct Room {
+  float left, right, bottom, top;
+};
+
+/// The nearest camera with these axes that shows the whole box low..high inside the room, and centred
+/// in it.
+Camera fit_box(const Eigen::Matrix3f& axes, const Eigen::Vector3f& low, const Eigen::Vector3f& high,
+               const Room& room, float aspect);
+
+/// No number of it is infinite or not a number.
+bool finite(const Camera& camera);
 
 /// The named camera, as near as it can be with the frame's whole bounds between the title, the
 /// legend, and the trace and note of its overlay. aspect: width / height, > 0. Bounds that are not

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -112,16 +113,18 @@ void push_tube(Mesh& mesh, const Section& section, const std::vector<Ring>& ring
   push_cap(mesh, section, rings.back(), false);
 }
 
-bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Section>& sections, const Tube& tube) {
+/// `stations` are the frame's or those of its ghosts.
+bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& stations,
+               const std::vector<Section>& sections, const Tube& tube) {
   const std::size_t first = tube.first_station;
   const std::size_t count = tube.station_count;
   if (tube.profile >= sections.size() || sections[tube.profile].corners.empty() || count < 2 ||
-      first + count > frame.stations.size() || !drawable(tube.lead) || !drawable(tube.trail)) {
+      first + count > stations.size() || !drawable(tube.lead) || !drawable(tube.trail)) {
     return false;
   }
   std::vector<Ring> rings;
   for (std::size_t i = first; i < first + count; ++i) {
-    const Station& s = frame.stations[i];
+    const Station& s = stations[i];
     if (!drawable_station(s)) return false;
     const Eigen::Matrix3f turn =
         Eigen::Quaternionf(s.rotation[0], s.rotation[1], s.rotation[2], s.rotation[3])
@@ -134,6 +137,29 @@ bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Section>& 
   rings.back().centre += tube.trail * rings.back().axis;
   push_tube(mesh, sections[tube.profile], rings);
   return true;
+}
+
+std::vector<Section> sections_of(const SceneFrame& frame) {
+  std::vector<Section> sections;
+  for (const Profile& profile : frame.profiles) sections.push_back(section_of(profile));
+  return sections;
+}
+
+/// The section with every side moved outwards by `by`, m.
+Section grown(const Section& section, float by) {
+  Profile profile;
+  const std::size_t n = section.facets.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Section::Facet& before = section.facets[(i + n - 1) % n];
+    const Section::Facet& after = section.facets[i];
+    const Vector2f a = before.to - before.from;
+    const Vector2f b = after.to - after.from;
+    const Vector2f sum = Vector2f(a.y(), -a.x()).normalized() + Vector2f(b.y(), -b.x()).normalized();
+    // where both moved sides meet; a sharp corner reaches out no farther than four times as much
+    const Vector2f corner = after.from + 2 * by * sum / std::max(sum.squaredNorm(), 0.5f);
+    profile.outline.push_back({corner.x(), corner.y()});
+  }
+  return section_of(profile);
 }
 
 std::uint32_t packed(const Float4& colour) {
@@ -215,15 +241,47 @@ std::vector<std::uint32_t> triangulated(const std::vector<std::array<float, 2>>&
 
 Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out) {
   Mesh mesh;
-  std::vector<Section> sections;
-  for (const Profile& profile : frame.profiles) sections.push_back(section_of(profile));
+  const std::vector<Section> sections = sections_of(frame);
   for (const Tube& tube : frame.tubes) {
-    if (!push_tube(mesh, frame, sections, tube)) ++left_out.tubes;
+    const auto first = static_cast<std::uint32_t>(mesh.indices.size());
+    if (!push_tube(mesh, frame, frame.stations, sections, tube)) ++left_out.tubes;
+    mesh.tubes.push_back({first, static_cast<std::uint32_t>(mesh.indices.size()) - first});
   }
   const auto [low, high] = drawable_bounds(frame);
   for (const Arrow& arrow : frame.arrows) {
     if (!push_arrow(mesh, arrow, (high - low).norm())) ++left_out.arrows;
   }
+  return mesh;
+}
+
+Mesh ghost_mesh(const SceneFrame& frame, LeftOut& left_out) {
+  Mesh mesh;
+  const std::vector<Section> sections = sections_of(frame);
+  for (const Tube& tube : frame.ghost_tubes) {
+    if (!push_tube(mesh, frame, frame.ghost_stations, sections, tube)) ++left_out.tubes;
+  }
+  return mesh;
+}
+
+Mesh shell_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, const Float4& colour) {
+  Mesh mesh;
+  for (Tube tube : frame.tubes) {
+    if (tube.member != frame.highlighted_member || tube.profile >= frame.profiles.size() ||
+        tube.first_station + std::size_t{tube.station_count} > frame.stations.size() ||
+        tube.station_count < 2) {
+      continue;
+    }
+    const Vector3f middle(frame.stations[tube.first_station + tube.station_count / 2].position.data());
+    const float by = thickness * (middle - eye).norm();
+    if (!drawable(by)) continue;
+    tube.lead += by;
+    tube.trail += by;
+    std::vector<Section> sections(frame.profiles.size());
+    sections[tube.profile] = grown(section_of(frame.profiles[tube.profile]), by);
+    push_tube(mesh, frame, frame.stations, sections, tube);
+  }
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
+  for (Vertex& vertex : mesh.vertices) vertex.rgba = packed(colour);
   return mesh;
 }
 

@@ -29,14 +29,28 @@ struct Vertex {
   std::uint32_t rgba = 0;    ///< own colour (bytes red, green, blue, alpha); alpha 0: from the map
 };
 
+/// Consecutive indices of a mesh.
+struct IndexRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise seen from outside
+  std::vector<IndexRange> tubes;       ///< of each of the frame's tubes; empty where it is left out
 };
 
 /// Beams as swept sections with end caps, and arrows as shafts with heads. Counts what it leaves out
 /// in `left_out`.
 Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out);
+
+/// The frame's ghosts, as solid_mesh sweeps its tubes.
+Mesh ghost_mesh(const SceneFrame& frame, LeftOut& left_out);
+
+/// The insides of a shell about the highlighted member, for an outline: what of them the member does
+/// not cover is seen around it. thickness: m for each metre from `eye`.
+Mesh shell_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickness, const Float4& colour);
 
 /// Corner of a panel: `normal` is the panel's, `uv` runs over 0..1 along its edges.
 struct PanelVertex {

@@ -145,10 +145,15 @@ void draw_mark(const Layout& at, const Legend& legend, float column_left, float 
   }
 }
 
-void draw_legend(const Layout& at, const Legend& legend, ColourMap map, float column_left, float lowest,
+/// Where a legend may lie, px, and how long its bar may be.
+struct LegendRoom {
+  float left, top, right, bottom;
+  float bar;
+};
+
+void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const LegendRoom& room,
                  std::vector<OverlayBox>& boxes) {
-  const float right = at.width - at.margin;
-  const float top = at.margin;
+  const auto [column_left, top, right, lowest, longest] = room;
   float y = top;
   const auto add_line = [&](const ImFont* font, ImU32 colour, const std::string& words) {
     if (words.empty()) return;
@@ -161,7 +166,7 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, float co
   const float bar_top = y + static_cast<float>(heading.size()) * at.line(at.fonts.text) +
                         (legend.unit.empty() ? 0 : small_line) + std::round(12 * at.unit);
   const float below_bar = legend.range_policy.empty() ? small_line / 2 : 1.9f * small_line;
-  const float bar_bottom = std::round(std::min(bar_top + 0.44f * at.height, lowest - below_bar));
+  const float bar_bottom = std::round(std::min(bar_top + longest, lowest - below_bar));
   if (bar_bottom - bar_top < 4 * small_line) return;
 
   for (const std::string& line : heading) add_line(at.fonts.text, k_text_colour, line);
@@ -198,6 +203,14 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, float co
   add_line(at.fonts.small, k_quiet_colour,
            shortened(*at.fonts.small, legend.range_policy, right - column_left));
   boxes.push_back({"legend", column_left, top, right, std::max(y, bar_bottom + small_line / 2)});
+}
+
+/// There is a legend, and its range can be shown.
+bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
+  if (legend.quantity.empty()) return false;
+  const bool drawn = has_value_range(legend);
+  if (!drawn) ++left_out.legends;
+  return drawn;
 }
 
 // ---- trace
@@ -345,8 +358,7 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
   const float unit = fonts.text->FontSize / 17;
   const Layout at{list, fonts, width, height, unit, std::round(26 * unit)};
   std::vector<OverlayBox> boxes;
-  const bool has_legend = !frame.legend.quantity.empty() && has_value_range(frame.legend);
-  if (!frame.legend.quantity.empty() && !has_legend) ++left_out.legends;
+  const bool has_legend = can_be_drawn(frame.legend, left_out);
   const float column_left = has_legend ? std::round(0.825f * width) : width - at.margin;
   const float note_top = draw_note(at, frame.caption.note, boxes);
   const bool has_trace = !frame.trace.time_s.empty();
@@ -356,8 +368,22 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                                         trace_top - at.margin / 2, boxes);
   if (has_trace && trace_top >= words_bottom)
     draw_trace(at, frame.trace, trace_bottom, boxes, left_out, trace_top);
-  if (has_legend) draw_legend(at, frame.legend, map, column_left, note_top - 8 * unit, boxes);
+  if (has_legend) {
+    draw_legend(at, frame.legend, map,
+                {column_left, at.margin, width - at.margin, note_top - 8 * unit, 0.44f * height}, boxes);
+  }
   return boxes;
+}
+
+std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
+                                         ColourMap map, const OverlayBox& room, LeftOut& left_out) {
+  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0};
+  std::vector<OverlayBox> boxes;
+  if (can_be_drawn(legend, left_out)) {
+    draw_legend(at, legend, map, {room.left, room.top, room.right, room.bottom, room.bottom - room.top},
+                boxes);
+  }
+  return boxes.empty() ? std::nullopt : std::optional(boxes.front());
 }
 
 }  // namespace topple::render

@@ -1,6 +1,7 @@
 // Words, legend and trace of a picture.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,10 @@ Ticks root_ticks(double maximum);
 /// shortened; a part without room is not drawn. Returns the parts drawn; they do not overlap.
 std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
                                      ColourMap map, float width, float height, LeftOut& left_out);
+
+/// Adds only the legend of draw_overlay, as large as `room` allows (px; its name does not count).
+/// Returns where it lies; nothing when there is no room or no legend.
+std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
+                                         ColourMap map, const OverlayBox& room, LeftOut& left_out);
 
 }  // namespace topple::render

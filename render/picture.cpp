@@ -3,12 +3,10 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
-#include "render/drawable.h"
-#include "render/gl_objects.h"
+#include "render/canvas.h"
 #include "render/imgui_painter.h"
 #include "render/scene_painter.h"
 
@@ -50,27 +48,17 @@ class Words {
   ImGuiContext* context_;
 };
 
-bool finite(const Camera& camera) {
-  return camera.view.allFinite() && camera.projection.allFinite() && camera.eye.allFinite();
-}
-
 }  // namespace
 
 struct Picture::Parts {
   Parts(GetProc get_proc, int w, int h)
-      : gl(load_gl(get_proc)), width(w), height(h), scene(gl), painter(gl), words(w, h) {
-    sampled = make_framebuffer(gl);
-    resolved = make_framebuffer(gl);
-    sampled_colour = make_renderbuffer(gl, GL_RGBA8, w, h, k_samples);
-    sampled_depth = make_renderbuffer(gl, GL_DEPTH_COMPONENT24, w, h, k_samples);
-    resolved_colour = make_renderbuffer(gl, GL_RGBA8, w, h, 0);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, sampled.id());
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, sampled_colour.id());
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, sampled_depth.id());
-    check_framebuffer(gl, "picture's samples");
-    gl.BindFramebuffer(GL_FRAMEBUFFER, resolved.id());
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour.id());
-    check_framebuffer(gl, "picture");
+      : gl(load_gl(get_proc)),
+        width(w),
+        height(h),
+        scene(gl),
+        painter(gl),
+        canvas(gl, w, h, k_samples),
+        words(w, h) {
     words.with([&] {
       // Narrow pictures take the letters of a lower one, so that lines keep their room.
       fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, std::min(height, 3 * width / 4));
@@ -85,31 +73,17 @@ struct Picture::Parts {
       boxes = draw_overlay(*ImGui::GetBackgroundDrawList(), fonts, frame, map, static_cast<float>(width),
                            static_cast<float>(height), left_out);
       ImGui::Render();
-      painter.draw(*ImGui::GetDrawData(), {resolved.id(), width, height});
+      painter.draw(*ImGui::GetDrawData(), canvas.target());
     });
-  }
-
-  Image read() {
-    const std::size_t stride = 4 * static_cast<std::size_t>(width);
-    std::vector<std::uint8_t> upward(stride * static_cast<std::size_t>(height));
-    gl.BindFramebuffer(GL_FRAMEBUFFER, resolved.id());
-    gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-    gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, upward.data());
-    Image image{width, height, std::vector<std::uint8_t>(upward.size())};
-    for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row) {
-      std::memcpy(image.rgba.data() + row * stride,
-                  upward.data() + (static_cast<std::size_t>(height) - 1 - row) * stride, stride);
-    }
-    return image;
   }
 
   Gl gl;
   int width, height;
   ScenePainter scene;
   ImguiPainter painter;
+  Canvas canvas;
   Words words;
   OverlayFonts fonts;
-  GlObject sampled, resolved, sampled_colour, sampled_depth, resolved_colour;
   LeftOut left_out;
   std::vector<OverlayBox> boxes;
 };
@@ -133,14 +107,9 @@ Image Picture::draw(const SceneFrame& frame, const Camera& camera, const Picture
   Parts& p = *parts_;
   p.left_out = {};
   p.boxes.clear();
-  const ColourMap map = frame.legend.is_signed ? ColourMap::diverging : options.map;
-  const Camera& usable = finite(camera) ? camera : fit_camera(NamedView::iso, frame, aspect());
-  p.scene.draw(frame, usable, map, {p.sampled.id(), p.width, p.height}, p.left_out);
-  p.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, p.sampled.id());
-  p.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, p.resolved.id());
-  p.gl.BlitFramebuffer(0, 0, p.width, p.height, 0, 0, p.width, p.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  if (options.overlay) p.draw_words(frame, map);
-  Image image = p.read();
+  p.canvas.draw(p.scene, frame, camera, options.map, Quality::still, p.left_out);
+  if (options.overlay) p.draw_words(frame, colour_map_for(frame.legend, options.map));
+  Image image = p.canvas.read();
   check_gl(p.gl, "drawing a picture");
   return image;
 }

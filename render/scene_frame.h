@@ -96,6 +96,9 @@ struct SceneFrame {
   std::vector<Panel> panels;
   std::vector<Ground> grounds;
   std::vector<Arrow> arrows;
+  std::int64_t highlighted_member = -1;  ///< Tube::member that is outlined; -1: none
+  std::vector<Station> ghost_stations;   ///< of another run, for comparison; their value does not count
+  std::vector<Tube> ghost_tubes;         ///< drawn translucent grey, without a shadow
   Legend legend;
   Trace trace;
   Caption caption;

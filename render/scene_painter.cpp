@@ -19,40 +19,27 @@ using Eigen::Matrix4f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr int k_shadow_side = 2048;
-constexpr int k_contact_side = 1024;
-
-/// Margin of the contact map around the bodies, m: as far as their contact shade reaches.
-constexpr float k_contact_margin = 0.2f;
-
-// From the left of the named views and above, so that shadows fall away from the viewer.
-const Vector3f k_to_key = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
-
 constexpr GLuint k_colour_unit = 0;
-constexpr GLuint k_shadow_unit = 1;
-constexpr GLuint k_contact_unit = 2;
+
+// Of the highlighted member, px of a picture 720 high from its side: white within, magenta without,
+// so that one of them stands out from any colour of a map.
+constexpr float k_inner_outline = 1.5f;
+constexpr float k_outer_outline = 4;
+constexpr Float4 k_inner_colour{1, 1, 1, 1};
+constexpr Float4 k_outer_colour{0.86f, 0.05f, 0.45f, 1};
 
 const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
-/// Orthographic matrix with the rows x, y, z as axes; the box low..high in these becomes -1..1.
-Matrix4f box_matrix(const Eigen::Matrix3f& rows, const Vector3f& low, const Vector3f& high) {
-  Matrix4f m = Matrix4f::Identity();
-  for (int i = 0; i < 3; ++i) {
-    const float scale = 2 / (high[i] - low[i]);
-    m.block<1, 3>(i, 0) = scale * rows.row(i);
-    m(i, 3) = -scale * (high[i] + low[i]) / 2;
-  }
-  return m;
-}
-
-/// The box low..high seen along the axes of `rows`.
-std::pair<Vector3f, Vector3f> turned_box(const Eigen::Matrix3f& rows, const Vector3f& low,
-                                         const Vector3f& high) {
-  const Vector3f middle = rows * ((low + high) / 2);
-  const Vector3f half = rows.cwiseAbs() * ((high - low) / 2);
-  return {middle - half, middle + half};
+/// Adds `part` to the mesh and returns where its indices lie.
+IndexRange append(Mesh& mesh, const Mesh& part) {
+  const IndexRange range{static_cast<std::uint32_t>(mesh.indices.size()),
+                         static_cast<std::uint32_t>(part.indices.size())};
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const std::uint32_t index : part.indices) mesh.indices.push_back(base + index);
+  return range;
 }
 
 struct PlaneAxes {
@@ -76,6 +63,19 @@ bool plane_axes(const Ground& ground, PlaneAxes& axes) {
   return true;
 }
 
+/// The first floor that has a plane; a level one at `height` when there is none.
+FloorPlane floor_plane(const SceneFrame& frame, float height) {
+  for (const Ground& ground : frame.grounds) {
+    PlaneAxes axes;
+    if (ground.is_floor && plane_axes(ground, axes)) {
+      return {Vector3f(ground.centre.data()), axes.along, axes.across, axes.normal};
+    }
+  }
+  FloorPlane level;
+  level.point.z() = height;
+  return level;
+}
+
 /// Plane (normal, offset) of the first wall that is seen from its face; one that is never reached
 /// when there is none. The room ends there, so the floor does not go on behind it.
 Eigen::Vector4f wall_before_which_the_floor_lies(const SceneFrame& frame, const Vector3f& eye) {
@@ -93,41 +93,15 @@ Eigen::Vector4f wall_before_which_the_floor_lies(const SceneFrame& frame, const 
 ScenePainter::ScenePainter(const Gl& gl)
     : gl_(gl),
       backdrop_(gl, "backdrop.vert", {"backdrop.frag"}),
-      ground_(gl, "ground.vert", {"light.glsl", "ground.frag"}),
-      solid_(gl, "solid.vert", {"light.glsl", "solid.frag"}),
       panel_(gl, "panel.vert", {"panel.frag"}),
-      shadow_(gl, "shadow.vert", {"shadow.frag"}),
-      contact_(gl, "shadow.vert", {"contact.frag"}),
+      ghost_(gl, "solid.vert", {"ghost.frag"}),
+      outline_(gl, "solid.vert", {"outline.frag"}),
       mesh_array_(make_vertex_array(gl)),
       mesh_vertices_(make_buffer(gl)),
       mesh_indices_(make_buffer(gl)),
       panel_array_(make_vertex_array(gl)),
       panel_vertices_(make_buffer(gl)),
-      empty_array_(make_vertex_array(gl)),
-      shadow_map_(make_texture(gl, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT}, k_shadow_side,
-                               k_shadow_side, nullptr)),
-      contact_map_(),
-      shadow_target_(make_framebuffer(gl)),
-      contact_target_(make_framebuffer(gl)) {
-  gl.BindTexture(GL_TEXTURE_2D, shadow_map_.id());
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  const float lit[] = {1, 1, 1, 1};
-  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
-  contact_map_ =
-      make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, k_contact_side, k_contact_side, nullptr);
-
-  gl.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_.id());
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_map_.id(), 0);
-  const GLenum none = GL_NONE;
-  gl.DrawBuffers(1, &none);
-  check_framebuffer(gl, "shadow map");
-  gl.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, contact_map_.id(), 0);
-  check_framebuffer(gl, "contact map");
-
+      empty_array_(make_vertex_array(gl)) {
   for (std::size_t i = 0; i < colour_maps_.size(); ++i) {
     const ColourTable& table = colour_table(static_cast<ColourMap>(i));
     colour_maps_[i] =
@@ -152,15 +126,15 @@ ScenePainter::ScenePainter(const Gl& gl)
   for (GLuint i = 0; i < 3; ++i) gl.EnableVertexAttribArray(i);
 }
 
-void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap map, const Target& target,
-                        LeftOut& left_out) {
+void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap map, Quality quality,
+                        const Target& target, LeftOut& left_out) {
   view_projection_ = camera.projection * camera.view;
   gl_.Disable(GL_SCISSOR_TEST);
   gl_.Enable(GL_CULL_FACE);
   gl_.BlendEquation(GL_FUNC_ADD);
-  upload(frame, camera, left_out);
-  draw_key_shadow();
-  draw_contact_map(frame);
+  upload(frame, camera, target.height, left_out);
+  Look& look = this->look(quality);
+  look.shadows.draw(low_, high_, floor_plane(frame, low_.z()), [this] { draw(solids_); });
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl_.Viewport(0, 0, target.width, target.height);
@@ -174,39 +148,48 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 
   bind(k_colour_unit, colour_maps_[static_cast<std::size_t>(map)]);
-  bind(k_shadow_unit, shadow_map_);
-  bind(k_contact_unit, contact_map_);
+  look.shadows.bind();
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthFunc(GL_LEQUAL);
   gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   gl_.Enable(GL_BLEND);
-  draw_grounds(frame, camera, target.height, left_out);
+  draw_grounds(frame, camera, quality, target.height, left_out);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
-  solid_.use();
-  set_light(solid_, camera);
-  solid_.set("u_colour_map", static_cast<int>(k_colour_unit));
-  draw_solids();
-  gl_.Disable(GL_CULL_FACE);
+  use_lit(look.solid, look, camera);
+  look.solid.set("u_colour_map", static_cast<int>(k_colour_unit));
+  draw(solids_);
+  outline_.use();
+  outline_.set("u_view_projection", view_projection_);
+  draw(shells_);
   gl_.Enable(GL_BLEND);
+  draw_ghosts(camera);
+  gl_.Disable(GL_CULL_FACE);
   draw_panels(camera);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BindVertexArray(0);
 }
 
-void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, LeftOut& left_out) {
-  mesh_ = solid_mesh(frame, left_out);
+void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out) {
+  Mesh mesh = solid_mesh(frame, left_out);
+  solids_ = {0, static_cast<std::uint32_t>(mesh.indices.size())};
   std::tie(low_, high_) = drawable_bounds(frame);
-  for (const Vertex& vertex : mesh_.vertices) {
+  for (const Vertex& vertex : mesh.vertices) {
     low_ = low_.cwiseMin(vertex.position);
     high_ = high_.cwiseMax(vertex.position);
   }
+  ghosts_ = append(mesh, ghost_mesh(frame, left_out));
+  const float pixel = 2 / (camera.projection(1, 1) * static_cast<float>(height));  // m at a metre
+  const float unit = std::max(1.0f, static_cast<float>(height) / 720);
+  shells_ = append(mesh, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
+  shells_.count +=
+      append(mesh, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
   gl_.BindVertexArray(mesh_array_.id());
   gl_.BindBuffer(GL_ARRAY_BUFFER, mesh_vertices_.id());
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh_.vertices.size() * sizeof(Vertex)),
-                 mesh_.vertices.data(), GL_STREAM_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
+                 mesh.vertices.data(), GL_STREAM_DRAW);
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(mesh_.indices.size() * sizeof(std::uint32_t)), mesh_.indices.data(),
+                 static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(),
                  GL_STREAM_DRAW);
   const std::vector<PanelVertex> panels = panel_mesh(frame, camera.eye, left_out);
   panel_vertex_count_ = static_cast<GLsizei>(panels.size());
@@ -215,90 +198,43 @@ void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, LeftOut
                  GL_STREAM_DRAW);
 }
 
-void ScenePainter::draw_key_shadow() {
-  Eigen::Matrix3f rows;
-  rows.row(2) = -k_to_key;  // depth grows away from the light
-  rows.row(0) = Vector3f::UnitZ().cross(k_to_key).normalized();
-  rows.row(1) = Vector3f(rows.row(0)).cross(Vector3f(rows.row(2)));
-  const Vector3f margin = Vector3f::Constant(0.02f);
-  const auto [low, high] = turned_box(rows, low_ - margin, high_ + margin);
-  shadow_matrix_ = box_matrix(rows, low, high);
+ScenePainter::Look::Look(const Gl& gl, std::string_view constants, const ShadowSize& size)
+    : ground(gl, "ground.vert", {constants, "light.glsl", "ground.frag"}),
+      solid(gl, "solid.vert", {constants, "light.glsl", "solid.frag"}),
+      shadows(gl, size) {}
 
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, shadow_target_.id());
-  gl_.Viewport(0, 0, k_shadow_side, k_shadow_side);
-  gl_.DepthMask(GL_TRUE);
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.DepthFunc(GL_LESS);
-  gl_.Enable(GL_POLYGON_OFFSET_FILL);
-  gl_.PolygonOffset(1.5f, 4.0f);
-  shadow_.use();
-  shadow_.set("u_view_projection", shadow_matrix_);
-  draw_solids();
-  gl_.Disable(GL_POLYGON_OFFSET_FILL);
-}
-
-void ScenePainter::draw_contact_map(const SceneFrame& frame) {
-  PlaneAxes axes{Vector3f::UnitX(), Vector3f::UnitY(), Vector3f::UnitZ()};
-  contact_plane_.point = {0, 0, low_.z()};
-  for (const Ground& ground : frame.grounds) {
-    if (ground.is_floor && plane_axes(ground, axes)) {
-      contact_plane_.point = Vector3f(ground.centre.data());
-      break;
-    }
+ScenePainter::Look& ScenePainter::look(Quality quality) {
+  std::unique_ptr<Look>& look = looks_[static_cast<std::size_t>(quality)];
+  if (look == nullptr) {
+    look = quality == Quality::still
+               ? std::make_unique<Look>(gl_, "look_still.glsl", ShadowSize{2048, 1024})
+               : std::make_unique<Look>(gl_, "look_interactive.glsl", ShadowSize{1024, 256});
   }
-  contact_plane_.normal = axes.normal;
-  Eigen::Matrix3f rows;
-  rows << axes.along.transpose(), axes.across.transpose(), axes.normal.transpose();
-  const auto [low, high] = turned_box(rows, low_, high_);
-  contact_plane_.size = std::max(high.x() - low.x(), high.y() - low.y()) + 2 * k_contact_margin;
-  const Vector3f middle = (low + high) / 2;
-  const Vector3f half = Vector3f::Constant(contact_plane_.size / 2);
-  contact_plane_.to_map = box_matrix(rows, middle - half, middle + half);
-
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
-  gl_.Viewport(0, 0, k_contact_side, k_contact_side);
-  gl_.ClearColor(0, 0, 0, 0);
-  gl_.Clear(GL_COLOR_BUFFER_BIT);
-  gl_.Disable(GL_DEPTH_TEST);
-  gl_.Disable(GL_CULL_FACE);  // the undersides, which nothing else shows, are the nearest
-  gl_.Enable(GL_DEPTH_CLAMP);
-  gl_.Enable(GL_BLEND);
-  gl_.BlendEquation(GL_MAX);  // the lowest point above each place counts
-  contact_.use();
-  contact_.set("u_view_projection", contact_plane_.to_map);
-  contact_.set("u_up", contact_plane_.normal);
-  contact_.set("u_floor", contact_plane_.point);
-  draw_solids();
-  gl_.BlendEquation(GL_FUNC_ADD);
-  gl_.Disable(GL_BLEND);
-  gl_.Disable(GL_DEPTH_CLAMP);
-  bind(k_contact_unit, contact_map_);
-  gl_.GenerateMipmap(GL_TEXTURE_2D);
+  return *look;
 }
 
-void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, int height,
+void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
                                 LeftOut& left_out) {
+  const Look& look = this->look(quality);
   const auto [low, high] = drawable_bounds(frame);
-  ground_.use();
-  set_light(ground_, camera);
-  ground_.set("u_contact", static_cast<int>(k_contact_unit));
-  ground_.set("u_contact_matrix", contact_plane_.to_map);
-  ground_.set("u_contact_size", contact_plane_.size);
-  ground_.set("u_focus", ((low + high) / 2).eval());
-  ground_.set("u_wall", wall_before_which_the_floor_lies(frame, camera.eye));
-  ground_.set("u_fade_radius", 2.2f * (high - low).norm());
-  ground_.set("u_line_width", std::max(1.0f, static_cast<float>(height) / 720));
+  use_lit(look.ground, look, camera);
+  look.ground.set("u_focus", ((low + high) / 2).eval());
+  look.ground.set("u_wall", wall_before_which_the_floor_lies(frame, camera.eye));
+  look.ground.set("u_fade_radius", 2.2f * (high - low).norm());
+  look.ground.set("u_line_width", std::max(1.0f, static_cast<float>(height) / 720));
   gl_.BindVertexArray(empty_array_.id());
-  // Floors first: walls stand on them and fade out over them.
-  for (const bool floors : {true, false}) {
+  // Floors first: walls stand on them and fade out over them. A wall that hides the floor goes first
+  // when pixels that are not seen should not be shaded.
+  for (const bool first : {true, false}) {
     for (const Ground& ground : frame.grounds) {
-      if (ground.is_floor != floors) continue;
       PlaneAxes axes;
       if (!plane_axes(ground, axes)) {
-        ++left_out.grounds;
+        left_out.grounds += first;
         continue;
       }
+      const bool seen_from_behind = axes.normal.dot(camera.eye - Vector3f(ground.centre.data())) < 0;
+      const bool early = quality == Quality::still ? ground.is_floor : !ground.is_floor && !seen_from_behind;
+      if (early != first) continue;
       Vector2f half(ground.half_length, ground.half_width);
       const bool upright = std::abs(axes.normal.z()) < 0.5f;
       if (upright && std::abs(axes.along.z()) > std::abs(axes.across.z())) {
@@ -306,15 +242,14 @@ void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, i
         std::swap(half.x(), half.y());
       }
       if (upright && axes.across.z() < 0) axes.across = -axes.across;
-      const bool seen_from_behind = axes.normal.dot(camera.eye - Vector3f(ground.centre.data())) < 0;
-      ground_.set("u_centre", Vector3f(ground.centre.data()));
-      ground_.set("u_along", axes.along);
-      ground_.set("u_across", axes.across);
-      ground_.set("u_normal", axes.normal);
-      ground_.set("u_half", half);
-      ground_.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
-      ground_.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
-      ground_.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
+      look.ground.set("u_centre", Vector3f(ground.centre.data()));
+      look.ground.set("u_along", axes.along);
+      look.ground.set("u_across", axes.across);
+      look.ground.set("u_normal", axes.normal);
+      look.ground.set("u_half", half);
+      look.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
+      look.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
+      look.ground.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
       gl_.DepthMask(seen_from_behind ? GL_FALSE : GL_TRUE);
       gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
@@ -322,9 +257,30 @@ void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, i
   gl_.DepthMask(GL_TRUE);
 }
 
-void ScenePainter::draw_solids() {
+void ScenePainter::draw(const IndexRange& part) {
+  if (part.count == 0) return;
   gl_.BindVertexArray(mesh_array_.id());
-  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh_.indices.size()), GL_UNSIGNED_INT, nullptr);
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.count), GL_UNSIGNED_INT,
+                   offset(part.first * sizeof(std::uint32_t)));
+}
+
+void ScenePainter::draw_ghosts(const Camera& camera) {
+  ghost_.use();
+  ghost_.set("u_view_projection", view_projection_);
+  ghost_.set("u_eye", camera.eye);
+  // A ghost that coincides with a body lies behind it.
+  gl_.Enable(GL_POLYGON_OFFSET_FILL);
+  gl_.PolygonOffset(1, 5);
+  // Its depth first, without colour, and then what lies a little before that: each pixel shows one of
+  // the ghosts, the foremost.
+  gl_.BlendFuncSeparate(GL_ZERO, GL_ONE, GL_ZERO, GL_ONE);
+  draw(ghosts_);
+  gl_.PolygonOffset(1, 4);
+  gl_.DepthFunc(GL_LESS);
+  gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+  draw(ghosts_);
+  gl_.DepthFunc(GL_LEQUAL);
+  gl_.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
 void ScenePainter::draw_panels(const Camera& camera) {
@@ -337,13 +293,11 @@ void ScenePainter::draw_panels(const Camera& camera) {
   gl_.DepthMask(GL_TRUE);
 }
 
-void ScenePainter::set_light(const Program& program, const Camera& camera) {
+void ScenePainter::use_lit(const Program& program, const Look& look, const Camera& camera) {
+  program.use();
   program.set("u_view_projection", view_projection_);
   program.set("u_eye", camera.eye);
-  program.set("u_to_key", k_to_key);
-  program.set("u_shadow", static_cast<int>(k_shadow_unit));
-  program.set("u_shadow_matrix", shadow_matrix_);
-  program.set("u_shadow_texel", 1.0f / k_shadow_side);
+  look.shadows.set(program);
 }
 
 void ScenePainter::bind(GLuint unit, const GlObject& texture) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -11,6 +13,7 @@
 #include "render/gl_objects.h"
 #include "render/mesh.h"
 #include "render/scene_frame.h"
+#include "render/shadows.h"
 
 namespace topple::render {
 
@@ -21,6 +24,10 @@ struct Target {
   int height = 0;
 };
 
+/// interactive: shadows from fewer and coarser samples, for a software rasteriser that has to keep up
+/// with a person; still: as good as it gets.
+enum class Quality { interactive, still };
+
 /// Holds shaders, buffers and shadow maps for one context. Any call needs that context current.
 class ScenePainter {
  public:
@@ -28,37 +35,36 @@ class ScenePainter {
   explicit ScenePainter(const Gl& gl);
 
   /// Fills the whole target. Counts what cannot be drawn in `left_out`.
-  void draw(const SceneFrame& frame, const Camera& camera, ColourMap map, const Target& target,
-            LeftOut& left_out);
+  void draw(const SceneFrame& frame, const Camera& camera, ColourMap map, Quality quality,
+            const Target& target, LeftOut& left_out);
 
  private:
-  /// Where the one floor is that shows contact shadows, and the square of it that is mapped.
-  struct ContactPlane {
-    Eigen::Vector3f point{0, 0, 0};
-    Eigen::Vector3f normal{0, 0, 1};
-    Eigen::Matrix4f to_map = Eigen::Matrix4f::Identity();
-    float size = 1;  // m
+  /// Programs and shadow maps of one quality.
+  struct Look {
+    Look(const Gl& gl, std::string_view constants, const ShadowSize& size);
+    Program ground, solid;
+    Shadows shadows;
   };
 
-  void upload(const SceneFrame& frame, const Camera& camera, LeftOut& left_out);
-  void draw_key_shadow();
-  void draw_contact_map(const SceneFrame& frame);
-  void draw_grounds(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
-  void draw_solids();
+  Look& look(Quality quality);
+  void upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
+  void draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
+                    LeftOut& left_out);
+  void draw(const IndexRange& part);
+  void draw_ghosts(const Camera& camera);
   void draw_panels(const Camera& camera);
-  void set_light(const Program& program, const Camera& camera);
+  void use_lit(const Program& program, const Look& look, const Camera& camera);
   void bind(GLuint unit, const GlObject& texture);
 
   const Gl& gl_;
-  Program backdrop_, ground_, solid_, panel_, shadow_, contact_;
+  Program backdrop_, panel_, ghost_, outline_;
+  std::array<std::unique_ptr<Look>, 2> looks_;  // made when first drawn with
   GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
-  GlObject shadow_map_, contact_map_, shadow_target_, contact_target_;
   std::array<GlObject, 3> colour_maps_;
-  Mesh mesh_;
+  IndexRange solids_, ghosts_, shells_;
   GLsizei panel_vertex_count_ = 0;
   Eigen::Vector3f low_, high_;  // box around bounds and everything solid
-  Eigen::Matrix4f view_projection_, shadow_matrix_;
-  ContactPlane contact_plane_;
+  Eigen::Matrix4f view_projection_;
 };
 
 }  // namespace topple::render

@@ -25,6 +25,7 @@ float grid(vec2 p, float spacing, float width) {
 
 vec2 nearness(vec2 at, vec2 offset, float radius) {
   float level = log2(max(radius * float(textureSize(u_contact, 0).x) / u_contact_size, 1.0));
+  if (!k_fine) level = round(level);  // one level to read instead of two
   return textureLod(u_contact, at + offset / u_contact_size, level).rg;
 }
 
@@ -32,26 +33,40 @@ vec2 nearness(vec2 at, vec2 offset, float radius) {
 float contact_shade(vec3 p) {
   vec2 at = 0.5 + 0.5 * (u_contact_matrix * vec4(p, 1.0)).xy;
   bool inside = all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
-  int taps = inside ? 8 : 0;
+  int taps = inside ? k_contact_taps : 0;
   float tight = 0.0;
   float wide = 0.0;
   for (int i = 0; i < taps; ++i) {
-    float angle = 0.785398 * float(i);
+    float angle = 6.283184 / float(k_contact_taps) * float(i);
     vec2 direction = vec2(cos(angle), sin(angle));
-    tight += nearness(at, 0.007 * direction, 0.008).r / 8.0;
-    wide += (0.6 * nearness(at, 0.030 * direction, 0.030).g + 0.4 * nearness(at, 0.075 * direction, 0.060).g) / 8.0;
+    if (k_fine) {
+      tight += nearness(at, 0.007 * direction, 0.008).r;
+      wide += 0.6 * nearness(at, 0.030 * direction, 0.030).g + 0.4 * nearness(at, 0.075 * direction, 0.060).g;
+    } else {
+      vec2 near = nearness(at, 0.018 * direction, 0.018);
+      tight += near.r;
+      wide += near.g;
+    }
   }
+  tight /= float(k_contact_taps);
+  wide /= float(k_contact_taps);
   // A beam covers little of its surroundings, and yet its foot must be seen: small covers count more.
   tight = 1.0 - (1.0 - tight) * (1.0 - tight);
   wide = 1.0 - (1.0 - wide) * (1.0 - wide);
   return (1.0 - 0.66 * tight) * (1.0 - 0.36 * wide);
 }
 
+// A colour in less light.
+vec3 shaded(vec3 coded, float shade) {
+  // the second is the same with one power instead of six, but for rounding
+  return k_fine ? coded_of(linear_of(coded) * shade) : (coded + 0.055) * pow(shade, 1.0 / 2.4) - 0.055;
+}
+
 void main() {
-  vec3 paint = linear_of(u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935));
+  vec3 paint = u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
   float shade = mix(0.66, 1.0, key_visibility(v_position + 0.002 * u_normal, 5.0));
   if (u_is_floor > 0.5) shade *= contact_shade(v_position);
-  vec3 colour = coded_of(paint * shade);
+  vec3 colour = shaded(paint, shade);
 
   vec2 p = v_plane - u_grid_origin;
   float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));

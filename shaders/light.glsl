@@ -2,7 +2,6 @@
 uniform vec3 u_eye;
 uniform vec3 u_to_key;
 uniform mat4 u_shadow_matrix;
-uniform float u_shadow_texel;
 uniform sampler2DShadow u_shadow;
 
 const vec3 k_key_colour = vec3(1.0, 0.985, 0.96);
@@ -20,17 +19,18 @@ vec3 sky_light(vec3 normal) {
   return mix(vec3(0.36, 0.355, 0.35), vec3(0.56, 0.575, 0.59), 0.5 + 0.5 * normal.z);
 }
 
-// Share of the key light that reaches p: 4 x 4 taps, `reach` texels of the shadow map from the middle
-// to the outermost. Everything outside the map is lit; there the loop ends at once, which spares a
-// software rasteriser most of the floor.
+// Share of the key light that reaches p: a square of taps, `reach` texels of a map of 2048 from the
+// middle to the outermost. Everything outside the map is lit; there the loop ends at once, which
+// spares a software rasteriser most of the floor.
 float key_visibility(vec3 p, float reach) {
   vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
   bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
-  int taps = inside ? 16 : 0;
+  const float middle = 0.5 * float(k_shadow_taps - 1);
+  int taps = inside ? k_shadow_taps * k_shadow_taps : 0;
   float shade = 0.0;
   for (int i = 0; i < taps; ++i) {
-    vec2 offset = (vec2(i & 3, i >> 2) - 1.5) / 1.5 * reach * u_shadow_texel;
+    vec2 offset = (vec2(i % k_shadow_taps, i / k_shadow_taps) - middle) / middle * reach / 2048.0;
     shade += 1.0 - texture(u_shadow, vec3(at.xy + offset, at.z));
   }
-  return 1.0 - shade / 16.0;
+  return 1.0 - shade / float(k_shadow_taps * k_shadow_taps);
 }

@@ -38,9 +38,9 @@ std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters) {
     keys.emplace_back(Edit::Key::amplitude, i);
     keys.emplace_back(Edit::Key::direction, i);
   }
-  for (const Edit::Key key :
-       {Edit::Key::alpha, Edit::Key::q, Edit::Key::friction, Edit::Key::restitution, Edit::Key::time_step})
-    keys.emplace_back(key, 0);
+  for (const Edit::Key key : {Edit::Key::alpha, Edit::Key::q, Edit::Key::friction}) keys.emplace_back(key, 0);
+  if (parameters.contact.kind == ContactLawKind::coulomb) keys.emplace_back(Edit::Key::restitution, 0);
+  keys.emplace_back(Edit::Key::time_step, 0);
   return keys;
 }
 

@@ -17,6 +17,7 @@ namespace topple {
 namespace {
 
 constexpr int k_halvings = 6;
+constexpr double k_time_slack = 1e-9;  // s, times are sums of rounded steps
 
 std::string format(const char* pattern, double a) {
   char text[96];
@@ -165,7 +166,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   State& next = w.next;
   next = state;
   StepEnergy exchanged;
-  if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - h / 2, t + h / 2); !floor.isZero(0)) {
+  if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack); !floor.isZero(0)) {
     exchanged.input = jump(model, floor, next);
     for (auto& system : w.systems) balance_accelerations(*system, parameters, next, w.motion);
   }

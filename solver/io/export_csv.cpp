@@ -128,9 +128,8 @@ void floor_row(CsvFile& csv, const FrameRow& row) {
 
 void expect_same_model(const Model& model, const FrameRow& row) {
   if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
-      row.rung.size() != model.bodies.size()) {
-    throw InputError("the scene in the recording gives another model than the one it was recorded with");
-  }
+      row.rung.size() != model.bodies.size())
+    throw InputError(k_another_model);
 }
 
 }  // namespace
@@ -145,7 +144,7 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   CsvFile elements(base / "elements.csv",
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
   CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
-  for (std::int64_t i = 0; i < recording.frame_count(); ++i) {
+  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
     const FrameRow row = recording.frame(i);
     expect_same_model(model, row);
     bodies_rows(bodies, model, row);

@@ -133,6 +133,13 @@ std::size_t row_bytes(const FrameField& field) {
   return bytes;
 }
 
+RowShape row_shape(const Model& model) {
+  return {.nodes = model.node_position.size(),
+          .elements = model.elements.size(),
+          .contacts = model.contact_points.size() * model.planes.size(),
+          .bodies = model.bodies.size()};
+}
+
 FrameRow blank_row(const RowShape& shape) {
   FrameRow row;
   row.position.resize(3 * shape.nodes);

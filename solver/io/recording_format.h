@@ -36,6 +36,8 @@ struct RowShape {
   std::size_t nodes = 0, elements = 0, contacts = 0, bodies = 0;
   std::size_t state = 0;  ///< numbers of pack(State)
 };
+/// Of a model's rows; without `state`.
+RowShape row_shape(const Model& model);
 
 // Records. `checksum` is the CRC-32C of the bytes before it; the order of the members leaves no gaps.
 struct FrameRecord {
@@ -64,10 +66,10 @@ struct EventRecord {
 };
 struct EditRecord {
   std::int32_t branch = k_not_written;
-  std::int32_t kind = 0;
+  std::int32_t kind = 0;  ///< 0: a value; others, with a blob, are to come
   std::int64_t step = 0;
-  char key[64] = {};
-  double value[4] = {};
+  char key[64] = {};     ///< edit_key(): "shake.1.amplitude"
+  double value[4] = {};  ///< SI; the last one is the time of the step, s
   std::int64_t blob_offset = 0, blob_length = 0;
   std::uint32_t checksum = 0, unused = 0;
 };

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 #include <thread>
+#include <tuple>
 
 #include "solver/io/hdf5_read_driver.h"
 #include "solver/io/scene.h"
@@ -127,8 +128,8 @@ struct Recording::Impl {
   }
 
   void close() {
-    for (RowReader* set :
-         {&frame_index, &checkpoint_index, &checkpoint_state, &event_rows, &result_rows, &summary_bytes}) {
+    for (RowReader* set : {&frame_index, &checkpoint_index, &checkpoint_state, &event_rows, &edit_rows,
+                           &branch_rows, &result_rows, &summary_bytes}) {
       *set = {};
     }
     for (RowReader& field : fields) field = {};
@@ -177,6 +178,8 @@ struct Recording::Impl {
     frame_index = records("frames/index", record_type<FrameRecord>());
     checkpoint_index = records("checkpoints/index", record_type<CheckpointRecord>());
     event_rows = records("events", record_type<EventRecord>());
+    edit_rows = records("edits", record_type<EditRecord>());
+    branch_rows = records("branches", record_type<BranchRecord>());
     result_rows = records("result", record_type<ResultRecord>());
     summary_bytes = records("summary", text_type(1));
     checkpoint_state = RowReader(file, "checkpoints/state", H5T_IEEE_F64LE);
@@ -208,13 +211,36 @@ struct Recording::Impl {
     recorded_events = read_records<EventRecord>(event_rows, "events");
     for (const RowReader& field : fields) frames.resize(std::min<std::size_t>(frames.size(), field.rows()));
     checkpoints.resize(std::min<std::size_t>(checkpoints.size(), checkpoint_state.rows()));
-    times.clear();
-    for (const FrameRecord& frame : frames) times.push_back(frame.time);
+    frame_instants = instants(frames);
+    checkpoint_instants = instants(checkpoints);
+    history = read_history(read_records<BranchRecord>(branch_rows, "branches"),
+                           read_records<EditRecord>(edit_rows, "edits"));
+    expect_branches(frames, "frames/index");
+    expect_branches(checkpoints, "checkpoints/index");
+    expect_branches(recorded_events, "events");
     status = "interrupted";
     summary.clear();
     for (const ResultRecord& result : read_records<ResultRecord>(result_rows, "result")) read_result(result);
     // The end of a file is what goes missing first.
     if (live && !frames.empty()) read_frame(frames.size() - 1);
+  }
+
+  template <typename Record>
+  static std::vector<Instant> instants(const std::vector<Record>& records) {
+    std::vector<Instant> result;
+    for (const Record& r : records) result.push_back({r.branch, r.step, r.time});
+    return result;
+  }
+
+  template <typename Record>
+  void expect_branches(const std::vector<Record>& records, const char* set) const {
+    std::int32_t known = 0;  // of the record before; the root is always there
+    for (const Record& record : records) {
+      if (record.branch != known && !has_branch(history, record.branch))
+        throw Hdf5Error(std::string(set) + " is damaged (branch " + std::to_string(record.branch) +
+                        " does not exist)");
+      known = record.branch;
+    }
   }
 
   void read_result(const ResultRecord& result) {
@@ -246,32 +272,37 @@ struct Recording::Impl {
     return row;
   }
 
-  // Indices are refreshed before the data: the data then hold at least the rows that the indices name.
+  // Indices are refreshed before the data, rows before the edits and branches that they follow from: what a
+  // record names is then there.
   bool refresh() {
     if (!live) return false;
-    const std::size_t frames_before = frames.size(), events_before = recorded_events.size();
-    const std::string status_before = status;
-    for (RowReader* set :
-         {&result_rows, &summary_bytes, &frame_index, &checkpoint_index, &event_rows, &checkpoint_state}) {
+    const auto known = [this] {
+      return std::tuple(frames.size(), checkpoints.size(), recorded_events.size(), history.edits.size(),
+                        history.branches.size(), status);
+    };
+    const auto before = known();
+    for (RowReader* set : {&result_rows, &summary_bytes, &frame_index, &checkpoint_index, &event_rows,
+                           &edit_rows, &branch_rows, &checkpoint_state}) {
       set->refresh();
     }
     for (RowReader& field : fields) field.refresh();
     load();
-    return frames.size() != frames_before || recorded_events.size() != events_before ||
-           status != status_before;
+    return known() != before;
   }
 
   std::string path;
   bool live = false;
   Handle file;
-  RowReader frame_index, checkpoint_index, checkpoint_state, event_rows, result_rows, summary_bytes;
+  RowReader frame_index, checkpoint_index, checkpoint_state, event_rows, edit_rows, branch_rows, result_rows,
+      summary_bytes;
   std::array<RowReader, k_field_count> fields;
   RowShape shape;
   std::string name, text, status, summary;
   std::vector<FrameRecord> frames;
   std::vector<CheckpointRecord> checkpoints;
   std::vector<EventRecord> recorded_events;
-  std::vector<double> times;
+  std::vector<Instant> frame_instants, checkpoint_instants;
+  History history;
 };
 
 Recording::Recording(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
@@ -291,8 +322,17 @@ const std::string& Recording::status() const {
 const std::string& Recording::summary_json() const {
   return impl_->summary;
 }
-const std::vector<double>& Recording::times() const {
-  return impl_->times;
+const std::vector<Instant>& Recording::index() const {
+  return impl_->frame_instants;
+}
+const std::vector<Instant>& Recording::checkpoint_index() const {
+  return impl_->checkpoint_instants;
+}
+const History& Recording::history() const {
+  return impl_->history;
+}
+std::int32_t Recording::newest_branch() const {
+  return impl_->history.branches.back().id;
 }
 std::int64_t Recording::frame_count() const {
   return static_cast<std::int64_t>(impl_->frames.size());
@@ -339,6 +379,27 @@ Checkpoint Recording::checkpoint(std::int64_t index) const {
     }
     return checkpoint;
   });
+}
+
+std::vector<std::int64_t> Recording::frames_on_way_to(std::int32_t branch) const {
+  std::vector<std::int64_t> found;
+  for (const Stretch& stretch : impl_->history.way_to(branch))
+    for (std::size_t i = 0; i < impl_->frame_instants.size(); ++i) {
+      const Instant& instant = impl_->frame_instants[i];
+      // the instant of the fork is the branch's own first frame
+      if (instant.branch == stretch.branch && (stretch.branch == branch || instant.step < stretch.last_step))
+        found.push_back(static_cast<std::int64_t>(i));
+    }
+  return found;
+}
+
+std::vector<RecordedEvent> Recording::events_on_way_to(std::int32_t branch) const {
+  const std::vector<RecordedEvent> all = events();
+  std::vector<RecordedEvent> found;
+  for (const Stretch& stretch : impl_->history.way_to(branch))
+    for (const RecordedEvent& event : all)
+      if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
+  return found;
 }
 
 bool is_recording(const std::string& path) {

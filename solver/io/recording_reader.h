@@ -42,4 +42,10 @@ std::vector<Record> read_records(const RowReader& set, const char* name) {
   return records;
 }
 
+/// Branches and edits from their records. Throws Hdf5Error for one that does not follow from those before it,
+/// has an unknown key or a value out of range.
+History read_history(const std::vector<BranchRecord>& branches, const std::vector<EditRecord>& edits);
+
+bool has_branch(const History& history, std::int32_t id);
+
 }  // namespace topple::io

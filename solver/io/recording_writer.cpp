@@ -8,6 +8,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "solver/io/edit_text.h"
+
 namespace topple::io {
 namespace {
 
@@ -144,8 +146,7 @@ void RecordingWriter::create(const std::string& scene_name, const std::string& s
   write_fixed(file_, "scene", character, {scene_text.size()}, scene_text.data());
   write_model(file_, model);
   create_rows();
-  const BranchRecord root = sealed(BranchRecord{.branch = 0});
-  branches_.append(&root, 1);
+  append(Branch{});
   checked(H5Fflush(file_, H5F_SCOPE_GLOBAL));
   checked(H5Fstart_swmr_write(file_));
 }
@@ -220,6 +221,23 @@ void RecordingWriter::append(const RecordedEvent& event) {
   pending_events_.push_back(sealed(record));
 }
 
+void RecordingWriter::append(const Branch& branch) {
+  if (failure_) throw WriteError(*failure_);
+  pending_branches_.push_back(
+      sealed(BranchRecord{.branch = branch.id, .parent = branch.parent, .fork_step = branch.fork_step}));
+  newest_branch_ = branch.id;
+}
+
+void RecordingWriter::append(const LoggedEdit& logged) {
+  if (failure_) throw WriteError(*failure_);
+  EditRecord record{.branch = logged.branch, .step = logged.step};
+  const std::string key = edit_key(logged.edit);
+  std::copy_n(key.data(), std::min(key.size(), sizeof(record.key)), record.key);
+  std::copy_n(logged.edit.value.data(), 3, record.value);
+  record.value[3] = logged.time;
+  pending_edits_.push_back(sealed(record));
+}
+
 void RecordingWriter::write_batch() {
   for (std::size_t i = 0; i < k_field_count; ++i) {
     fields_[i].append(batch_[i].data(), batch_rows_);
@@ -228,7 +246,8 @@ void RecordingWriter::write_batch() {
   batch_rows_ = 0;
 }
 
-// Data first and the indices last, each on disk before the next: a row that can be found is complete.
+// Data first and the indices last, each on disk before the next: a row that can be found is complete, and so
+// is what it follows from.
 void RecordingWriter::write_pending() {
   write_batch();
   for (RowSet& field : fields_) field.flush();
@@ -238,10 +257,11 @@ void RecordingWriter::write_pending() {
     set.flush();
     records.clear();
   };
+  publish(branches_, pending_branches_);
+  publish(edits_, pending_edits_);
   publish(events_, pending_events_);
   publish(checkpoint_index_, pending_checkpoints_);
   publish(frame_index_, pending_frames_);
-  branches_.flush();
 }
 
 void RecordingWriter::flush() {
@@ -264,7 +284,7 @@ void RecordingWriter::flush_if_due() {
 void RecordingWriter::finish(const std::string& status, const std::string& summary_json) {
   flush();
   guarded([&] {
-    ResultRecord record{.branch = 0,
+    ResultRecord record{.branch = newest_branch_,
                         .summary_checksum = crc32c(std::as_bytes(std::span(summary_json))),
                         .summary_length = static_cast<std::int64_t>(summary_json.size())};
     std::copy_n(status.data(), std::min(status.size(), sizeof(record.status)), record.status);

@@ -51,6 +51,8 @@ class RecordingWriter {
   void append(const FrameRow& row);
   void append(const Checkpoint& checkpoint);
   void append(const RecordedEvent& event);
+  void append(const Branch& branch);
+  void append(const LoggedEdit& edit);
   void flush();
   void flush_if_due();
   void finish(const std::string& status, const std::string& summary_json);
@@ -88,6 +90,9 @@ class RecordingWriter {
   std::vector<FrameRecord> pending_frames_;  ///< of rows that HDF5 has, or that are in the batch
   std::vector<CheckpointRecord> pending_checkpoints_;
   std::vector<EventRecord> pending_events_;
+  std::vector<BranchRecord> pending_branches_;
+  std::vector<EditRecord> pending_edits_;
+  std::int32_t newest_branch_ = 0;
 };
 
 }  // namespace topple::io

@@ -8,6 +8,7 @@ topple_embed(
 
 target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit_text.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp

@@ -57,6 +57,9 @@ const Key* find_key(std::string_view table, std::string_view name);
 /// "0..1.5", "0.001..1e+06 kgf".
 std::string range_text(const Key& key);
 
+/// A value in the key's unit: "0.6", "50 kgf".
+std::string value_text(const Key& key, double si);
+
 /// "0.6", "50 kgf", "[0, 0, -9.80665] m/s^2", "coulomb", "true"; empty without default.
 std::string default_text(const Key& key);
 

@@ -101,7 +101,11 @@ std::string meaning_text(const Key& key) {
 }  // namespace
 
 std::string range_text(const Key& key) {
-  return in_unit(key, key.least) + ".." + in_unit(key, key.most) + unit_suffix(key);
+  return in_unit(key, key.least) + ".." + value_text(key, key.most);
+}
+
+std::string value_text(const Key& key, double si) {
+  return in_unit(key, si) + unit_suffix(key);
 }
 
 std::string default_text(const Key& key) {
@@ -111,7 +115,7 @@ std::string default_text(const Key& key) {
     const std::string word(key.choices[static_cast<std::size_t>(key.fallback[0])]);
     return key.type == KeyType::choices ? "[" + word + "]" : word;
   }
-  if (key.type != KeyType::numbers) return in_unit(key, key.fallback[0]) + unit_suffix(key);
+  if (key.type != KeyType::numbers) return value_text(key, key.fallback[0]);
   std::string text;
   for (const double value : key.fallback) text += (text.empty() ? "[" : ", ") + in_unit(key, value);
   return text + "]" + unit_suffix(key);

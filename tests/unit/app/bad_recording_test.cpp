@@ -80,8 +80,9 @@ TEST_F(BadRecordingTest, a_recording_whose_scene_gives_another_model_now_is_refu
   {
     const topple::Run run(scene.setup);
     io::Recorder recorder("a.h5", scene.name, other, scene.setup.model);
-    recorder.observe(run);
-    recorder.finish(run, "completed", "{}");
+    io::Observer observer;
+    recorder.write(observer.observe(run));
+    recorder.finish("completed", "{}");
   }
   const std::string part = "the scene in the recording gives another model";
   expect_one_line({"render", "a.h5", "--still", "a.png", "--at", "0"}, 2, part);

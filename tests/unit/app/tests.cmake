@@ -11,9 +11,11 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/usage_test.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/usage_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/viewer_test.cpp)
 target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
-target_link_libraries(app_test PRIVATE topple_app GTest::gtest_main)
+target_link_libraries(app_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
 target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>")
 add_dependencies(app_test topple)
 gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)

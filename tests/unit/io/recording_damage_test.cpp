@@ -183,9 +183,9 @@ TEST_F(RecordingTest, a_killed_writer_loses_at_most_the_last_tenth_of_a_second) 
     const Recording recording(file);
     EXPECT_EQ(recording.status(), "interrupted");
     ASSERT_GT(recording.frame_count(), 0);
-    EXPECT_LT(shared->newest_time - recording.times().back(), k_promise + k_slack);
+    EXPECT_LT(shared->newest_time - recording.index().back().time, k_promise + k_slack);
     for (std::int64_t i = 0; i < recording.frame_count(); ++i) {
-      const double time = recording.times()[static_cast<std::size_t>(i)];
+      const double time = recording.index()[static_cast<std::size_t>(i)].time;
       ASSERT_TRUE(same(recording.frame(i), fake_row(k_cabinet, i, time))) << i;
     }
     read_all(recording);

@@ -25,6 +25,41 @@ inline constexpr RowShape k_cabinet{.nodes = 52, .elements = 96, .contacts = 16,
 inline constexpr RowShape k_small{.nodes = 3, .elements = 2, .contacts = 4, .bodies = 2, .state = 40};
 inline constexpr const char* k_text = "topple = 1\ntitle = \"fake\"\n";
 
+/// A cabinet that tips over within two seconds; a step of 0.7 ms divides neither 1 s nor the row interval.
+inline constexpr const char* k_scene = R"(
+topple = 1
+title = "test"
+[run]
+duration = "2.3 s"
+time_step = "0.7 ms"
+output_rate = "60 Hz"
+[[shake]]
+type = "sine"
+frequency = "0.5 Hz"
+amplitude = "400 gal"
+direction = [1, 0, 0]
+[floor]
+type = "plane"
+width = "90 mm"
+[[material]]
+name = "steel"
+young = "205 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+[[section]]
+name = "post"
+shape = "box"
+size = ["30 mm", "30 mm"]
+thickness = "1 mm"
+[[cabinet]]
+name = "cabinet"
+size = ["380 mm", "880 mm", "1790 mm"]
+mass = "40 kg"
+cg_height = "1.05 m"
+section = "post"
+material = "steel"
+)";
+
 /// A model that has one entry of every kind that a recording keeps; its sizes are those of k_small.
 inline Model small_model() {
   Model model;

@@ -6,41 +6,6 @@
 namespace topple::io::testing {
 namespace {
 
-/// A cabinet that tips over within two seconds; a step of 0.7 ms divides neither 1 s nor the row interval.
-constexpr const char* k_scene = R"(
-topple = 1
-title = "test"
-[run]
-duration = "2.3 s"
-time_step = "0.7 ms"
-output_rate = "60 Hz"
-[[shake]]
-type = "sine"
-frequency = "0.5 Hz"
-amplitude = "400 gal"
-direction = [1, 0, 0]
-[floor]
-type = "plane"
-width = "90 mm"
-[[material]]
-name = "steel"
-young = "205 GPa"
-poisson = 0.3
-density = "7850 kg/m^3"
-[[section]]
-name = "post"
-shape = "box"
-size = ["30 mm", "30 mm"]
-thickness = "1 mm"
-[[cabinet]]
-name = "cabinet"
-size = ["380 mm", "880 mm", "1790 mm"]
-mass = "40 kg"
-cg_height = "1.05 m"
-section = "post"
-material = "steel"
-)";
-
 class RunRecordingTest : public RecordingTest {
  protected:
   /// Records a run of k_scene and keeps what a reader ought to find.
@@ -54,18 +19,21 @@ class RunRecordingTest : public RecordingTest {
       if (passed > interval) rows_.push_back(frame_row(run));
       interval = std::max(interval, passed);
     };
-    recorder.observe(run);
+    Observer observer;
+    recorder.write(observer.observe(run));
     keep();
     while (!run.over()) {
       const StepStatus status = run.advance();
       ASSERT_TRUE(status.ok()) << status.message(scene_.setup.model);
-      recorder.observe(run);
+      recorder.write(observer.observe(run));
+      recorder.flush_if_due();
       keep();
     }
     if (rows_.back().step != run.state().step) rows_.push_back(frame_row(run));
     last_hash_ = hash(run.state());
     events_ = run.events();
-    recorder.finish(run, "completed", "{\"schema\": 1}");
+    recorder.write(observer.last(run));
+    recorder.finish("completed", "{\"schema\": 1}");
   }
   Scene scene_;
   std::vector<FrameRow> rows_;

@@ -20,10 +20,10 @@ TEST_F(RecordingTest, rows_events_and_checkpoints_read_back_to_the_last_bit) {
   EXPECT_EQ(recording.status(), "completed");
   EXPECT_EQ(recording.summary_json(), "{\"a\": 1}");
   ASSERT_EQ(recording.frame_count(), 250);
-  ASSERT_EQ(recording.times().size(), 250u);
+  ASSERT_EQ(recording.index().size(), 250u);
   for (int i = 249; i >= 0; --i) {
     EXPECT_TRUE(same(recording.frame(i), fake_row(k_small, i, i * 0.01))) << i;
-    EXPECT_EQ(recording.times()[static_cast<std::size_t>(i)], i * 0.01);
+    EXPECT_EQ(recording.index()[static_cast<std::size_t>(i)].time, i * 0.01);
   }
   ASSERT_EQ(recording.checkpoint_count(), 3);
   for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,5 @@
 add_executable(scene_test
+  ${CMAKE_CURRENT_LIST_DIR}/edit_text_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_errors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_robustness_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_test.cpp)

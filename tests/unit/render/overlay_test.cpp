@@ -56,6 +56,44 @@ TEST(Overlay, parts_stay_inside_and_apart_at_every_size_with_any_length_of_text)
   }
 }
 
+TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
+  ImGui::CreateContext();
+  ImGui::GetIO().DisplaySize = {1280, 720};
+  const OverlayFonts fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, 720);
+  ImGui::GetIO().Fonts->Build();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::NewFrame();
+  SceneFrame frame;
+  add_words(frame);
+  LeftOut left_out;
+  for (const float height : {200.0f, 330.0f, 600.0f}) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const int before = list.VtxBuffer.Size;
+    const OverlayBox room{"", 700, 40, 880, 40 + height};
+    const auto box = draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, room, left_out);
+    ASSERT_TRUE(box.has_value());
+    EXPECT_EQ(box->name, "legend");
+    EXPECT_NEAR(box->bottom, room.bottom, 25);
+    ASSERT_GT(list.VtxBuffer.Size, before + 100);
+    for (int i = before; i < list.VtxBuffer.Size; ++i) {
+      const ImVec2 p = list.VtxBuffer[i].pos;
+      EXPECT_TRUE(p.x >= room.left && p.x <= room.right && p.y >= room.top && p.y <= room.bottom)
+          << p.x << ", " << p.y;
+    }
+  }
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const int before = list.VtxBuffer.Size;
+  EXPECT_FALSE(draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 60}, left_out));
+  EXPECT_FALSE(draw_legend_in(list, fonts, {}, ColourMap::viridis, {"", 0, 0, 180, 600}, left_out));
+  EXPECT_EQ(left_out.legends, 0);
+  frame.legend.maximum = frame.legend.minimum;
+  EXPECT_FALSE(draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 600}, left_out));
+  EXPECT_EQ(left_out.legends, 1);
+  EXPECT_EQ(list.VtxBuffer.Size, before);
+  ImGui::EndFrame();
+  ImGui::DestroyContext();
+}
+
 TEST(Overlay, ticks_are_round_and_inside) {
   const Ticks ticks = nice_ticks(0, 270, 5);
   EXPECT_EQ(ticks.values, (std::vector<double>{0, 100, 200}));

@@ -14,6 +14,7 @@
 #include "solver/model.h"
 #include "solver/parameters.h"
 #include "solver/rotation.h"
+#include "solver/run.h"
 #include "solver/state.h"
 #include "solver/step.h"
 
@@ -71,6 +72,35 @@ inline CabinetSpec tall_cabinet() {
   spec.name = "cabinet";
   spec.cg_height = 1.05;
   return spec;
+}
+
+/// A cabinet on the floor; one that is tilted starts as it is, any other at rest.
+inline Setup shaken(double duration, double tilt = 0) {
+  Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.tilt = tilt;
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.model.planes.push_back(ground());
+  setup.run.duration = duration;
+  setup.run.settle = tilt == 0;
+  return setup;
+}
+
+inline void shake(Setup& setup, double amplitude, double frequency) {
+  Shake s;
+  s.amplitude = amplitude;
+  s.frequency = frequency;
+  setup.parameters.shakes.push_back(s);
+}
+
+/// An edit of a number.
+inline Edit set(Edit::Key key, double value, int shake = 0) {
+  return {.key = key, .shake = shake, .value = Vec3(value, 0, 0)};
+}
+
+inline Edit turn_to(const Vec3& direction) {
+  return {.key = Edit::Key::direction, .value = direction};
 }
 
 inline constexpr unsigned k_clamped = 0x3f;

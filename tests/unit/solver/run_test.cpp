@@ -7,25 +7,6 @@
 namespace topple::test {
 namespace {
 
-Setup shaken(double duration, double tilt = 0) {
-  topple::Setup setup;
-  setup.model = steel_model();
-  CabinetSpec spec = tall_cabinet();
-  spec.tilt = tilt;
-  setup.starts.push_back(add_cabinet(setup.model, spec));
-  setup.model.planes.push_back(ground());
-  setup.run.duration = duration;
-  setup.run.settle = tilt == 0;
-  return setup;
-}
-
-void shake(Setup& setup, double amplitude, double frequency) {
-  Shake s;
-  s.amplitude = amplitude;
-  s.frequency = frequency;
-  setup.parameters.shakes.push_back(s);
-}
-
 TEST(Run, lasts_as_long_as_asked) {
   for (double duration : {0.05, 0.0504, 0.1}) {
     const topple::Setup setup = shaken(duration);

@@ -1,8 +1,10 @@
-// The solver side of a Recorder: which instants are recorded.
+#include "solver/io/observer.h"
+
+#include <algorithm>
 #include <cmath>
 
 #include "solver/excitation.h"
-#include "solver/io/recording_writer.h"
+#include "solver/io/recording_format.h"
 
 namespace topple::io {
 namespace {
@@ -10,28 +12,13 @@ namespace {
 constexpr double k_checkpoint_rate = 1;  // Hz, of simulated time
 constexpr std::uint8_t k_frame_rung = 2;
 
-/// Says when k / rate has been reached for the next k. Steps that do not divide 1 / rate do not drift.
-class Schedule {
- public:
-  bool due(double time, double rate) {
-    constexpr double slack = 1e-6;  // of an interval: time is a sum of rounded steps
-    const double passed = std::floor(time * rate + slack);
-    if (passed < next_) return false;
-    next_ = passed + 1;
-    return true;
-  }
-
- private:
-  double next_ = -std::numeric_limits<double>::infinity();
-};
-
-RowShape shape_of(const Model& model) {
-  const State state = start_state(model, std::vector<BodyStart>(model.bodies.size()));
-  return {.nodes = model.node_position.size(),
-          .elements = model.elements.size(),
-          .contacts = model.contact_points.size() * model.planes.size(),
-          .bodies = model.bodies.size(),
-          .state = pack(state).size()};
+/// Whether k / rate has been reached for the next k. Steps that do not divide 1 / rate do not drift.
+bool due(double& next, double time, double rate) {
+  constexpr double slack = 1e-6;  // of an interval: time is a sum of rounded steps
+  const double passed = std::floor(time * rate + slack);
+  if (passed < next) return false;
+  next = passed + 1;
+  return true;
 }
 
 /// Kinetic, strain and gravity energy of a body, the last relative to the reference pose, J.
@@ -44,9 +31,9 @@ double body_energy(const Run& run, const Body& body) {
     // Angular velocity is in material axes, which are the world axes of the reference pose: so is the
     // inertia.
     const Vec3& w = state.angular_velocity[k];
-    energy +=
-        0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() + 0.5 * w.dot(model.node_inertia[k] * w) -
-        model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
+    energy += 0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() +
+              0.5 * w.dot(model.node_inertia[k] * w) -
+              model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
   }
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[static_cast<std::size_t>(e)];
@@ -114,12 +101,8 @@ void fill_bodies(const Run& run, FrameRow& row) {
 }  // namespace
 
 FrameRow frame_row(const Run& run) {
-  const Model& model = run.setup().model;
   const State& state = run.state();
-  FrameRow row = blank_row({.nodes = model.node_position.size(),
-                            .elements = model.elements.size(),
-                            .contacts = model.contact_points.size() * model.planes.size(),
-                            .bodies = model.bodies.size()});
+  FrameRow row = blank_row(row_shape(run.setup().model));
   row.step = state.step;
   row.time = state.time;
   fill_nodes(state, row);
@@ -137,59 +120,45 @@ FrameRow frame_row(const Run& run) {
   return row;
 }
 
-struct Recorder::Impl {
-  Impl(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-       const Model& model)
-      : writer(path, scene_name, scene_text, model, shape_of(model)) {}
+void Observer::add_frame(const Run& run, Observation& out) {
+  out.frame = frame_row(run);
+  out.frame->branch = branch_;
+  last_frame_ = run.state().step;
+}
 
-  void frame(const Run& run) {
-    writer.append(frame_row(run));
-    last_frame = run.state().step;
+void Observer::add_checkpoint(const Run& run, Observation& out) {
+  const State& state = run.state();
+  out.checkpoint = {
+      .branch = branch_, .step = state.step, .time = state.time, .hash = hash(state), .state = pack(state)};
+  last_checkpoint_ = state.step;
+}
+
+void Observer::add_events(const Run& run, Observation& out) {
+  const std::vector<Event>& events = run.events();
+  if (!begun_ && branch_ != 0) events_seen_ = events.size();
+  begun_ = true;
+  for (; events_seen_ < events.size(); ++events_seen_) {
+    const Event& event = events[events_seen_];
+    out.events.push_back({.branch = branch_, .step = event.step, .time = event.time, .event = event});
   }
-  void checkpoint(const Run& run) {
-    const State& state = run.state();
-    writer.append(Checkpoint{
-        .branch = 0, .step = state.step, .time = state.time, .hash = hash(state), .state = pack(state)});
-    last_checkpoint = state.step;
-  }
-  void events(const Run& run) {
-    for (; events_seen < run.events().size(); ++events_seen) {
-      const Event& event = run.events()[events_seen];
-      writer.append(RecordedEvent{.branch = 0, .step = event.step, .time = event.time, .event = event});
-    }
-  }
+}
 
-  RecordingWriter writer;
-  Schedule frames, checkpoints;
-  std::int64_t last_frame = -1, last_checkpoint = -1;
-  std::size_t events_seen = 0;
-};
-
-Recorder::Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-                   const Model& model)
-    : impl_(std::make_unique<Impl>(path, scene_name, scene_text, model)) {}
-Recorder::~Recorder() = default;
-Recorder::Recorder(Recorder&&) noexcept = default;
-Recorder& Recorder::operator=(Recorder&&) noexcept = default;
-
-void Recorder::observe(const Run& run) {
+Observation Observer::observe(const Run& run) {
   const double time = run.state().time;
-  impl_->events(run);
-  if (impl_->checkpoints.due(time, k_checkpoint_rate)) impl_->checkpoint(run);
-  if (impl_->frames.due(time, run.setup().run.output_rate)) impl_->frame(run);
-  impl_->writer.flush_if_due();
+  Observation out;
+  add_events(run, out);
+  if (due(next_checkpoint_, time, k_checkpoint_rate)) add_checkpoint(run, out);
+  if (due(next_frame_, time, run.setup().run.output_rate)) add_frame(run, out);
+  return out;
 }
 
-void Recorder::flush() {
-  impl_->writer.flush();
-}
-
-void Recorder::finish(const Run& run, const std::string& status, const std::string& summary_json) {
+Observation Observer::last(const Run& run) {
   const std::int64_t step = run.state().step;
-  impl_->events(run);
-  if (impl_->last_checkpoint != step) impl_->checkpoint(run);
-  if (impl_->last_frame != step) impl_->frame(run);
-  impl_->writer.finish(status, summary_json);
+  Observation out;
+  add_events(run, out);
+  if (last_checkpoint_ != step) add_checkpoint(run, out);
+  if (last_frame_ != step) add_frame(run, out);
+  return out;
 }
 
 }  // namespace topple::io

@@ -1,0 +1,97 @@
+#include "solver/io/edit_text.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "solver/io/scene.h"
+
+namespace topple::io {
+namespace {
+
+struct Name {
+  Edit::Key key;
+  const char *table, *name;
+};
+
+// In the order of Edit::Key.
+constexpr Name k_names[] = {
+    {Edit::Key::frequency, "shake", "frequency"},
+    {Edit::Key::amplitude, "shake", "amplitude"},
+    {Edit::Key::direction, "shake", "direction"},
+    {Edit::Key::alpha, "contact", "alpha"},
+    {Edit::Key::q, "contact", "q"},
+    {Edit::Key::friction, "contact", "friction"},
+    {Edit::Key::restitution, "contact", "restitution"},
+    {Edit::Key::time_step, "run", "time_step"},
+};
+
+bool of_shake(Edit::Key key) {
+  return key_of(key).table == "shake";
+}
+
+[[noreturn]] void fail(const Edit& edit, const std::string& message) {
+  throw InputError(edit_key(edit) + ": " + message);
+}
+
+/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was.
+template <typename Choice>
+void expect_choice(const Edit& edit, Choice chosen) {
+  const Key& key = key_of(edit.key);
+  const Key& choice = *find_key(key.table, key.of);
+  const std::string_view word = choice.choices[static_cast<std::size_t>(chosen)];
+  if (word == key.when.front()) return;
+  const std::string of(key.of);
+  fail(edit, "belongs to " + of + " = " + std::string(key.when.front()) + ", but " + of + " is " +
+                 std::string(word));
+}
+
+}  // namespace
+
+const Key& key_of(Edit::Key key) {
+  const Name& name = k_names[static_cast<std::size_t>(key)];
+  return *find_key(name.table, name.name);
+}
+
+std::string edit_key(const Edit& edit) {
+  const Name& name = k_names[static_cast<std::size_t>(edit.key)];
+  const std::string number = of_shake(edit.key) ? std::to_string(edit.shake + 1) + "." : "";
+  return std::string(name.table) + "." + number + name.name;
+}
+
+std::optional<Edit> parse_edit_key(std::string_view text) {
+  const std::size_t dot = text.find('.');
+  int number = 1;
+  if (dot != std::string_view::npos)
+    std::from_chars(text.data() + dot + 1, text.data() + text.size(), number);
+  for (const Name& name : k_names) {
+    const Edit edit{.key = name.key, .shake = of_shake(name.key) ? number - 1 : 0};
+    if (edit.shake >= 0 && edit_key(edit) == text) return edit;
+  }
+  return std::nullopt;
+}
+
+void check_edit_value(const Edit& edit) {
+  const Key& key = key_of(edit.key);
+  const int count = key.type == KeyType::numbers ? key.count : 1;
+  for (int i = 0; i < count; ++i) {
+    const double value = edit.value[i];
+    if (!std::isfinite(value)) fail(edit, short_number(value) + " is not a finite number");
+    // conversion of units may round the end of a range outwards
+    constexpr double slack = 1e-12;
+    if (value < key.least - slack * std::abs(key.least) || value > key.most + slack * std::abs(key.most))
+      fail(edit, value_text(key, value) + " is outside " + range_text(key));
+  }
+  if (edit.key == Edit::Key::direction && !(edit.value.stableNorm() > 0))
+    fail(edit, "a zero vector has no direction");
+}
+
+void check_edit(const Edit& edit, const Setup& setup) {
+  const std::vector<Shake>& shakes = setup.parameters.shakes;
+  if (of_shake(edit.key) && (edit.shake < 0 || edit.shake >= static_cast<int>(shakes.size())))
+    fail(edit, "there is no such shake; the scene has " + std::to_string(shakes.size()));
+  check_edit_value(edit);
+  if (edit.key == Edit::Key::frequency) expect_choice(edit, shakes[edit.shake].kind);
+  if (edit.key == Edit::Key::restitution) expect_choice(edit, setup.parameters.contact.kind);
+}
+
+}  // namespace topple::io

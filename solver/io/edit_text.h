@@ -1,0 +1,31 @@
+// Edits of a running simulation in the words of a scene: their names, and what they may set.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "solver/edit.h"
+#include "solver/io/scene_keys.h"
+#include "solver/run.h"
+
+namespace topple::io {
+
+/// "shake.1.amplitude", "contact.alpha", "run.time_step": the path in the scene; shakes count from 1.
+std::string edit_key(const Edit& edit);
+
+/// Inverse of edit_key, its value zero. Nothing when no edit is called so.
+std::optional<Edit> parse_edit_key(std::string_view text);
+
+/// The row of the table of keys: range, unit and default.
+const Key& key_of(Edit::Key key);
+
+/// Refuses a value that is not finite, out of range, or no direction. Throws InputError with one line
+/// ("contact.friction: 2.4 is outside 0..1.5").
+void check_edit_value(const Edit& edit);
+
+/// Refuses also what `setup` has no place for, such as a shake that does not exist. An edit that passes can
+/// be applied.
+void check_edit(const Edit& edit, const Setup& setup);
+
+}  // namespace topple::io

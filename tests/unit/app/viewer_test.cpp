@@ -1,0 +1,280 @@
+// The window's content off screen, with mouse and keyboard fed by hand.
+#include "app/viewer.h"
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <condition_variable>
+#include <mutex>
+
+#include "live.h"
+#include "unit/render/off_screen.h"
+#include "unit/render/scratch.h"
+
+namespace topple::app {
+namespace {
+
+constexpr float k_width = 1280, k_height = 720;
+constexpr int k_space = ' ';
+
+class ViewerTest : public ::testing::Test {
+ protected:
+  ViewerTest() : interface_(ImGui::CreateContext()) {}
+  ~ViewerTest() override {
+    viewer_.reset();
+    player_.reset();
+    run_.reset();
+    ImGui::DestroyContext(interface_);
+  }
+
+  void start(LiveRun::Advance advance = &topple::Run::advance, const std::string& text = k_rocking) {
+    const auto scene = live_scene(text);
+    run_.emplace(
+        LiveSource{.scene = scene, .recording = {}, .output = (scratch_ / "view.h5").string()}, [] {},
+        std::move(advance));
+    player_.emplace(scene, *run_);
+    stage_.emplace(render::off_screen());
+    viewer_.emplace(*player_, *stage_, 1.f);
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {k_width, k_height};
+    io.DeltaTime = 1.f / 60;
+    io.MousePos = {2, 400};
+    ASSERT_TRUE(until([this] { return player_->row().has_value(); }));
+  }
+  void frame() {
+    viewer_->update(1. / 60);
+    ImGui::NewFrame();
+    viewer_->build();
+    ++frames_;
+  }
+  template <typename Done>
+  ::testing::AssertionResult until(Done done) {
+    return eventually([this] { frame(); }, done);
+  }
+  render::Image shot() { return stage_->shot(viewer_->surface(), *ImGui::GetDrawData()); }
+
+  void press(int key, bool control = false, bool shift = false) {
+    viewer_->press({key, control, shift});
+    frame();
+  }
+  void type(char c) {
+    ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
+    frame();
+    frame();
+  }
+  void hover(ImVec2 at) {
+    ImGui::GetIO().MousePos = at;
+    frame();
+    frame();
+  }
+  void drag(ImVec2 from, ImVec2 to, int button = 0) {
+    ImGuiIO& io = ImGui::GetIO();
+    hover(from);
+    io.MouseDown[button] = true;
+    frame();
+    for (int i = 1; i <= 5; ++i) {
+      const float u = static_cast<float>(i) / 5;
+      io.MousePos = {from.x + u * (to.x - from.x), from.y + u * (to.y - from.y)};
+      frame();
+    }
+    io.MouseDown[button] = false;
+    frame();
+    frame();
+  }
+  void click(ImVec2 at) { drag(at, at); }
+
+  /// Where the item of that name is in a panel, found by moving the mouse over it. `shake`: of a slider.
+  ImVec2 find(const char* panel, const char* name, bool slider = false) {
+    const ImGuiWindow* const window = ImGui::FindWindowByName(panel);
+    if (!window) return {-1, -1};
+    ImGuiID id = ImHashStr(name, 0, window->ID);
+    if (slider) {
+      const int shake = 0;
+      id = ImHashStr("##value", 0, ImHashData(&shake, sizeof shake, id));
+    }
+    const float across = slider ? 60.f : 9.f;
+    hover({2, 400});  // what was hovered in the frame before still counts
+    for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
+      for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += across) {
+        ImGui::GetIO().MousePos = {x, y};
+        frame();
+        if (ImGui::GetHoveredID() == id) return {x, y};
+      }
+    return {-1, -1};
+  }
+  void press_button(const char* panel, const char* name) {
+    const ImVec2 at = find(panel, name);
+    ASSERT_GE(at.x, 0) << name;
+    click(at);
+  }
+  double amplitude_gal() const { return player_->parameters().shakes[0].amplitude / k_gal; }
+  ImVec2 on_timeline(double time) const {
+    const Box& box = viewer_->timeline_box();
+    // The axis begins after the labels and ends before the margin; both are found from two scrubs.
+    return {box.left + axis_left_ + static_cast<float>(time / player_->length()) * axis_width_,
+            box.top + box.height / 2};
+  }
+  /// Learns where the time axis lies by scrubbing.
+  void learn_axis() {
+    const Box& box = viewer_->timeline_box();
+    const float x1 = 0.3f * box.width, x2 = 0.8f * box.width, y = box.top + box.height / 2;
+    click({box.left + x1, y});
+    const double t1 = player_->time();
+    click({box.left + x2, y});
+    const double t2 = player_->time();
+    ASSERT_GT(t2, t1);
+    axis_width_ = static_cast<float>((x2 - x1) / (t2 - t1) * player_->length());
+    axis_left_ = x1 - static_cast<float>(t1 / player_->length()) * axis_width_;
+  }
+
+  const render::Scratch scratch_;
+  ImGuiContext* interface_;
+  std::optional<LiveRun> run_;
+  std::optional<Player> player_;
+  std::optional<render::Stage> stage_;
+  std::optional<Viewer> viewer_;
+  float axis_left_ = 0, axis_width_ = 1;
+  int frames_ = 0;
+};
+
+TEST_F(ViewerTest, space_plays_and_pauses) {
+  start();
+  EXPECT_FALSE(player_->playing());
+  press(k_space);
+  EXPECT_TRUE(player_->playing());
+  ASSERT_TRUE(until([&] { return player_->time() > 0.1; }));
+  press(k_space);
+  EXPECT_FALSE(player_->playing());
+  ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::halted; }));
+  const double time = player_->time();
+  for (int i = 0; i < 20; ++i) frame();
+  EXPECT_EQ(player_->time(), time);
+}
+
+TEST_F(ViewerTest, buttons_do_what_keys_do) {
+  start();
+  type('[');  // time enough to find the button
+  type('[');
+  press_button("transport", "##play");
+  EXPECT_TRUE(player_->playing());
+  ASSERT_TRUE(until([&] { return player_->time() > 0.1; }));
+  press_button("transport", "##play");
+  EXPECT_FALSE(player_->playing());
+  press_button("transport", "##start");
+  EXPECT_EQ(player_->time(), 0);
+  press_button("transport", "+##faster");
+  EXPECT_EQ(player_->speed(), 0.5);
+  type(']');
+  EXPECT_EQ(player_->speed(), 1);
+  press(render::key::end);
+  EXPECT_TRUE(player_->at_head());
+  press(render::key::home);
+  EXPECT_EQ(player_->time(), 0);
+  type('.');
+  EXPECT_NEAR(player_->time(), 0.01, 1e-9);
+}
+
+TEST_F(ViewerTest, dragging_the_amplitude_slider_shakes_harder_while_it_runs_and_undo_takes_it_back) {
+  start();
+  const ImVec2 slider = find("side", "amplitude", true);
+  ASSERT_GE(slider.x, 0);
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->time() > 0; }));
+  drag(slider, {slider.x + 60, slider.y});
+  const double harder = amplitude_gal();
+  EXPECT_NE(harder, 300);
+  EXPECT_TRUE(player_->playing());
+  ASSERT_TRUE(until([&] { return !player_->edits().empty(); }));
+  EXPECT_GT(player_->edits().back().step, 0);
+  press('Z', true);
+  EXPECT_NEAR(amplitude_gal(), 300, 1e-9);
+  press('Z', true, true);
+  EXPECT_NEAR(amplitude_gal(), harder, 1e-9);
+}
+
+TEST_F(ViewerTest, the_timeline_scrubs_and_a_branch_continues_from_there) {
+  start();
+  for (int i = 0; i < 3; ++i) type(']');
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::over; }));
+  learn_axis();
+  click(on_timeline(0.5));
+  EXPECT_NEAR(player_->time(), 0.5, 0.011);  // a pixel and a recorded instant
+  EXPECT_FALSE(player_->at_head());
+  const ImVec2 slider = find("side", "amplitude", true);
+  drag(slider, {slider.x + 40, slider.y});
+  EXPECT_EQ(amplitude_gal(), 300);  // the past is not edited
+  press('C');
+  ASSERT_TRUE(until([&] { return player_->at_head() && player_->history().branches.size() == 2; }));
+  EXPECT_NEAR(player_->time(), 0.5, 0.011);
+  drag(slider, {slider.x + 40, slider.y});
+  EXPECT_NE(amplitude_gal(), 300);
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->time() > 0.7; }));
+  EXPECT_EQ(player_->shown_branch(), 1);
+  EXPECT_TRUE(player_->ghost().has_value());
+}
+
+TEST_F(ViewerTest, frames_are_drawn_while_one_step_takes_its_time) {
+  Gate gate;
+  start(gate.advance());
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->time() > 0.05; }));
+  gate.shut();
+  ASSERT_TRUE(until([&] { return gate.held(); }));
+  frame();
+  const double time = player_->time();
+  const int before = frames_;
+  const render::Image first = shot();
+  const Box& box = viewer_->scene_box();
+  drag({box.left + 300, box.top + 200}, {box.left + 420, box.top + 230});
+  const render::Image second = shot();
+  EXPECT_GT(frames_, before + 5);
+  EXPECT_NE(first.rgba, second.rgba);
+  EXPECT_TRUE(gate.held());
+  EXPECT_EQ(player_->time(), time);
+  gate.open();
+  ASSERT_TRUE(until([&] { return player_->time() > time; }));
+}
+
+TEST_F(ViewerTest, picking_a_member_shows_it_and_escape_lets_go) {
+  start();
+  for (int i = 0; i < 30; ++i) frame();
+  const Box& box = viewer_->scene_box();
+  EXPECT_FALSE(viewer_->picked_member().has_value());
+  for (float x = 0.3f; x < 0.7f && !viewer_->picked_member(); x += 0.005f)
+    click({box.left + x * box.width, box.top + 0.5f * box.height});
+  ASSERT_TRUE(viewer_->picked_member().has_value());
+  EXPECT_LT(*viewer_->picked_member(), player_->scene().setup.model.members.size());
+  press(render::key::escape);
+  EXPECT_FALSE(viewer_->picked_member().has_value());
+}
+
+TEST_F(ViewerTest, nothing_is_drawn_again_when_nothing_changed) {
+  start();
+  for (int i = 0; i < 90; ++i) frame();  // until the still picture is drawn
+  EXPECT_FALSE(viewer_->update(1. / 60));
+  const render::Image first = shot();
+  frame();
+  EXPECT_EQ(first.rgba, shot().rgba);
+  press('2');
+  EXPECT_TRUE(viewer_->update(1. / 60));
+}
+
+TEST_F(ViewerTest, small_windows_and_high_resolution_do_no_harm) {
+  start();
+  ImGuiIO& io = ImGui::GetIO();
+  for (const auto& [width, height, pixels] :
+       {std::tuple{1920, 1080, 1.f}, {640, 360, 2.f}, {200, 120, 1.f}}) {
+    io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+    io.DisplayFramebufferScale = {pixels, pixels};
+    frame();
+    frame();
+    const render::Image image = shot();
+    EXPECT_EQ(image.width, static_cast<int>(static_cast<float>(width) * pixels));
+    EXPECT_EQ(image.height, static_cast<int>(static_cast<float>(height) * pixels));
+  }
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,142 @@
+#include "solver/io/edit_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "solver/io/scene.h"
+
+namespace topple::io {
+namespace {
+
+std::string error_of(const Edit& edit, const Setup& setup) {
+  try {
+    check_edit(edit, setup);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+Edit number(Edit::Key key, double value, int shake = 0) {
+  return {.key = key, .shake = shake, .value = Vec3(value, 0, 0)};
+}
+
+/// A sine and a pulse.
+topple::Setup two_shakes() {
+  topple::Setup setup;
+  setup.parameters.shakes.resize(2);
+  setup.parameters.shakes[1].kind = Shake::Kind::pulse;
+  return setup;
+}
+
+TEST(EditText, names_are_the_paths_of_the_scene) {
+  EXPECT_EQ(edit_key(number(Edit::Key::amplitude, 0)), "shake.1.amplitude");
+  EXPECT_EQ(edit_key(number(Edit::Key::frequency, 0, 11)), "shake.12.frequency");
+  EXPECT_EQ(edit_key(number(Edit::Key::direction, 0, 1)), "shake.2.direction");
+  EXPECT_EQ(edit_key(number(Edit::Key::alpha, 0, 3)), "contact.alpha");
+  EXPECT_EQ(edit_key(number(Edit::Key::q, 0)), "contact.q");
+  EXPECT_EQ(edit_key(number(Edit::Key::friction, 0)), "contact.friction");
+  EXPECT_EQ(edit_key(number(Edit::Key::restitution, 0)), "contact.restitution");
+  EXPECT_EQ(edit_key(number(Edit::Key::time_step, 0)), "run.time_step");
+}
+
+TEST(EditText, every_name_reads_back_and_has_its_row_in_the_table_of_keys) {
+  for (const auto& [key, shake] : editable(two_shakes().parameters)) {
+    const Edit edit{.key = key, .shake = shake};
+    const std::optional<Edit> read = parse_edit_key(edit_key(edit));
+    ASSERT_TRUE(read) << edit_key(edit);
+    EXPECT_EQ(read->key, key);
+    EXPECT_EQ(read->shake, shake);
+    const Key& row = key_of(key);
+    EXPECT_TRUE(row.supported);
+    EXPECT_TRUE(edit_key(edit).ends_with(row.name));
+    EXPECT_TRUE(edit_key(edit).starts_with(row.table));
+    EXPECT_LT(row.least, row.most);
+  }
+}
+
+TEST(EditText, other_names_are_none) {
+  for (const char* text : {"",
+                           ".",
+                           "alpha",
+                           "contact",
+                           "contact.",
+                           "contact.1.alpha",
+                           "contact.law",
+                           "contact.alpha ",
+                           "Contact.alpha",
+                           "shake.amplitude",
+                           "shake.0.amplitude",
+                           "shake.-1.amplitude",
+                           "shake.01.amplitude",
+                           "shake.+1.amplitude",
+                           "shake.1.5.amplitude",
+                           "shake.1.",
+                           "shake.1",
+                           "shake.1.start",
+                           "shake.99999999999999999999.amplitude",
+                           "shake.2147483648.amplitude",
+                           "run.duration",
+                           "run.1.time_step"})
+    EXPECT_FALSE(parse_edit_key(text)) << text;
+  EXPECT_FALSE(parse_edit_key(std::string_view("contact.q\0", 10)));
+}
+
+TEST(EditText, values_at_the_ends_of_a_range_pass_and_beyond_them_not) {
+  const topple::Setup setup = two_shakes();
+  for (const auto& [key, shake] : editable(setup.parameters)) {
+    if (key == Edit::Key::direction) continue;
+    const Key& row = key_of(key);
+    for (const double end : {row.least, row.most}) {
+      EXPECT_EQ(error_of(number(key, end, shake), setup), "") << row.name;
+      EXPECT_EQ(error_of(number(key, std::nextafter(end, 2 * end), shake), setup), "")
+          << row.name;  // rounding
+    }
+    const double step = 1e-6 * (row.most - row.least);
+    EXPECT_NE(error_of(number(key, row.most + step, shake), setup), "") << row.name;
+    EXPECT_NE(error_of(number(key, row.least - step, shake), setup), "") << row.name;
+  }
+}
+
+TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
+  const topple::Setup setup = two_shakes();
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(error_of(number(Edit::Key::friction, 2.4), setup), "contact.friction: 2.4 is outside 0..1.5");
+  EXPECT_EQ(error_of(number(Edit::Key::amplitude, 1200), setup),
+            "shake.1.amplitude: 120000 gal is outside 0..100000 gal");
+  EXPECT_EQ(error_of(number(Edit::Key::time_step, 0), setup), "run.time_step: 0 s is outside 1e-07..0.1 s");
+  EXPECT_EQ(error_of(number(Edit::Key::alpha, nan), setup), "contact.alpha: nan is not a finite number");
+  EXPECT_EQ(error_of(number(Edit::Key::alpha, infinity), setup), "contact.alpha: inf is not a finite number");
+  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 2), setup),
+            "shake.3.frequency: there is no such shake; the scene has 2");
+  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, -1), setup),
+            "shake.0.frequency: there is no such shake; the scene has 2");
+  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 1), setup),
+            "shake.2.frequency: belongs to type = sine, but type is pulse");
+}
+
+TEST(EditText, a_direction_needs_a_length) {
+  const topple::Setup setup = two_shakes();
+  const auto direction = [](const Vec3& v) { return Edit{.key = Edit::Key::direction, .value = v}; };
+  EXPECT_EQ(error_of(direction(Vec3::Zero()), setup), "shake.1.direction: a zero vector has no direction");
+  EXPECT_EQ(error_of(direction({0, 0, std::nan("")}), setup),
+            "shake.1.direction: nan is not a finite number");
+  EXPECT_EQ(error_of(direction({0, 2e6, 0}), setup), "shake.1.direction: 2e+06 is outside -1e+06..1e+06");
+  EXPECT_EQ(error_of(direction({0, 0, 1e-200}), setup), "");
+  Parameters parameters = setup.parameters;
+  apply(direction({0, 0, 1e-200}), setup.model, 0, parameters);
+  EXPECT_EQ(parameters.shakes[0].direction, Vec3::UnitZ());
+}
+
+TEST(EditText, restitution_belongs_to_one_law) {
+  topple::Setup setup = two_shakes();
+  EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup), "");
+  setup.parameters.contact.kind = ContactLawKind::printed;
+  EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup),
+            "contact.restitution: belongs to law = coulomb, but law is printed");
+}
+
+}  // namespace
+}  // namespace topple::io

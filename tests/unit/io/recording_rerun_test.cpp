@@ -1,0 +1,239 @@
+// Which instants a run gives to its recording, and runs repeated from what was recorded.
+#include "recording_fixture.h"
+#include "solver/io/rerun.h"
+
+namespace topple::io::testing {
+namespace {
+
+/// A run of k_scene under edits that is recorded as it goes, and that can be continued from an earlier point.
+class Session {
+ public:
+  explicit Session(const std::string& file)
+      : scene_(parse_scene(k_scene, "test")),
+        recorder_(file, scene_.name, scene_.text, scene_.setup.model),
+        run_(scene_.setup) {
+    take(observer_.observe(run_));
+  }
+  void go_to(std::int64_t step) {
+    while (run_.state().step < step) {
+      ASSERT_TRUE(run_.advance().ok());
+      take(observer_.observe(run_));
+    }
+  }
+  void edit(Edit::Key key, double value) {
+    const Edit edit{.key = key, .value = Vec3(value, 0, 0)};
+    history_.edits.push_back({branch_, run_.state().step, run_.state().time, edit});
+    recorder_.write(history_.edits.back());
+    run_.edit(edit);
+  }
+  RunPoint point() const { return run_.point(); }
+  void go_on_from(RunPoint point, std::int32_t parent) {
+    take(observer_.last(run_));
+    history_.branches.push_back({++branch_, parent, point.state.step});
+    recorder_.write(history_.branches.back());
+    // an edit may have been posted at the point's step after the point was kept
+    point.parameters = parameters_at(scene_.setup, history_, branch_, point.state.step);
+    run_ = topple::Run(scene_.setup, point);
+    observer_ = Observer(branch_);
+    take(observer_.observe(run_));
+  }
+  /// `lie`: gives the newest checkpoint another hash.
+  void finish(bool lie = false) {
+    Observation last = observer_.last(run_);
+    ASSERT_TRUE(last.checkpoint);
+    if (lie) ++last.checkpoint->hash;
+    take(last);
+    recorder_.finish("completed", "{}");
+  }
+
+ private:
+  void take(const Observation& observation) { recorder_.write(observation); }
+
+  Scene scene_;
+  Recorder recorder_;
+  topple::Run run_;
+  Observer observer_;
+  History history_{.branches = {{}}};
+  std::int32_t branch_ = 0;
+};
+
+class RerunTest : public RecordingTest {
+ protected:
+  /// Three branches: 0 to 1.4 s, 1 from 0.7 s of 0, 2 from 1.19 s of 1.
+  void record_session(bool lie = false) {
+    Session session(path("a.h5"));
+    session.edit(Edit::Key::friction, 0.5);
+    session.go_to(300);
+    session.edit(Edit::Key::alpha, 5000);
+    session.go_to(1000);
+    const RunPoint first = session.point();
+    session.edit(Edit::Key::amplitude, 1);
+    session.go_to(2000);
+    session.go_on_from(first, 0);
+    session.go_to(1200);
+    session.edit(Edit::Key::q, 1.2);
+    session.edit(Edit::Key::time_step, 0.5e-3);
+    session.go_to(1700);
+    const RunPoint second = session.point();
+    session.go_to(2600);
+    session.go_on_from(second, 1);
+    session.edit(Edit::Key::frequency, 2);
+    session.go_to(3000);
+    session.finish(lie);
+  }
+  static Rerun again(const Recording& recording) {
+    std::int64_t seen = 0;
+    const Rerun result = rerun(recording, [&seen](std::int64_t passed) { EXPECT_EQ(passed, ++seen); });
+    EXPECT_EQ(seen, recording.checkpoint_count());
+    return result;
+  }
+};
+
+TEST_F(RerunTest, a_session_with_edits_and_forks_has_the_same_hashes_again) {
+  record_session();
+  const Recording recording(path("a.h5"));
+  EXPECT_EQ(recording.history().branches.size(), 3u);
+  EXPECT_EQ(recording.history().edits.size(), 6u);
+  const Rerun result = again(recording);
+  EXPECT_EQ(result.checkpoints, recording.checkpoint_count());
+  EXPECT_GE(result.checkpoints, 7);
+  EXPECT_TRUE(result.differences.empty());
+}
+
+TEST_F(RerunTest, the_way_to_the_newest_branch_is_one_run_without_gaps) {
+  record_session();
+  const Recording recording(path("a.h5"));
+  const std::vector<std::int64_t> way = recording.frames_on_way_to(2);
+  double last = -1e-9;
+  for (const std::int64_t i : way) {
+    const double time = recording.index()[static_cast<std::size_t>(i)].time;
+    EXPECT_GT(time, last);
+    // rows come 60 times a second, at most a step late
+    EXPECT_LT(time - last, 1. / 60 + 1e-3);
+    last = time;
+  }
+}
+
+TEST_F(RerunTest, a_checkpoint_with_another_hash_is_told_with_its_branch) {
+  record_session(true);
+  const Recording recording(path("a.h5"));
+  const Rerun result = again(recording);
+  EXPECT_EQ(result.checkpoints, recording.checkpoint_count() - 1);
+  ASSERT_EQ(result.differences.size(), 1u);
+  EXPECT_EQ(result.differences[0].branch, 2);
+  EXPECT_EQ(result.differences[0].step, 3000);
+}
+
+TEST_F(RerunTest, an_edit_that_was_not_recorded_shows_as_a_difference_of_its_branch_only) {
+  const Scene scene = parse_scene(k_scene, "test");
+  {
+    Recorder recorder(path("a.h5"), scene.name, scene.text, scene.setup.model);
+    topple::Run run(scene.setup);
+    Observer observer;
+    recorder.write(observer.observe(run));
+    const RunPoint start = run.point();
+    while (run.state().step < 100) run.advance();
+    recorder.write(observer.last(run));
+    recorder.write(Branch{1, 0, 0});
+    topple::Run other(scene.setup, start);
+    Observer second(1);
+    recorder.write(second.observe(other));
+    other.edit({.key = Edit::Key::q, .value = Vec3(2, 0, 0)});
+    while (other.state().step < 100) other.advance();
+    recorder.write(second.last(other));
+    recorder.finish("completed", "{}");
+  }
+  const Rerun result = again(Recording(path("a.h5")));
+  EXPECT_EQ(result.checkpoints, 3);
+  ASSERT_EQ(result.differences.size(), 1u);
+  EXPECT_EQ(result.differences[0].branch, 1);
+  EXPECT_EQ(result.differences[0].step, 100);
+}
+
+TEST_F(RerunTest, what_does_not_belong_to_its_scene_is_refused) {
+  const Scene scene = parse_scene(k_scene, "test");
+  const auto error_of = [&](const std::string& text, const std::optional<Edit>& edit) -> std::string {
+    {
+      Recorder recorder(path("a.h5"), scene.name, text, scene.setup.model);
+      const topple::Run run(scene.setup);
+      recorder.write(Observer().observe(run));
+      if (edit) recorder.write(LoggedEdit{0, 0, 0, *edit});
+      recorder.finish("completed", "{}");
+    }
+    try {
+      again(Recording(path("a.h5")));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(error_of(scene.text, std::nullopt), "");
+  EXPECT_EQ(error_of(scene.text, Edit{.key = Edit::Key::amplitude, .shake = 1}),
+            "the recording has an edit that its scene has no place for: shake.2.amplitude: there is no such "
+            "shake; the scene has 1");
+  std::string other = scene.text;
+  other.replace(other.find("mass = "), 0, "shelves = 1\n");
+  EXPECT_EQ(error_of(other, std::nullopt), k_another_model);
+}
+
+TEST(Observer, gives_rows_at_the_output_rate_and_a_checkpoint_each_second_of_its_branch) {
+  const Scene scene = parse_scene(k_scene, "test");
+  topple::Run run(scene.setup);
+  Observer observer(3);
+  const Observation first = observer.observe(run);
+  ASSERT_TRUE(first.frame && first.checkpoint);
+  EXPECT_EQ(first.frame->branch, 3);
+  EXPECT_EQ(first.checkpoint->branch, 3);
+  EXPECT_EQ(first.checkpoint->step, 0);
+  EXPECT_EQ(first.checkpoint->hash, hash(run.state()));
+  int rows = 0, checkpoints = 0, events = 0;
+  while (run.state().time < 1.2) {
+    ASSERT_TRUE(run.advance().ok());
+    const Observation now = observer.observe(run);
+    EXPECT_EQ(now.empty(), !now.frame && !now.checkpoint && now.events.empty());
+    rows += now.frame.has_value();
+    checkpoints += now.checkpoint.has_value();
+    for (const RecordedEvent& event : now.events) EXPECT_EQ(event.branch, 3);
+    events += static_cast<int>(now.events.size());
+    EXPECT_EQ(now.frame ? now.frame->step : run.state().step, run.state().step);
+  }
+  EXPECT_EQ(rows, 72);
+  EXPECT_EQ(checkpoints, 1);
+  EXPECT_EQ(events, static_cast<int>(run.events().size()));
+  EXPECT_GT(events, 0);
+}
+
+TEST(Observer, gives_the_last_state_once) {
+  const Scene scene = parse_scene(k_scene, "test");
+  topple::Run run(scene.setup);
+  Observer observer;
+  observer.observe(run);
+  EXPECT_TRUE(observer.last(run).empty());
+  ASSERT_TRUE(run.advance().ok());
+  EXPECT_TRUE(observer.observe(run).empty());
+  const Observation last = observer.last(run);
+  ASSERT_TRUE(last.frame && last.checkpoint);
+  EXPECT_EQ(last.frame->step, 1);
+  EXPECT_EQ(last.checkpoint->step, 1);
+  EXPECT_TRUE(observer.last(run).empty());
+}
+
+TEST(Observer, of_a_branch_begins_with_a_row_and_a_checkpoint_but_without_its_parents_events) {
+  const Scene scene = parse_scene(k_scene, "test");
+  topple::Run run(scene.setup);
+  while (run.events().empty()) ASSERT_TRUE(run.advance().ok());
+  Observer root, branch(1);
+  EXPECT_EQ(root.observe(run).events.size(), run.events().size());
+  const Observation first = branch.observe(run);
+  EXPECT_TRUE(first.frame && first.checkpoint);
+  EXPECT_TRUE(first.events.empty());
+  const std::size_t before = run.events().size();
+  while (run.events().size() == before && !run.over()) {
+    ASSERT_TRUE(run.advance().ok());
+    EXPECT_EQ(branch.observe(run).events.size(), run.events().size() - before);
+  }
+  EXPECT_GT(run.events().size(), before);
+}
+
+}  // namespace
+}  // namespace topple::io::testing
