@@ -166,7 +166,7 @@ class CommandLine {
     command.add_option("--camera", camera_, "front, side, top or iso (default)")->type_name("NAME");
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
-    add_later_flag(command, "--ui");
+    command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
     command.callback([this, at, from, to] {
       read_size(size_, render_);
       const auto view = render::view_named(camera_);

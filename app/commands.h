@@ -39,6 +39,7 @@ struct RenderOptions {
   int fps = 30;
   render::NamedView view = render::NamedView::iso;
   std::optional<double> from, to;  ///< s
+  bool ui = false;                 ///< with the panels of the window
   bool quiet = false;
 };
 int render_command(const RenderOptions& options);

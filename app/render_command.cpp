@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -16,6 +17,7 @@
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
+#include "app/window_picture.h"
 #include "render/osmesa_context.h"
 #include "render/picture.h"
 #include "render/video.h"
@@ -134,9 +136,11 @@ class Drawing {
   render::Picture picture_;
 };
 
-int draw_still(const RenderOptions& o, Drawing& drawing) {
+using DrawAt = std::function<render::Image(double time)>;
+
+int draw_still(const RenderOptions& o, const DrawAt& draw_at) {
   if (interrupted()) return k_interrupted;
-  render::write_png(o.still, drawing.at(*o.at));
+  render::write_png(o.still, draw_at(*o.at));
   return k_done;
 }
 
@@ -145,13 +149,13 @@ std::string picture_name(int number) {
 }
 
 /// Pictures from `from` to `to`, as files in a folder or as a video.
-int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double to) {
+int draw_sequence(const RenderOptions& o, const DrawAt& draw_at, double from, double to) {
   std::optional<render::VideoWriter> video;
   if (!o.mp4.empty()) video.emplace(o.mp4, o.width, o.height, o.fps);
   const int count = static_cast<int>(std::floor((to - from) * o.fps + 1e-6)) + 1;
   Progress progress("drawing", "pictures", count, o.quiet);
   for (int i = 0; i < count && !interrupted(); ++i) {
-    const render::Image image = drawing.at(std::min(from + static_cast<double>(i) / o.fps, to));
+    const render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
     if (video)
       video->write(image);
     else
@@ -165,8 +169,12 @@ int draw_sequence(const RenderOptions& o, Drawing& drawing, double from, double 
   return interrupted() ? k_interrupted : k_done;
 }
 
-int draw(const RenderOptions& o, const io::Recording& recording, const io::Scene& scene) {
-  io::check_edits(recording.history(), scene.setup);
+int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const io::Scene> scene) {
+  const io::Recording recording(path);
+  if (!scene)
+    scene =
+        std::make_shared<const io::Scene>(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  io::check_edits(recording.history(), scene->setup);
   const Replay replay(recording);
   if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
   const double first = replay.first(), last = replay.last();
@@ -175,10 +183,16 @@ int draw(const RenderOptions& o, const io::Recording& recording, const io::Scene
   check_outputs(o);
   int code = k_done;
   try {
-    Drawing drawing(o, replay, scene);
-    code = o.still.empty() ? draw_sequence(o, drawing, std::max(o.from.value_or(first), first),
+    std::optional<Drawing> drawing;
+    std::optional<WindowPicture> window;
+    if (o.ui)
+      window.emplace(scene, path, o.view, o.width, o.height);
+    else
+      drawing.emplace(o, replay, *scene);
+    const DrawAt draw_at = [&](double time) { return window ? window->at(time) : drawing->at(time); };
+    code = o.still.empty() ? draw_sequence(o, draw_at, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))
-                           : draw_still(o, drawing);
+                           : draw_still(o, draw_at);
   } catch (const std::runtime_error&) {
     // Ctrl+C on a terminal reaches ffmpeg as well: that its pipe broke is then no error.
     if (!interrupted()) throw;
@@ -196,20 +210,19 @@ int render_command(const RenderOptions& options) {
   if (io::is_recording(options.source)) {
     if (!options.overrides.empty())
       throw BadInput("--set: " + options.source + " is a recording; only a scene can be changed");
-    const io::Recording recording(options.source);
-    return draw(options, recording, io::parse_scene(recording.scene_text(), recording.scene_name()));
+    return draw(options, options.source, nullptr);
   }
-  const io::Scene scene = io::load_scene(options.source, options.overrides);
-  check_times(options, 0, scene.setup.run.duration, "the scene");
+  const auto scene = std::make_shared<const io::Scene>(io::load_scene(options.source, options.overrides));
+  check_times(options, 0, scene->setup.run.duration, "the scene");
   defer_interrupts();
   check_outputs(options);
   const TemporaryFile file;
-  const RecordedRun run = record(scene, file.path(), options.quiet);
+  const RecordedRun run = record(*scene, file.path(), options.quiet);
   if (!run.trouble.empty())
     say(run.trouble + (run.exit_code == k_failed && run.recorded ? "; drawing up to there" : ""));
   if (run.exit_code == k_interrupted || !run.recorded) return run.exit_code;
   try {
-    const int drawn = draw(options, io::Recording(file.path()), scene);
+    const int drawn = draw(options, file.path(), scene);
     return drawn == k_done ? run.exit_code : drawn;
   } catch (const BadInput& error) {  // an instant that a failed run never reached
     if (run.exit_code == k_done) throw;

@@ -39,8 +39,8 @@ void set_style(float scale) {
   style.Colors[ImGuiCol_Button] = {0.87f, 0.895f, 0.92f, 1};
   style.Colors[ImGuiCol_ButtonHovered] = {0.76f, 0.86f, 0.95f, 1};
   style.Colors[ImGuiCol_ButtonActive] = {0.62f, 0.78f, 0.92f, 1};
-  style.Colors[ImGuiCol_SliderGrab] = {0.16f, 0.47f, 0.71f, 1};
-  style.Colors[ImGuiCol_SliderGrabActive] = {0.10f, 0.36f, 0.58f, 1};
+  style.Colors[ImGuiCol_SliderGrab] = {0.58f, 0.77f, 0.93f, 1};
+  style.Colors[ImGuiCol_SliderGrabActive] = {0.40f, 0.65f, 0.88f, 1};
   style.ScaleAllSizes(scale);
 }
 
@@ -59,8 +59,8 @@ void begin_panel(const char* name, const Box& box) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
 }
 
-Viewer::Viewer(Player& player, render::Stage& stage, float scale)
-    : player_(player), stage_(stage), scale_(scale), bridge_(player.scene(), player.extent()) {
+Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view)
+    : player_(player), stage_(stage), scale_(scale), bridge_(player.scene(), player.extent()), view_(view) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
@@ -135,7 +135,7 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt) bridge_.add_ghost(*ghost, frame_);
   }
   if (!fitted_) {
-    look(render::NamedView::iso);
+    look(view_);
     flight_ = 1;
     orbit_ = to_;
     fitted_ = true;
@@ -227,9 +227,11 @@ void Viewer::draw_words(const io::FrameRow& row) {
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
   render::LeftOut left_out;
   const float legend = 190 * scale_;
-  // A picture's legend has nothing behind it; here the scene may be anywhere.
-  list.AddRectFilled({scene_.left + scene_.width - 130 * scale_, scene_.top},
-                     {scene_.left + scene_.width, scene_.top + scene_.height}, IM_COL32(244, 246, 248, 190));
+  // Here the scene may lie behind it.
+  const ImU32 clear = IM_COL32(244, 246, 248, 0), veil = IM_COL32(244, 246, 248, 215);
+  list.AddRectFilledMultiColor({scene_.left + scene_.width - legend, scene_.top},
+                               {scene_.left + scene_.width, scene_.top + scene_.height}, clear, veil, veil,
+                               clear);
   render::draw_legend_in(list, fonts_, frame_.legend, render::ColourMap::viridis,
                          {"", scene_.left + scene_.width - legend, scene_.top + margin,
                           scene_.left + scene_.width - margin, scene_.top + scene_.height - margin},

@@ -19,7 +19,7 @@ class Viewer {
  public:
   /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
   /// and panels, 1 for 720 lines. Throws std::runtime_error without the font.
-  Viewer(Player& player, render::Stage& stage, float scale);
+  Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso);
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
@@ -63,7 +63,7 @@ class Viewer {
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;  // of the camera from one place to the other, 0..1
   bool fitted_ = false;
-  render::NamedView view_ = render::NamedView::iso;
+  render::NamedView view_;
   std::optional<std::size_t> picked_;
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality

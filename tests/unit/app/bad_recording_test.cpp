@@ -20,6 +20,7 @@ class BadRecordingTest : public ProgramTest {
     expect_one_line({"render", name, "--png", "pictures"}, 2, part);
     expect_one_line({"render", name, "--still", "a.png", "--at", "0"}, 2, part);
     expect_one_line({"render", name, "--mp4", "a.mp4"}, 2, part);
+    expect_one_line({"view", name, "-o", "b.h5"}, 2, part);
     expect_one_line({"export", name, "--csv", "data"}, 2, part);
     EXPECT_EQ(files(), before);
   }
@@ -87,6 +88,7 @@ TEST_F(BadRecordingTest, a_recording_whose_scene_gives_another_model_now_is_refu
   const std::string part = "the scene in the recording gives another model";
   expect_one_line({"render", "a.h5", "--still", "a.png", "--at", "0"}, 2, part);
   expect_one_line({"render", "a.h5", "--mp4", "a.mp4"}, 2, part);
+  expect_one_line({"view", "a.h5", "-o", "b.h5"}, 2, part);
   expect_one_line({"export", "a.h5", "--csv", "data"}, 2, part);
   EXPECT_FALSE(std::filesystem::exists("a.png"));
   EXPECT_FALSE(std::filesystem::exists("a.mp4"));

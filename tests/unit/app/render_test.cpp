@@ -55,6 +55,26 @@ TEST_F(RenderTest, a_sequence_covers_the_recording_and_is_the_same_every_time) {
   EXPECT_EQ(bytes_of("still.png"), bytes_of("p" + names[3]));
 }
 
+TEST_F(RenderTest, the_panels_of_the_window_are_drawn_when_asked_for) {
+  const auto with_panels = [](const std::string& source, const std::string& picture) {
+    const Ended ended =
+        topple({"render", source, "--still", picture, "--at", "0.15", "--ui", "--size", "1000x600"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.out + ended.err, "");
+  };
+  with_panels("a.h5", "a.png");
+  with_panels("a.h5", "b.png");
+  const std::string png = bytes_of("a.png");
+  EXPECT_EQ(side_at(png, 16), 1000);
+  EXPECT_EQ(side_at(png, 20), 600);
+  EXPECT_EQ(bytes_of("b.png"), png);
+  const Ended plain = topple({"render", "a.h5", "--still", "c.png", "--at", "0.15", "--size", "1000x600"});
+  EXPECT_EQ(plain.code, 0);
+  EXPECT_NE(bytes_of("c.png"), png);
+  draw({"a.h5", "--png", "p", "--fps", "10", "--ui"});
+  EXPECT_FALSE(bytes_of("p/frame-000003.png").empty());
+}
+
 TEST_F(RenderTest, from_and_to_cut_a_sequence_out) {
   draw({"a.h5", "--png", "all", "--fps", "20"});
   draw({"a.h5", "--png", "part", "--fps", "20", "--from", "0.1", "--to", "0.2"});

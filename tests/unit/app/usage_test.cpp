@@ -79,7 +79,6 @@ TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
     expect_one_line({command, "s.toml", "-o", "out"}, 2, refusal);
   }
   expect_one_line({"run", "s.toml", "--estimate"}, 2, "--estimate: not supported by this version");
-  expect_one_line({"render", "s.toml", "--png", "p", "--ui"}, 2, "--ui: not supported by this version");
   expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
 }

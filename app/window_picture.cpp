@@ -1,0 +1,45 @@
+#include "app/window_picture.h"
+
+#include <imgui.h>
+
+#include <chrono>
+#include <thread>
+
+#include "render/osmesa_context.h"
+
+namespace topple::app {
+
+WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording,
+                             render::NamedView view, int width, int height)
+    : context_(render::make_osmesa_context()),
+      interface_(ImGui::CreateContext()),
+      stage_(context_->get_proc()),
+      run_({.scene = scene, .recording = io::Recording(recording), .output = {}}),
+      player_(scene, run_) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  io.DeltaTime = 1.f / 60;
+  viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view);
+  for (player_.update(0); player_.status().kind == LiveStatus::Kind::starting; player_.update(0))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+WindowPicture::~WindowPicture() {
+  viewer_.reset();
+  ImGui::DestroyContext(interface_);
+}
+
+render::Image WindowPicture::at(double time) {
+  player_.scrub(time);
+  build();
+  build();  // what is at rest is drawn at its best
+  return stage_.shot(viewer_->surface(), *ImGui::GetDrawData());
+}
+
+void WindowPicture::build() {
+  viewer_->update(1);
+  ImGui::NewFrame();
+  viewer_->build();
+}
+
+}  // namespace topple::app

@@ -1,0 +1,40 @@
+// Pictures of the window's content, without a window.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/viewer.h"
+#include "render/context.h"
+#include "render/image.h"
+
+struct ImGuiContext;
+
+namespace topple::app {
+
+/// Shows a recording as `topple view` does.
+class WindowPicture {
+ public:
+  /// Throws io::InputError, and std::runtime_error when it cannot draw.
+  WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording, render::NamedView view,
+                int width, int height);
+  ~WindowPicture();
+  WindowPicture(const WindowPicture&) = delete;
+  WindowPicture& operator=(const WindowPicture&) = delete;
+
+  /// The recorded instant nearest to `time`.
+  render::Image at(double time);
+
+ private:
+  void build();
+
+  const std::unique_ptr<render::Context> context_;
+  ImGuiContext* const interface_;
+  render::Stage stage_;
+  LiveRun run_;
+  Player player_;
+  std::optional<Viewer> viewer_;
+};
+
+}  // namespace topple::app
