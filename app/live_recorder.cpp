@@ -61,7 +61,7 @@ void LiveRecorder::work(const std::string& path, const io::Scene& scene) {
     changed_.notify_all();
     write_until_ended(recorder);
     if (finished_) recorder.finish(status_, summary_);
-  } catch (const io::WriteError& error) {
+  } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
     failure_ = error.what();
     items_.clear();

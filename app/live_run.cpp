@@ -14,6 +14,7 @@
 
 #include "app/live_recorder.h"
 #include "app/summary.h"
+#include "solver/io/rerun.h"
 
 namespace topple::app {
 namespace {
@@ -24,8 +25,9 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::chrono::milliseconds k_report_interval{8};  // a picture lasts longer
 constexpr std::chrono::milliseconds k_follow_interval{200};
 constexpr std::chrono::milliseconds k_patience{300};  // with a step under way when the run is closed
-constexpr double k_most_lag = 0.1;           // s that a run which cannot keep its pace tries to make up
-constexpr double k_rate_window = 0.5;        // s
+constexpr double k_most_lag = 0.1;     // s that a run which cannot keep its pace tries to make up
+constexpr double k_rate_window = 0.5;  // s
+constexpr std::size_t k_rows_at_once = 256;
 constexpr std::int64_t k_return_steps = 50;  // between two looks at the stop flag
 
 struct Go {
@@ -59,6 +61,9 @@ class LiveRun::Worker {
   void post(Command command) {
     {
       const std::lock_guard lock(mutex_);
+      // Steps asked for faster than they can be made do not pile up.
+      const bool step = std::holds_alternative<OneStep>(command);
+      if (step && !commands_.empty() && std::holds_alternative<OneStep>(commands_.back())) return;
       commands_.push_back(std::move(command));
       pending_ = true;
     }
@@ -74,7 +79,7 @@ class LiveRun::Worker {
   void start(std::shared_ptr<Worker> self) {
     thread_ = std::thread([self = std::move(self)] { self->work(); });
   }
-  void close(const std::string& status) {
+  LiveStatus close(const std::string& status) {
     {
       const std::lock_guard lock(mutex_);
       end_status_ = status;
@@ -83,22 +88,29 @@ class LiveRun::Worker {
     changed_.notify_one();
     if (closed_.get_future().wait_for(k_patience) == std::future_status::ready) {
       thread_.join();
-      return;
+      return report_.status;
     }
     std::shared_ptr<LiveRecorder> recorder;
+    LiveStatus last;
     {
       const std::lock_guard lock(mutex_);
       recorder = recorder_;
+      last = report_.status;
     }
-    if (recorder) recorder->finish(status, "");
     thread_.detach();
+    if (!recorder) return last;
+    recorder->finish(status, "");
+    last.record_failure = recorder->failure();
+    return last;
   }
 
  private:
   void work();
   void begin();
   void obey_and_run();
+  void wait_for_stop();
   void read_recording();
+  void read_rows();
   void follow();
   void start_recording();
   void obey(const Command& command);
@@ -159,10 +171,18 @@ void LiveRun::Worker::work() {
     obey_and_run();
     finish();
   } catch (const std::exception& error) {
+    going_ = false;
     status_.message = error.what();
-    set(LiveStatus::Kind::failed);
+    set(LiveStatus::Kind::ended);
+    wait_for_stop();
+    if (recorder_) recorder_->finish(end_status_, "");
   }
   closed_.set_value();
+}
+
+void LiveRun::Worker::wait_for_stop() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return stop_.load(); });
 }
 
 void LiveRun::Worker::obey_and_run() {
@@ -188,6 +208,7 @@ void LiveRun::Worker::obey_and_run() {
 
 void LiveRun::Worker::begin() {
   if (source_.recording) {
+    status_.kind = LiveStatus::Kind::reading;
     read_recording();
     set(LiveStatus::Kind::replay);
     return;
@@ -200,6 +221,7 @@ void LiveRun::Worker::begin() {
     run_.reset();
     return;
   }
+  if (stop_) return;
   start_recording();
   record(observer_.observe(*run_));
   report_head();
@@ -208,34 +230,48 @@ void LiveRun::Worker::begin() {
 
 void LiveRun::Worker::read_recording() {
   const io::Recording& from = *source_.recording;
-  LiveReport news;
-  const History& history = from.history();
-  for (; read_branches_ < history.branches.size(); ++read_branches_)
-    news.branches.push_back(history.branches[read_branches_]);
-  for (; read_edits_ < history.edits.size(); ++read_edits_) news.edits.push_back(history.edits[read_edits_]);
-  history_ = history;
+  io::check_edits(from.history(), setup_);
+  history_ = from.history();
+  status_.branch = from.newest_branch();
+  tell([this](LiveReport& report) {
+    for (; read_branches_ < history_.branches.size(); ++read_branches_)
+      report.branches.push_back(history_.branches[read_branches_]);
+    for (; read_edits_ < history_.edits.size(); ++read_edits_)
+      report.edits.push_back(history_.edits[read_edits_]);
+  });
+  read_rows();
   try {
     while (static_cast<std::int64_t>(read_checkpoints_.size()) < from.checkpoint_count() && !stop_)
       read_checkpoints_.push_back(from.checkpoint(static_cast<std::int64_t>(read_checkpoints_.size())));
+  } catch (const io::InputError&) {  // a fork then goes back farther
+  }
+  const std::vector<io::RecordedEvent> events = from.events();
+  tell([&](LiveReport& report) {
+    for (; read_events_ < events.size(); ++read_events_) report.events.push_back(events[read_events_]);
+  });
+}
+
+void LiveRun::Worker::read_rows() {
+  const io::Recording& from = *source_.recording;
+  std::vector<RowPtr> rows;
+  const auto tell_rows = [&] {
+    tell([&rows](LiveReport& report) {
+      report.rows.insert(report.rows.end(), rows.begin(), rows.end());
+      rows.clear();
+    });
+    if (!stop_) wake_();
+  };
+  try {
     while (static_cast<std::int64_t>(read_rows_.size()) < from.frame_count() && !stop_) {
       read_rows_.push_back(
           std::make_shared<const io::FrameRow>(from.frame(static_cast<std::int64_t>(read_rows_.size()))));
-      news.rows.push_back(read_rows_.back());
+      rows.push_back(read_rows_.back());
+      if (rows.size() == k_rows_at_once) tell_rows();
     }
   } catch (const io::InputError& error) {  // what came before the damage can be seen
     status_.message = error.what();
   }
-  const std::vector<io::RecordedEvent> events = from.events();
-  for (; read_events_ < events.size(); ++read_events_) news.events.push_back(events[read_events_]);
-  if (!history_.branches.empty()) status_.branch = history_.branches.back().id;
-  status_.kind = LiveStatus::Kind::replay;
-  tell([&news](LiveReport& report) {
-    const auto append = [](auto& to, auto& what) { to.insert(to.end(), what.begin(), what.end()); };
-    append(report.branches, news.branches);
-    append(report.edits, news.edits);
-    append(report.rows, news.rows);
-    append(report.events, news.events);
-  });
+  tell_rows();
 }
 
 void LiveRun::Worker::follow() {
@@ -282,10 +318,14 @@ void LiveRun::Worker::obey(const Command& command) {
     if (run_) change(*edit);
   } else if (const auto* where = std::get_if<Fork>(&command)) {
     fork(*where);
+    ++status_.forks;
+    set(status_.kind);
   }
 }
 
 void LiveRun::Worker::change(const Edit& edit) {
+  status_.message.clear();
+  status_.element = -1;
   const LoggedEdit logged{status_.branch, run_->state().step, run_->state().time, edit};
   run_->edit(edit);
   history_.edits.push_back(logged);
@@ -331,6 +371,7 @@ void LiveRun::Worker::fork(const Fork& from) {
   if (stop_) return;
   if (!reached) {
     fail(run.status());
+    if (replayed) set(LiveStatus::Kind::replay);
     return;
   }
   if (replayed) carry_on_recording();
@@ -340,7 +381,10 @@ void LiveRun::Worker::fork(const Fork& from) {
   status_.branch = branch.id;
   status_.message.clear();
   if (recorder_) recorder_->post(branch);
-  tell([&branch](LiveReport& report) { report.branches.push_back(branch); });
+  tell([&branch](LiveReport& report) {
+    report.branches.push_back(branch);
+    report.head = nullptr;
+  });
   run_.emplace(std::move(run));
   observer_ = io::Observer(branch.id);
   for (const Edit& edit : from.edits) change(edit);
@@ -351,6 +395,8 @@ void LiveRun::Worker::fork(const Fork& from) {
 
 // The new file holds all of the one that was replayed, and goes on from there.
 void LiveRun::Worker::carry_on_recording() {
+  const std::vector<io::RecordedEvent> events = source_.recording->events();
+  source_.recording.reset();
   start_recording();
   if (recorder_) {
     for (const Branch& branch : history_.branches)
@@ -360,9 +406,8 @@ void LiveRun::Worker::carry_on_recording() {
       recorder_->post(io::Observation{.frame = {}, .checkpoint = checkpoint, .events = {}});
     for (const RowPtr& row : read_rows_)
       recorder_->post(io::Observation{.frame = *row, .checkpoint = {}, .events = {}});
-    recorder_->post(io::Observation{.frame = {}, .checkpoint = {}, .events = source_.recording->events()});
+    recorder_->post(io::Observation{.frame = {}, .checkpoint = {}, .events = events});
   }
-  source_.recording.reset();
   read_rows_.clear();
 }
 
@@ -395,8 +440,9 @@ void LiveRun::Worker::run_some() {
            std::chrono::duration_cast<Clock::duration>(Seconds((run_->state().time - pace_time_) / speed_));
   };
   const Clock::time_point report_at = Clock::now() + k_report_interval;
-  do step_once();
-  while (going_ && !pending_ && !stop_ && Clock::now() < report_at && due() <= Clock::now());
+  for (Clock::time_point at = Clock::now(); going_ && !pending_ && !stop_ && at < report_at && due() <= at;
+       at = Clock::now())
+    step_once();
   const Clock::time_point now = Clock::now();
   if (Seconds(now - due()).count() > k_most_lag) pace();
   if (const double window = Seconds(now - rate_wall_).count(); window > k_rate_window) {
@@ -451,6 +497,8 @@ void LiveRun::Worker::finish() {
                              : run_->over()          ? "completed"
                                                      : end_status_;
   recorder_->finish(status, json_text(summary(*source_.scene, *run_, status, wall_)));
+  status_.record_failure = recorder_->failure();
+  tell([](LiveReport&) {});
 }
 
 LiveRun::LiveRun(LiveSource source, std::function<void()> wake, Advance advance)
@@ -478,10 +526,11 @@ void LiveRun::fork(std::int32_t branch, std::int64_t step, std::vector<Edit> edi
 LiveReport LiveRun::take() {
   return worker_->take();
 }
-void LiveRun::close(const std::string& status) {
-  if (!worker_) return;
-  worker_->close(status);
+LiveStatus LiveRun::close(const std::string& status) {
+  if (!worker_) return {};
+  const LiveStatus last = worker_->close(status);
   worker_.reset();
+  return last;
 }
 
 }  // namespace topple::app

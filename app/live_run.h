@@ -18,17 +18,20 @@ using RowPtr = std::shared_ptr<const io::FrameRow>;
 /// How it stands with a live run.
 struct LiveStatus {
   enum class Kind {
-    starting,  ///< settling, or reading a recording
+    starting,  ///< settling
+    reading,   ///< a recording
     replay,    ///< a recording is all there is: fork() brings it to life
     halted,
     going,
     returning,  ///< on the way back to the instant of a fork
     over,       ///< at the end of the scene's duration or a stop condition
-    failed      ///< a step failed; the newest state is the last good one
+    failed,     ///< a step failed; the newest state is the last good one
+    ended       ///< by an error of the program; nothing goes on
   };
   Kind kind = Kind::starting;
   std::int32_t branch = 0;     ///< the one that goes on
   double achieved = 0;         ///< going: simulated s per wall s over the last half second
+  std::int64_t forks = 0;      ///< asked for and dealt with
   std::string message;         ///< failed: what, when, where, what to try
   int element = -1;            ///< failed: where; -1: not an element's fault
   std::string recording;       ///< path; empty: nothing is recorded yet
@@ -76,8 +79,9 @@ class LiveRun {
   LiveReport take();
 
   /// Ends the run and closes the recording, within 500 ms, with a step under way or not. `status` is that of
-  /// a run which had not come to its end: "stopped" or "interrupted". Nothing may be called afterwards.
-  void close(const std::string& status);
+  /// a run which had not come to its end: "stopped" or "interrupted". Returns how it stood in the end.
+  /// Nothing may be called afterwards.
+  LiveStatus close(const std::string& status);
 
  private:
   class Worker;

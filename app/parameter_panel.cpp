@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/panels.h"
 #include "solver/io/edit_text.h"
@@ -32,6 +33,8 @@ constexpr Slider k_sliders[] = {
     {Edit::Key::restitution, "restitution", "", "%.2f", 0, 1},
     {Edit::Key::time_step, "time step", "ms", "%.3g ms", 0.05, 20, false, true},
 };
+
+constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
 
 double azimuth(const Vec3& direction) {
   return std::atan2(direction.y(), direction.x()) * 180 / k_pi;
@@ -68,7 +71,18 @@ class Row {
         ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, slider_.format, flags);
     if (ImGui::IsItemActivated()) player_.begin_edit();
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%s", about().c_str());
-    if (changed) post(from_shown(number), refused);
+    // While somebody types, what stands there so far is no value yet.
+    ImGuiStorage& typed = *ImGui::GetStateStorage();
+    const ImGuiID item = ImGui::GetID("typed");
+    if (changed && ImGui::GetIO().WantTextInput)
+      typed.SetFloat(item, number);
+    else if (changed)
+      post(from_shown(number), refused);
+    if (ImGui::IsItemDeactivated()) {
+      const float last = typed.GetFloat(item, k_nothing);
+      typed.SetFloat(item, k_nothing);
+      if (last != k_nothing) post(from_shown(last), refused);
+    }
     ImGui::SameLine();
     ImGui::BeginDisabled(value_ == scene_value_);
     if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) {

@@ -2,31 +2,38 @@
 
 #include <algorithm>
 
+#include "solver/io/edit_text.h"
+
 namespace topple::app {
 namespace {
 
-io::FrameRow row_at(const std::vector<RowPtr>& rows, double time) {
-  const auto after = std::upper_bound(rows.begin(), rows.end(), time,
-                                      [](double t, const RowPtr& row) { return t < row->time; });
-  if (after == rows.begin()) return *rows.front();
-  const RowPtr& before = *(after - 1);
-  return after == rows.end() || before->time == time ? *before : blend(*before, **after, time);
+constexpr double k_longest_pause = 0.5;  // s between two updates; more is a machine that slept
+
+using Rows = std::vector<RowPtr>;
+
+/// The first row that is later.
+Rows::const_iterator row_after(const Rows& rows, double time) {
+  return std::upper_bound(rows.begin(), rows.end(), time,
+                          [](double t, const RowPtr& row) { return t < row->time; });
 }
 
 /// The last row that is not later.
-const RowPtr& row_before(const std::vector<RowPtr>& rows, double time) {
-  const auto after = std::upper_bound(rows.begin(), rows.end(), time,
-                                      [](double t, const RowPtr& row) { return t < row->time; });
+const RowPtr& row_before(const Rows& rows, double time) {
+  const auto after = row_after(rows, time);
   return after == rows.begin() ? rows.front() : *(after - 1);
 }
 
-double nearest_time(const std::vector<RowPtr>& rows, double time) {
-  const auto after = std::lower_bound(rows.begin(), rows.end(), time,
-                                      [](const RowPtr& row, double t) { return row->time < t; });
-  if (after == rows.begin()) return rows.front()->time;
-  if (after == rows.end()) return rows.back()->time;
-  const double before = (*(after - 1))->time;
-  return time - before < (*after)->time - time ? before : (*after)->time;
+io::FrameRow row_at(const Rows& rows, double time) {
+  const auto after = row_after(rows, time);
+  const RowPtr& before = row_before(rows, time);
+  return after == rows.begin() || after == rows.end() || before->time == time ? *before
+                                                                              : blend(*before, **after, time);
+}
+
+double nearest_time(const Rows& rows, double time) {
+  const auto after = row_after(rows, time);
+  const double before = row_before(rows, time)->time;
+  return after == rows.end() || time - before < (*after)->time - time ? before : (*after)->time;
 }
 
 }  // namespace
@@ -35,7 +42,9 @@ Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run)
     : scene_(std::move(scene)), run_(run), parameters_(scene_->setup.parameters) {}
 
 bool Player::update(double wall_s) {
+  wall_s = std::min(wall_s, k_longest_pause);
   const double before = cursor_;
+  const bool at_tail = replay() && !playing_ && cursor_ > 0 && cursor_ >= end();
   const std::size_t rows_before = way_.size();
   LiveReport report = run_.take();
   bool news = report.head || !report.rows.empty() || !report.edits.empty() || !report.branches.empty() ||
@@ -43,11 +52,18 @@ bool Player::update(double wall_s) {
               report.status.message != status_.message || report.status.achieved != status_.achieved ||
               report.status.record_failure != status_.record_failure;
   take(std::move(report));
+  if (at_tail && replay()) cursor_ = end();
   if (following_ && head_ && live_shown()) {
     cursor_ = head_->time;
-    if (playing_ && (status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::failed))
+    const bool failed = status_.kind == LiveStatus::Kind::failed && posted_.empty();
+    if (play_when_there_ && can_edit()) {
+      play_when_there_ = false;
+      run_.go(speed_);
+    } else if (!forking() && (status_.kind == LiveStatus::Kind::over || failed ||
+                              status_.kind == LiveStatus::Kind::ended)) {
       playing_ = false;
-  } else if (playing_ && !forking_) {
+    }
+  } else if (playing_ && !forking()) {
     cursor_ = std::min(cursor_ + speed_ * wall_s, end());
     if (cursor_ >= end()) {
       following_ = live_shown();
@@ -66,11 +82,11 @@ void Player::take(LiveReport&& report) {
   for (const Branch& branch : report.branches) {
     history_.branches.push_back(branch);
     if (branch.id != status_.branch) continue;
-    left_ = branch.parent;
+    if (replay() && !way_.empty()) continue;  // who looks at a recording chooses
+    left_ = way_.empty() ? branch.parent : shown_;
     shown_ = branch.id;
     head_ = nullptr;
     following_ = !replay();
-    forking_ = false;
     rebuild = true;
   }
   for (const LoggedEdit& edit : report.edits) {
@@ -85,7 +101,6 @@ void Player::take(LiveReport&& report) {
     if (row->branch == shown_ && !rebuild) extend_way(own.back());
   }
   if (rebuild) rebuild_way();
-  if (status_.kind == LiveStatus::Kind::failed || status_.kind == LiveStatus::Kind::over) forking_ = false;
 }
 
 std::vector<RowPtr> Player::rows_on_way_to(std::int32_t branch) const {
@@ -122,8 +137,9 @@ void Player::update_parameters() {
 }
 
 bool Player::busy() const {
-  return forking_ || status_.kind == LiveStatus::Kind::starting ||
-         status_.kind == LiveStatus::Kind::returning;
+  return forking() || status_.kind == LiveStatus::Kind::starting ||
+         status_.kind == LiveStatus::Kind::reading || status_.kind == LiveStatus::Kind::returning ||
+         status_.kind == LiveStatus::Kind::ended;
 }
 
 double Player::end() const {
@@ -136,9 +152,16 @@ double Player::length() const {
 }
 
 void Player::play() {
-  if (busy() || playing_ || way_.empty()) return;
+  if (playing_ || way_.empty()) return;
+  if (forking() || status_.kind == LiveStatus::Kind::returning) {
+    playing_ = play_when_there_ = true;
+    return;
+  }
+  if (busy()) return;
   if (following_) {
-    if (status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::failed) return;
+    // After a failed step only a change of parameters, maybe still on its way, gives reason to try again.
+    if (status_.kind == LiveStatus::Kind::over) return;
+    if (status_.kind == LiveStatus::Kind::failed && posted_.empty()) return;
     run_.go(speed_);
   } else if (cursor_ >= end()) {
     cursor_ = way_.front()->time;
@@ -148,7 +171,7 @@ void Player::play() {
 
 void Player::pause() {
   if (following_) run_.halt();
-  playing_ = false;
+  playing_ = play_when_there_ = false;
 }
 
 void Player::step(int rows) {
@@ -164,9 +187,7 @@ void Player::step(int rows) {
       return;
     }
   }
-  const auto here = std::upper_bound(way_.begin(), way_.end(), cursor_,
-                                     [](double t, const RowPtr& row) { return t < row->time; }) -
-                    way_.begin() - 1;
+  const auto here = row_after(way_, cursor_) - way_.begin() - 1;
   const auto last = static_cast<std::ptrdiff_t>(way_.size()) - 1;
   if (here + rows > last)
     to_end();
@@ -217,7 +238,7 @@ void Player::restart() {
     const Vec3 value = edited_value(parameters_, key, shake);
     if (value != edited_value(there, key, shake)) edits.push_back({key, shake, value});
   }
-  forking_ = true;
+  ++forks_asked_;
   run_.fork(first.branch, first.step, edits);
 }
 
@@ -226,7 +247,9 @@ void Player::continue_from_here() {
   playing_ = false;
   const io::FrameRow& here = *row_before(way_, cursor_);
   cursor_ = here.time;
-  forking_ = true;
+  ++forks_asked_;
+  undo_.clear();
+  redo_.clear();
   run_.fork(here.branch, here.step);
 }
 
@@ -252,6 +275,7 @@ void Player::post(const Edit& edit) {
 
 void Player::edit(const Edit& edit) {
   if (!can_edit()) return;
+  io::check_edit(edit, scene_->setup);
   if (new_undo_ || undo_.empty())
     undo_.push_back({{edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)}, edit});
   else
@@ -290,6 +314,7 @@ std::optional<io::FrameRow> Player::ghost() const {
 
 std::vector<io::RecordedEvent> Player::events() const {
   std::vector<io::RecordedEvent> found;
+  if (history_.branches.empty()) return found;
   for (const Stretch& stretch : history_.way_to(shown_))
     for (const io::RecordedEvent& event : events_)
       if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
@@ -297,7 +322,7 @@ std::vector<io::RecordedEvent> Player::events() const {
 }
 
 std::vector<LoggedEdit> Player::edits() const {
-  return history_.edits_on_way_to(shown_);
+  return history_.branches.empty() ? std::vector<LoggedEdit>() : history_.edits_on_way_to(shown_);
 }
 
 }  // namespace topple::app

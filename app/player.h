@@ -42,7 +42,9 @@ class Player {
   double end() const;
   double length() const;
   bool at_head() const { return following_; }
-  bool replay() const { return status_.kind == LiveStatus::Kind::replay; }
+  bool replay() const {
+    return status_.kind == LiveStatus::Kind::replay || status_.kind == LiveStatus::Kind::reading;
+  }
 
   // Branches.
   bool can_continue() const { return !following_ && !way_.empty() && !busy(); }
@@ -55,6 +57,7 @@ class Player {
   bool can_edit() const;
   /// The next edit is a new thing to undo. Further ones go on with it, as while a slider is dragged.
   void begin_edit() { new_undo_ = true; }
+  /// Throws io::InputError for what a scene would be refused for.
   void edit(const Edit& edit);
   bool can_undo() const { return can_edit() && !undo_.empty(); }
   bool can_redo() const { return can_edit() && !redo_.empty(); }
@@ -84,6 +87,7 @@ class Player {
     Edit back, again;
   };
   bool busy() const;
+  bool forking() const { return forks_asked_ > status_.forks; }
   bool live_shown() const { return !replay() && shown_ == status_.branch; }
   void set_speed(double speed);
   void post(const Edit& edit);
@@ -109,7 +113,8 @@ class Player {
   std::vector<Undo> undo_, redo_;
   bool playing_ = false, following_ = true;
   bool new_undo_ = true;
-  bool forking_ = false;  // asked for, not yet reported
+  bool play_when_there_ = false;  // asked for on the way to a fork
+  std::int64_t forks_asked_ = 0;
   double speed_ = 1, cursor_ = 0;
 };
 

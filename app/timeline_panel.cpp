@@ -187,6 +187,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
     mark(
         edit.time, lane.top, [&] { return edit_text(edit); },
         [&](ImVec2 p) { list.AddNgonFilled(p, k_size, IM_COL32(150, 60, 140, 255), 4); });
+  if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
     for (const Branch& branch : player.history().branches) {
       if (branch.id != stretch.branch || branch.parent < 0 || branch.fork_step == 0) continue;
@@ -200,7 +201,8 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
 }
 
 void add_times(ImDrawList& list, const Lane& lane) {
-  const render::Ticks ticks = render::nice_ticks(0, lane.length, 10);
+  const render::Ticks ticks =
+      render::nice_ticks(0, lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
   for (double t : ticks.values) {
     t += 0.;  // makes 0 of -0
     const float x = lane.x(t);

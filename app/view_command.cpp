@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
@@ -33,8 +35,8 @@ struct Interface {
   Interface& operator=(const Interface&) = delete;
 };
 
-/// "~/.local/state/topple/paper-a-2026-01-31-120000.h5", as the XDG directories say; empty when there is no
-/// place for it.
+/// "~/.local/state/topple/paper-a-2026-01-31-120000-4711.h5", as the XDG directories say; empty when there is
+/// no place for it.
 std::string default_recording(const std::string& scene) {
   const char* const state = std::getenv("XDG_STATE_HOME");
   const char* const home = std::getenv("HOME");
@@ -49,7 +51,7 @@ std::string default_recording(const std::string& scene) {
   const std::time_t now = std::time(nullptr);
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y-%m-%d-%H%M%S", std::localtime(&now));
-  return (folder / fmt::format("{}-{}.h5", scene, stamp)).string();
+  return (folder / fmt::format("{}-{}-{}.h5", fs::path(scene).filename().string(), stamp, getpid())).string();
 }
 
 LiveSource open_source(const ViewOptions& o) {
@@ -81,7 +83,8 @@ void show(render::Window& window, render::Stage& stage, Viewer& viewer, Player& 
   int frames_due = k_frames_of_input;
   Clock::time_point last = Clock::now(), next_frame = last;
   while (!window.should_close() && !viewer.wants_to_close() && !interrupted()) {
-    const double wait = frames_due > 0     ? Seconds(next_frame - Clock::now()).count()
+    const double wait = window.iconified() ? k_look
+                        : frames_due > 0   ? Seconds(next_frame - Clock::now()).count()
                         : player.playing() ? k_frame
                                            : k_look;
     if (wait > 0)
@@ -118,15 +121,19 @@ int view_command(const ViewOptions& options) {
   render::Stage stage(window.get_proc());
   LiveRun run(std::move(source), &render::Window::wake);
   Player player(scene, run);
-  Viewer viewer(player, stage, window.content_scale());
+  // Where a point of the desktop is several pixels, Dear ImGui's coordinates are scaled already.
+  const float pixels =
+      static_cast<float>(window.framebuffer_size().width) / static_cast<float>(window.size().width);
+  Viewer viewer(player, stage, window.content_scale() / pixels);
   show(window, stage, viewer, player);
-  run.close(interrupted() ? "interrupted" : "stopped");
-  const LiveStatus& status = player.status();
+  const LiveStatus status = run.close(interrupted() ? "interrupted" : "stopped");
   if (!status.record_failure.empty()) say(status.record_failure);
-  if (!status.recording.empty()) fmt::print("recording: {}\n", status.recording);
+  if (!status.recording.empty() && status.record_failure.empty())
+    fmt::print("recording: {}\n", status.recording);
   if (interrupted()) return k_interrupted;
-  if (status.kind == LiveStatus::Kind::failed) say(scene->name + ": " + status.message);
-  return status.kind == LiveStatus::Kind::failed || !status.record_failure.empty() ? k_failed : k_done;
+  const bool failed = status.kind == LiveStatus::Kind::failed || status.kind == LiveStatus::Kind::ended;
+  if (failed) say(scene->name + ": " + status.message);
+  return failed || !status.record_failure.empty() ? k_failed : k_done;
 }
 
 }  // namespace topple::app

@@ -9,6 +9,7 @@
 #include "app/words.h"
 #include "render/overlay.h"
 #include "render/pick.h"
+#include "solver/io/edit_text.h"
 
 namespace topple::app {
 namespace {
@@ -75,9 +76,10 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
 bool Viewer::update(double wall_s) {
   const bool news = player_.update(wall_s);
   if (flight_ < 1) move_camera(wall_s);
-  quiet_ = news || camera_changed_ ? 0 : quiet_ + wall_s;
+  const bool moved = row_ && camera_changed_;
+  quiet_ = news || moved ? 0 : quiet_ + wall_s;
   const bool refine = stage_.software() && !drawn_still_ && quiet_ > k_quiet && !player_.playing();
-  return news || camera_changed_ || refine;
+  return news || moved || refine;
 }
 
 void Viewer::lay_out() {
@@ -86,9 +88,9 @@ void Viewer::lay_out() {
   const float timeline = std::min(165 * scale_, 0.3f * size.y);
   const float scene = std::max(size.y - status - bar - timeline, 16.f);
   scene_ = {0, 0, std::max(size.x - side, 16.f), scene};
-  side_ = {scene_.width, 0, side, size.y - status};
-  transport_ = {0, scene, scene_.width, bar};
-  timeline_ = {0, scene + bar, scene_.width, timeline};
+  side_ = {scene_.width, 0, side, scene + timeline};
+  timeline_ = {0, scene, scene_.width, timeline};
+  transport_ = {0, scene + timeline, size.x, bar};
   status_ = {0, scene + bar + timeline, size.x, status};
 }
 
@@ -110,6 +112,8 @@ void Viewer::build() {
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
   handle_characters();
+  for (int button = 0; button < 3; ++button)
+    if (ImGui::IsMouseClicked(button)) refused_.clear();
   std::optional<io::FrameRow> row = player_.row();
   if (!same_instant(row, row_)) scene_changed_ = true;
   row_ = std::move(row);
@@ -118,7 +122,7 @@ void Viewer::build() {
   draw_side_panel(row_);
   draw_transport_bar(player_, transport_);
   draw_timeline(player_, timeline_);
-  draw_status(row_);
+  draw_status();
   if (keys_shown_) draw_key_table();
   ImGui::Render();
   draw_scene();
@@ -129,9 +133,13 @@ void Viewer::draw_scene() {
   const bool changed = scene_changed_ || camera_changed_;
   if (!changed && (drawn_still_ || quiet_ <= k_quiet || player_.playing())) return;
   if (scene_changed_) {
-    const std::int64_t picked = picked_ ? static_cast<std::int64_t>(*picked_) : -1;
     frame_ = bridge_.frame(*row_, player_.parameters());
-    frame_.highlighted_member = picked;
+    const LiveStatus& status = player_.status();
+    if (picked_)
+      frame_.highlighted_member = static_cast<std::int64_t>(*picked_);
+    else if (status.kind == LiveStatus::Kind::failed && status.element >= 0)
+      frame_.highlighted_member =
+          player_.scene().setup.model.elements[static_cast<std::size_t>(status.element)].member;
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt) bridge_.add_ghost(*ghost, frame_);
   }
   if (!fitted_) {
@@ -264,14 +272,15 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   ImGui::End();
 }
 
-void Viewer::draw_status(const std::optional<io::FrameRow>&) {
+void Viewer::draw_status() {
   begin_panel("status", status_);
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
   const bool failed = status.kind == LiveStatus::Kind::failed && player_.at_head();
-  if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
   if (!refused_.empty()) words = "Refused: " + refused_;
-  if (failed && player_.can_edit()) {
+  if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
+  const double least_step = io::key_of(Edit::Key::time_step).least;
+  if (failed && player_.can_edit() && player_.parameters().time_step >= 2 * least_step) {
     if (ImGui::SmallButton("Halve the step and retry")) {
       player_.begin_edit();
       player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});

@@ -2,8 +2,8 @@
 // the window nor where its pictures go, so that tests drive it off screen.
 #pragma once
 
-#include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/panels.h"
@@ -40,6 +40,9 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
+  struct KeyAction;
+  static std::span<const KeyAction> key_actions();
+  void let_go();
   void lay_out();
   void handle_characters();
   void handle_mouse();
@@ -48,7 +51,7 @@ class Viewer {
   void draw_scene();
   void draw_words(const io::FrameRow& row);
   void draw_side_panel(const std::optional<io::FrameRow>& row);
-  void draw_status(const std::optional<io::FrameRow>& row);
+  void draw_status();
   void draw_key_table();
   float aspect() const { return scene_.width / scene_.height; }
 

@@ -1,5 +1,7 @@
 #include <imgui.h>
 
+#include <span>
+
 #include "app/viewer.h"
 
 namespace topple::app {
@@ -11,69 +13,61 @@ bool character(char c) {
   return false;
 }
 
-struct KeyLine {
-  const char* keys;
-  const char* does;
-};
-
-constexpr KeyLine k_lines[] = {
-    {"Space", "play, pause"},
-    {", .", "one instant back, on"},
-    {"[ ]", "half, twice the speed"},
-    {"Home End", "to the start, to the newest instant"},
-    {"R", "run again from the start with the sliders as they are"},
-    {"C", "continue from here in a new branch"},
-    {"Ctrl+Z Ctrl+Shift+Z", "undo, redo a change of a parameter"},
-    {"F", "fit the view"},
-    {"1 2 3 4", "front, side, top, iso"},
-    {"left drag", "turn the view; with Shift, or the right button: move it"},
-    {"wheel", "nearer, farther"},
-    {"click", "inspect a member; Esc lets go"},
-    {"Ctrl+click on a slider", "type a value"},
-    {"F1", "this table"},
-    {"Ctrl+Q", "close the recording and the window"},
-};
-
 }  // namespace
 
+/// What is done with keyboard and mouse. key 0: a line of the table only.
+struct Viewer::KeyAction {
+  const char* shown;
+  const char* does;
+  int key = 0;
+  bool control = false, shift = false;
+  void (*act)(Viewer&) = nullptr;
+};
+
+// In one table, so that what F1 shows is what happens.
+std::span<const Viewer::KeyAction> Viewer::key_actions() {
+  static constexpr KeyAction k_actions[] = {
+      {"Space", "play, pause", ' ', false, false, [](Viewer& v) { v.player_.toggle(); }},
+      {", .", "one instant back, on"},
+      {"[ ]", "half, twice the speed"},
+      {"Home", "to the start", render::key::home, false, false, [](Viewer& v) { v.player_.to_start(); }},
+      {"End", "to the newest instant", render::key::end, false, false, [](Viewer& v) { v.player_.to_end(); }},
+      {"R", "run again from the start with the sliders as they are", 'R', false, false,
+       [](Viewer& v) { v.player_.restart(); }},
+      {"C", "continue from here in a new branch", 'C', false, false,
+       [](Viewer& v) { v.player_.continue_from_here(); }},
+      {"Ctrl+Z", "take a change of a parameter back", 'Z', true, false, [](Viewer& v) { v.player_.undo(); }},
+      {"Ctrl+Shift+Z", "make it again", 'Z', true, true, [](Viewer& v) { v.player_.redo(); }},
+      {"Ctrl+click on a slider", "type a value"},
+      {"1", "seen from the front", '1', false, false, [](Viewer& v) { v.look(render::NamedView::front); }},
+      {"2", "from the side", '2', false, false, [](Viewer& v) { v.look(render::NamedView::side); }},
+      {"3", "from the top", '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
+      {"4", "from a corner", '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
+      {"F", "fit that view", 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
+      {"drag", "turn the view; with Shift or the right button: move it"},
+      {"wheel", "nearer, farther"},
+      {"click", "inspect a member"},
+      {"Esc", "let go of it", render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
+      {"F1", "this table", render::key::f1, false, false, [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
+      {"Ctrl+Q", "close the recording and the window", 'Q', true, false,
+       [](Viewer& v) { v.wants_to_close_ = true; }},
+  };
+  return k_actions;
+}
+
 void Viewer::press(const render::KeyPress& press) {
-  if (press.key == render::key::f1) keys_shown_ = !keys_shown_;
   if (ImGui::GetIO().WantTextInput) return;
-  if (press.control) {
-    if (press.key == 'Z') press.shift ? player_.redo() : player_.undo();
-    if (press.key == 'Y') player_.redo();
-    if (press.key == 'Q') wants_to_close_ = true;
-    return;
-  }
-  switch (press.key) {
-    case ' ':
-      return player_.toggle();
-    case render::key::home:
-      return player_.to_start();
-    case render::key::end:
-      return player_.to_end();
-    case 'R':
-      return player_.restart();
-    case 'C':
-      return player_.continue_from_here();
-    case 'F':
-      return look(view_);
-    case '1':
-      return look(render::NamedView::front);
-    case '2':
-      return look(render::NamedView::side);
-    case '3':
-      return look(render::NamedView::top);
-    case '4':
-      return look(render::NamedView::iso);
-    case render::key::escape:
-      keys_shown_ = false;
-      picked_.reset();
-      scene_changed_ = true;
-      return;
-    default:
-      return;
-  }
+  refused_.clear();
+  for (const KeyAction& action : key_actions())
+    if (action.act && action.key == press.key && action.control == press.control &&
+        (action.shift == press.shift || !press.control))
+      action.act(*this);
+}
+
+void Viewer::let_go() {
+  keys_shown_ = false;
+  picked_.reset();
+  scene_changed_ = true;
 }
 
 // These repeat while they are held down, and stand on different keys of different keyboards.
@@ -92,11 +86,11 @@ void Viewer::draw_key_table() {
       "Keys", &keys_shown_,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-    for (const KeyLine& line : k_lines) {
+    for (const KeyAction& action : key_actions()) {
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(line.keys);
+      ImGui::TextUnformatted(action.shown);
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(line.does);
+      ImGui::TextUnformatted(action.does);
     }
     ImGui::EndTable();
   }

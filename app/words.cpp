@@ -43,10 +43,14 @@ std::string status_in_words(const Player& player) {
   switch (status.kind) {
     case LiveStatus::Kind::starting:
       return "Bringing the bodies to rest under gravity …";
+    case LiveStatus::Kind::reading:
+      return "Reading the recording …";
+    case LiveStatus::Kind::ended:
+      return "This session has ended: " + status.message + ". What was recorded is kept.";
     case LiveStatus::Kind::returning:
       return "Going back to the state at this instant …";
     case LiveStatus::Kind::failed:
-      if (player.at_head()) return "Diverged: " + status.message;
+      if (player.at_head()) return "Stopped: " + status.message;
       break;
     case LiveStatus::Kind::over:
       if (player.at_head())

@@ -11,8 +11,8 @@
 namespace topple::render {
 namespace {
 
-constexpr int k_least_width = 640;
-constexpr int k_least_height = 400;
+constexpr int k_least_width = 960;
+constexpr int k_least_height = 540;
 
 std::string glfw_error() {
   const char* text = nullptr;

@@ -166,7 +166,8 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   State& next = w.next;
   next = state;
   StepEnergy exchanged;
-  if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack); !floor.isZero(0)) {
+  if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack);
+      !floor.isZero(0)) {
     exchanged.input = jump(model, floor, next);
     for (auto& system : w.systems) balance_accelerations(*system, parameters, next, w.motion);
   }

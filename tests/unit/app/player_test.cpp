@@ -221,6 +221,42 @@ TEST_F(PlayerTest, undo_posts_the_inverse_and_redo_the_edit_again) {
   expect_repeatable("live.h5", 1);
 }
 
+TEST_F(PlayerTest, a_branch_from_before_an_edit_knows_nothing_of_it_and_its_ghost_is_the_future_left) {
+  start();
+  run_to(0.2);
+  player().edit(amplitude(450));
+  run_to(0.4);
+  player().scrub(0.3);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit(); }));
+  EXPECT_FALSE(player().can_undo());
+  run_to(0.5);
+  player().scrub(0.1);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit() && player().shown_branch() == 2; }));
+  EXPECT_EQ(player().history().branches[2].parent, 0);
+  ASSERT_FALSE(player().ghost_way().empty());
+  EXPECT_EQ(player().ghost_way().back()->branch, 1);
+  EXPECT_NEAR(player().parameters().shakes[0].amplitude, 300 * k_gal, 1e-12);
+  EXPECT_FALSE(player().can_undo() || player().can_redo());
+}
+
+TEST_F(PlayerTest, edits_do_not_hurry_a_slow_run) {
+  start();
+  for (int i = 0; i < 6; ++i) player().slower();  // 1/64
+  const auto begin = std::chrono::steady_clock::now();
+  player().play();
+  for (int i = 0; i < 300; ++i) {
+    player().edit(amplitude(300 + i));
+    player().update(0.001);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  player().pause();
+  ASSERT_TRUE(until([&] { return player().status().kind != LiveStatus::Kind::going; }));
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_LE(player().time(), wall / 64 + 1e-3 + 1e-9);  // and the step under way
+}
+
 TEST_F(PlayerTest, restart_keeps_the_sliders_and_is_a_branch_from_the_start) {
   start();
   run_to(0.2);
@@ -294,9 +330,12 @@ TEST_F(PlayerTest, a_failed_step_keeps_the_last_good_state_and_may_be_tried_agai
   EXPECT_EQ(player().row()->step, 5);
   EXPECT_NE(player().status().message.find("smaller time_step"), std::string::npos);
   player().begin_edit();
+  EXPECT_THROW(player().edit({Edit::Key::time_step, 0, Vec3(1e-9, 0, 0)}), io::InputError);
   player().edit({Edit::Key::time_step, 0, Vec3(5e-4, 0, 0)});
-  ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::halted; }));
-  run_to_end();
+  player().play();  // with the edit still on its way
+  EXPECT_TRUE(player().playing());
+  ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::over; }));
+  EXPECT_TRUE(player().status().message.empty());
   run_->close("stopped");
   EXPECT_EQ(io::Recording(path("live.h5")).status(), "completed");
 }

@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include <condition_variable>
+#include <future>
 #include <mutex>
 
 #include "live.h"
@@ -235,6 +236,51 @@ TEST_F(ViewerTest, frames_are_drawn_while_one_step_takes_its_time) {
   EXPECT_EQ(player_->time(), time);
   gate.open();
   ASSERT_TRUE(until([&] { return player_->time() > time; }));
+}
+
+TEST_F(ViewerTest, a_window_is_drawn_before_there_is_anything_to_show) {
+  const auto scene = live_scene();
+  std::promise<void> go;
+  const std::shared_future<void> gone = go.get_future().share();
+  // The first report waits until the window has been drawn.
+  run_.emplace(LiveSource{.scene = scene, .recording = {}, .output = {}}, [gone] { gone.wait(); });
+  player_.emplace(scene, *run_);
+  stage_.emplace(render::off_screen());
+  viewer_.emplace(*player_, *stage_, 1.f);
+  ImGui::GetIO().DisplaySize = {k_width, k_height};
+  ImGui::GetIO().DeltaTime = 1.f / 60;
+  for (int i = 0; i < 5; ++i) frame();
+  press('R');
+  press('C');
+  press(k_space);
+  EXPECT_EQ(shot().width, static_cast<int>(k_width));
+  go.set_value();
+  EXPECT_TRUE(until([&] { return player_->row().has_value(); }));
+}
+
+TEST_F(ViewerTest, typing_applies_the_whole_number_once) {
+  start();
+  const ImVec2 slider = find("side", "amplitude", true);
+  hover(slider);
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyCtrl = true;
+  io.MouseDown[0] = true;
+  frame();
+  io.MouseDown[0] = false;
+  io.KeyCtrl = false;
+  frame();
+  frame();
+  for (const char c : {'4', '5', '0'}) {
+    io.AddInputCharacter(static_cast<unsigned>(c));
+    frame();
+    EXPECT_EQ(amplitude_gal(), 300);
+  }
+  press(k_space);  // goes into the number, not to the player
+  EXPECT_FALSE(player_->playing());
+  click({2, 300});
+  EXPECT_NEAR(amplitude_gal(), 450, 1e-9);
+  ASSERT_TRUE(until([&] { return !player_->edits().empty(); }));
+  EXPECT_EQ(player_->edits().size(), 1u);
 }
 
 TEST_F(ViewerTest, picking_a_member_shows_it_and_escape_lets_go) {
