@@ -14,15 +14,25 @@ namespace topple {
 
 /// What became of a step. ok, or the first thing that went wrong and where.
 struct StepStatus {
-  enum class Kind { ok, newton_diverged, not_finite, singular, not_settled, step_too_long };
+  enum class Kind {
+    ok,
+    newton_diverged,
+    not_finite,
+    singular,
+    not_settled,
+    step_too_long,
+    no_equilibrium,
+    uncontrolled
+  };
   Kind kind = Kind::ok;
   double time = 0;  ///< s
   int body = -1;
   int element = -1;  ///< -1: not an element's fault
   int node = -1;
   int newton_iterations = 0;
-  int rejected = 0;  ///< trial steps thrown away within this step
-  double limit = 0;  ///< s, step_too_long: the greatest stable step
+  int rejected = 0;        ///< trial steps thrown away within this step
+  double limit = 0;        ///< s, step_too_long: the greatest stable step
+  double load_factor = 0;  ///< statics: where no equilibrium was found
 
   bool ok() const { return kind == Kind::ok; }
   /// One sentence: what, when, where, what to try.

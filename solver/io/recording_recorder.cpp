@@ -44,9 +44,9 @@ double body_energy(const Run& run, const Body& body) {
     // Angular velocity is in material axes, which are the world axes of the reference pose: so is the
     // inertia.
     const Vec3& w = state.angular_velocity[k];
-    energy +=
-        0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() + 0.5 * w.dot(model.node_inertia[k] * w) -
-        model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
+    energy += 0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() +
+              0.5 * w.dot(model.node_inertia[k] * w) -
+              model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
   }
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[static_cast<std::size_t>(e)];
@@ -176,7 +176,8 @@ void Recorder::observe(const Run& run) {
   const double time = run.state().time;
   impl_->events(run);
   if (impl_->checkpoints.due(time, k_checkpoint_rate)) impl_->checkpoint(run);
-  if (impl_->frames.due(time, run.setup().run.output_rate)) impl_->frame(run);
+  const bool load_step = run.setup().run.analysis == Analysis::statics;
+  if (impl_->frames.due(time, run.setup().run.output_rate) || load_step) impl_->frame(run);
   impl_->writer.flush_if_due();
 }
 
