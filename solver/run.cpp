@@ -22,16 +22,16 @@ Run::Run(const Setup& setup)
            .outcome = Outcome(setup.model),
            .probes = std::vector<ProbeOutcome>(setup.probes.size())},
       workspace_(setup.model) {
-  if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
-  if (!status_.ok()) return;
   if (is_static()) {
     path_.emplace(setup.model, setup.run.statics);
-    status_ = path_->start(now_.parameters, now_.state);
+    status_ = path_->start(now_.parameters, setup.run.settle, now_.state);
     if (!status_.ok()) return;
     resume(setup.model, now_.state, workspace_);
     observe();
     return;
   }
+  if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
+  if (!status_.ok()) return;
   prepare(setup.model, now_.parameters, now_.state, workspace_);
   observe();
 }

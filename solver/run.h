@@ -20,7 +20,7 @@ enum class StopWhen { never, all_overturned, at_rest };
 /// What a scene asks of a run besides its mechanics.
 struct RunSettings {
   Analysis analysis = Analysis::dynamic;
-  StaticSettings statics;
+  StaticSettings statics = {};
   double duration = 10;      ///< s; statics: 1, the whole path
   bool settle = true;        ///< start from rest under gravity
   double output_rate = 100;  ///< Hz, of recorded rows

@@ -5,6 +5,7 @@
 
 #include "solver/contact_law.h"
 #include "solver/rotation.h"
+#include "solver/settle.h"
 
 namespace topple {
 namespace {
@@ -225,8 +226,13 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
   return travel;
 }
 
-StepStatus LoadPath::start(const Parameters& parameters, State& state) {
-  StepStatus status = balance(parameters, state, {0});
+StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& state) {
+  StepStatus status;
+  IntegratorScratch scratch;
+  for (auto& system : systems_)
+    if (settled && status.ok()) status = settle_body(*system, parameters, state, scratch);
+  if (!status.ok()) return status;
+  status = balance(parameters, state, {0});
   if (!status.ok() || !settings_.control) return status;
   const std::optional<double> travel =
       settings_.control->to ? *settings_.control->to / settings_.load_steps : first_travel(parameters, state);

@@ -37,8 +37,8 @@ class LoadPath {
  public:
   LoadPath(const Model& model, const StaticSettings& settings);
 
-  /// Balances the weight: load factor 0.
-  StepStatus start(const Parameters& parameters, State& state);
+  /// Balances the weight, without the loads that grow: load factor 0. `settled`: as settle() first.
+  StepStatus start(const Parameters& parameters, bool settled, State& state);
   /// The next load step: halved where Newton finds no equilibrium. no_equilibrium: not even k_least_part of
   /// it has one; `state` is then the last equilibrium found, and State::step counts it when it is new.
   /// State::time becomes the load factor, with displacement control the part of the way.
