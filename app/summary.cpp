@@ -61,6 +61,13 @@ std::string integrator_name(Integrator integrator) {
   return "generalized-alpha";
 }
 
+/// The mean of an adaptive run.
+ordered_json time_step(const Run& run) {
+  const Parameters& p = run.parameters();
+  if (is_static(run) || (p.adaptive && run.state().step == 0)) return nullptr;
+  return number(p.adaptive ? run.state().time / static_cast<double>(run.state().step) : p.time_step);
+}
+
 ordered_json load_steps(const Run& run) {
   ordered_json list = ordered_json::array();
   for (const LoadStep& step : run.load_steps())
@@ -111,10 +118,10 @@ std::string dynamic_head(const ordered_json& s) {
   if (!s["realtime_factor"].is_null())
     out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
                        s["realtime_factor"].get<double>());
-  out +=
-      fmt::format("\n{}, step {:g} s: {} steps, {} rejected, {} iterations\n",
-                  s["integrator"].get<std::string>(), s["time_step_s"].get<double>(), s["steps"].get<long>(),
-                  s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n",
+                     s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
+                     text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
+                     s["newton_iterations"].get<long>());
   const auto& e = s["energy"];
   out +=
       fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
@@ -124,7 +131,7 @@ std::string dynamic_head(const ordered_json& s) {
 
 }  // namespace
 
-ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status, double wall_s) {
+ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
   const State& state = run.state();
   const EnergyLedger& e = state.energy;
   const Parameters& p = run.parameters();
@@ -140,7 +147,9 @@ ordered_json summary(const io::Scene& scene, const Run& run, const std::string& 
   out["realtime_factor"] =
       wall_s > 0 && !is_static(run) ? number(state.time / wall_s) : ordered_json(nullptr);
   out["integrator"] = is_static(run) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
-  out["time_step_s"] = is_static(run) ? ordered_json(nullptr) : number(p.time_step);
+  out["time_step_s"] = time_step(run);
+  out["adaptive"] = p.adaptive && !is_static(run);
+  out["explicit_limit_s"] = number(run.stable_step());
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();

@@ -5,6 +5,7 @@
 
 #include "solver/excitation.h"
 #include "solver/rotation.h"
+#include "solver/step_control.h"
 
 namespace topple {
 namespace {
@@ -57,7 +58,7 @@ StepStatus Run::advance() {
     advance_load();
     return status_;
   }
-  status_ = step(setup_->model, now_.parameters, now_.state, workspace_);
+  status_ = step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (status_.ok()) observe();
@@ -86,8 +87,8 @@ void Run::edit(const Edit& edit) {
 bool Run::over() const {
   if (is_static()) return !status_.ok() || now_.state.step >= setup_->run.statics.load_steps;
   if (setup_->run.analysis == Analysis::modes) return true;
-  return !status_.ok() || now_.stopped_early ||
-         now_.state.time > setup_->run.duration - now_.parameters.time_step / 2;
+  const double slack = now_.parameters.adaptive ? k_least_step : now_.parameters.time_step / 2;
+  return !status_.ok() || now_.stopped_early || now_.state.time > setup_->run.duration - slack;
 }
 
 void Run::see_forces() {

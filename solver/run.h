@@ -93,6 +93,8 @@ class Run {
   const std::vector<SectionForces>& sections() const { return sections_; }
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
   std::int64_t rejected_steps() const { return now_.rejected_steps; }
+  /// Of central differences, once it has stepped, s.
+  std::optional<double> stable_step() { return explicit_limit(workspace_); }
 
  private:
   bool is_static() const { return setup_->run.analysis == Analysis::statics; }
