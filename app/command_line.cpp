@@ -23,7 +23,7 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"study", "verify", "modes", "compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"study", "verify", "compare", "report", "recover"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -44,6 +44,11 @@ std::string seconds(const std::string& text) {
 }
 
 std::string rate(const std::string& text) {
+  const std::optional<int> value = whole_number<int>(text);
+  return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
+}
+
+std::string mode_count(const std::string& text) {
   const std::optional<int> value = whole_number<int>(text);
   return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
 }
@@ -78,6 +83,7 @@ class CommandLine {
     add_view();
     add_render();
     add_export();
+    add_modes();
     add_check();
     add_info();
     add_scenes();
@@ -190,6 +196,21 @@ class CommandLine {
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }
 
+  void add_modes() {
+    CLI::App& command = add_command("modes", "natural frequencies and mode shapes of each body",
+                                    "modes cantilever --count 5 --json modes.json");
+    add_path(command, "SCENE", modes_.scene, "", "path or name of a built-in scene").required();
+    command.add_option("--count", count_, "modes of each body, rigid ones among them; default 10")
+        ->type_name("N")
+        ->check(mode_count, "", "count");
+    add_set(command, modes_.overrides);
+    add_path(command, "--json", modes_.json, "FILE|-", "write the modes as JSON; - for standard output");
+    command.callback([this] {
+      modes_.count = whole_number<int>(count_).value_or(modes_.count);
+      action_ = [this] { return modes_command(modes_); };
+    });
+  }
+
   void add_check() {
     CLI::App& command = add_command("check", "validate scenes without running them",
                                     "check my-office.toml --set shake.1.amplitude=\"0.2 g\"");
@@ -256,6 +277,8 @@ class CommandLine {
   ExportOptions export_;
   std::vector<std::string> scenes_, check_overrides_;
   InfoOptions info_;
+  ModesOptions modes_;
+  std::string count_;
 };
 
 /// What went to standard output may still wait to be written, to a full disk for instance.

@@ -57,6 +57,14 @@ struct ExportOptions {
 };
 int export_command(const ExportOptions& options);
 
+struct ModesOptions {
+  std::string scene;
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  int count = 10;                      ///< of each body, rigid ones among them
+  std::string json;                    ///< file, "-" or empty
+};
+int modes_command(const ModesOptions& options);
+
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 
 struct InfoOptions {

@@ -219,6 +219,7 @@ void LiveRun::Worker::begin() {
   if (!run_->status().ok()) {
     fail(run_->status());
     run_.reset();
+    set(status_.kind);
     return;
   }
   if (stop_) return;
@@ -371,7 +372,7 @@ void LiveRun::Worker::fork(const Fork& from) {
   if (stop_) return;
   if (!reached) {
     fail(run.status());
-    if (replayed) set(LiveStatus::Kind::replay);
+    set(replayed ? LiveStatus::Kind::replay : status_.kind);
     return;
   }
   if (replayed) carry_on_recording();
@@ -415,9 +416,10 @@ void LiveRun::Worker::fail(const StepStatus& status) {
   going_ = false;
   status_.message = status.message(setup_.model);
   status_.element = status.element;
-  set(LiveStatus::Kind::failed);
+  status_.kind = LiveStatus::Kind::failed;
 }
 
+// What became of it is told with the next report of the head, not before.
 void LiveRun::Worker::step_once() {
   const Clock::time_point start = Clock::now();
   const StepStatus status = advance_(*run_);
@@ -430,7 +432,7 @@ void LiveRun::Worker::step_once() {
   if (!run_->over()) return;
   record(observer_.last(*run_));
   going_ = false;
-  set(LiveStatus::Kind::over);
+  status_.kind = LiveStatus::Kind::over;
 }
 
 // Steps until the next report is due, or the run is ahead of its pace.

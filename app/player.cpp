@@ -55,21 +55,19 @@ bool Player::update(double wall_s) {
   if (at_tail && replay()) cursor_ = end();
   if (following_ && head_ && live_shown()) {
     cursor_ = head_->time;
-    const bool failed = status_.kind == LiveStatus::Kind::failed && posted_.empty();
-    if (play_when_there_ && can_edit()) {
-      play_when_there_ = false;
-      run_.go(speed_);
-    } else if (!forking() && (status_.kind == LiveStatus::Kind::over || failed ||
-                              status_.kind == LiveStatus::Kind::ended)) {
-      playing_ = false;
-    }
-  } else if (playing_ && !forking()) {
+  } else if (playing_ && !play_when_there_ && !forking()) {
     cursor_ = std::min(cursor_ + speed_ * wall_s, end());
     if (cursor_ >= end()) {
       following_ = live_shown();
       playing_ = following_ && status_.kind == LiveStatus::Kind::halted;
       if (playing_) run_.go(speed_);
     }
+  }
+  if (play_when_there_ && can_edit()) {
+    play_when_there_ = false;
+    run_.go(speed_);
+  } else if (following_ && !forking() && nothing_goes_on()) {
+    playing_ = false;
   }
   news = news || cursor_ != before || way_.size() != rows_before;
   if (news) update_parameters();
@@ -142,6 +140,12 @@ bool Player::busy() const {
          status_.kind == LiveStatus::Kind::ended;
 }
 
+// After a failed step only a change of parameters, maybe still on its way, gives reason to try again.
+bool Player::nothing_goes_on() const {
+  return status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::ended ||
+         (status_.kind == LiveStatus::Kind::failed && posted_.empty());
+}
+
 double Player::end() const {
   const double recorded = way_.empty() ? 0 : way_.back()->time;
   return live_shown() && head_ ? std::max(recorded, head_->time) : recorded;
@@ -152,16 +156,15 @@ double Player::length() const {
 }
 
 void Player::play() {
-  if (playing_ || way_.empty()) return;
-  if (forking() || status_.kind == LiveStatus::Kind::returning) {
+  if (playing_ || status_.kind == LiveStatus::Kind::reading || status_.kind == LiveStatus::Kind::ended)
+    return;
+  if (busy()) {
     playing_ = play_when_there_ = true;
     return;
   }
-  if (busy()) return;
+  if (way_.empty()) return;
   if (following_) {
-    // After a failed step only a change of parameters, maybe still on its way, gives reason to try again.
-    if (status_.kind == LiveStatus::Kind::over) return;
-    if (status_.kind == LiveStatus::Kind::failed && posted_.empty()) return;
+    if (nothing_goes_on()) return;
     run_.go(speed_);
   } else if (cursor_ >= end()) {
     cursor_ = way_.front()->time;

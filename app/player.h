@@ -87,6 +87,7 @@ class Player {
     Edit back, again;
   };
   bool busy() const;
+  bool nothing_goes_on() const;
   bool forking() const { return forks_asked_ > status_.forks; }
   bool live_shown() const { return !replay() && shown_ == status_.branch; }
   void set_speed(double speed);

@@ -78,7 +78,10 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
     result.recorded = recorded;
     result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
     if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);
-    if (status == "interrupted") result.trouble = fmt::format("interrupted at {:.6g} s", run.state().time);
+    const bool is_static = scene.setup.run.analysis == Analysis::statics;
+    if (status == "interrupted")
+      result.trouble = is_static ? fmt::format("interrupted at load factor {:.6g}", run.state().load_factor)
+                                 : fmt::format("interrupted at {:.6g} s", run.state().time);
   } catch (const io::WriteError& error) {
     if (!begun) throw;
     throw with_remains(error, path);
@@ -88,6 +91,10 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
 
 int run_command(const RunOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
+  if (scene.setup.run.analysis == Analysis::modes) {
+    if (!options.recording.empty()) throw BadInput("--output: modes are not recorded; --json writes them");
+    return modes_command({.scene = options.scene, .overrides = options.overrides, .json = options.json});
+  }
   const bool json_to_output = options.json == "-";
   defer_interrupts();
   if (!options.recording.empty()) require_writable_file("--output", options.recording, options.scene);
@@ -99,8 +106,9 @@ int run_command(const RunOptions& options) {
   const RecordedRun result = record(scene, options.recording, options.quiet);
   if (!result.trouble.empty())
     say(result.trouble + (result.recorded
-                              ? fmt::format("; {} holds everything up to {:.6g} s", options.recording,
-                                            result.summary["simulated_s"].get<double>())
+                              ? fmt::format("; {} holds everything up to {:.6g}{}", options.recording,
+                                            result.summary["simulated_s"].get<double>(),
+                                            result.summary["analysis"] == "static" ? " of the way" : " s")
                               : ""));
   for (const auto& warning : result.summary["warnings"]) say("warning: " + warning.get<std::string>());
   if (json_to_output) {

@@ -45,6 +45,36 @@ ordered_json body(const Body& body, const BodyOutcome& o) {
           {"peak_penetration_ratio", number(o.peak_penetration)}};
 }
 
+bool is_static(const Run& run) {
+  return run.setup().run.analysis == Analysis::statics;
+}
+
+std::string integrator_name(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::central_difference:
+      return "central-difference";
+    case Integrator::newmark:
+      return "newmark";
+    case Integrator::generalized_alpha:
+      break;
+  }
+  return "generalized-alpha";
+}
+
+/// The mean of an adaptive run.
+ordered_json time_step(const Run& run) {
+  const Parameters& p = run.parameters();
+  if (is_static(run) || (p.adaptive && run.state().step == 0)) return nullptr;
+  return number(p.adaptive ? run.state().time / static_cast<double>(run.state().step) : p.time_step);
+}
+
+ordered_json load_steps(const Run& run) {
+  ordered_json list = ordered_json::array();
+  for (const LoadStep& step : run.load_steps())
+    list.push_back({{"factor", number(step.factor)}, {"converged", step.converged}});
+  return list;
+}
+
 ordered_json warnings(const Run& run) {
   ordered_json list = ordered_json::array();
   const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
@@ -55,7 +85,7 @@ ordered_json warnings(const Run& run) {
                       "the floor or wall; a larger alpha or width holds it",
                       run.setup().model.bodies[b].name, bodies[b].peak_penetration));
   const double balance = run.state().energy.balance_error();
-  if (balance > k_good_balance)
+  if (!is_static(run) && balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
                                balance, k_good_balance));
   return list;
@@ -71,9 +101,37 @@ std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
 
+std::string static_head(const ordered_json& s) {
+  std::string out = fmt::format(
+      "{}: {} in {:.2f} s of wall time\nstatic: {} load steps, {} halved, {} iterations\n",
+      s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
+      s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
+  for (const auto& step : s["static"])
+    out += fmt::format("load factor {}: {}\n", text(step["factor"], "{:.6g}"),
+                       step["converged"].get<bool>() ? "converged" : "no equilibrium");
+  return out + "\n";
+}
+
+std::string dynamic_head(const ordered_json& s) {
+  std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
+                                s["status"].get<std::string>(), s["simulated_s"].get<double>());
+  if (!s["realtime_factor"].is_null())
+    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
+                       s["realtime_factor"].get<double>());
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n",
+                     s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
+                     text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
+                     s["newton_iterations"].get<long>());
+  const auto& e = s["energy"];
+  out +=
+      fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
+                  text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
+  return out;
+}
+
 }  // namespace
 
-ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status, double wall_s) {
+ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
   const State& state = run.state();
   const EnergyLedger& e = state.energy;
   const Parameters& p = run.parameters();
@@ -83,20 +141,28 @@ ordered_json summary(const io::Scene& scene, const Run& run, const std::string& 
   out["scene"] = scene.name;
   out["status"] = status;
   if (!run.status().ok()) out["message"] = run.status().message(run.setup().model);
+  out["analysis"] = is_static(run) ? "static" : "dynamic";
   out["simulated_s"] = number(state.time);
   out["wall_s"] = number(wall_s);
-  out["realtime_factor"] = wall_s > 0 ? number(state.time / wall_s) : ordered_json(nullptr);
-  out["integrator"] =
-      p.integrator == Integrator::central_difference ? "central-difference" : "generalized-alpha";
-  out["time_step_s"] = number(p.time_step);
+  out["realtime_factor"] =
+      wall_s > 0 && !is_static(run) ? number(state.time / wall_s) : ordered_json(nullptr);
+  out["integrator"] = is_static(run) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
+  out["time_step_s"] = time_step(run);
+  out["adaptive"] = p.adaptive && !is_static(run);
+  out["explicit_limit_s"] = number(run.stable_step());
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();
-  out["energy"] = {{"input_J", number(e.input)},         {"kinetic_J", number(e.kinetic)},
-                   {"strain_J", number(e.strain)},       {"gravity_J", number(e.gravity)},
-                   {"contact_J", number(e.contact)},     {"dissipated_J", number(e.dissipated())},
-                   {"friction_J", number(e.friction)},   {"normal_damping_J", number(e.normal_damping)},
-                   {"numerical_J", number(e.numerical)}, {"balance_error", number(e.balance_error())}};
+  out["energy"] = {{"input_J", number(e.input)},
+                   {"kinetic_J", number(e.kinetic)},
+                   {"strain_J", number(e.strain)},
+                   {"gravity_J", number(e.gravity)},
+                   {"contact_J", number(e.contact)},
+                   {"dissipated_J", number(e.dissipated())},
+                   {"friction_J", number(e.friction)},
+                   {"normal_damping_J", number(e.normal_damping)},
+                   {"numerical_J", number(e.numerical)},
+                   {"balance_error", is_static(run) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -110,7 +176,7 @@ ordered_json summary(const io::Scene& scene, const Run& run, const std::string& 
           {{"displacement_m", vector(probe.displacement)}, {"rotation_rad", vector(probe.rotation)}}},
          {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
   }
-  out["static"] = ordered_json::array();
+  out["static"] = load_steps(run);
   out["warnings"] = warnings(run);
   return out;
 }
@@ -120,19 +186,7 @@ std::string json_text(const ordered_json& value, int indent) {
 }
 
 std::string summary_table(const ordered_json& s) {
-  std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
-                                s["status"].get<std::string>(), s["simulated_s"].get<double>());
-  if (!s["realtime_factor"].is_null())
-    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
-                       s["realtime_factor"].get<double>());
-  out +=
-      fmt::format("\n{}, step {:g} s: {} steps, {} rejected, {} iterations\n",
-                  s["integrator"].get<std::string>(), s["time_step_s"].get<double>(), s["steps"].get<long>(),
-                  s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
-  const auto& e = s["energy"];
-  out +=
-      fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
-                  text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
+  std::string out = s["analysis"] == "static" ? static_head(s) : dynamic_head(s);
   int width = 14;
   for (const auto& b : s["bodies"]) width = std::max(width, characters(b["name"].get<std::string>()));
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",

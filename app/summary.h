@@ -11,8 +11,7 @@ namespace topple::app {
 
 /// The summary of interface 3. What does not exist is null; numbers that are not finite are null too.
 /// `status`: completed, stopped, diverged or interrupted.
-nlohmann::ordered_json summary(const io::Scene& scene, const Run& run, const std::string& status,
-                               double wall_s);
+nlohmann::ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s);
 
 /// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);

@@ -63,7 +63,7 @@ void BodySystem::add_applied(const Parameters& parameters, double t) {
     moment[i].setZero();
   }
   for (const Load* load : loads_) {
-    const double factor = load_factor(*load, t);
+    const double factor = loads_grow && load->history.empty() ? t : load_factor(*load, t);
     force[load->node - first] += factor * load->force;
     moment[load->node - first] += factor * load->moment;
   }

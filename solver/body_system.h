@@ -74,6 +74,7 @@ class BodySystem {
   double size;                      ///< m, greatest distance of a node from the centre of gravity
   double contact_mass;              ///< kg, share of one contact point
   std::vector<unsigned> fixed;      ///< per node, bits as in Support
+  bool loads_grow = false;          ///< statics: t is the load factor, in which loads without history grow
   std::vector<Vec3> force, moment;  ///< N, N m
   std::vector<TouchingPair> pairs;
   BlockLu lu;

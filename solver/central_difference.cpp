@@ -48,6 +48,23 @@ Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double
   return v;
 }
 
+// Of closed and sticking contacts, per node of the body.
+std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) {
+  std::vector<Mat3> sum(s.count, Mat3::Zero());
+  const Body& body = s.model.bodies[s.index];
+  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
+  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+    const ContactPoint& point = s.model.contact_points[p];
+    for (const Plane& plane : s.model.planes) {
+      const double L = (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+      const Mat3 normal = plane.normal * plane.normal.transpose();
+      sum[point.node - s.first] +=
+          law.alpha / L * (slope * normal + k_stick_stiffness * (Mat3::Identity() - normal));
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State& state, double t, double h,
@@ -121,7 +138,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   return status;
 }
 
-double explicit_limit(BodySystem& s) {
+double explicit_limit(BodySystem& s, const ContactLaw* law) {
   const int n = s.count;
   const Body& body = s.model.bodies[s.index];
   std::vector<Mat12> tangents(body.element_count);
@@ -134,6 +151,7 @@ double explicit_limit(BodySystem& s) {
         beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
         gradient, tangents[e]);
   }
+  const std::vector<Mat3> held = law ? contact_stiffness(s, *law) : std::vector<Mat3>(n, Mat3::Zero());
   std::vector<Mat3> inverse(n);
   for (int i = 0; i < n; ++i) inverse[i] = s.model.node_inertia[s.first + i].inverse();
   Eigen::VectorXd v(6 * n), kv(6 * n);
@@ -152,7 +170,8 @@ double explicit_limit(BodySystem& s) {
       kv.segment<6>(6 * j) += f.tail<6>();
     }
     for (int i = 0; i < n; ++i) {
-      Vec3 translation = kv.segment<3>(6 * i) / s.model.node_mass[s.first + i];
+      Vec3 translation =
+          (kv.segment<3>(6 * i) + held[i] * v.segment<3>(6 * i)) / s.model.node_mass[s.first + i];
       Vec3 rotation = inverse[i] * kv.segment<3>(6 * i + 3);
       clear_fixed(s, i, translation, rotation);
       kv.segment<3>(6 * i) = translation;

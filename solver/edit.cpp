@@ -90,6 +90,7 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& parameter
       return;
     case Edit::Key::time_step:
       parameters.time_step = value;
+      parameters.adaptive = false;
       return;
     case Edit::Key::alpha:
       law.alpha = value;

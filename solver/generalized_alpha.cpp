@@ -29,13 +29,7 @@ class ImplicitStep {
  public:
   ImplicitStep(BodySystem& system, const Parameters& parameters, State& state, double t, double h,
                IntegratorScratch& scratch)
-      : s_(system),
-        p_(parameters),
-        state_(state),
-        t_(t),
-        h_(h),
-        c_(parameters.spectral_radius),
-        w_(scratch) {}
+      : s_(system), p_(parameters), state_(state), t_(t), h_(h), c_(parameters), w_(scratch) {}
 
   Attempt solve();
   void accept(StepEnergy& energy);
@@ -221,6 +215,18 @@ void ImplicitStep::accept(StepEnergy& energy) {
 }
 
 }  // namespace
+
+GeneralizedAlpha GeneralizedAlpha::newmark(double beta, double gamma) {
+  GeneralizedAlpha c(1);
+  c.alpha_m = c.alpha_f = 0;
+  c.beta = beta;
+  c.gamma = gamma;
+  return c;
+}
+
+GeneralizedAlpha::GeneralizedAlpha(const Parameters& p)
+    : GeneralizedAlpha(p.integrator == Integrator::newmark ? newmark(p.beta, p.gamma)
+                                                           : GeneralizedAlpha(p.spectral_radius)) {}
 
 StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
                                      double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy) {

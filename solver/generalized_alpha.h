@@ -9,7 +9,8 @@
 
 namespace topple {
 
-/// Coefficients of the generalized-alpha method (Chung & Hulbert 1993) from its spectral radius at infinity.
+/// Coefficients of the generalized-alpha method (Chung & Hulbert 1993) from its spectral radius at infinity;
+/// without averaging, alpha_m = alpha_f = 0, it is Newmark's.
 struct GeneralizedAlpha {
   double alpha_m, alpha_f, gamma, beta;
   explicit GeneralizedAlpha(double rho)
@@ -17,6 +18,9 @@ struct GeneralizedAlpha {
         alpha_f(rho / (rho + 1)),
         gamma(0.5 + alpha_f - alpha_m),
         beta(0.25 * (gamma + 0.5) * (gamma + 0.5)) {}
+  static GeneralizedAlpha newmark(double beta, double gamma);
+  /// Those of the implicit method that `parameters` choose.
+  explicit GeneralizedAlpha(const Parameters& parameters);
 };
 
 /// Scratch of the integrators for one body.

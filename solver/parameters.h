@@ -51,7 +51,7 @@ struct Shake {
   Passage passage;                       ///< from it to `amplitude` along `direction`
 };
 
-enum class Integrator { central_difference, generalized_alpha };
+enum class Integrator { central_difference, generalized_alpha, newmark };
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene_keys.h, one table for scene files,
 /// sliders and fuzzers.
@@ -62,8 +62,11 @@ struct Parameters {
   std::vector<Shake> shakes;
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
-  double spectral_radius = 0.8;  ///< of generalized-alpha at infinity, 0..1
-  double time_step = 1e-3;       ///< s
+  double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1
+  double beta = 0.25, gamma = 0.5;  ///< of newmark
+  double time_step = 1e-3;          ///< s, fixed step
+  bool adaptive = false;            ///< the step follows `tolerance` instead (step_control.h)
+  double tolerance = 1e-3;          ///< of the adaptive step
 };
 
 }  // namespace topple

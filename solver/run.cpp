@@ -5,6 +5,7 @@
 
 #include "solver/excitation.h"
 #include "solver/rotation.h"
+#include "solver/step_control.h"
 
 namespace topple {
 namespace {
@@ -22,6 +23,14 @@ Run::Run(const Setup& setup)
            .outcome = Outcome(setup.model),
            .probes = std::vector<ProbeOutcome>(setup.probes.size())},
       workspace_(setup.model) {
+  if (is_static()) {
+    path_.emplace(setup.model, setup.run.statics);
+    status_ = path_->start(now_.parameters, setup.run.settle, now_.state);
+    if (!status_.ok()) return;
+    resume(setup.model, now_.state, workspace_);
+    observe();
+    return;
+  }
   if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
   if (!status_.ok()) return;
   prepare(setup.model, now_.parameters, now_.state, workspace_);
@@ -39,16 +48,35 @@ Run::Run(const Setup& setup, State state, Parameters parameters)
 
 Run::Run(const Setup& setup, RunPoint point)
     : setup_(&setup), now_(std::move(point)), workspace_(setup.model) {
+  if (is_static()) path_.emplace(setup.model, setup.run.statics);
   resume(setup.model, now_.state, workspace_);
   see_forces();
 }
 
 StepStatus Run::advance() {
-  status_ = step(setup_->model, now_.parameters, now_.state, workspace_);
+  if (path_) {
+    advance_load();
+    return status_;
+  }
+  status_ = step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (status_.ok()) observe();
   return status_;
+}
+
+// A load step that fails leaves what converged of it.
+void Run::advance_load() {
+  const double factor = now_.state.load_factor;
+  status_ = path_->advance(now_.parameters, now_.state);
+  now_.newton_iterations += status_.newton_iterations;
+  now_.rejected_steps += status_.rejected;
+  if (now_.state.load_factor != factor || status_.ok()) {
+    now_.load_steps.push_back({now_.state.load_factor, true});
+    resume(setup_->model, now_.state, workspace_);
+    observe();
+  }
+  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false});
 }
 
 void Run::edit(const Edit& edit) {
@@ -57,8 +85,10 @@ void Run::edit(const Edit& edit) {
 }
 
 bool Run::over() const {
-  return !status_.ok() || now_.stopped_early ||
-         now_.state.time > setup_->run.duration - now_.parameters.time_step / 2;
+  if (is_static()) return !status_.ok() || now_.state.step >= setup_->run.statics.load_steps;
+  if (setup_->run.analysis == Analysis::modes) return true;
+  const double slack = now_.parameters.adaptive ? k_least_step : now_.parameters.time_step / 2;
+  return !status_.ok() || now_.stopped_early || now_.state.time > setup_->run.duration - slack;
 }
 
 void Run::see_forces() {
@@ -90,6 +120,7 @@ void Run::observe() {
       }
   }
 
+  if (is_static()) return;
   if (setup_->run.stop_when == StopWhen::all_overturned)
     now_.stopped_early = now_.outcome.all_overturned(state.time);
   if (setup_->run.stop_when == StopWhen::at_rest) {

@@ -9,15 +9,19 @@
 #include "solver/overturn.h"
 #include "solver/parameters.h"
 #include "solver/state.h"
+#include "solver/statics.h"
 #include "solver/step.h"
 
 namespace topple {
 
+enum class Analysis { dynamic, statics, modes };
 enum class StopWhen { never, all_overturned, at_rest };
 
 /// What a scene asks of a run besides its mechanics.
 struct RunSettings {
-  double duration = 10;      ///< s
+  Analysis analysis = Analysis::dynamic;
+  StaticSettings statics = {};
+  double duration = 10;      ///< s; statics: 1, the whole path
   bool settle = true;        ///< start from rest under gravity
   double output_rate = 100;  ///< Hz, of recorded rows
   StopWhen stop_when = StopWhen::never;
@@ -56,6 +60,7 @@ struct RunPoint {
   std::int64_t newton_iterations = 0, rejected_steps = 0;
   std::optional<double> rest_since = {};
   bool stopped_early = false;
+  std::vector<LoadStep> load_steps = {};  ///< statics
 };
 
 /// A run in progress. The setup is shared and never changes; it must outlive the run.
@@ -67,7 +72,7 @@ class Run {
   Run(const Setup& setup, State state, Parameters parameters);
   Run(const Setup& setup, RunPoint point);
 
-  /// One accepted step. Must not be called when over().
+  /// One accepted step, of time or of the loads. Must not be called when over().
   StepStatus advance();
   /// Changes a parameter from the present state on; after it a step that failed may be tried again.
   void edit(const Edit& edit);
@@ -83,18 +88,24 @@ class Run {
   const Outcome& outcome() const { return now_.outcome; }
   const std::vector<ProbeOutcome>& probes() const { return now_.probes; }
   const std::vector<Event>& events() const { return events_; }
+  const std::vector<LoadStep>& load_steps() const { return now_.load_steps; }
   const std::vector<ContactForce>& contacts() const { return contacts_; }
   const std::vector<SectionForces>& sections() const { return sections_; }
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
   std::int64_t rejected_steps() const { return now_.rejected_steps; }
+  /// Of central differences, once it has stepped, s.
+  std::optional<double> stable_step() { return explicit_limit(workspace_); }
 
  private:
+  bool is_static() const { return setup_->run.analysis == Analysis::statics; }
+  void advance_load();
   void see_forces();
   void observe();
 
   const Setup* setup_;
   RunPoint now_;
   Workspace workspace_;
+  std::optional<LoadPath> path_;  // static runs
   StepStatus status_;
   std::vector<Event> events_;
   std::vector<ContactForce> contacts_;

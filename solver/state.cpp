@@ -30,6 +30,8 @@ void each_number(AnyState& s, F f) {
   each(s.stick);
   for (int k = 0; k < 3; ++k) f(s.floor_displacement[k]);
   for (int k = 0; k < 3; ++k) f(s.floor_velocity[k]);
+  f(s.step_size);
+  f(s.load_factor);
   auto& e = s.energy;
   for (auto* number : {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction,
                        &e.normal_damping, &e.numerical, &e.start_total, &e.largest})

@@ -52,6 +52,10 @@ struct State {
   std::vector<Vec3> stick;
   Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)
   Vec3 floor_velocity = Vec3::Zero();      ///< m/s, high-passed
+  /// Step size in use, 0: not chosen yet. Adaptive runs: s, tried next; displacement control: m or rad per
+  /// load step.
+  double step_size = 0;
+  double load_factor = 0;  ///< static runs
   EnergyLedger energy;
 };
 

@@ -12,6 +12,7 @@
 #include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
 #include "solver/settle.h"
+#include "solver/step_control.h"
 
 namespace topple {
 namespace {
@@ -77,8 +78,9 @@ struct Workspace::Impl {
   std::vector<ContactForce> contact_forces;
   std::vector<SectionForces> sections;
   State next;
-  std::optional<double> explicit_limit;  // s, and the body that sets it
+  std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
   int limiting_body = -1;
+  double limit_alpha = 0, limit_q = 0;
 };
 
 Workspace::Workspace(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
@@ -108,6 +110,12 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::step_too_long:
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
              when + "; try a smaller one, or generalized-alpha";
+    case Kind::no_equilibrium:
+      return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
+             " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
+             "path that turns down)";
+    case Kind::uncontrolled:
+      return where + ": the loads do not move the controlled direction";
     case Kind::ok:
       break;
   }
@@ -143,18 +151,40 @@ void resume(const Model& model, const State& state, Workspace& workspace) {
   section_forces(model, state, workspace.impl().sections);
 }
 
-StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
-  Workspace::Impl& w = workspace.impl();
-  const double h = parameters.time_step, t = state.time;
+namespace {
+
+constexpr double k_safety = 0.9;        // of the error that is aimed at
+constexpr double k_most_growth = 2;     // from step to step
+constexpr double k_most_shrinking = 5;  // of a step that is tried again
+constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
+constexpr double k_explicit_share = 0.9;
+
+// With the stiffer of the two laws of a passage.
+void find_explicit_limit(const Parameters& parameters, Workspace::Impl& w) {
+  ContactLaw law = parameters.contact;
+  if (parameters.contact_passage.over > 0) {
+    law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
+    law.q = std::max(law.q, parameters.contact_before.q);
+  }
+  if (w.explicit_limit && w.limit_alpha == law.alpha && w.limit_q == law.q) return;
+  w.explicit_limit.reset();
+  w.limit_alpha = law.alpha;
+  w.limit_q = law.q;
+  for (auto& system : w.systems)
+    if (const double limit = explicit_limit(*system, &law); limit < w.explicit_limit.value_or(1e300)) {
+      w.explicit_limit = limit;
+      w.limiting_body = system->index;
+    }
+}
+
+// One step of size h into w.next.
+StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
+                    int halvings, Workspace::Impl& w) {
+  const double t = state.time;
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
   if (is_explicit) {
-    if (!w.explicit_limit)
-      for (auto& system : w.systems)
-        if (const double limit = explicit_limit(*system); limit < w.explicit_limit.value_or(1e300)) {
-          w.explicit_limit = limit;
-          w.limiting_body = system->index;
-        }
+    find_explicit_limit(parameters, w);
     if (h > *w.explicit_limit) {
       status.kind = StepStatus::Kind::step_too_long;
       status.limit = *w.explicit_limit;
@@ -165,6 +195,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   }
   State& next = w.next;
   next = state;
+  if (parameters.adaptive) change_step(next, h);
   StepEnergy exchanged;
   if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack);
       !floor.isZero(0)) {
@@ -175,9 +206,9 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
   for (auto& system : w.systems) {
-    status = is_explicit ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
-                         : advance_generalized_alpha(*system, parameters, next, t, h, k_halvings, w.scratch,
-                                                     exchanged);
+    status = is_explicit
+                 ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
+                 : advance_generalized_alpha(*system, parameters, next, t, h, halvings, w.scratch, exchanged);
     iterations += status.newton_iterations;
     rejected += status.rejected;
     if (!status.ok()) break;
@@ -209,10 +240,72 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
-    return status;
   }
-  std::swap(state, next);
   return status;
+}
+
+// The size to try next after one of size h with this error and these iterations.
+double next_size(double h, double error, int iterations) {
+  double growth = error > 0 ? k_safety / std::sqrt(error) : k_most_growth;
+  if (iterations > k_many_iterations) growth = std::min(growth, 1.);
+  return h * std::clamp(growth, 1 / k_most_shrinking, k_most_growth);
+}
+
+// At most h, so that what is left of the way takes no step much shorter than the others.
+double fit(double h, double left) {
+  if (left <= h) return left;
+  return left < 2 * h ? left / 2 : h;
+}
+
+StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
+                         double until) {
+  const bool is_explicit = parameters.integrator == Integrator::central_difference;
+  if (is_explicit) find_explicit_limit(parameters, w);
+  const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
+  double h = state.step_size > 0 ? state.step_size : k_first_step;
+  h = is_explicit ? k_explicit_share * *w.explicit_limit : std::min(h, look_ahead(model, parameters, state));
+  h = fit(h, left);
+  StepStatus status;
+  int iterations = 0, rejected = 0;
+  for (;;) {
+    status = try_step(model, parameters, state, h, 0, w);
+    const int last_iterations = status.newton_iterations;
+    iterations += last_iterations;
+    const double error = status.ok() && !is_explicit ? step_error(model, parameters, state, w.next, h) : 0;
+    if (status.ok() && error <= 1) {
+      if (h == left) w.next.time = state.time + left;
+      const double wanted = std::min(next_size(h, error, last_iterations), k_longest_step);
+      w.next.step_size = h;
+      if (!is_explicit) change_step(w.next, std::min(wanted, look_ahead(model, parameters, w.next)));
+      std::swap(state, w.next);
+      break;
+    }
+    if (is_explicit || h < 2 * k_least_step) {
+      if (status.ok()) status.kind = StepStatus::Kind::newton_diverged;
+      break;
+    }
+    ++rejected;
+    h = std::max(status.ok() ? std::min(next_size(h, error, 0), h / 1.2) : h / 2, k_least_step);
+  }
+  status.newton_iterations = iterations;
+  status.rejected = rejected;
+  return status;
+}
+
+}  // namespace
+
+StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
+                double until) {
+  Workspace::Impl& w = workspace.impl();
+  if (parameters.adaptive) return adaptive_step(model, parameters, state, w, until);
+  const double h = parameters.time_step;
+  const StepStatus status = try_step(model, parameters, state, h, k_halvings, w);
+  if (status.ok()) std::swap(state, w.next);
+  return status;
+}
+
+std::optional<double> explicit_limit(Workspace& workspace) {
+  return workspace.impl().explicit_limit;
 }
 
 const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& parameters,

@@ -1,7 +1,9 @@
 // One step of a run.
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,15 +16,25 @@ namespace topple {
 
 /// What became of a step. ok, or the first thing that went wrong and where.
 struct StepStatus {
-  enum class Kind { ok, newton_diverged, not_finite, singular, not_settled, step_too_long };
+  enum class Kind {
+    ok,
+    newton_diverged,
+    not_finite,
+    singular,
+    not_settled,
+    step_too_long,
+    no_equilibrium,
+    uncontrolled
+  };
   Kind kind = Kind::ok;
   double time = 0;  ///< s
   int body = -1;
   int element = -1;  ///< -1: not an element's fault
   int node = -1;
   int newton_iterations = 0;
-  int rejected = 0;  ///< trial steps thrown away within this step
-  double limit = 0;  ///< s, step_too_long: the greatest stable step
+  int rejected = 0;        ///< trial steps thrown away within this step
+  double limit = 0;        ///< s, step_too_long: the greatest stable step
+  double load_factor = 0;  ///< statics: where no equilibrium was found
 
   bool ok() const { return kind == Kind::ok; }
   /// One sentence: what, when, where, what to try.
@@ -64,9 +76,14 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
 /// Fills the workspace from a state that was stepped before, such as a checkpoint; leaves the state as it is.
 void resume(const Model& model, const State& state, Workspace& workspace);
 
-/// Advances `state` by parameters.time_step. On failure `state` is as before the call. generalized-alpha
-/// halves its step within the call (down to 1/64) when Newton does not converge.
-StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
+/// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at
+/// most. On failure `state` is as before the call. The implicit methods halve their step within the call when
+/// Newton does not converge: a fixed one down to 1/64, an adaptive one down to k_least_step.
+StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
+                double until = std::numeric_limits<double>::infinity());
+
+/// Greatest stable step of central differences with all contacts closed, s; none before the first such step.
+std::optional<double> explicit_limit(Workspace& workspace);
 
 /// Contact forces at `state`, ordered by point then plane; the span lives until the next call with
 /// `workspace`.

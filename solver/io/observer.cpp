@@ -148,7 +148,8 @@ Observation Observer::observe(const Run& run) {
   Observation out;
   add_events(run, out);
   if (due(next_checkpoint_, time, k_checkpoint_rate)) add_checkpoint(run, out);
-  if (due(next_frame_, time, run.setup().run.output_rate)) add_frame(run, out);
+  const bool load_step = run.setup().run.analysis == Analysis::statics;
+  if (due(next_frame_, time, run.setup().run.output_rate) || load_step) add_frame(run, out);
   return out;
 }
 

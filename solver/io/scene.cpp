@@ -54,6 +54,7 @@ Scene parse_scene(std::string_view text, const std::string& origin,
   read_materials_and_sections(entry, scene.setup);
   read_bodies(entry, scene.setup);
   read_probes(entry, scene.setup);
+  read_control(entry, scene.setup);
   return scene;
 }
 

@@ -76,8 +76,9 @@ class Checker {
 
   // The word that the key's choice stands at, written or by default.
   static std::string chosen(const Key& key, const Node& table) {
-    if (const Node* node = table.find(key.of)) return node->text;
+    if (const Node* node = table.find(key.of)) return node->is_number() ? shown(*node) : node->text;
     const Key& choice = *find_key(key.table, key.of);
+    if (choice.type == KeyType::number) return default_text(choice);
     return choice.fallback.empty()
                ? ""
                : std::string(choice.choices[static_cast<std::size_t>(choice.fallback[0])]);
@@ -126,10 +127,15 @@ class Checker {
         if (node.kind != Node::Kind::table) {
           fail(node.place, path, "expected a table [" + path + "], found " + shown(node));
         }
-        return table(node, key.name, path);
+        return table(node, nested_name(key), path);
       case KeyType::tables:
         return tables(key, node, path);
     }
+  }
+
+  // What the table of keys calls a table within a table.
+  static std::string nested_name(const Key& key) {
+    return (key.table.empty() ? "" : std::string(key.table) + ".") + std::string(key.name);
   }
 
   template <typename F>
@@ -269,8 +275,7 @@ class Checker {
       fail(node.place, path, "an override cannot add or replace a [[" + path + "]]");
     }
     if (node.kind != Node::Kind::list) fail(node.place, path, expected + ", found " + shown(node));
-    const std::string name =
-        nested ? std::string(key.table) + "." + std::string(key.name) : std::string(key.name);
+    const std::string name = nested_name(key);
     for (std::size_t k = 0; k < node.items.size(); ++k) {
       const Node& entry = node.items[k].value;
       const std::string entry_path = below(path, entry_label(node, k));

@@ -115,7 +115,9 @@ std::vector<Entry> Entry::entries(std::string_view key) const {
 
 Entry Entry::entry(std::string_view key) const {
   const Node* node = find(key);
-  return {origin_, key, std::string(key), node, node ? node->place : place_};
+  const std::string nested = (table_.empty() ? "" : table_ + ".") + std::string(key);
+  const std::string path = (path_.empty() ? "" : path_ + ".") + std::string(key);
+  return {origin_, nested, path, node, node ? node->place : place_};
 }
 
 void Entry::fail(std::string_view key, const std::string& message, int part) const {

@@ -34,22 +34,34 @@ void add_run(std::vector<Key>& keys) {
   Rows rows(keys, "run");
   const Parameters parameters{};
   const RunSettings run{};
-  rows.word("analysis", {"dynamic"}, "what is computed").later({"static", "modes"}).absent(0);
+  rows.word("analysis", {"dynamic", "static", "modes"}, "what is computed").absent(run.analysis);
   rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time").absent(run.duration);
-  rows.word("integrator", {"auto", "generalized-alpha", "central-difference"}, "auto is generalized-alpha")
-      .later({"newmark"})
+  rows.word("integrator", {"auto", "generalized-alpha", "central-difference", "newmark"},
+            "auto is generalized-alpha")
       .absent(0);
   rows.words("want", {"motion", "stress"}, "what the scene is for").absent(0);
-  rows.later("beta", "of the Newmark method");
-  rows.later("gamma", "of the Newmark method");
+  rows.number("beta", 0.01, 1, "of the Newmark method")
+      .absent(parameters.beta)
+      .only("integrator", {"newmark"});
+  rows.number("gamma", 0, 1, "of the Newmark method; 1/2 is of second order, more damps")
+      .absent(parameters.gamma)
+      .only("integrator", {"newmark"});
   rows.number("spectral_radius", 0, 1, "at infinite frequency")
       .absent(parameters.spectral_radius)
       .only("integrator", {"auto", "generalized-alpha"});
-  rows.number("time_step", D::time, "s", 1e-7, 0.1, "fixed step")
-      .later({"auto"})
+  rows.number("time_step", D::time, "s", 1e-7, 0.1,
+              "fixed step, or one that follows the motion (central-difference: 0.9 of its limit)")
+      .or_word({"auto"})
       .absent(parameters.time_step);
-  rows.later("tolerance", "of the adaptive step");
-  rows.later("load_steps", "of a static run");
+  rows.number("tolerance", 1e-9, 0.1, "local error of the adaptive step over the travel of the body")
+      .absent(parameters.tolerance)
+      .only("time_step", {"auto"});
+  rows.integer("load_steps", 1, 1e5, "equal parts in which the loads grow")
+      .absent(run.statics.load_steps)
+      .only("analysis", {"static"});
+  rows.plain("control", T::table, "a node that moves in equal parts while the loads follow")
+      .absent_means("the loads grow by themselves")
+      .only("analysis", {"static"});
   rows.word("elements", {"asi-gauss"}, "where the integration points stand")
       .later({"asi", "midpoint"})
       .absent(0);
@@ -59,6 +71,21 @@ void add_run(std::vector<Key>& keys) {
   rows.word("stop_when", {"never", "all-overturned", "at-rest"},
             "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
       .absent(run.stop_when);
+}
+
+void add_control(std::vector<Key>& keys) {
+  Rows rows(keys, "run.control");
+  rows.plain("body", T::text, "a frame, or a copy").absent_means("the first frame");
+  rows.integer("node", 0, 1e6, "node of the frame's list").required();
+  rows.word("dof", {"x", "y", "z", "X", "Y", "Z"},
+            "its direction: lower case translations, upper case rotations")
+      .required();
+  rows.number("to", D::length, "m", -k_far, k_far, "travel over all load steps")
+      .absent_means("each load step as far as its share of the loads moves it at first")
+      .only("dof", {"x", "y", "z"});
+  rows.number("to_angle", D::angle, "deg", -1e3, 1e3, "turn over all load steps")
+      .absent_means("as `to`")
+      .only("dof", {"X", "Y", "Z"});
 }
 
 void add_shake(std::vector<Key>& keys) {
@@ -179,6 +206,7 @@ std::vector<Key> build_table() {
   std::vector<Key> keys;
   add_top(keys);
   add_run(keys);
+  add_control(keys);
   add_shake(keys);
   add_contact(keys);
   add_floor(keys);

@@ -7,7 +7,7 @@ namespace {
 
 // In the order of the choices of run.integrator.
 constexpr Integrator k_integrators[] = {Integrator::generalized_alpha, Integrator::generalized_alpha,
-                                        Integrator::central_difference};
+                                        Integrator::central_difference, Integrator::newmark};
 
 // A section's walls against its sides: complete_section() asks for it.
 void check_wall(const Entry& entry, const Section& section) {
@@ -47,6 +47,34 @@ Section read_section(const Entry& entry) {
   return section;
 }
 
+int find_body(const Entry& entry, const Model& model) {
+  const std::string name = entry.text("body");
+  const auto& bodies = model.bodies;
+  const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  if (body != bodies.end()) return static_cast<int>(body - bodies.begin());
+  std::string known;
+  for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
+  entry.fail("body", "there is no body \"" + name + "\"; known: " + known);
+}
+
+// Index into the model of `node` of the entry, which counts within its frame.
+int find_node(const Entry& root, const Entry& entry, const Model& model, int body, const char* otherwise) {
+  int nodes = 0;  // a copy has the nodes of its frame
+  int first = static_cast<int>(root.entries("cabinet").size());
+  for (const Entry& frame : root.entries("frame")) {
+    const int copies = std::max<int>(1, static_cast<int>(frame.vectors("copies").size()));
+    if (body >= first && body < first + copies) nodes = static_cast<int>(frame.vectors("nodes").size());
+    first += copies;
+  }
+  const int node = entry.integer("node");
+  if (nodes == 0) entry.fail("node", std::string("the nodes of a cabinet have no numbers") + otherwise);
+  if (node >= nodes) {
+    entry.fail("node", std::to_string(node) + " is not a node of \"" + model.bodies[body].name +
+                           "\", which has 0.." + std::to_string(nodes - 1));
+  }
+  return model.bodies[body].first_node + node;
+}
+
 // Poisson's ratio of the first member made of the section; that of common metals when none is.
 double poisson_of_section(const Entry& root, const Setup& setup, const std::string& section) {
   std::vector<Entry> users = root.entries("cabinet");
@@ -74,7 +102,18 @@ void read_run(const Entry& root, Setup& setup) {
   setup.parameters.gravity = run.vector("gravity");
   setup.parameters.integrator = k_integrators[run.choice("integrator")];
   setup.parameters.spectral_radius = run.number("spectral_radius");
-  setup.parameters.time_step = run.number("time_step");
+  setup.parameters.beta = run.number("beta");
+  setup.parameters.gamma = run.number("gamma");
+  setup.parameters.adaptive = run.text("time_step") == "auto";
+  if (!setup.parameters.adaptive) setup.parameters.time_step = run.number("time_step");
+  setup.parameters.tolerance = run.number("tolerance");
+  setup.run.analysis = run.choice_as<Analysis>("analysis");
+  setup.run.statics.load_steps = run.integer("load_steps");
+  if (setup.run.analysis != Analysis::dynamic) {
+    setup.run.duration = 1;
+    setup.run.settle = setup.run.settle && !setup.parameters.gravity.isZero(0);
+    return;
+  }
   if (setup.run.settle && setup.parameters.gravity.isZero(0)) {
     run.fail("gravity", "nothing settles without gravity: write settle = false in [run]");
   }
@@ -139,38 +178,41 @@ void read_materials_and_sections(const Entry& root, Setup& setup) {
 }
 
 void read_probes(const Entry& root, Setup& setup) {
-  const std::vector<Body>& bodies = setup.model.bodies;
   for (const Entry& entry : root.entries("probe")) {
-    const std::string body_name = entry.text("body");
-    const auto body =
-        std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == body_name; });
-    if (body == bodies.end()) {
-      std::string known;
-      for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
-      entry.fail("body", "there is no body \"" + body_name + "\"; known: " + known);
-    }
-    Probe probe{entry.name(), static_cast<int>(body - bodies.begin()), -1};
+    Probe probe{entry.name(), find_body(entry, setup.model), -1};
     if (entry.has("node")) {
-      int nodes = 0;  // a copy has the nodes of its frame
-      int first = static_cast<int>(root.entries("cabinet").size());
-      for (const Entry& frame : root.entries("frame")) {
-        const int copies = std::max<int>(1, static_cast<int>(frame.vectors("copies").size()));
-        if (probe.body >= first && probe.body < first + copies) {
-          nodes = static_cast<int>(frame.vectors("nodes").size());
-        }
-        first += copies;
-      }
-      const int node = entry.integer("node");
-      if (nodes == 0)
-        entry.fail("node", "the nodes of a cabinet have no numbers; leave it out to follow the body");
-      if (node >= nodes) {
-        entry.fail("node", std::to_string(node) + " is not a node of \"" + body_name + "\", which has 0.." +
-                               std::to_string(nodes - 1));
-      }
-      probe.node = body->first_node + node;
+      probe.node = find_node(root, entry, setup.model, probe.body, "; leave it out to follow the body");
     }
     setup.probes.push_back(probe);
   }
+}
+
+void read_control(const Entry& root, Setup& setup) {
+  const Entry entry = root.entry("run").entry("control");
+  if (!entry.present()) return;
+  const Model& model = setup.model;
+  const int cabinets = static_cast<int>(root.entries("cabinet").size());
+  const int body = entry.has("body") ? find_body(entry, model) : cabinets;
+  if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
+  DisplacementControl control;
+  control.node = find_node(root, entry, model, body, "; control takes a frame");
+  control.direction = entry.choice("dof");
+  for (const Support& support : model.supports) {
+    if (support.node == control.node && support.fixed >> control.direction & 1)
+      entry.fail("dof", "the node is supported in this direction");
+  }
+  bool loaded = false;
+  for (const Load& load : model.loads) {
+    if (!load.history.empty()) entry.fail("with control loads have no history: the factor is sought");
+    loaded = loaded || model.node_body[load.node] == body;
+  }
+  if (!loaded) entry.fail("there is no load on \"" + model.bodies[body].name + "\"");
+  for (const std::string_view key : {"to", "to_angle"}) {
+    if (!entry.has(key)) continue;
+    control.to = entry.number(key);
+    if (*control.to == 0) entry.fail(key, "is no travel");
+  }
+  setup.run.statics.control = control;
 }
 
 }  // namespace topple::io

@@ -25,4 +25,7 @@ void read_bodies(const Entry& root, Setup& setup);
 /// [[probe]]; after the bodies.
 void read_probes(const Entry& root, Setup& setup);
 
+/// run.control; after the bodies.
+void read_control(const Entry& root, Setup& setup);
+
 }  // namespace topple::io

@@ -7,7 +7,7 @@ namespace topple::io {
 namespace {
 
 bool takes_words(const Key& key) {
-  return !key.choices.empty() && key.fallback.size() == 1;
+  return !key.choices.empty() && key.fallback.size() == 1 && key.type != KeyType::number;
 }
 
 std::string in_unit(const Key& key, double si) {
@@ -22,7 +22,7 @@ std::string heading(std::string_view table) {
   if (table.empty()) return "Top level";
   const auto dot = table.find('.');
   if (dot != std::string_view::npos) {
-    return "`" + std::string(table.substr(dot + 1)) + "` of `[[" + std::string(table.substr(0, dot)) + "]]`";
+    return "`" + std::string(table.substr(dot + 1)) + "` of " + heading(table.substr(0, dot));
   }
   const Key* key = find_key("", table);
   const std::string name(table);

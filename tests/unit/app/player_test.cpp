@@ -21,7 +21,7 @@ class PlayerTest : public ::testing::Test {
     run_.emplace(
         std::move(source), [] {}, std::move(advance));
     player_.emplace(scene, *run_);
-    ASSERT_TRUE(until([this] { return player().row().has_value(); }));
+    ASSERT_TRUE(until([this] { return player().can_edit() || player().can_continue(); }));
   }
   template <typename Done>
   ::testing::AssertionResult until(Done done) {
@@ -215,6 +215,7 @@ TEST_F(PlayerTest, undo_posts_the_inverse_and_redo_the_edit_again) {
   EXPECT_EQ(value(Edit::Key::friction), 0.3);
   EXPECT_FALSE(player().can_redo());
   run_to(0.2);
+  ASSERT_TRUE(until([&] { return player().edits().size() >= 7; }));
   EXPECT_EQ(player().edits().size(), 7u);  // 3 edits, 2 inverse ones, 2 again: all of them happened
   EXPECT_EQ(value(Edit::Key::friction), 0.3);
   run_->close("stopped");

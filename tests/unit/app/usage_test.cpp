@@ -73,7 +73,7 @@ TEST_F(UsageTest, empty_names_are_refused) {
 }
 
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
-  for (const char* command : {"study", "verify", "modes", "compare", "report", "recover"}) {
+  for (const char* command : {"study", "verify", "compare", "report", "recover"}) {
     const std::string refusal = std::string(command) + ": not supported by this version";
     expect_one_line({command}, 2, refusal);
     expect_one_line({command, "s.toml", "-o", "out"}, 2, refusal);

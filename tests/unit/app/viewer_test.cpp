@@ -40,7 +40,7 @@ class ViewerTest : public ::testing::Test {
     io.DisplaySize = {k_width, k_height};
     io.DeltaTime = 1.f / 60;
     io.MousePos = {2, 400};
-    ASSERT_TRUE(until([this] { return player_->row().has_value(); }));
+    ASSERT_TRUE(until([this] { return player_->can_edit(); }));
   }
   void frame() {
     viewer_->update(1. / 60);

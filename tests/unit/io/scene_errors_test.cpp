@@ -36,11 +36,6 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
 }
 
 TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
-  EXPECT_EQ(after_beam("[run]\nbeta = 0.25\n"), "s.toml:18:1: run.beta: is not supported by this version");
-  EXPECT_EQ(after_beam("[run]\nload_steps = 3\n"),
-            "s.toml:18:1: run.load_steps: is not supported by this version");
-  EXPECT_EQ(after_beam("[run]\ntolerance = 3\n"),
-            "s.toml:18:1: run.tolerance: is not supported by this version");
   EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"),
             "s.toml:18:1: contact.friction_static: is not supported by this version");
   EXPECT_EQ(after_beam("[floor]\nspacing = 1\n"),
@@ -62,11 +57,6 @@ TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
                ? error.substr(0, error.find(": "))
                : error;
   };
-  EXPECT_EQ(after_beam("[run]\nanalysis = \"static\"\n"),
-            "s.toml:18:12: run.analysis: \"static\" is not supported by this version");
-  EXPECT_EQ(refused("[run]\nanalysis = \"modes\"\n"), "s.toml:18:12");
-  EXPECT_EQ(refused("[run]\nintegrator = \"newmark\"\n"), "s.toml:18:14");
-  EXPECT_EQ(refused("[run]\ntime_step = \"auto\"\n"), "s.toml:18:13");
   EXPECT_EQ(refused("[run]\nelements = \"midpoint\"\n"), "s.toml:18:12");
   EXPECT_EQ(refused("[[shake]]\nfrequency = [1, 2]\ntype = \"sweep\"\n"), "s.toml:19:8");
   EXPECT_EQ(refused("[[shake]]\ntype = \"record\"\nfiles = []\n"), "s.toml:18:8");
@@ -87,12 +77,49 @@ TEST(SceneErrors, keys_of_a_choice_not_made_are_refused) {
             "integrator is "
             "central-difference");
   EXPECT_EQ(after_beam("[run]\nspectral_radius = 0.5\n"), "no error");
+  EXPECT_EQ(after_beam("[run]\nbeta = 0.25\n"),
+            "s.toml:18:1: run.beta: belongs to integrator = newmark, but integrator is auto");
+  EXPECT_EQ(after_beam("[run]\ngamma = 0.5\nintegrator = \"newmark\"\n"), "no error");
+  EXPECT_EQ(after_beam("[run]\nload_steps = 3\n"),
+            "s.toml:18:1: run.load_steps: belongs to analysis = static, but analysis is dynamic");
+  EXPECT_EQ(after_beam("[run]\ncontrol = { node = 1, dof = \"x\" }\n"),
+            "s.toml:18:1: run.control: belongs to analysis = static, but analysis is dynamic");
+  EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\n"),
+            "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is 0.001 s");
+  EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\ntime_step = 2e-3\n"),
+            "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is 0.002");
+  EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\ntime_step = \"2 ms\"\n"),
+            "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is 2 ms");
   EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\nduration = 1\n"),
             "s.toml:20:1: shake.1.duration: belongs to type = pulse, but type is sine");
   EXPECT_EQ(in_cabinet("bracing = \"none\"\npanel_thickness = 1e-3\n"),
             "s.toml:17:1: cabinet.free.panel_thickness: belongs to bracing = panels, but bracing is none");
   EXPECT_EQ(error_of(replaced(k_scene, "\"box\"", "\"solid\"")),
             "s.toml:11:1: section.post.thickness: belongs to shape = box or pipe, but shape is solid");
+}
+
+TEST(SceneErrors, displacement_control_needs_a_loaded_node_that_can_move) {
+  const auto control = [](const std::string& beam, const std::string& entry) {
+    const std::string error =
+        after_beam(beam + "[run]\nanalysis = \"static\"\ncontrol = { " + entry + " }\n");
+    return error.substr(error.find("run"));
+  };
+  const std::string load = "loads = [{ node = 1, force = [0, 0, 1] }]\n";
+  EXPECT_EQ(control(load, "node = 1"),
+            "run.control.dof: missing (its direction: lower case translations, upper "
+            "case rotations)");
+  EXPECT_EQ(control(load, "node = 2, dof = \"z\""),
+            "run.control.node: 2 is not a node of \"beam\", which has 0..1");
+  EXPECT_EQ(control(load, "node = 0, dof = \"z\""),
+            "run.control.dof: the node is supported in this direction");
+  EXPECT_EQ(control("", "node = 1, dof = \"z\""), "run.control: there is no load on \"beam\"");
+  EXPECT_EQ(control(load, "node = 1, dof = \"w\""), "run.control.dof: \"w\" is not one of x, y, z, X, Y, Z");
+  EXPECT_EQ(control(load, "node = 1, dof = \"z\", to = 0"), "run.control.to: is no travel");
+  EXPECT_EQ(control(load, "node = 1, dof = \"Z\", to = 1"),
+            "run.control.to: belongs to dof = x or y or z, but dof is Z");
+  EXPECT_EQ(control("loads = [{ node = 1, force = [0, 0, 1], history = [[0, 0], [1, 1]] }]\n",
+                    "node = 1, dof = \"z\""),
+            "run.control: with control loads have no history: the factor is sought");
 }
 
 TEST(SceneErrors, missing_keys_are_named_at_their_entry) {

@@ -1,0 +1,68 @@
+// Equilibrium under loads that grow step by step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solver/body_system.h"
+#include "solver/step.h"
+
+namespace topple {
+
+/// A direction that moves in equal parts while the load factor follows: where the path turns down.
+struct DisplacementControl {
+  int node = 0;              ///< index into the model
+  int direction = 0;         ///< 0..2 translation, 3..5 rotation about world axes
+  std::optional<double> to;  ///< m or rad, travel over all load steps; absent: each load step moves as far as
+                             ///< its share of the loads would move the unloaded body
+};
+
+/// What a static run is asked for.
+struct StaticSettings {
+  int load_steps = 10;
+  std::optional<DisplacementControl> control = {};
+};
+
+/// One load step of a static run.
+struct LoadStep {
+  double factor;  ///< of the loads: where it arrived, or where it found no equilibrium
+  bool converged;
+};
+
+/// Walks a model through its load steps. Weight acts in full from the start, that of a member as a
+/// distributed load: with its fixed-end forces and moments on the member's ends. Loads without a history grow
+/// with the load factor, the others follow their history over it. Contacts hold as in settle().
+class LoadPath {
+ public:
+  LoadPath(const Model& model, const StaticSettings& settings);
+
+  /// Balances the weight, without the loads that grow: load factor 0. `settled`: as settle() first.
+  StepStatus start(const Parameters& parameters, bool settled, State& state);
+  /// The next load step: halved where Newton finds no equilibrium. no_equilibrium: not even k_least_part of
+  /// it has one; `state` is then the last equilibrium found, and State::step counts it when it is new.
+  /// State::time becomes the load factor, with displacement control the part of the way.
+  StepStatus advance(const Parameters& parameters, State& state);
+
+ private:
+  struct Target {
+    double factor;                      ///< load control
+    std::optional<double> travel = {};  ///< displacement control, of the controlled direction
+  };
+  StepStatus balance(const Parameters& parameters, State& state, Target target);
+  StepStatus balance_body(BodySystem& system, const Parameters& parameters, const State& state,
+                          std::optional<double> travel, double& factor);
+  void evaluate(BodySystem& system, const Parameters& parameters, const State& state, double factor);
+  std::vector<double> growing_loads(const BodySystem& system) const;
+  std::optional<double> first_travel(const Parameters& parameters, const State& state);
+  void accept(const Parameters& parameters, double factor, State& state);
+  int controlled_body() const;
+
+  const Model* model_;
+  StaticSettings settings_;
+  std::vector<std::unique_ptr<BodySystem>> systems_;
+  std::vector<BodyMotion> start_, trial_;  ///< per body
+  std::vector<SectionForces> sections_;
+};
+
+}  // namespace topple

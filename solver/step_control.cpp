@@ -1,0 +1,110 @@
+#include "solver/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/contact_law.h"
+#include "solver/generalized_alpha.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_contact_part = 20;  // steps per period of a body on its contacts
+constexpr double k_closing_part = 4;   // steps in which a closing contact crosses its width
+constexpr double k_turn = 0.1;         // rad per step
+constexpr double k_speed_floor = 0.1;  // of the speed that the largest energy amounts to
+
+// Mean rotation of a body's nodes, rad/s.
+double spin(const Body& body, const State& state) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    sum += state.rotation[i] * state.angular_velocity[i];
+  return sum.norm() / body.node_count;
+}
+
+double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const State& state) {
+  double stiffness = 0, limit = std::numeric_limits<double>::infinity();
+  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+    const ContactPoint& point = model.contact_points[p];
+    for (const Plane& plane : model.planes) {
+      const double L = (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+      const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
+      const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
+      if (depth > 0)
+        stiffness += law.q * law.alpha / L * std::pow(depth, law.q - 1);
+      else if (closing * k_longest_step > gap)
+        limit = std::min(limit, std::max(gap / closing, L / (k_closing_part * closing)));
+    }
+  }
+  if (stiffness > 0) limit = std::min(limit, 2 * k_pi * std::sqrt(body.mass / stiffness) / k_contact_part);
+  return limit;
+}
+
+}  // namespace
+
+double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
+  const ContactLaw law = contact_law(parameters, state.time);
+  double limit = k_longest_step;
+  for (const Body& body : model.bodies) {
+    limit = std::min(limit, contact_limit(model, body, law, state));
+    if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;
+  }
+  return std::max(limit, 2 * k_least_step);
+}
+
+double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
+                  double h) {
+  const GeneralizedAlpha c(parameters);
+  const double delta = c.alpha_m - c.alpha_f;
+  const double factor = std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
+  double total_mass = 0, greatest = 0;
+  for (const Body& body : model.bodies) total_mass += body.mass;
+  const double floor = k_speed_floor * k_speed_floor * 2 * after.energy.largest / total_mass;
+  for (const Body& body : model.bodies) {
+    double change = 0, speed = 0;
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+      const auto square = [&](const Vec3& v, const Vec3& w) {
+        return model.node_mass[i] * v.squaredNorm() + w.dot(model.node_inertia[i] * w);
+      };
+      change +=
+          square(after.algorithmic_acceleration[i] - before.algorithmic_acceleration[i],
+                 after.algorithmic_angular_acceleration[i] - before.algorithmic_angular_acceleration[i]);
+      speed += std::max(square(before.velocity[i], before.angular_velocity[i]),
+                        square(after.velocity[i], after.angular_velocity[i]));
+    }
+    if (!(change > 0)) continue;
+    const double allowed = parameters.tolerance * std::sqrt(speed / body.mass + floor);
+    greatest = std::max(greatest, factor * h * std::sqrt(change / body.mass) / allowed);
+  }
+  return greatest;
+}
+
+double next_kink(const Model& model, const Parameters& parameters, double t) {
+  double next = std::numeric_limits<double>::infinity();
+  const auto meet = [&](double at) {
+    if (at > t + k_least_step) next = std::min(next, at);
+  };
+  for (const Shake& shake : parameters.shakes) {
+    meet(shake.start);
+    if (shake.kind == Shake::Kind::pulse) meet(shake.start + shake.duration);
+    if (shake.kind == Shake::Kind::sine && shake.cycles > 0)
+      meet(shake.start + shake.cycles / shake.frequency);
+  }
+  for (const Load& load : model.loads)
+    for (const auto& [at, factor] : load.history) meet(at);
+  return next;
+}
+
+void change_step(State& state, double h) {
+  if (!(state.step_size > 0) || state.step_size == h) return;
+  const double ratio = h / state.step_size;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    Vec3 &a = state.algorithmic_acceleration[i], &b = state.algorithmic_angular_acceleration[i];
+    a = state.acceleration[i] + ratio * (a - state.acceleration[i]);
+    b = state.angular_acceleration[i] + ratio * (b - state.angular_acceleration[i]);
+  }
+  state.step_size = h;
+}
+
+}  // namespace topple

@@ -1,0 +1,32 @@
+// How long the next step of an adaptive run may be.
+#pragma once
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+#include "solver/state.h"
+
+namespace topple {
+
+inline constexpr double k_least_step = 1e-8;    ///< s, shorter steps are given up
+inline constexpr double k_longest_step = 0.05;  ///< s
+inline constexpr double k_first_step = 1e-4;    ///< s, tried first
+
+/// What the motion at `state` allows, s: T_contact/20 of a body that touches, the time to touch or L/(4 v)
+/// where a contact closes, 0.1/|omega|.
+double look_ahead(const Model& model, const Parameters& parameters, const State& state);
+
+/// Local error of a step of the implicit methods over what the tolerance allows it; at most 1 passes.
+///   |e|/h <= tolerance V,  e = (|1/6 - beta - delta/2| + |gamma - 1/2 + delta|) h^2 (a1 - a0),
+/// delta = alpha_m - alpha_f, a the algorithmic acceleration, |.| the mass-weighted mean over a body, the
+/// greatest of all bodies. V: its speed, not below a tenth of what the largest energy exchanged amounts to.
+double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
+                  double h);
+
+/// First instant after t at which a shake or a load has a kink, s; infinite when there is none.
+double next_kink(const Model& model, const Parameters& parameters, double t);
+
+/// Makes `state` consistent with a step of size h after one of State::step_size: the algorithmic acceleration
+/// is that of an instant which lies a part of the step off.
+void change_step(State& state, double h);
+
+}  // namespace topple
