@@ -17,13 +17,13 @@ name = "beam"
 nodes = [[0, 0, 0], [0, 0, 1]]
 members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 8 }]
 supports = [{ node = 0, fix = "xyzXYZ" }]
-loads = [{ node = 1, force = [1, 0, )" +
+loads = [{ node = 1, force = [0, 0, )" +
            std::to_string(force) + "] }]\n";
   }
 };
 
 TEST_F(AnalysisTest, static_run_reports_and_records_each_load_step) {
-  write_bytes("push.toml", loaded(0, "load_steps = 4\n"));
+  write_bytes("push.toml", loaded(-1e3, "load_steps = 4\n"));
   const Ended ended = topple({"run", "push.toml", "-o", "push.h5", "--json", "-", "--quiet"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const Json s = Json::parse(ended.out);
