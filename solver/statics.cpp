@@ -21,6 +21,13 @@ bool is_fixed(const BodySystem& s, int node, int direction) {
   return s.fixed[node] >> direction & 1;
 }
 
+// Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
+// does the tangent tell whether an equilibrium is stable.
+bool is_conservative(const BodySystem& s) {
+  return std::all_of(s.loads().begin(), s.loads().end(),
+                     [](const Load* load) { return load->moment.isZero(0); });
+}
+
 // The floor at rest and the normal force of Eq. 2 alone, as when settling.
 Parameters at_rest(const Parameters& parameters) {
   Parameters still = parameters;
@@ -154,6 +161,9 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
       evaluate(s, still, state, factor);
+      // directions in which it would run away: Newton stepped over a limit or a branching
+      if (!travel && is_conservative(s) && (s.lu.factor(true) >= 0 || s.lu.negative() > 0))
+        return blame(node);
       status.kind = StepStatus::Kind::ok;
       return status;
     }

@@ -111,7 +111,7 @@ std::string StepStatus::message(const Model& model) const {
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
              when + "; try a smaller one, or generalized-alpha";
     case Kind::no_equilibrium:
-      return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
+      return format("no stable equilibrium was found at load factor %.6g: ", load_factor) + where +
              " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
              "path that turns down)";
     case Kind::uncontrolled:
