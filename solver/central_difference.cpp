@@ -1,9 +1,12 @@
 #include "solver/central_difference.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "solver/beam.h"
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -54,6 +57,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
                                       IntegratorScratch& w, StepEnergy& energy) {
   const int n = s.count;
   s.load(state, w.start);
+  s.load_elements(state);
   w.trial.resize(n);
   w.travel.resize(n);
   const std::span<const Vec3> stick(state.stick);
@@ -66,7 +70,9 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     w.trial.rotation[i] = w.start.rotation[i] * exp_quaternion(h * w.trial.angular_velocity[i]);
     w.trial.rotation[i].normalize();
   }
-  s.evaluate(p, t + h, w.trial, stick, w.start.position);
+  HingeStep hinges;
+  do s.evaluate(p, t + h, w.trial, stick, w.start.position);
+  while (update_hinges(s, w.start, w.trial, hinges));
 
   // Contacts enter `force` at the half-step velocity; at touching nodes they are solved for at the new one.
   const std::size_t planes = s.model.planes.size();
@@ -113,6 +119,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     finite = finite && std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum());
   }
   book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.pairs, energy);
+  energy.plastic += commit_hinges(s, w.start, w.trial, state);
   s.store_stick(s.pairs, state.stick);
   StepStatus status;
   status.time = t + h;
@@ -121,7 +128,10 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   return status;
 }
 
-double explicit_limit(BodySystem& s) {
+namespace {
+
+// With the stress points of all elements at `place`; none: where they are while elastic.
+double limit_at(BodySystem& s, std::optional<double> place) {
   const int n = s.count;
   const Body& body = s.model.bodies[s.index];
   std::vector<Mat12> tangents(body.element_count);
@@ -130,7 +140,7 @@ double explicit_limit(BodySystem& s) {
     BeamGradient gradient;
     const auto& x = s.model.node_position;
     beam_tangent(
-        element, element.s,
+        element, ElementState{.s = place.value_or(element.s)},
         beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
         gradient, tangents[e]);
   }
@@ -162,6 +172,15 @@ double explicit_limit(BodySystem& s) {
     v = kv / kv.norm();
   }
   return 2 / std::sqrt(value);
+}
+
+}  // namespace
+
+double explicit_limit(BodySystem& s) {
+  double limit = limit_at(s, {});
+  if (s.yields && s.model.scheme != Scheme::midpoint)
+    for (double end : {-1., 1.}) limit = std::min(limit, limit_at(s, end));
+  return limit;
 }
 
 }  // namespace topple

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ struct Element {
   Mat3 triad;              ///< columns: local x, y, z in world axes
   Vec3 normal_stiffness;   ///< EA, kGAy, kGAz, N
   Vec3 bending_stiffness;  ///< GJ, EIy, EIz, N m^2
+  /// N0, N, and Mx0, My0, Mz0, N m, of the fully plastic section; infinite: elastic.
+  Eigen::Vector4d capacity = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity());
 };
 
 /// A straight member: a run of elements of one section and one material, two by two subsets.
@@ -77,9 +80,20 @@ struct Plane {
   double width;  ///< m, contact width; 0: that of the touching member
 };
 
+/// Where integration points stand (Eq. 1). asi_gauss: two by two elements have their stress points on the
+/// Gauss points of the pair while elastic. asi: in the middle while elastic. Both move to plastic hinges.
+/// midpoint: always in the middle.
+enum class Scheme { asi_gauss, asi, midpoint };
+
+/// Where the stress point of an elastic element goes when its partner of the pair has a hinge (asi_gauss).
+/// exact: to the point from which the remaining elastic member bends as it should (hinges.h).
+enum class PartnerRule { exact, middle };
+
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
 /// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
 struct Model {
+  Scheme scheme = Scheme::asi_gauss;  ///< set before members are added
+  PartnerRule partner_rule = PartnerRule::exact;
   std::vector<Material> materials;
   std::vector<Section> sections;
   std::vector<Vec3> node_position;  ///< m, reference

@@ -71,7 +71,9 @@ void fill_nodes(const State& state, FrameRow& row) {
 void fill_elements(const Run& run, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    row.s[e] = static_cast<float>(model.elements[e].s);
+    const ElementState& state = run.state().elements[e];
+    row.s[e] = static_cast<float>(state.s);
+    row.hinge[e] = static_cast<std::uint8_t>(state.hinge);
     const SectionForces& forces = run.sections()[e];
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};
