@@ -56,9 +56,10 @@ ordered_json warnings(const Run& run) {
                       run.setup().model.bodies[b].name, bodies[b].peak_penetration));
   const Model& model = run.setup().model;
   for (const int member : run.outcome().crowded_members())
-    list.push_back(fmt::format("body \"{}\", member \"{}\": both ends of an element pass yield, which holds one "
-                               "hinge; more elements or divisions show it",
-                               model.bodies[model.members[member].body].name, model.members[member].name));
+    list.push_back(
+        fmt::format("body \"{}\", member \"{}\": both ends of an element pass yield, which holds one "
+                    "hinge; more elements or divisions show it",
+                    model.bodies[model.members[member].body].name, model.members[member].name));
   const double balance = run.state().energy.balance_error();
   if (balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
@@ -97,11 +98,16 @@ ordered_json summary(const io::Scene& scene, const Run& run, const std::string& 
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();
-  out["energy"] = {{"input_J", number(e.input)},         {"kinetic_J", number(e.kinetic)},
-                   {"strain_J", number(e.strain)},       {"gravity_J", number(e.gravity)},
-                   {"contact_J", number(e.contact)},     {"dissipated_J", number(e.dissipated())},
-                   {"friction_J", number(e.friction)},   {"normal_damping_J", number(e.normal_damping)},
-                   {"numerical_J", number(e.numerical)}, {"plastic_J", number(e.plastic)},
+  out["energy"] = {{"input_J", number(e.input)},
+                   {"kinetic_J", number(e.kinetic)},
+                   {"strain_J", number(e.strain)},
+                   {"gravity_J", number(e.gravity)},
+                   {"contact_J", number(e.contact)},
+                   {"dissipated_J", number(e.dissipated())},
+                   {"friction_J", number(e.friction)},
+                   {"normal_damping_J", number(e.normal_damping)},
+                   {"numerical_J", number(e.numerical)},
+                   {"plastic_J", number(e.plastic)},
                    {"balance_error", number(e.balance_error())}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;

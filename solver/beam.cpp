@@ -34,8 +34,8 @@ Mat3 derivative_of_inverse_transposed(const InverseJacobianCoefficient& c, const
          2 * c.dg * psi.cross(psi.cross(v)) * psi.transpose();
 }
 
-// What a flowing section adds: `e` is dn / d(spin2 - spin1) by the curvature, and its transpose the change of
-// w by the stretch.
+// What a section adds in which stretch and shear flow along with curvature: `e` is dn / d(spin2 - spin1) by
+// the curvature, and its transpose the change of w by the stretch.
 void add_coupling(const Mat3& e, const Mat3& skew_d, const Mat3& b, Mat12& tangent) {
   const auto block = [&](int i, int j) { return tangent.block<3, 3>(3 * i, 3 * j); };
   const Mat3 x = skew_d * e, y = e.transpose() * skew_d;
@@ -77,7 +77,7 @@ double beam_energy(const Element& element, const BeamStrain& elastic) {
 }
 
 BeamGradient beam_gradient(const Element& element, const ElementState& state, const BeamEnds& ends) {
-  const Kinematics k = kinematics(element, state.s, ends);
+  const Kinematics k = kinematics(element, element.s, ends);
   const SectionForces forces = respond(element, state, k.strain).forces;
   const Vec3 n = k.rs * forces.normal;
   const Vec3 m0 = forces.moment;
@@ -89,14 +89,14 @@ BeamGradient beam_gradient(const Element& element, const ElementState& state, co
   return {-n, p - moment, n, moment};
 }
 
-void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends, BeamGradient& gradient,
-                  Mat12& tangent) {
+void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
+                  BeamGradient& gradient, Mat12& tangent) {
   if (state.hinge == Hinge::broken) {
     gradient = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     tangent.setZero();
     return;
   }
-  const Kinematics k = kinematics(element, state.s, ends);
+  const Kinematics k = kinematics(element, element.s, ends);
   const double t = k.t;
   const Vec3& psi = ends.psi;
   const SectionResponse response = respond(element, state, k.strain);
@@ -123,10 +123,10 @@ void beam_tangent(const Element& element, const ElementState& state, const BeamE
 
   const Mat3 skew_d = skew(k.d);
   SectionTangent section;
-  if (response.flows) section = section_tangent(element, response);
-  const Mat3 cs = response.flows
-                      ? Mat3(k.rs * section.normal_gamma * k.rs.transpose() / element.length)
-                      : Mat3(k.rs * element.normal_stiffness.asDiagonal() * k.rs.transpose() / element.length);
+  if (response.flows) section = section_tangent(element, state.hinge, response);
+  const Mat3 cs =
+      response.flows ? Mat3(k.rs * section.normal_gamma * k.rs.transpose() / element.length)
+                     : Mat3(k.rs * element.normal_stiffness.asDiagonal() * k.rs.transpose() / element.length);
   const Mat3 n_spin = cs * skew_d - skew(n);  // dn / dspin of the integration point
   const Mat3 p_spin = -skew_d * n_spin;       // dp / dspin of the integration point
   const Mat3 p_d = n_spin.transpose();        // dp / dd
@@ -165,21 +165,6 @@ void beam_tangent(const Element& element, const ElementState& state, const BeamE
   block(1, 3) = p_spin * b - m2_spin2;
   if (response.flows)
     add_coupling(k.rs * section.normal_kappa * a * (1 / element.length), skew_d, b, tangent);
-}
-
-ElementState shifted(const Element& element, const ElementState& state, double s, const BeamEnds& ends) {
-  const Kinematics from = kinematics(element, state.s, ends), to = kinematics(element, s, ends);
-  const SectionForces forces = respond(element, state, from.strain).forces;
-  const Vec3 n = from.rs * forces.normal;
-  const Vec3 p = ends.r1.transpose() * n.cross(from.d);
-  // the moment on the second node is R1 T^-T (q + m0), as in beam_gradient
-  const auto q = [&](double t) { return Vec3(t * left_jacobian(t * ends.psi).transpose() * p); };
-  const Vec3 m0 = forces.moment + q(from.t) - q(to.t);
-  ElementState out = state;
-  out.s = s;
-  out.offset.gamma = to.strain.gamma - (to.rs.transpose() * n).cwiseQuotient(element.normal_stiffness);
-  out.offset.kappa = to.strain.kappa - m0.cwiseQuotient(element.bending_stiffness);
-  return out;
 }
 
 }  // namespace topple

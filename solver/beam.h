@@ -25,8 +25,8 @@ BeamStrain elastic_strain(const ElementState& state, const BeamStrain& strain);
 /// U = L/2 (Gamma.Cn Gamma + K.Cm K) of the elastic strain, J.
 double beam_energy(const Element& element, const BeamStrain& elastic);
 
-/// Gradient of U, with the offset held or, at a hinge, moved by the plastic flow (plasticity.h): force and moment at the first and second node, world axes; moments are conjugate to spatial
-/// spins.
+/// Gradient of U, with the offset held or, at a hinge, taken along by the flow (plasticity.h): force and
+/// moment at the first and second node, world axes; moments are conjugate to spatial spins.
 struct BeamGradient {
   Vec3 force1, moment1, force2, moment2;
 };
@@ -35,11 +35,7 @@ BeamGradient beam_gradient(const Element& element, const ElementState& state, co
 /// Derivative of the gradient by (x1, spin1, x2, spin2), 12 x 12, row-major; not symmetric away from
 /// equilibrium.
 using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
-void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends, BeamGradient& gradient,
-                  Mat12& tangent);
-
-/// The state with the integration point at `s` and the offset that leaves the forces on the nodes as they are
-/// at `ends`: equilibrium along the element takes the moments from one stress point to the other.
-ElementState shifted(const Element& element, const ElementState& state, double s, const BeamEnds& ends);
+void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
+                  BeamGradient& gradient, Mat12& tangent);
 
 }  // namespace topple

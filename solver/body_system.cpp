@@ -58,7 +58,7 @@ BodySystem::BodySystem(const Model& whole, int body)
   const Body& own = model.bodies[body];
   for (int k = 0; k < own.element_count; ++k) {
     const Element& element = model.elements[own.first_element + k];
-    elements.push_back({.s = element.s});
+    elements.emplace_back();
     yields = yields || std::isfinite(element.capacity[0]);
   }
   if (yields) {
@@ -190,7 +190,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
     const BeamEnds ends =
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
     const ElementState& now = elements[e - body.first_element];
-    const BeamStrain elastic = elastic_strain(now, beam_strain(element, now.s, ends));
+    const BeamStrain elastic = elastic_strain(now, beam_strain(element, element.s, ends));
     sections[e] = section_forces(element, elastic);
     sum.strain += beam_energy(element, elastic);
   }

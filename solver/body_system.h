@@ -79,7 +79,7 @@ class BodySystem {
   std::vector<Vec3> force, moment;  ///< N, N m
   std::vector<TouchingPair> pairs;
   BlockLu lu;
-  std::vector<ElementState> elements;  ///< per element of the body; as built until loaded
+  std::vector<ElementState> elements;  ///< per element of the body; elastic until loaded
   bool yields;                         ///< some element can
   /// Per node, when it yields: elements that end there, numbered within the body, and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;

@@ -1,9 +1,7 @@
 #include "solver/central_difference.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "solver/beam.h"
 #include "solver/hinges.h"
@@ -72,7 +70,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   }
   HingeStep hinges;
   do s.evaluate(p, t + h, w.trial, stick, w.start.position);
-  while (update_hinges(s, w.start, w.trial, hinges));
+  while (update_hinges(s, w.trial, hinges));
 
   // Contacts enter `force` at the half-step velocity; at touching nodes they are solved for at the new one.
   const std::size_t planes = s.model.planes.size();
@@ -128,10 +126,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   return status;
 }
 
-namespace {
-
-// With the stress points of all elements at `place`; none: where they are while elastic.
-double limit_at(BodySystem& s, std::optional<double> place) {
+double explicit_limit(BodySystem& s) {
   const int n = s.count;
   const Body& body = s.model.bodies[s.index];
   std::vector<Mat12> tangents(body.element_count);
@@ -140,7 +135,7 @@ double limit_at(BodySystem& s, std::optional<double> place) {
     BeamGradient gradient;
     const auto& x = s.model.node_position;
     beam_tangent(
-        element, ElementState{.s = place.value_or(element.s)},
+        element, ElementState{},
         beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
         gradient, tangents[e]);
   }
@@ -172,15 +167,6 @@ double limit_at(BodySystem& s, std::optional<double> place) {
     v = kv / kv.norm();
   }
   return 2 / std::sqrt(value);
-}
-
-}  // namespace
-
-double explicit_limit(BodySystem& s) {
-  double limit = limit_at(s, {});
-  if (s.yields && s.model.scheme != Scheme::midpoint)
-    for (double end : {-1., 1.}) limit = std::min(limit, limit_at(s, end));
-  return limit;
 }
 
 }  // namespace topple

@@ -15,7 +15,7 @@ StepStatus advance_central_difference(BodySystem& system, const Parameters& para
                                       double t, double h, IntegratorScratch& scratch, StepEnergy& energy);
 
 /// Greatest stable step of central differences, s: 2 over the highest frequency of the unloaded reference
-/// pose, by power iteration on M^-1 K. A body that yields: also with all stress points at one end.
+/// pose, by power iteration on M^-1 K.
 double explicit_limit(BodySystem& system);
 
 }  // namespace topple

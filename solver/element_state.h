@@ -19,14 +19,14 @@ struct SectionForces {
   Vec3 moment;  ///< Mx, My, Mz, N m
 };
 
-/// Where an element has its plastic hinge. middle: of the `midpoint` scheme. broken: it carries nothing.
+/// Where an element has its plastic hinge: where its section flows (plasticity.h). middle: of the `midpoint`
+/// scheme. broken: it carries nothing.
 enum class Hinge : std::uint8_t { none, first, second, broken, middle };
 
 /// Part of State, one per element.
 struct ElementState {
-  double s = 0;  ///< place of the integration point, -1..1; stresses at r = -s
   Hinge hinge = Hinge::none;
-  /// Strain at which the section forces vanish: plastic flow, and what moving the stress point converts.
+  /// Strain at the elastic stress point at which the section forces vanish: what flowed so far.
   BeamStrain offset{Vec3::Zero(), Vec3::Zero()};
 };
 

@@ -152,7 +152,7 @@ Attempt ImplicitStep::solve_with_hinges() {
   Attempt attempt = solve();
   if (!s_.yields) return attempt;
   HingeStep hinges;
-  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.start, w_.trial, hinges)) {
+  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, hinges)) {
     const int before = attempt.iterations;
     attempt = solve();
     attempt.iterations += before;

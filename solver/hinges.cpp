@@ -23,6 +23,10 @@ bool yields(const Element& element) {
   return std::isfinite(element.capacity[0]);
 }
 
+bool is_end(Hinge hinge) {
+  return hinge == Hinge::first || hinge == Hinge::second;
+}
+
 Hinge hinge_at(int end) {
   return end == 0 ? Hinge::first : Hinge::second;
 }
@@ -34,63 +38,46 @@ struct Candidate {
 
 class Update {
  public:
-  Update(BodySystem& system, const BodyMotion& start, const BodyMotion& trial, HingeStep& step)
+  Update(BodySystem& system, const BodyMotion& trial, HingeStep& step)
       : s_(system),
         model_(system.model),
         first_(model_.bodies[system.index].first_element),
-        start_(start),
         trial_(trial),
         step_(step) {
-    step_.released.resize(s_.elements.size(), false);
     step_.formed.resize(s_.elements.size(), false);
   }
 
   bool break_sections();
-  bool release();
   bool form();
+  bool move();
 
  private:
+  int count() const { return static_cast<int>(s_.elements.size()); }
   const Element& element(int k) const { return model_.elements[first_ + k]; }
-  SectionForces forces(int k) const {
-    const BeamStrain strain = beam_strain(element(k), s_.elements[k].s, ends_at(s_, element(k), trial_));
-    return respond(element(k), s_.elements[k], strain).forces;
+  BeamStrain strain(int k) const {
+    return beam_strain(element(k), element(k).s, ends_at(s_, element(k), trial_));
   }
-  double loading(int k, const SectionForces& at_point, double xi) const {
-    return yield_function(element(k),
-                          forces_along(at_point, element(k).length, s_.elements[k].s, xi));
+  double loading(int k, const SectionForces& forces, double xi) const {
+    return yield_function(element(k), forces_along(forces, element(k).length, element(k).s, xi));
   }
-  bool holds_rotation(int node) const { return (s_.fixed[node] >> 3) == 7; }
   bool is_last(int k, int end) const;
-  void set(int k, Hinge hinge);
-  void place(int k);
+  void set(int k, Hinge hinge) {
+    s_.elements[k].hinge = hinge;
+    step_.formed[k] = true;
+  }
   std::vector<Candidate> candidates() const;
 
   BodySystem& s_;
   const Model& model_;
   const int first_;
-  const BodyMotion &start_, &trial_;
+  const BodyMotion& trial_;
   HingeStep& step_;
 };
 
-void Update::place(int k) {
-  const int other = partner_of(model_, first_ + k);
-  ElementState& state = s_.elements[k];
-  if (state.hinge == Hinge::broken) return;
-  const double s = place_of(model_, first_ + k, state.hinge,
-                            other < 0 ? Hinge::none : s_.elements[other - first_].hinge);
-  if (s != state.s) state = shifted(element(k), state, s, ends_at(s_, element(k), start_));
-}
-
-void Update::set(int k, Hinge hinge) {
-  s_.elements[k].hinge = hinge;
-  place(k);
-  if (const int other = partner_of(model_, first_ + k); other >= 0) place(other - first_);
-}
-
-// All other ends at the joint have hinges or are broken.
+// The joint's rotation is not held, and all other ends there have hinges or are broken.
 bool Update::is_last(int k, int end) const {
   const int node = element(k).node[end] - s_.first;
-  if (holds_rotation(node)) return false;
+  if (s_.fixed[node] >> 3 == 7) return false;
   return std::none_of(s_.joints[node].begin(), s_.joints[node].end(), [&](const auto& joint) {
     const Hinge hinge = s_.elements[joint.first].hinge;
     return joint.first != k && hinge != Hinge::broken && hinge != hinge_at(joint.second);
@@ -99,29 +86,15 @@ bool Update::is_last(int k, int end) const {
 
 bool Update::break_sections() {
   bool any = false;
-  for (int k = 0; k < static_cast<int>(s_.elements.size()); ++k) {
+  for (int k = 0; k < count(); ++k) {
     ElementState& state = s_.elements[k];
     if (state.hinge == Hinge::none || state.hinge == Hinge::broken) continue;
-    const BeamStrain strain = beam_strain(element(k), state.s, ends_at(s_, element(k), trial_));
-    const SectionForces at_point = respond(element(k), state, strain).forces;
-    if (yield_function(element(k), at_point) < -k_unloading ||
-        !breaks(model_, element(k), strain, at_point))
+    const BeamStrain strains = strain(k);
+    const SectionForces forces = respond(element(k), state, strains).forces;
+    if (loading(k, forces, hinge_place(element(k), state.hinge)) < -k_unloading ||
+        !breaks(model_, element(k), strains, forces))
       continue;
-    set(k, Hinge::broken);
-    any = true;
-  }
-  return any;
-}
-
-bool Update::release() {
-  bool any = false;
-  for (int k = 0; k < static_cast<int>(s_.elements.size()); ++k) {
-    const Hinge hinge = s_.elements[k].hinge;
-    if (hinge == Hinge::none || hinge == Hinge::broken) continue;
-    if (step_.released[k] || step_.formed[k]) continue;
-    if (yield_function(element(k), forces(k)) >= -k_unloading) continue;
-    set(k, Hinge::none);
-    step_.released[k] = true;
+    state.hinge = Hinge::broken;
     any = true;
   }
   return any;
@@ -130,11 +103,11 @@ bool Update::release() {
 std::vector<Candidate> Update::candidates() const {
   std::vector<Candidate> found;
   const bool middle = model_.scheme == Scheme::midpoint;
-  for (int k = 0; k < static_cast<int>(s_.elements.size()); ++k) {
+  for (int k = 0; k < count(); ++k) {
     if (!yields(element(k)) || s_.elements[k].hinge != Hinge::none || step_.formed[k]) continue;
-    const SectionForces at_point = forces(k);
+    const SectionForces forces = respond(element(k), s_.elements[k], strain(k)).forces;
     for (int end = 0; end < (middle ? 1 : 2); ++end) {
-      const double f = loading(k, at_point, middle ? 0 : 2 * end - 1);
+      const double f = loading(k, forces, middle ? 0 : 2 * end - 1);
       if (f > k_yielding) found.push_back({std::llround(std::min(f, 1e9) / k_same), k, end});
     }
   }
@@ -154,35 +127,26 @@ bool Update::form() {
     const bool beside_new = std::find(nodes.begin(), nodes.end(), node) != nodes.end();
     if (!middle && is_last(k, end) && (beside_new || static_cast<double>(f) * k_same < k_beside)) continue;
     set(k, middle ? Hinge::middle : hinge_at(end));
-    step_.formed[k] = true;
     greatest = std::max(greatest, static_cast<double>(f));
     nodes.push_back(node);
   }
   return !nodes.empty();
 }
 
+bool Update::move() {
+  bool any = false;
+  for (int k = 0; k < count(); ++k) {
+    const Hinge hinge = s_.elements[k].hinge;
+    if (!is_end(hinge) || step_.formed[k]) continue;
+    const SectionForces forces = respond(element(k), s_.elements[k], strain(k)).forces;
+    if (loading(k, forces, hinge == Hinge::first ? 1 : -1) <= k_crowded) continue;
+    set(k, hinge == Hinge::first ? Hinge::second : Hinge::first);
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace
-
-int partner_of(const Model& model, int element) {
-  const Member& member = model.members[model.elements[element].member];
-  const int other = member.first_element + ((element - member.first_element) ^ 1);
-  return other < member.first_element + member.element_count ? other : -1;
-}
-
-double place_of(const Model& model, int element, Hinge hinge, Hinge partner) {
-  const double elastic = model.elements[element].s;
-  if (hinge == Hinge::first) return 1;
-  if (hinge == Hinge::second) return -1;
-  if (model.scheme != Scheme::asi_gauss || (partner != Hinge::first && partner != Hinge::second))
-    return elastic;
-  if (model.partner_rule == PartnerRule::middle) return 0;
-  // The elastic member beyond the hinge, of length l and a moment that grows as x from it, bends as
-  // int x^2 dx; the one stress point of this element, half a member long, at the root of its mean.
-  const bool is_first = elastic > 0;
-  const bool far = (partner == Hinge::first) != is_first;  // the hinge is at the pair's end, not at its middle
-  const double x = far ? 4 * std::sqrt(2. / 3) - 3 : 4 / std::sqrt(6.) - 1;  // r, away from the hinge
-  return is_first ? x : -x;
-}
 
 bool breaks(const Model& model, const Element& element, const BeamStrain& strain,
             const SectionForces& forces) {
@@ -196,10 +160,10 @@ bool breaks(const Model& model, const Element& element, const BeamStrain& strain
          std::max(std::abs(shear.y()), std::abs(shear.z())) >= std::sqrt(3.) * limit;
 }
 
-bool update_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& trial, HingeStep& step) {
+bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step) {
   if (!system.yields || step.redos >= k_most_redos) return false;
-  Update update(system, start, trial, step);
-  if (!update.break_sections() && !update.release() && !update.form()) return false;
+  Update update(system, trial, step);
+  if (!update.break_sections() && !update.form() && !update.move()) return false;
   ++step.redos;
   return true;
 }
@@ -211,20 +175,21 @@ double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& e
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
     const Element& element = s.model.elements[first + k];
     ElementState &now = s.elements[k], &before = state.elements[first + k];
-    if (before.hinge == Hinge::broken || (now.hinge == Hinge::none && now.s == before.s)) continue;
-    const BeamEnds ends0 = ends_at(s, element, start), ends1 = ends_at(s, element, end);
-    const BeamStrain strain0 = beam_strain(element, now.s, ends0), strain1 = beam_strain(element, now.s, ends1);
-    const double energy0 =
-        beam_energy(element, elastic_strain(before, beam_strain(element, before.s, ends0)));
-    ElementState unbroken = now;
-    unbroken.hinge = Hinge::none;
-    const SectionForces forces0 = respond(element, unbroken, strain0).forces;
+    if (before.hinge == Hinge::broken || now.hinge == Hinge::none) continue;
+    const BeamStrain strain0 = beam_strain(element, element.s, ends_at(s, element, start));
+    const BeamStrain strain1 = beam_strain(element, element.s, ends_at(s, element, end));
+    const BeamStrain elastic0 = elastic_strain(before, strain0);
+    const SectionForces forces0 = section_forces(element, elastic0);
     const SectionResponse response = respond(element, now, strain1);
     take_flow(element, response, now);
     taken += element.length / 2 *
                  ((forces0.normal + response.forces.normal).dot(strain1.gamma - strain0.gamma) +
-                  (forces0.moment + response.forces.moment).dot(strain1.kappa - strain0.kappa)) -
-             beam_energy(element, elastic_strain(now, strain1)) + energy0;
+                  (forces0.moment + response.forces.moment).dot(strain1.kappa - strain0.kappa)) +
+             beam_energy(element, elastic0) - beam_energy(element, elastic_strain(now, strain1));
+    const SectionForces at_hinge =
+        forces_along(response.forces, element.length, element.s, hinge_place(element, now.hinge));
+    if (now.hinge != Hinge::broken && yield_function(element, at_hinge) < -k_unloading)
+      now.hinge = Hinge::none;
     before = now;
   }
   return taken;

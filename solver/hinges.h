@@ -1,15 +1,13 @@
-// Plastic hinges of a body: when they form, move and break. For dynamics and statics alike:
+// Plastic hinges of a body: where they form, move and break. For dynamics and statics alike:
 //
 //   system.load_elements(state);                     // once per step
 //   HingeStep hinges;
 //   do solve(trial);                                 // to convergence, evaluate_with_tangent
-//   while (update_hinges(system, start, trial, hinges));
+//   while (update_hinges(system, trial, hinges));
 //   energy = commit_hinges(system, start, trial, state);
 //
-// An element in the elastic state has its stress point where the scheme puts it (Model::scheme). It is checked
-// at both ends by equilibrium; where f > 0, the stress point moves there, at the start of the step, and the
-// step is solved again with the section's flow (plasticity.h). When f falls below -k_unloading at the hinge
-// the step is solved again with the point moved back. Moves keep the forces on the nodes (beam.h, shifted).
+// Both ends of an element are checked by equilibrium. Where f > 0 the element gets a hinge there and the step
+// is solved again with its flow (plasticity.h). A hinge that unloads goes when the step is accepted.
 #pragma once
 
 #include <vector>
@@ -19,29 +17,32 @@
 namespace topple {
 
 inline constexpr double k_yielding = 1e-8;   ///< of f: above it a section is fully plastic
-inline constexpr double k_unloading = 1e-3;  ///< of f: hysteresis, or hinges chatter
+inline constexpr double k_unloading = 1e-3;  ///< of f: hysteresis
 inline constexpr double k_beside = 1e-3;     ///< of f: joint rule of update_hinges
+inline constexpr double k_crowded = 1e-2;    ///< of f: one hinge per element, update_hinges
 inline constexpr int k_most_redos = 60;      ///< of one step
 
-/// What the solutions of one step changed so far. Per element a hinge may go and may then form, each once.
+/// What the solutions of one step changed so far.
 struct HingeStep {
-  std::vector<bool> released, formed;  ///< per element of the body
+  std::vector<bool> formed;  ///< per element of the body; once per step
   int redos = 0;
 };
 
-/// Looks at a converged solution `trial` of the step from `start` and changes system.elements. True: the step
-/// must be solved again from `start`. In this order, each followed by a new solution:
-/// - fracture of flowing sections (breaks);
-/// - hinges that unload go;
-/// - the section with the greatest f gets a hinge, and with it those nearly as far (symmetric ones). An
-///   element holds one hinge, and the last end at a joint that is not held stays elastic: hinges at all ends
-///   leave the joint's rotation undetermined. It yields all the same once loaded k_beside beyond its surface
-///   while the others lie on theirs: then the directions of flow differ.
+/// Looks at a converged solution `trial` of a step and changes system.elements. True: the step must be solved
+/// again. In this order, each followed by a new solution:
+/// - Sections that flow beyond their limits break (breaks).
+/// - The section with the greatest f gets a hinge, and with it those nearly as far (symmetric ones). The last
+///   end at a joint that is not held stays elastic: hinges at all ends leave the joint's rotation
+///   undetermined. It yields all the same once loaded k_beside beyond its surface while the others lie on
+///   theirs: then the directions of flow differ.
+/// - An element holds one hinge. When its other end is loaded k_crowded beyond yield the hinge moves there:
+/// in
+///   turns both flow, each a step late (Outcome::crowded_members).
 /// False too after k_most_redos: the next step goes on from there.
-bool update_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& trial, HingeStep& step);
+bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step);
 
-/// Takes the flow of the accepted solution into system.elements and `state`. Returns the energy, J, that
-/// plastic flow, moves of stress points and fracture took, by the trapezoidal rule like all work.
+/// Takes the flow of the accepted solution into system.elements and `state`; hinges loaded k_unloading below
+/// yield go. Returns the energy, J, that flow and fracture took, by the trapezoidal rule like all work.
 double commit_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& end, State& state);
 
 /// A fully plastic section breaks when
@@ -50,11 +51,5 @@ double commit_hinges(BodySystem& system, const BodyMotion& start, const BodyMoti
 /// kappa and gamma_x are those of the whole element: flow is spread over its length.
 bool breaks(const Model& model, const Element& element, const BeamStrain& strain,
             const SectionForces& forces);
-
-/// Integration point of an element with this hinge; `partner`: hinge of the other element of its pair.
-double place_of(const Model& model, int element, Hinge hinge, Hinge partner);
-
-/// The other element of the pair, or -1.
-int partner_of(const Model& model, int element);
 
 }  // namespace topple

@@ -81,19 +81,14 @@ struct Plane {
 };
 
 /// Where integration points stand (Eq. 1). asi_gauss: two by two elements have their stress points on the
-/// Gauss points of the pair while elastic. asi: in the middle while elastic. Both move to plastic hinges.
-/// midpoint: always in the middle.
+/// Gauss points of the pair, asi: in the middle; both have their hinges at the elements' ends (plasticity.h).
+/// midpoint: both in the middle.
 enum class Scheme { asi_gauss, asi, midpoint };
-
-/// Where the stress point of an elastic element goes when its partner of the pair has a hinge (asi_gauss).
-/// exact: to the point from which the remaining elastic member bends as it should (hinges.h).
-enum class PartnerRule { exact, middle };
 
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
 /// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
 struct Model {
   Scheme scheme = Scheme::asi_gauss;  ///< set before members are added
-  PartnerRule partner_rule = PartnerRule::exact;
   std::vector<Material> materials;
   std::vector<Section> sections;
   std::vector<Vec3> node_position;  ///< m, reference

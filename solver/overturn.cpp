@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/hinges.h"
 #include "solver/plasticity.h"
 #include "solver/rotation.h"
 
@@ -193,13 +194,13 @@ void Outcome::observe_sections(const Model& model, const State& state,
     const Section& section = model.sections[member.section];
     const bool yields = std::isfinite(element.capacity[0]);
     for (int end = 0; end < 2; ++end) {
-      const SectionForces forces = forces_along(sections[e], element.length, now.s, 2 * end - 1);
+      const SectionForces forces = forces_along(sections[e], element.length, element.s, 2 * end - 1);
       o.peak_stress = std::max(o.peak_stress, equivalent_stress(section, forces));
       if (!yields) continue;
       const double f = yield_function(element, forces);
       o.peak_yield_ratio = std::max(o.peak_yield_ratio.value_or(0), std::sqrt(f + 1));
       const Hinge there = end == 0 ? Hinge::first : Hinge::second;
-      if (f > k_crowded && now.hinge != Hinge::none && now.hinge != there && now.hinge != Hinge::middle &&
+      if (f > k_beside && now.hinge != Hinge::none && now.hinge != there && now.hinge != Hinge::middle &&
           std::find(crowded_.begin(), crowded_.end(), element.member) == crowded_.end())
         crowded_.push_back(element.member);
     }

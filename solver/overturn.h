@@ -12,9 +12,6 @@
 
 namespace topple {
 
-/// A hinged element whose other end is loaded this far beyond yield (of f) cannot show the second hinge.
-inline constexpr double k_crowded = 1e-2;
-
 /// A side is lifted when it carries less than this part of the body's weight while the body stands on
 /// another, and has closed again when it carries more than k_closing. Two thresholds, or a resting side would
 /// chatter.
@@ -44,7 +41,7 @@ struct Event {
   std::int64_t step;
   double time;  ///< s
   int body;
-  double value;  ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge, as a number
+  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge, as a number
   int element = -1;  ///< hinge, fracture: index into Model::elements
 };
 
@@ -56,11 +53,11 @@ struct BodyOutcome {
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_uplift;
   int impacts = 0;
-  double peak_stress = 0;               ///< Pa
+  double peak_stress = 0;  ///< Pa
   /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
   std::optional<double> peak_yield_ratio;
-  int hinges = 0;     ///< places where hinges formed so far, whether they still flow or not
-  int fractures = 0;  ///< elements that broke
+  int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not
+  int fractures = 0;                    ///< elements that broke
   double peak_penetration = 0;          ///< greatest 1 - l/L
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
   std::vector<bool> lifted;             ///< per side of the support polygon
@@ -76,7 +73,8 @@ class Outcome {
                const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
                std::vector<Event>& events);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
-  /// Members of which an element holds a hinge while its other end passes yield too (k_crowded).
+  /// Members of which an element holds a hinge while its other end passes yield too, by
+  /// k_beside (hinges.h): more elements would show both.
   const std::vector<int>& crowded_members() const { return crowded_; }
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 

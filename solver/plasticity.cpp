@@ -12,8 +12,21 @@ Vec4 flowing(const Vec3& normal, const Vec3& moment) {
   return {normal.x(), moment.x(), moment.y(), moment.z()};
 }
 
-Vec4 stiffness_of(const Element& element) {
-  return flowing(element.normal_stiffness, element.bending_stiffness);
+// From the elastic stress point to the hinge, m.
+double arm(const Element& element, Hinge hinge) {
+  return element.length / 2 * (hinge_place(element, hinge) + element.s);
+}
+
+Vec4 stiffness_at(const Element& element, double arm) {
+  const Vec3 &n = element.normal_stiffness, &m = element.bending_stiffness;
+  return {n.x(), m.x(), m.y() + arm * arm * n.z(), m.z() + arm * arm * n.y()};
+}
+
+BeamStrain flow_of(const Element& element, Hinge hinge, const PlasticReturn& point) {
+  const Vec4 flow =
+      2 * point.multiplier * point.forces.cwiseQuotient(element.capacity.cwiseProduct(element.capacity));
+  const double a = arm(element, hinge);
+  return {{flow[0], -a * flow[3], a * flow[2]}, flow.tail<3>()};
 }
 
 }  // namespace
@@ -56,6 +69,12 @@ Mat4 plastic_tangent(const PlasticReturn& point, const Vec4& stiffness, const Ve
   return tangent;
 }
 
+double hinge_place(const Element& element, Hinge hinge) {
+  if (hinge == Hinge::first) return -1;
+  if (hinge == Hinge::second) return 1;
+  return -element.s;
+}
+
 SectionResponse respond(const Element& element, const ElementState& state, const BeamStrain& strain) {
   SectionResponse out;
   out.forces = {element.normal_stiffness.cwiseProduct(strain.gamma - state.offset.gamma),
@@ -65,28 +84,43 @@ SectionResponse respond(const Element& element, const ElementState& state, const
     out.forces = {Vec3::Zero(), Vec3::Zero()};
     return out;
   }
-  out.point = return_to_yield(flowing(out.forces.normal, out.forces.moment), stiffness_of(element),
-                              element.capacity);
+  const double a = arm(element, state.hinge);
+  const SectionForces& g = out.forces;
+  out.point = return_to_yield(
+      {g.normal.x(), g.moment.x(), g.moment.y() + a * g.normal.z(), g.moment.z() - a * g.normal.y()},
+      stiffness_at(element, a), element.capacity);
   out.flows = out.point.multiplier > 0;
-  out.forces.normal.x() = out.point.forces[0];
-  out.forces.moment = out.point.forces.tail<3>();
+  if (!out.flows) return out;
+  const BeamStrain flow = flow_of(element, state.hinge, out.point);
+  out.forces.normal -= element.normal_stiffness.cwiseProduct(flow.gamma);
+  out.forces.moment -= element.bending_stiffness.cwiseProduct(flow.kappa);
   return out;
 }
 
-SectionTangent section_tangent(const Element& element, const SectionResponse& response) {
-  const Mat4 c = plastic_tangent(response.point, stiffness_of(element), element.capacity);
-  SectionTangent out{element.normal_stiffness.asDiagonal(), Mat3::Zero(), c.bottomRightCorner<3, 3>()};
-  out.normal_gamma(0, 0) = c(0, 0);
-  out.normal_kappa.row(0) = c.row(0).tail<3>();
+SectionTangent section_tangent(const Element& element, Hinge hinge, const SectionResponse& response) {
+  const double a = arm(element, hinge);
+  const Vec4 stiffness = stiffness_at(element, a), soft = stiffness.cwiseInverse();
+  // flow by trial forces at the hinge, D_h^-1 - D_h^-1 C D_h^-1, with D T^T before and T D behind it
+  const Mat4 returned = plastic_tangent(response.point, stiffness, element.capacity);
+  Mat4 flow = soft.asDiagonal();
+  flow -= soft.asDiagonal() * returned * soft.asDiagonal();
+  const Vec3 &n = element.normal_stiffness, &m = element.bending_stiffness;
+  Eigen::Matrix<double, 3, 4> by_normal = Eigen::Matrix<double, 3, 4>::Zero(), by_moment = by_normal;
+  by_normal(0, 0) = n.x();
+  by_normal(1, 3) = -a * n.y();
+  by_normal(2, 2) = a * n.z();
+  by_moment.rightCols<3>() = m.asDiagonal();
+  SectionTangent out{n.asDiagonal(), -by_normal * flow * by_moment.transpose(), m.asDiagonal()};
+  out.normal_gamma -= by_normal * flow * by_normal.transpose();
+  out.moment_kappa -= by_moment * flow * by_moment.transpose();
   return out;
 }
 
 void take_flow(const Element& element, const SectionResponse& response, ElementState& state) {
   if (!response.flows) return;
-  const Vec4 flow = 2 * response.point.multiplier *
-                    response.point.forces.cwiseQuotient(element.capacity.cwiseProduct(element.capacity));
-  state.offset.gamma.x() += flow[0];
-  state.offset.kappa += flow.tail<3>();
+  const BeamStrain flow = flow_of(element, state.hinge, response.point);
+  state.offset.gamma += flow.gamma;
+  state.offset.kappa += flow.kappa;
 }
 
 }  // namespace topple

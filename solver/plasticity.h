@@ -28,22 +28,33 @@ PlasticReturn return_to_yield(const Vec4& trial, const Vec4& stiffness, const Ve
 ///   X - X n n^T X / (n^T X n),  X = diag(D_i / (1 + 2 lambda D_i / g0_i^2)),  n = df/dg
 Mat4 plastic_tangent(const PlasticReturn& point, const Vec4& stiffness, const Vec4& capacity);
 
-/// Section forces at a strain: elastic without hinge, none when broken, else returned to the yield surface;
-/// shear stays elastic.
+/// Shifted integration: elastic strain is integrated where the scheme puts it, s; a hinge flows at its own
+/// place xi, an end of the element. Equilibrium along the element takes the forces g at r = -s there, and its
+/// transpose brings the flow back, so that the element turns about the hinge as about a joint:
+///   g_h = T g:             N, Mx, My + a Vz, Mz - a Vy                     a = (L/2)(xi + s)
+///   stiffness T D T^T:     EA, GJ, EIy + a^2 kGAz, EIz + a^2 kGAy, diagonal
+///   offset += T^T flow:    gamma_x, gamma_y -= a kappa_z, gamma_z += a kappa_y; kappa
+/// Nothing elastic changes when a hinge forms, moves or goes: no jump of forces, no energy from a shift, and
+/// the pair of elements keeps its exact bending beside a hinge.
 struct SectionResponse {
-  SectionForces forces;
+  SectionForces forces;  ///< at the elastic stress point
   bool flows = false;
-  PlasticReturn point;  ///< when it flows
+  PlasticReturn point;  ///< at the hinge, when it flows
 };
+/// Section forces at a strain: elastic without hinge, none when broken, else returned to the yield surface.
 SectionResponse respond(const Element& element, const ElementState& state, const BeamStrain& strain);
 
-/// Derivatives of normal by gamma, normal by kappa (its transpose: moment by gamma) and moment by kappa.
+/// Derivatives of normal by gamma, normal by kappa (its transpose: moment by gamma) and moment by kappa, of a
+/// section that flows.
 struct SectionTangent {
   Mat3 normal_gamma, normal_kappa, moment_kappa;
 };
-SectionTangent section_tangent(const Element& element, const SectionResponse& response);
+SectionTangent section_tangent(const Element& element, Hinge hinge, const SectionResponse& response);
 
 /// Moves the offset to where `response` has taken the section.
 void take_flow(const Element& element, const SectionResponse& response, ElementState& state);
+
+/// Place of a hinge along the element, -1..1; without one, and broken, that of the elastic stress point.
+double hinge_place(const Element& element, Hinge hinge);
 
 }  // namespace topple

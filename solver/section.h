@@ -8,10 +8,10 @@ namespace topple {
 /// Linear elastic, perfectly plastic material.
 struct Material {
   std::string name;
-  double young = 0;    ///< Pa
-  double poisson = 0;  ///< -
-  double density = 0;  ///< kg/m^3
-  double yield = 0;    ///< Pa; 0: elastic
+  double young = 0;            ///< Pa
+  double poisson = 0;          ///< -
+  double density = 0;          ///< kg/m^3
+  double yield = 0;            ///< Pa; 0: elastic
   double fracture_strain = 0;  ///< -; 0: never breaks
 };
 

@@ -30,7 +30,6 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
   for (auto& e : s.elements) {
-    f(e.s);
     double hinge = static_cast<double>(e.hinge);
     f(hinge);
     if constexpr (!std::is_const_v<AnyState>) e.hinge = static_cast<Hinge>(hinge);
@@ -53,8 +52,7 @@ void resize(const Model& model, State& state) {
     array->assign(n, Vec3::Zero());
   state.rotation.assign(n, Quat::Identity());
   state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
-  state.elements.clear();
-  for (const Element& element : model.elements) state.elements.push_back({.s = element.s});
+  state.elements.assign(model.elements.size(), {});
 }
 
 }  // namespace
@@ -82,7 +80,7 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
-  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 8 * state.elements.size() + 20);
+  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() + 20);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
   return numbers;

@@ -3,6 +3,7 @@
 
 #include "solver/excitation.h"
 #include "solver/io/recording_writer.h"
+#include "solver/plasticity.h"
 
 namespace topple::io {
 namespace {
@@ -44,9 +45,9 @@ double body_energy(const Run& run, const Body& body) {
     // Angular velocity is in material axes, which are the world axes of the reference pose: so is the
     // inertia.
     const Vec3& w = state.angular_velocity[k];
-    energy +=
-        0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() + 0.5 * w.dot(model.node_inertia[k] * w) -
-        model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
+    energy += 0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() +
+              0.5 * w.dot(model.node_inertia[k] * w) -
+              model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
   }
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[static_cast<std::size_t>(e)];
@@ -71,10 +72,12 @@ void fill_nodes(const State& state, FrameRow& row) {
 void fill_elements(const Run& run, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    const ElementState& state = run.state().elements[e];
-    row.s[e] = static_cast<float>(state.s);
-    row.hinge[e] = static_cast<std::uint8_t>(state.hinge);
-    const SectionForces& forces = run.sections()[e];
+    const Element& element = model.elements[e];
+    const Hinge hinge = run.state().elements[e].hinge;
+    const double place = hinge_place(element, hinge);
+    row.s[e] = static_cast<float>(-place);
+    row.hinge[e] = static_cast<std::uint8_t>(hinge);
+    const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, place);
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};
     for (int k = 0; k < 6; ++k) row.section_force[6 * e + k] = static_cast<float>(values[k]);

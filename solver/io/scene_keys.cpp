@@ -136,7 +136,8 @@ void add_material(std::vector<Key>& keys) {
   rows.number("poisson", 0, 0.5, "Poisson's ratio").required();
   rows.number("density", D::density, "kg/m^3", 1e-3, 1e5, "density").required();
   rows.number("yield", D::stress, "MPa", 1, 1e13, "yield stress").absent_means("elastic");
-  rows.number("fracture_strain", 1e-6, 10, "strain of the extreme fibre or of the axis at fracture (hinges.h)")
+  rows.number("fracture_strain", 1e-6, 10,
+              "strain of the extreme fibre or of the axis at fracture (hinges.h)")
       .absent_means("never breaks");
 }
 
@@ -165,10 +166,12 @@ void add_section(std::vector<Key>& keys) {
   rows.number("ky", 1e-3, 1e3, "shear coefficient in y").required().only("shape", {"custom"});
   rows.number("kz", 1e-3, 1e3, "shear coefficient in z").required().only("shape", {"custom"});
   rows.number("width", D::length, "mm", 1e-3, k_large, "contact width").required().only("shape", {"custom"});
-  rows.number("zy", D::section_modulus, "m^3", 1e-15, 100, "plastic modulus of bending in the local x-z plane")
+  rows.number("zy", D::section_modulus, "m^3", 1e-15, 100,
+              "plastic modulus of bending in the local x-z plane")
       .absent_means("needed where the material yields")
       .only("shape", {"custom"});
-  rows.number("zz", D::section_modulus, "m^3", 1e-15, 100, "plastic modulus of bending in the local x-y plane")
+  rows.number("zz", D::section_modulus, "m^3", 1e-15, 100,
+              "plastic modulus of bending in the local x-y plane")
       .absent_means("needed where the material yields")
       .only("shape", {"custom"});
   rows.number("zt", D::section_modulus, "m^3", 1e-15, 100,

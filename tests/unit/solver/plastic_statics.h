@@ -28,7 +28,7 @@ class PlasticPath {
     HingeStep hinges;
     do {
       if (!solve(6 * node + direction, reached)) return false;
-    } while (update_hinges(system, start, motion_, hinges));
+    } while (update_hinges(system, motion_, hinges));
     redos += hinges.redos;
     dissipated += commit_hinges(system, start, motion_, state);
     return true;
@@ -46,9 +46,9 @@ class PlasticPath {
   double stored() const {
     double sum = 0;
     for (std::size_t e = 0; e < model.elements.size(); ++e)
-      sum += beam_energy(model.elements[e],
-                         elastic_strain(state.elements[e],
-                                        beam_strain(model.elements[e], state.elements[e].s, ends(e))));
+      sum += beam_energy(
+          model.elements[e],
+          elastic_strain(state.elements[e], beam_strain(model.elements[e], model.elements[e].s, ends(e))));
     return sum;
   }
 
@@ -150,14 +150,12 @@ struct PlaneFrame {
   std::vector<Load> loads;
   int elements = 2;
   Scheme scheme = Scheme::asi_gauss;
-  PartnerRule partner_rule = PartnerRule::exact;
 
   /// In the x-z plane; N has no part in yield.
   Model build(const Section& section = pure_bending_section(), const Material& material = weak_steel(),
               bool pure = true) const {
     Model model;
     model.scheme = scheme;
-    model.partner_rule = partner_rule;
     model.materials.push_back(material);
     model.sections.push_back(section);
     FrameSpec spec;
