@@ -21,7 +21,7 @@ struct SectionForces {
 
 /// Where an element has its plastic hinge: where its section flows (plasticity.h). middle: of the `midpoint`
 /// scheme. broken: it carries nothing.
-enum class Hinge : std::uint8_t { none, first, second, broken, middle };
+enum class Hinge : std::int64_t { none, first, second, broken, middle };
 
 /// Part of State, one per element.
 struct ElementState {

@@ -30,9 +30,9 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
   for (auto& e : s.elements) {
-    double hinge = static_cast<double>(e.hinge);
+    double hinge = std::bit_cast<double>(e.hinge);
     f(hinge);
-    if constexpr (!std::is_const_v<AnyState>) e.hinge = static_cast<Hinge>(hinge);
+    if constexpr (!std::is_const_v<AnyState>) e.hinge = std::bit_cast<Hinge>(hinge);
     for (auto* strain : {&e.offset.gamma, &e.offset.kappa})
       for (int k = 0; k < 3; ++k) f((*strain)[k]);
   }

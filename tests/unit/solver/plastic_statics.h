@@ -96,7 +96,9 @@ class PlasticPath {
       k = rows.asDiagonal() * k;
       const Eigen::VectorXd columns = k.cwiseAbs().colwise().maxCoeff().cwiseInverse().transpose();
       k = k * columns.asDiagonal();
-      const Eigen::VectorXd d = columns.asDiagonal() * k.fullPivLu().solve(rows.asDiagonal() * r);
+      Eigen::FullPivLU<Eigen::MatrixXd> lu(k);
+      lu.setThreshold(1e-11);  // what a mechanism leaves undetermined stays where it is
+      const Eigen::VectorXd d = columns.asDiagonal() * lu.solve(rows.asDiagonal() * r);
       for (int i = 0; i < system.count; ++i) {
         motion_.position[i] += d.segment<3>(6 * i);
         motion_.rotation[i] = (exp_quaternion(d.segment<3>(6 * i + 3)) * motion_.rotation[i]).normalized();
