@@ -69,6 +69,7 @@ class PlasticPath {
   // Newton on (unknowns, factor) with the prescribed displacement as the last equation: regular at collapse.
   bool solve(int control, double reached) {
     const int n = 6 * system.count;
+    const double at_start = displacement(control / 6, control % 6);
     double last = 1e300;
     for (int iteration = 0; iteration < 40; ++iteration) {
       Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -104,7 +105,8 @@ class PlasticPath {
         motion_.rotation[i] = (exp_quaternion(d.segment<3>(6 * i + 3)) * motion_.rotation[i]).normalized();
       }
       factor += d[n];
-      const double size = d.head(n).cwiseAbs().maxCoeff() / std::abs(reached);
+      const double size =
+          d.head(n).cwiseAbs().maxCoeff() / std::max(std::abs(reached), std::abs(reached - at_start));
       if (!std::isfinite(size)) return false;
       if (last < 1e-7) return true;  // quadratic until rounding of the positions stops it
       last = size;
