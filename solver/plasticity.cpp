@@ -7,6 +7,9 @@ namespace {
 
 constexpr int k_most_iterations = 60;
 constexpr double k_converged = 1e-15;  // of the loading: rounding
+// of f: a state that a step before left on the surface starts the next one as elastic, or Newton's first
+// correction would be that of a mechanism
+constexpr double k_on_surface = 1e-12;
 
 Vec4 flowing(const Vec3& normal, const Vec3& moment) {
   return {normal.x(), moment.x(), moment.y(), moment.z()};
@@ -43,7 +46,7 @@ PlasticReturn return_to_yield(const Vec4& trial, const Vec4& stiffness, const Ve
   const Vec4 loading = trial.cwiseQuotient(capacity);
   const Vec4 softening = 2 * stiffness.cwiseQuotient(capacity.cwiseProduct(capacity));
   PlasticReturn out{trial, 0};
-  if (!(loading.squaredNorm() > 1)) return out;
+  if (!(loading.squaredNorm() > 1 + k_on_surface)) return out;
   Vec4 shrink = Vec4::Ones();
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
     const Vec4 u = loading.cwiseProduct(shrink);

@@ -17,7 +17,8 @@ double yield_function(const Element& element, const SectionForces& forces);
 /// Closest point of the yield surface f = 0, measured by the elastic energy, for a trial state outside:
 ///   g_i = g_tr,i / (1 + 2 lambda D_i / g0_i^2),
 /// and lambda, which makes the plastic strain lambda df/dg. Newton on F^(-1/2) = 1 with F = f + 1, which is
-/// concave in lambda and linear for one component: monotonic from lambda = 0. A trial state inside stays.
+/// concave in lambda and linear for one component: monotonic from lambda = 0. A trial state inside or on the
+/// surface stays.
 struct PlasticReturn {
   Vec4 forces;
   double multiplier = 0;  ///< lambda >= 0
