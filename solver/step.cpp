@@ -29,6 +29,7 @@ std::string format(const char* pattern, double a) {
 // Accelerations from the balance of forces at `state`. Leaves the body's motion in `motion`.
 void balance_accelerations(BodySystem& s, const Parameters& parameters, State& state, BodyMotion& motion) {
   s.load(state, motion);
+  s.load_elements(state);
   s.evaluate(parameters, state.time, motion, state.stick, motion.position);
   for (int i = 0; i < s.count; ++i) {
     const int g = s.first + i;
@@ -232,6 +233,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   e.friction += exchanged.friction;
   e.normal_damping += exchanged.normal_damping;
   e.numerical += exchanged.numerical;
+  e.plastic += exchanged.plastic;
   e.kinetic = held.kinetic;
   e.strain = held.strain;
   e.contact = held.contact;
