@@ -17,8 +17,9 @@ constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand besi
 constexpr double k_wall_height = 2.4;   // m, least
 constexpr double k_mega = 1e-6;
 constexpr std::uint8_t k_broken = 3;      // FrameRow::hinge
-constexpr double k_ring = 0.85;           // radius of a hinge's ring, of the section
+constexpr double k_ring = 1.3;            // radius of a hinge's ring, of the section
 constexpr double k_least_section = 0.02;  // m, of a section without sides
+constexpr render::Float4 k_flowed_colour = {0.93f, 0.70f, 0.55f, 1};
 constexpr render::Float4 k_hinge_colour = {0.90f, 0.33f, 0.04f, 1};
 constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
 
@@ -258,21 +259,23 @@ Curve Bridge::curve_of(const io::FrameRow& row, std::size_t e, const Vec3& shift
           .length = element.length};
 }
 
-// A hinge is a ring in the plane in which it bends.
+// A hinge is a ring in the plane in which it bends; one that has come to rest is pale.
 void Bridge::add_hinges(const io::FrameRow& row, render::SceneFrame& out) const {
   const Model& model = scene_.setup.model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    if (row.hinge[e] == 0 || row.hinge[e] == k_broken) continue;
+    const std::uint8_t code = row.hinge[e];
+    if (code == 0 || code == k_broken) continue;
+    const bool flowed = code == io::k_flowed_first || code == io::k_flowed_second;
     const Section& section = model.sections[static_cast<std::size_t>(
         model.members[static_cast<std::size_t>(model.elements[e].member)].section)];
-    const bool at_first = row.hinge[e] == 1;
+    const bool at_first = code == 1 || code == io::k_flowed_first;
     const Curve curve = curve_of(row, e, floor_shift(row));
     const SectionForces forces = forces_at(model, row, e, at_first ? -1 : 1);
     const Quat& turned = at_first ? curve.q1 : curve.q2;
     const double size = std::max({section.size_y, section.size_z, k_least_section});
     out.rings.push_back({to_float(at_first ? curve.x1 : curve.x2),
                          to_float(turned * Vec3(0, forces.moment.y(), forces.moment.z())),
-                         static_cast<float>(k_ring * size), k_hinge_colour});
+                         static_cast<float>(k_ring * size), flowed ? k_flowed_colour : k_hinge_colour});
   }
 }
 

@@ -85,11 +85,14 @@ ordered_json warnings(const Run& run) {
                       "the floor or wall; a larger alpha or width holds it",
                       run.setup().model.bodies[b].name, bodies[b].peak_penetration));
   const Model& model = run.setup().model;
-  for (const int member : run.outcome().crowded_members())
-    list.push_back(
-        fmt::format("body \"{}\", member \"{}\": both ends of an element pass yield, which holds one "
-                    "hinge; more elements or divisions show it",
-                    model.bodies[model.members[member].body].name, model.members[member].name));
+  if (const auto& crowded = run.outcome().crowded_members(); !crowded.empty()) {
+    std::string names;
+    for (const int member : crowded)
+      names += fmt::format("{}{}/{}", names.empty() ? "" : ", ",
+                           model.bodies[model.members[member].body].name, model.members[member].name);
+    list.push_back("both ends of an element pass yield, which holds one hinge, in " + names +
+                   "; more elements or divisions show it");
+  }
   const double balance = run.state().energy.balance_error();
   if (!is_static(run) && balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",

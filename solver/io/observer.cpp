@@ -56,6 +56,14 @@ void fill_nodes(const State& state, FrameRow& row) {
   }
 }
 
+// The offset that a hinge left tells at which end: gamma = a kappa (plasticity.h), a > 0 at the second.
+std::uint8_t hinge_code(const ElementState& state) {
+  const Vec3 &gamma = state.offset.gamma, &kappa = state.offset.kappa;
+  if (state.hinge != Hinge::none) return static_cast<std::uint8_t>(state.hinge);
+  if (gamma.isZero(0) && kappa.isZero(0)) return 0;
+  return gamma.z() * kappa.y() - gamma.y() * kappa.z() > 0 ? k_flowed_second : k_flowed_first;
+}
+
 void fill_elements(const Run& run, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
@@ -63,7 +71,7 @@ void fill_elements(const Run& run, FrameRow& row) {
     const Hinge hinge = run.state().elements[e].hinge;
     const double place = hinge_place(element, hinge);
     row.s[e] = static_cast<float>(-place);
-    row.hinge[e] = static_cast<std::uint8_t>(hinge);
+    row.hinge[e] = hinge_code(run.state().elements[e]);
     const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, place);
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};

@@ -10,6 +10,8 @@
 
 namespace topple::io {
 
+inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
+
 /// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies.
 struct FrameRow {
   std::int32_t branch = 0;
@@ -20,7 +22,7 @@ struct FrameRow {
   std::vector<float> section_force;  ///< e x 6: N, Vy, Vz, T, My, Mz at the stress point, N and N m
   std::vector<float> s;              ///< e, integration point
   std::vector<std::uint8_t> hinge;   ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken,
-                                     ///< 4 in the middle
+                                     ///< 4 in the middle; 5, 6: none now, flowed at the first, second end
   std::vector<float> contact_depth;  ///< c, 1 - l/L; 0: open
   std::vector<float> contact_force;  ///< c x 3, N
   std::vector<double> energy;        ///< input, kinetic, strain, gravity, contact, friction, normal damping,
