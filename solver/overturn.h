@@ -25,6 +25,13 @@ struct BodyPose {
 };
 BodyPose body_pose(const Model& model, const State& state, int body);
 
+/// Momentum of a body.
+struct BodyMomentum {
+  Vec3 velocity;          ///< m/s, of the centre of gravity
+  Vec3 angular_momentum;  ///< kg m^2/s, about the centre of gravity, world axes
+};
+BodyMomentum body_momentum(const Model& model, const State& state, int body);
+
 /// Angle between the body's vertical axis now and in its reference pose, rad, 0..pi.
 double tilt(const BodyPose& pose);
 
@@ -52,6 +59,8 @@ struct BodyOutcome {
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_uplift;
   int impacts = 0;
+  std::optional<double> first_impact;
+  double rebound_tilt = 0;              ///< greatest tilt since the first impact
   double peak_stress = 0;               ///< Pa
   double peak_penetration = 0;          ///< greatest 1 - l/L
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
