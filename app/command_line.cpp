@@ -215,7 +215,8 @@ class CommandLine {
   void add_verify() {
     CLI::App& command = add_command("verify", "compare with theory and published numbers",
                                     "verify --filter rocking --json verify.json");
-    command.add_option("SCENES", verify_.scenes, "paths or names of scenes with [[expect]]; absent: all cases")
+    command
+        .add_option("SCENES", verify_.scenes, "paths or names of scenes with [[expect]]; absent: all cases")
         ->type_name("");
     add_path(command, "--filter", verify_.filter, "TEXT", "cases with this in the name of scene or row");
     add_path(command, "--json", verify_.json, "FILE|-", "write the rows as JSON; - for standard output");

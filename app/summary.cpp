@@ -171,16 +171,18 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
                    {"gravity_J", number(e.gravity)},
                    {"contact_J", number(e.contact)},
                    {"start_J", number(e.start_total)},
-                  {"dissipated_J", number(e.dissipated())},
+                   {"dissipated_J", number(e.dissipated())},
                    {"friction_J", number(e.friction)},
                    {"normal_damping_J", number(e.normal_damping)},
                    {"numerical_J", number(e.numerical)},
                    {"balance_error", is_static(run) ? ordered_json(nullptr) : number(e.balance_error())}};
+  out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
+                  {"final_velocity_m_s", vector(state.floor_velocity)}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b],
-                                 body_momentum(model, state, static_cast<int>(b))));
+    out["bodies"].push_back(
+        body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, static_cast<int>(b))));
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {
     const ProbeOutcome& probe = run.probes()[k];

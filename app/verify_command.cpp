@@ -180,8 +180,8 @@ std::string number(const ordered_json& value, const char* format) {
 
 /// The rows of one scene; what they share of source and reason stands once below them.
 std::string block(const ordered_json& rows, std::size_t begin, std::size_t end) {
-  std::string out = wrapped(
-      rows[begin]["scene"].get<std::string>() + ": " + rows[begin]["title"].get<std::string>(), 2);
+  std::string out =
+      wrapped(rows[begin]["scene"].get<std::string>() + ": " + rows[begin]["title"].get<std::string>(), 2);
   for (std::size_t k = begin; k < end; ++k) {
     const ordered_json& r = rows[k];
     out += fmt::format("  {:<40} {:>12} {:>12} {:>9} {:>9}  {}\n", r["name"].get<std::string>(),
@@ -191,16 +191,16 @@ std::string block(const ordered_json& rows, std::size_t begin, std::size_t end) 
     if (r.contains("trouble")) out += wrapped("    " + r["trouble"].get<std::string>(), 4);
     for (const char* key : {"source", "reason"})
       if (k + 1 == end || rows[k + 1][key] != r[key])
-        out += wrapped((key == std::string("source") ? "    from " : "    owed: ") + r[key].get<std::string>(),
-                       6);
+        out += wrapped(
+            (key == std::string("source") ? "    from " : "    owed: ") + r[key].get<std::string>(), 6);
   }
   return out;
 }
 
 std::string table(const ordered_json& out) {
   const ordered_json& rows = out["rows"];
-  std::string text = fmt::format("  {:<40} {:>12} {:>12} {:>9} {:>9}\n", "", "computed", "reference", "error",
-                                 "tolerance");
+  std::string text =
+      fmt::format("  {:<40} {:>12} {:>12} {:>9} {:>9}\n", "", "computed", "reference", "error", "tolerance");
   for (std::size_t begin = 0; begin < rows.size();) {
     std::size_t end = begin + 1;
     while (end < rows.size() && rows[end]["scene"] == rows[begin]["scene"]) ++end;
