@@ -23,7 +23,7 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"study", "verify", "compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"study", "compare", "report", "recover"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -84,6 +84,7 @@ class CommandLine {
     add_render();
     add_export();
     add_modes();
+    add_verify();
     add_check();
     add_info();
     add_scenes();
@@ -211,6 +212,18 @@ class CommandLine {
     });
   }
 
+  void add_verify() {
+    CLI::App& command = add_command("verify", "compare with theory and published numbers",
+                                    "verify --filter rocking --json verify.json");
+    command
+        .add_option("SCENES", verify_.scenes, "paths or names of scenes with [[expect]]; absent: all cases")
+        ->type_name("");
+    add_path(command, "--filter", verify_.filter, "TEXT", "cases with this in the name of scene or row");
+    add_path(command, "--json", verify_.json, "FILE|-", "write the rows as JSON; - for standard output");
+    command.add_flag("--quiet", verify_.quiet, "no progress");
+    command.callback([this] { action_ = [this] { return verify_command(verify_); }; });
+  }
+
   void add_check() {
     CLI::App& command = add_command("check", "validate scenes without running them",
                                     "check my-office.toml --set shake.1.amplitude=\"0.2 g\"");
@@ -278,6 +291,7 @@ class CommandLine {
   std::vector<std::string> scenes_, check_overrides_;
   InfoOptions info_;
   ModesOptions modes_;
+  VerifyOptions verify_;
   std::string count_;
 };
 

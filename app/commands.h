@@ -65,6 +65,14 @@ struct ModesOptions {
 };
 int modes_command(const ModesOptions& options);
 
+struct VerifyOptions {
+  std::vector<std::string> scenes;  ///< paths or names; empty: all verification scenes
+  std::string filter;               ///< empty: every row
+  std::string json;                 ///< file, "-" or empty
+  bool quiet = false;
+};
+int verify_command(const VerifyOptions& options);
+
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 
 struct InfoOptions {

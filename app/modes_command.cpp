@@ -60,15 +60,20 @@ std::string table(const ordered_json& out) {
 
 }  // namespace
 
-int modes_command(const ModesOptions& options) {
-  const io::Scene scene = io::load_scene(options.scene, options.overrides);
-  const bool to_output = options.json == "-";
-  if (!options.json.empty() && !to_output) require_writable_text("--json", options.json, options.scene);
+ordered_json modes_summary(const io::Scene& scene, int count) {
   ordered_json out{{"topple", TOPPLE_VERSION}, {"schema", 1}, {"scene", scene.name}};
   out["bodies"] = ordered_json::array();
   const Model& model = scene.setup.model;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    out["bodies"].push_back(describe(model, b, options.count));
+    out["bodies"].push_back(describe(model, b, count));
+  return out;
+}
+
+int modes_command(const ModesOptions& options) {
+  const io::Scene scene = io::load_scene(options.scene, options.overrides);
+  const bool to_output = options.json == "-";
+  if (!options.json.empty() && !to_output) require_writable_text("--json", options.json, options.scene);
+  const ordered_json out = modes_summary(scene, options.count);
   if (to_output) {
     fmt::print("{}\n", json_text(out, 2));
     return k_done;

@@ -26,18 +26,22 @@ ordered_json vector(const Vec3& v) {
   return {number(v.x()), number(v.y()), number(v.z())};
 }
 
-ordered_json body(const Body& body, const BodyOutcome& o) {
+ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
           {"model", "frame"},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
           {"first_uplift_s", number(o.first_uplift)},
           {"impacts", o.impacts},
+          {"first_impact_s", number(o.first_impact)},
           {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
+          {"rebound_tilt_deg", o.first_impact ? number(o.rebound_tilt * k_degrees) : ordered_json(nullptr)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical * k_degrees)},
           {"peak_slide_m", number(o.peak_slide)},
           {"final_slide_m", number(o.slide)},
+          {"final_velocity_m_s", vector(momentum.velocity)},
+          {"final_angular_momentum_kg_m2_s", vector(momentum.angular_momentum)},
           {"peak_stress_Pa", number(o.peak_stress)},
           {"peak_yield_ratio", number(o.peak_yield_ratio)},
           {"hinges", o.hinges},
@@ -73,6 +77,14 @@ ordered_json load_steps(const Run& run) {
   for (const LoadStep& step : run.load_steps())
     list.push_back({{"factor", number(step.factor)}, {"converged", step.converged}});
   return list;
+}
+
+/// Of the balances found: a limit load, where the path goes beyond it.
+ordered_json peak_load_factor(const Run& run) {
+  std::optional<double> peak;
+  for (const LoadStep& step : run.load_steps())
+    if (step.converged) peak = std::max(peak.value_or(step.factor), step.factor);
+  return number(peak);
 }
 
 ordered_json warnings(const Run& run) {
@@ -167,16 +179,20 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
                    {"strain_J", number(e.strain)},
                    {"gravity_J", number(e.gravity)},
                    {"contact_J", number(e.contact)},
+                   {"start_J", number(e.start_total)},
                    {"dissipated_J", number(e.dissipated())},
                    {"friction_J", number(e.friction)},
                    {"normal_damping_J", number(e.normal_damping)},
                    {"numerical_J", number(e.numerical)},
                    {"plastic_J", number(e.plastic)},
                    {"balance_error", is_static(run) ? ordered_json(nullptr) : number(e.balance_error())}};
+  out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
+                  {"final_velocity_m_s", vector(state.floor_velocity)}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b]));
+    out["bodies"].push_back(
+        body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, static_cast<int>(b))));
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {
     const ProbeOutcome& probe = run.probes()[k];
@@ -187,6 +203,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
          {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
   }
   out["static"] = load_steps(run);
+  out["peak_load_factor"] = is_static(run) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = warnings(run);
   return out;
 }

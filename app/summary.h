@@ -9,6 +9,9 @@
 
 namespace topple::app {
 
+/// Natural frequencies and shapes of each body, `count` of them: the summary of analysis = "modes".
+nlohmann::ordered_json modes_summary(const io::Scene& scene, int count);
+
 /// The summary of interface 3. What does not exist is null; numbers that are not finite are null too.
 /// `status`: completed, stopped, diverged or interrupted.
 nlohmann::ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s);

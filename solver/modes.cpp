@@ -206,7 +206,8 @@ Pairs elastic_pairs(Pencil& p, const MatrixXd& rigid, int count) {
     for (int k = 1; k < k_blocks && basis.cols() < left; ++k) {
       MatrixXd known(p.rows(), rigid.cols() + basis.cols());
       known << rigid, basis;
-      block = orthonormal(p, known, p.solve(p.mass(block)));
+      // rounding on fixed directions has no mass: it would grow unseen
+      block = orthonormal(p, known, p.clear_fixed(p.solve(p.mass(block))));
       if (block.cols() == 0) break;
       known.resize(p.rows(), basis.cols() + block.cols());
       known << basis, block;

@@ -79,6 +79,21 @@ double tilt(const BodyPose& pose) {
   return std::atan2(std::hypot(up.x(), up.y()), up.z());
 }
 
+BodyMomentum body_momentum(const Model& model, const State& state, int index) {
+  const Body& body = model.bodies[index];
+  BodyMomentum out{Vec3::Zero(), Vec3::Zero()};
+  Vec3 centre = Vec3::Zero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+    centre += model.node_mass[i] * state.position[i] / body.mass;
+    out.velocity += model.node_mass[i] * state.velocity[i] / body.mass;
+  }
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    out.angular_momentum +=
+        model.node_mass[i] * (state.position[i] - centre).cross(state.velocity[i] - out.velocity) +
+        state.rotation[i] * (model.node_inertia[i] * state.angular_velocity[i]);
+  return out;
+}
+
 double critical_angle(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
   if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index))
@@ -147,6 +162,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     o.time = state.time;
     o.tilt = tilt(pose);
     o.peak_tilt = std::max(o.peak_tilt, o.tilt);
+    if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
     o.slide = topple::slide(model, static_cast<int>(b), pose);
     o.peak_slide = std::max(o.peak_slide, o.slide);
     o.critical = critical_angle(model, static_cast<int>(b), pose);
@@ -177,6 +193,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
       } else if (o.lifted[side] && carried > k_closing * weight) {
         o.lifted[side] = false;
         ++o.impacts;
+        if (!o.first_impact) o.first_impact = state.time;
         add(Event::Kind::impact, state.time, static_cast<double>(side));
       }
     }

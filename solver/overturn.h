@@ -25,6 +25,13 @@ struct BodyPose {
 };
 BodyPose body_pose(const Model& model, const State& state, int body);
 
+/// Momentum of a body.
+struct BodyMomentum {
+  Vec3 velocity;          ///< m/s, of the centre of gravity
+  Vec3 angular_momentum;  ///< kg m^2/s, about the centre of gravity, world axes
+};
+BodyMomentum body_momentum(const Model& model, const State& state, int body);
+
 /// Angle between the body's vertical axis now and in its reference pose, rad, 0..pi.
 double tilt(const BodyPose& pose);
 
@@ -53,7 +60,9 @@ struct BodyOutcome {
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_uplift;
   int impacts = 0;
-  double peak_stress = 0;  ///< Pa
+  std::optional<double> first_impact;
+  double rebound_tilt = 0;  ///< greatest tilt since the first impact
+  double peak_stress = 0;   ///< Pa
   /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
   std::optional<double> peak_yield_ratio;
   int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not

@@ -1,9 +1,11 @@
 include(${PROJECT_SOURCE_DIR}/assets/embed.cmake)
 
-file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml)
+file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml
+  ${PROJECT_SOURCE_DIR}/assets/scenes/verify/*.toml)
 topple_embed(
   TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_scenes.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
+  BASE ${PROJECT_SOURCE_DIR}/assets/scenes
   FILES ${scene_files})
 
 target_sources(topple_io PRIVATE

@@ -55,6 +55,7 @@ Scene parse_scene(std::string_view text, const std::string& origin,
   read_bodies(entry, scene.setup);
   read_probes(entry, scene.setup);
   read_control(entry, scene.setup);
+  read_expectations(entry, scene);
   return scene;
 }
 
@@ -68,6 +69,8 @@ Scene load_scene(const std::string& path_or_name, const std::vector<std::string>
     if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
     names += (names.empty() ? "" : ", ") + std::string(scene.name);
   }
+  for (const BuiltinScene& scene : verification_scenes())
+    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
   throw InputError(path_or_name + ": no such file or built-in scene; built-in: " + names);
 }
 

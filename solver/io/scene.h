@@ -15,12 +15,25 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What theory or print says about a number of the summary.
+struct Expectation {
+  std::string name;
+  std::string value;  ///< JSON pointer into the summary: "/probes/0/final/displacement_m/2"
+  double reference = 0;
+  double tolerance = 0;  ///< largest |value - reference|/scale
+  double scale = 1;      ///< > 0, |reference| unless given
+  std::string source;    ///< of the reference
+  std::string reason;    ///< why this tolerance
+  std::string place;     ///< begin of an error line on `value`: "s.toml:9:9: expect.tip.value: "
+};
+
 /// A scene file understood.
 struct Scene {
   std::string name;  ///< "paper-a": built-in name, or the file's name without folder and extension
   std::string title;
   std::string text;  ///< the TOML that describes it, overrides applied: what a recording keeps
   Setup setup;
+  std::vector<Expectation> expectations;
 };
 
 /// Loads a built-in scene by name or a file by path; a path wins when the file exists. `overrides`:
@@ -31,11 +44,13 @@ Scene load_scene(const std::string& path_or_name, const std::vector<std::string>
 Scene parse_scene(std::string_view text, const std::string& origin,
                   const std::vector<std::string>& overrides = {});
 
-/// Name, title of each built-in scene, in alphabetical order.
+/// Name and text of each built-in scene, in alphabetical order.
 struct BuiltinScene {
   std::string_view name;
   std::string_view text;
 };
 const std::vector<BuiltinScene>& builtin_scenes();
+/// The same of those that `topple verify` runs, "verify/NAME".
+const std::vector<BuiltinScene>& verification_scenes();
 
 }  // namespace topple::io

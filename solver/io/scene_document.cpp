@@ -187,14 +187,19 @@ Item* Node::find_item(std::string_view key) {
   return const_cast<Item*>(static_cast<const Node&>(*this).find_item(key));
 }
 
-void fail(const std::string& origin, const Place& place, const std::string& path,
-          const std::string& message) {
+std::string error_line(const std::string& origin, const Place& place, const std::string& path,
+                       const std::string& message) {
   std::string line = place.override_text
                          ? "--set " + *place.override_text
                          : origin + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
   line += ": ";
   if (!path.empty()) line += path + ": ";
-  throw InputError(without_control_characters(line + message));
+  return without_control_characters(line + message);
+}
+
+void fail(const std::string& origin, const Place& place, const std::string& path,
+          const std::string& message) {
+  throw InputError(error_line(origin, place, path, message));
 }
 
 Node parse_toml(std::string_view text, const std::string& origin) {

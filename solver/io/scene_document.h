@@ -43,8 +43,11 @@ struct Item {
   Node value;
 };
 
-/// Fails with "ORIGIN:L:C: PATH: MESSAGE" or "--set KEY=VALUE: PATH: MESSAGE", always one line. Throws
-/// InputError.
+/// "ORIGIN:L:C: PATH: MESSAGE" or "--set KEY=VALUE: PATH: MESSAGE", always one line.
+std::string error_line(const std::string& origin, const Place& place, const std::string& path,
+                       const std::string& message);
+
+/// Throws InputError with error_line().
 [[noreturn]] void fail(const std::string& origin, const Place& place, const std::string& path,
                        const std::string& message);
 

@@ -130,4 +130,9 @@ void Entry::fail(std::string_view key, const std::string& message, int part) con
   io::fail(origin_, node ? node->place : place_, path, message);
 }
 
+std::string Entry::where(std::string_view key) const {
+  const Node* node = find(key);
+  return error_line(origin_, node ? node->place : place_, path_ + "." + std::string(key), "");
+}
+
 }  // namespace topple::io

@@ -47,6 +47,8 @@ class Entry {
 
   /// Blames a value, the key's absence, or with `part` an entry of a list. Throws InputError.
   [[noreturn]] void fail(std::string_view key, const std::string& message, int part = -1) const;
+  /// How an error line on `key` begins: "s.toml:9:9: expect.tip.value: ".
+  std::string where(std::string_view key) const;
   [[noreturn]] void fail(const std::string& message) const { io::fail(origin_, place_, path_, message); }
 
  private:

@@ -29,6 +29,7 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("frame", T::tables, "anything made of straight members");
   rows.later("anchor", "ties a body to a wall or floor");
   rows.plain("probe", T::tables, "motion reported in the summary");
+  rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
 }
 
 void add_run(std::vector<Key>& keys) {
@@ -214,6 +215,19 @@ void add_probe(std::vector<Key>& keys) {
   rows.integer("node", 0, 1e6, "node of a frame's list").absent_means("the body itself");
 }
 
+void add_expect(std::vector<Key>& keys) {
+  Rows rows(keys, "expect");
+  rows.plain("name", T::text, "what it is").absent_means("expect-1, ...");
+  rows.plain("value", T::text, "JSON pointer into the summary: `/bodies/0/impacts`; true counts as 1")
+      .required();
+  rows.number("reference", -1e300, 1e300, "what it should be, in the unit of the summary").required();
+  rows.number("tolerance", 0, 1e3, "largest error over the scale").required();
+  rows.number("scale", 1e-300, 1e300, "what error and tolerance are relative to")
+      .absent_means("size of the reference");
+  rows.plain("source", T::text, "where the reference is from").required();
+  rows.plain("reason", T::text, "why this tolerance").required();
+}
+
 std::vector<Key> build_table() {
   std::vector<Key> keys;
   add_top(keys);
@@ -227,6 +241,7 @@ std::vector<Key> build_table() {
   add_section(keys);
   add_body_keys(keys);
   add_probe(keys);
+  add_expect(keys);
   return keys;
 }
 

@@ -1,6 +1,7 @@
 #include "solver/io/scene_read.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace topple::io {
 namespace {
@@ -92,6 +93,16 @@ double poisson_of_section(const Entry& root, const Setup& setup, const std::stri
   }
   constexpr double k_unused = 0.3;
   return k_unused;
+}
+
+// RFC 6901: "/" before every part; "~" only as "~0" or "~1".
+void check_pointer(const Entry& entry, const std::string& pointer) {
+  bool sound = pointer.front() == '/';
+  for (std::size_t i = 0; i < pointer.size(); ++i)
+    if (pointer[i] == '~') sound = sound && i + 1 < pointer.size() && (pointer[i + 1] | 1) == '1';
+  if (!sound)
+    entry.fail("value",
+               "\"" + pointer + "\" is not a JSON pointer into the summary, such as /bodies/0/impacts");
 }
 
 }  // namespace
@@ -221,6 +232,24 @@ void read_control(const Entry& root, Setup& setup) {
     if (*control.to == 0) entry.fail(key, "is no travel");
   }
   setup.run.statics.control = control;
+}
+
+void read_expectations(const Entry& root, Scene& scene) {
+  for (const Entry& entry : root.entries("expect")) {
+    Expectation expected;
+    expected.name = entry.name();
+    expected.value = entry.text("value");
+    check_pointer(entry, expected.value);
+    expected.reference = entry.number("reference");
+    expected.tolerance = entry.number("tolerance");
+    if (!entry.has("scale") && expected.reference == 0)
+      entry.fail("scale", "missing; nothing is relative to a reference of 0");
+    expected.scale = entry.has("scale") ? entry.number("scale") : std::abs(expected.reference);
+    expected.source = entry.text("source");
+    expected.reason = entry.text("reason");
+    expected.place = entry.where("value");
+    scene.expectations.push_back(std::move(expected));
+  }
 }
 
 }  // namespace topple::io

@@ -1,6 +1,7 @@
 // From a checked scene to a Setup, part by part. All throw InputError.
 #pragma once
 
+#include "solver/io/scene.h"
 #include "solver/io/scene_entry.h"
 #include "solver/run.h"
 
@@ -27,5 +28,8 @@ void read_probes(const Entry& root, Setup& setup);
 
 /// run.control; after the bodies.
 void read_control(const Entry& root, Setup& setup);
+
+/// [[expect]].
+void read_expectations(const Entry& root, Scene& scene);
 
 }  // namespace topple::io

@@ -13,6 +13,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/usage_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/verification_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/viewer_test.cpp)
 target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)

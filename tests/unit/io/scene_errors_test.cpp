@@ -29,8 +29,8 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(
       error_of("tople = 1\n" + k_scene),
-      "s.toml:1:1: tople: unknown key; known: cabinet, contact, floor, frame, material, probe, run, section, "
-      "shake, title, topple, wall");
+      "s.toml:1:1: tople: unknown key; known: cabinet, contact, expect, floor, frame, material, probe, run, "
+      "section, shake, title, topple, wall");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
 }
@@ -388,9 +388,10 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
     load_scene("no-such-scene");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "no-such-scene: no such file or built-in scene; built-in: cantilever, free-rocking, "
-                 "paper-a, paper-b, tumble");
+    EXPECT_STREQ(
+        error.what(),
+        "no-such-scene: no such file or built-in scene; built-in: breaking, cantilever, free-rocking, "
+        "paper-a, paper-b, portal-pushover, tumble, yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

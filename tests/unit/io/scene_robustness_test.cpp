@@ -20,7 +20,7 @@ bool survives(const std::string& text, const std::vector<std::string>& overrides
 }
 
 TEST(SceneRobustness, every_prefix_of_paper_a_is_read_or_refused) {
-  const std::string text(builtin_scenes().at(2).text);
+  const std::string text(load_scene("paper-a").text);
   ASSERT_NE(text.find("190 gal"), std::string::npos);
   int read = 0;
   for (std::size_t size = 0; size <= text.size(); ++size) {

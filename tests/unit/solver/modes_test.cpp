@@ -101,6 +101,15 @@ TEST(Modes, large_and_small_bodies_are_solved_to_the_same_frequencies) {
     EXPECT_NEAR(few[k].frequency, all[k].frequency, 1e-6 * all[k].frequency) << k;
 }
 
+TEST(Modes, a_held_body_has_no_rigid_modes_however_many_are_asked_for) {
+  const Model model = square_beam(80, simply_supported());
+  for (int count : {15, 20, 30}) {
+    const std::vector<Mode> modes = natural_modes(model, 0, count);
+    ASSERT_EQ(modes.size(), static_cast<std::size_t>(count));
+    for (const Mode& mode : modes) EXPECT_GT(mode.frequency, 100) << count;
+  }
+}
+
 TEST(Modes, shapes_solve_the_problem_and_effective_masses_add_up) {
   const Model model = square_beam(4, {{0, k_clamped}});
   const std::vector<Mode> modes = natural_modes(model, 0, 1000);
