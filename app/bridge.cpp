@@ -16,6 +16,10 @@ constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
 constexpr double k_mega = 1e-6;
+constexpr std::uint8_t k_broken = 3;      // FrameRow::hinge
+constexpr double k_ring = 0.85;           // radius of a hinge's ring, of the section
+constexpr double k_least_section = 0.02;  // m, of a section without sides
+constexpr render::Float4 k_hinge_colour = {0.90f, 0.33f, 0.04f, 1};
 constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
 
 render::Float3 to_float(const Vec3& v) {
@@ -35,10 +39,18 @@ Vec3 floor_shift(const io::FrameRow& row) {
   return Vec3(row.floor_displacement);
 }
 
+render::Station station(const Vec3& x, const Quat& q) {
+  return {to_float(x),
+          {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
+           static_cast<float>(q.z())},
+          0};
+}
+
 void expect_same_model(const Model& model, const io::FrameRow& row) {
   const std::size_t nodes = model.node_position.size(), elements = model.elements.size();
   if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
-      row.section_force.size() != 6 * elements || row.body.size() != 11 * model.bodies.size())
+      row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
+      row.body.size() != 11 * model.bodies.size())
     throw io::InputError(io::k_another_model);
 }
 
@@ -60,6 +72,26 @@ render::Profile profile(const Section& section) {
 }
 
 }  // namespace
+
+/// An element between its nodes, in the picture's frame.
+struct Curve {
+  Vec3 x1, x2;
+  Quat q1, q2;    ///< local axes at the nodes
+  double length;  ///< m, reference
+
+  render::Station at(double t) const {
+    const double span = (x2 - x1).norm(), t2 = t * t, t3 = t2 * t;
+    const Vec3 d1 = span * (q1 * Vec3::UnitX()), d2 = span * (q2 * Vec3::UnitX());
+    return station(
+        (2 * t3 - 3 * t2 + 1) * x1 + (t3 - 2 * t2 + t) * d1 + (3 * t2 - 2 * t3) * x2 + (t3 - t2) * d2,
+        q1.slerp(t, q2));
+  }
+  /// The halves of a broken one.
+  render::Station stub(double t) const {
+    return t < 0.5 ? station(x1 + t * length * (q1 * Vec3::UnitX()), q1)
+                   : station(x2 - (1 - t) * length * (q2 * Vec3::UnitX()), q2);
+  }
+};
 
 SectionForces forces_at(const Model& model, const io::FrameRow& row, std::size_t e, double xi) {
   const float* f = &row.section_force[6 * e];
@@ -142,6 +174,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   out.profiles = profiles_;
   const Vec3 shift = floor_shift(row);
   add_tubes(row, out.stations, out.tubes);
+  add_hinges(row, out);
   out.legend.quantity = "equivalent stress";
   out.legend.unit = "MPa";
   out.legend.range_policy = "covers 95 % of the run";
@@ -167,48 +200,79 @@ void Bridge::add_ghost(const io::FrameRow& row, render::SceneFrame& out) const {
 }
 
 // Between its nodes an element is a cubic in space with the nodes' directions at its ends, its section
-// turning evenly.
+// turning evenly. A broken one is two stubs, each as its node stands.
 void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
                        std::vector<render::Tube>& tubes) const {
   const Model& model = scene_.setup.model;
-  const Vec3 shift = floor_shift(row);
   for (std::size_t m = 0; m < model.members.size(); ++m) {
     const Member& member = model.members[m];
-    const Section& section = model.sections[member.section];
     render::Tube tube;
-    tube.first_station = static_cast<std::uint32_t>(stations.size());
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
-    if (section.shape != Section::Shape::custom) {
-      const int first = model.elements[member.first_element].node[0];
-      const int last = model.elements[member.first_element + member.element_count - 1].node[1];
-      const float half = static_cast<float>(std::min(section.size_y, section.size_z) / 2);
-      if (joint_[first]) tube.lead = half;
-      if (joint_[last]) tube.trail = half;
-    }
-    for (int k = 0; k < member.element_count; ++k) {
-      const std::size_t e = static_cast<std::size_t>(member.first_element + k);
-      const Element& element = model.elements[e];
-      const Vec3 x1 = position(row, element.node[0]) + shift, x2 = position(row, element.node[1]) + shift;
-      const Quat triad(element.triad);
-      const Quat q1 = rotation(row, element.node[0]) * triad, q2 = rotation(row, element.node[1]) * triad;
-      const double length = (x2 - x1).norm();
-      const Vec3 d1 = length * (q1 * Vec3::UnitX()), d2 = length * (q2 * Vec3::UnitX());
-      for (int i = k == 0 ? 0 : 1; i < k_stations; ++i) {
-        const double t = static_cast<double>(i) / (k_stations - 1), t2 = t * t, t3 = t2 * t;
-        const Vec3 x =
-            (2 * t3 - 3 * t2 + 1) * x1 + (t3 - 2 * t2 + t) * d1 + (3 * t2 - 2 * t3) * x2 + (t3 - t2) * d2;
-        const Quat q = q1.slerp(t, q2);
-        const double stress = equivalent_stress(section, forces_at(model, row, e, 2 * t - 1));
-        stations.push_back({to_float(x),
-                            {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
-                             static_cast<float>(q.z())},
-                            static_cast<float>(stress * k_mega)});
+    const auto begin = [&](float lead) {
+      tube.first_station = static_cast<std::uint32_t>(stations.size());
+      tube.lead = lead;
+    };
+    const auto end = [&](float trail) {
+      tube.station_count = static_cast<std::uint32_t>(stations.size()) - tube.first_station;
+      tube.trail = trail;
+      tubes.push_back(tube);
+    };
+    const std::size_t first = static_cast<std::size_t>(member.first_element);
+    const std::size_t last = first + static_cast<std::size_t>(member.element_count) - 1;
+    begin(closing(member, model.elements[first].node[0]));
+    for (std::size_t e = first; e <= last; ++e) {
+      const bool broken = row.hinge[e] == k_broken;
+      const Curve curve = curve_of(row, e, floor_shift(row));
+      for (int i = e == first ? 0 : 1; i < k_stations; ++i) {
+        const double t = static_cast<double>(i) / (k_stations - 1);
+        if (broken && i == k_stations / 2) {
+          end(0);
+          begin(0);
+        }
+        stations.push_back(broken ? curve.stub(t) : curve.at(t));
+        stations.back().value = static_cast<float>(
+            k_mega * equivalent_stress(model.sections[static_cast<std::size_t>(member.section)],
+                                       forces_at(model, row, e, 2 * t - 1)));
       }
     }
-    tube.station_count = static_cast<std::uint32_t>(stations.size()) - tube.first_station;
-    tubes.push_back(tube);
+    end(closing(member, model.elements[last].node[1]));
+  }
+}
+
+/// How far the section is drawn on at a node where several members meet, m.
+float Bridge::closing(const Member& member, int node) const {
+  const Section& section = scene_.setup.model.sections[static_cast<std::size_t>(member.section)];
+  if (section.shape == Section::Shape::custom || !joint_[static_cast<std::size_t>(node)]) return 0;
+  return static_cast<float>(std::min(section.size_y, section.size_z) / 2);
+}
+
+Curve Bridge::curve_of(const io::FrameRow& row, std::size_t e, const Vec3& shift) const {
+  const Element& element = scene_.setup.model.elements[e];
+  const Quat triad(element.triad);
+  return {.x1 = position(row, element.node[0]) + shift,
+          .x2 = position(row, element.node[1]) + shift,
+          .q1 = rotation(row, element.node[0]) * triad,
+          .q2 = rotation(row, element.node[1]) * triad,
+          .length = element.length};
+}
+
+// A hinge is a ring in the plane in which it bends.
+void Bridge::add_hinges(const io::FrameRow& row, render::SceneFrame& out) const {
+  const Model& model = scene_.setup.model;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    if (row.hinge[e] == 0 || row.hinge[e] == k_broken) continue;
+    const Section& section = model.sections[static_cast<std::size_t>(
+        model.members[static_cast<std::size_t>(model.elements[e].member)].section)];
+    const bool at_first = row.hinge[e] == 1;
+    const Curve curve = curve_of(row, e, floor_shift(row));
+    const SectionForces forces = forces_at(model, row, e, at_first ? -1 : 1);
+    const Quat& turned = at_first ? curve.q1 : curve.q2;
+    const double size = std::max({section.size_y, section.size_z, k_least_section});
+    out.rings.push_back({to_float(at_first ? curve.x1 : curve.x2),
+                         to_float(turned * Vec3(0, forces.moment.y(), forces.moment.z())),
+                         static_cast<float>(k_ring * size), k_hinge_colour});
   }
 }
 

@@ -34,6 +34,8 @@ SectionForces forces_at(const Model& model, const io::FrameRow& row, std::size_t
 /// The row at `time` between two neighbours: positions and numbers linear, rotations by the shorter arc.
 io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 
+struct Curve;
+
 /// Translates rows of one scene.
 class Bridge {
  public:
@@ -46,6 +48,9 @@ class Bridge {
  private:
   void add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
                  std::vector<render::Tube>& tubes) const;
+  float closing(const Member& member, int node) const;
+  Curve curve_of(const io::FrameRow& row, std::size_t e, const Vec3& shift) const;
+  void add_hinges(const io::FrameRow& row, render::SceneFrame& out) const;
   void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
   void add_captions(const io::FrameRow& row, const Parameters& parameters, render::SceneFrame& out) const;
 

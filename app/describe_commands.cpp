@@ -46,7 +46,7 @@ ordered_json describe(const io::Scene& scene) {
 }
 
 ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies) {
-  static const char* const k_kinds[] = {"uplift", "impact", "overturn"};
+  static const char* const k_kinds[] = {"uplift", "impact", "overturn", "hinge", "fracture"};
   const auto kind = static_cast<std::size_t>(e.event.kind), body = static_cast<std::size_t>(e.event.body);
   if (kind >= std::size(k_kinds) || body >= bodies.size())
     throw io::InputError("the recording has an event of a kind or a body that it does not describe");

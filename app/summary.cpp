@@ -43,9 +43,9 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"final_velocity_m_s", vector(momentum.velocity)},
           {"final_angular_momentum_kg_m2_s", vector(momentum.angular_momentum)},
           {"peak_stress_Pa", number(o.peak_stress)},
-          {"peak_yield_ratio", nullptr},
-          {"hinges", 0},
-          {"fractures", 0},
+          {"peak_yield_ratio", number(o.peak_yield_ratio)},
+          {"hinges", o.hinges},
+          {"fractures", o.fractures},
           {"peak_penetration_ratio", number(o.peak_penetration)}};
 }
 
@@ -96,6 +96,12 @@ ordered_json warnings(const Run& run) {
           fmt::format("body \"{}\" sank to {:.2f} contact widths: the centre line of a member passed that of "
                       "the floor or wall; a larger alpha or width holds it",
                       run.setup().model.bodies[b].name, bodies[b].peak_penetration));
+  const Model& model = run.setup().model;
+  for (const int member : run.outcome().crowded_members())
+    list.push_back(
+        fmt::format("body \"{}\", member \"{}\": both ends of an element pass yield, which holds one "
+                    "hinge; more elements or divisions show it",
+                    model.bodies[model.members[member].body].name, model.members[member].name));
   const double balance = run.state().energy.balance_error();
   if (!is_static(run) && balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
@@ -175,6 +181,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
                    {"friction_J", number(e.friction)},
                    {"normal_damping_J", number(e.normal_damping)},
                    {"numerical_J", number(e.numerical)},
+                   {"plastic_J", number(e.plastic)},
                    {"balance_error", is_static(run) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
                   {"final_velocity_m_s", vector(state.floor_velocity)}};

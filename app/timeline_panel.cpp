@@ -139,9 +139,11 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
 }
 
 std::string event_text(const Model& model, const io::RecordedEvent& event) {
-  const char* what = event.event.kind == Event::Kind::uplift   ? "lifts off"
-                     : event.event.kind == Event::Kind::impact ? "strikes the floor"
-                                                               : "passes its critical angle";
+  const char* what = event.event.kind == Event::Kind::uplift     ? "lifts off"
+                     : event.event.kind == Event::Kind::impact   ? "strikes the floor"
+                     : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
+                     : event.event.kind == Event::Kind::fracture ? "breaks a member"
+                                                                 : "passes its critical angle";
   return fmt::format("{:.3f} s: {} {}", event.time,
                      model.bodies[static_cast<std::size_t>(event.event.body)].name, what);
 }

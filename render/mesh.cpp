@@ -209,6 +209,39 @@ bool push_arrow(Mesh& mesh, const Arrow& arrow, float scene_size) {
   return true;
 }
 
+bool push_ring(Mesh& mesh, const render::Ring& ring) {
+  constexpr std::uint32_t k_around = 32, k_across = 10;
+  constexpr float k_thickness = 0.16f;  // of the radius
+  if (!drawable(ring.centre) || !drawable(ring.axis) || !drawable(ring.colour) || !drawable(ring.radius) ||
+      ring.radius <= 0)
+    return false;
+  const Vector3f centre(ring.centre.data());
+  const Vector3f axis = Vector3f(ring.axis.data()).stableNormalized();
+  if (!(axis.norm() > 0.5f)) return false;
+  const Vector3f y = axis.unitOrthogonal();
+  const Vector3f z = axis.cross(y);
+  const std::uint32_t rgba = packed(ring.colour);
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto angle = [](std::uint32_t i, std::uint32_t n) {
+    return 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(n);
+  };
+  for (std::uint32_t i = 0; i < k_around; ++i) {
+    const Vector3f out = std::cos(angle(i, k_around)) * y + std::sin(angle(i, k_around)) * z;
+    for (std::uint32_t j = 0; j < k_across; ++j) {
+      const Vector3f normal = std::cos(angle(j, k_across)) * out + std::sin(angle(j, k_across)) * axis;
+      mesh.vertices.push_back({centre + ring.radius * (out + k_thickness * normal), normal, 0, rgba});
+    }
+  }
+  for (std::uint32_t i = 0; i < k_around; ++i) {
+    for (std::uint32_t j = 0; j < k_across; ++j) {
+      const std::uint32_t a = base + k_across * i, b = base + k_across * ((i + 1) % k_around);
+      const std::uint32_t k = (j + 1) % k_across;
+      mesh.indices.insert(mesh.indices.end(), {a + j, b + j, b + k, a + j, b + k, a + k});
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> triangulated(const std::vector<std::array<float, 2>>& outline) {
@@ -250,6 +283,9 @@ Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out) {
   const auto [low, high] = drawable_bounds(frame);
   for (const Arrow& arrow : frame.arrows) {
     if (!push_arrow(mesh, arrow, (high - low).norm())) ++left_out.arrows;
+  }
+  for (const render::Ring& ring : frame.rings) {
+    if (!push_ring(mesh, ring)) ++left_out.rings;
   }
   return mesh;
 }

@@ -17,9 +17,10 @@ struct LeftOut {
   int panels = 0;
   int grounds = 0;
   int arrows = 0;
+  int rings = 0;
   int trace_points = 0;
   int legends = 0;
-  int total() const { return tubes + panels + grounds + arrows + trace_points + legends; }
+  int total() const { return tubes + panels + grounds + arrows + rings + trace_points + legends; }
 };
 
 struct Vertex {
@@ -41,7 +42,7 @@ struct Mesh {
   std::vector<IndexRange> tubes;       ///< of each of the frame's tubes; empty where it is left out
 };
 
-/// Beams as swept sections with end caps, and arrows as shafts with heads. Counts what it leaves out
+/// Beams as swept sections with end caps, arrows as shafts with heads, and rings. Counts what it leaves out
 /// in `left_out`.
 Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out);
 

@@ -60,6 +60,14 @@ struct Arrow {
   Float4 colour;
 };
 
+/// A ring about an axis, m: marks a hinge and the plane in which it turns.
+struct Ring {
+  Float3 centre;
+  Float3 axis;  ///< need not be a unit
+  float radius = 0;
+  Float4 colour;
+};
+
 /// Colour scale of Station::value.
 struct Legend {
   std::string quantity;      ///< "von Mises stress"
@@ -96,6 +104,7 @@ struct SceneFrame {
   std::vector<Panel> panels;
   std::vector<Ground> grounds;
   std::vector<Arrow> arrows;
+  std::vector<Ring> rings;
   std::int64_t highlighted_member = -1;  ///< Tube::member that is outlined; -1: none
   std::vector<Station> ghost_stations;   ///< of another run, for comparison; their value does not count
   std::vector<Tube> ghost_tubes;         ///< drawn translucent grey, without a shadow

@@ -1,5 +1,6 @@
 #include "solver/beam.h"
 
+#include "solver/plasticity.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -33,6 +34,26 @@ Mat3 derivative_of_inverse_transposed(const InverseJacobianCoefficient& c, const
          2 * c.dg * psi.cross(psi.cross(v)) * psi.transpose();
 }
 
+// What a section adds in which stretch and shear flow along with curvature: `e` is dn / d(spin2 - spin1) by
+// the curvature, and its transpose the change of w by the stretch.
+void add_coupling(const Mat3& e, const Mat3& skew_d, const Mat3& b, Mat12& tangent) {
+  const auto block = [&](int i, int j) { return tangent.block<3, 3>(3 * i, 3 * j); };
+  const Mat3 x = skew_d * e, y = e.transpose() * skew_d;
+  const Mat3 m2_spin1 = b.transpose() * x + y * (Mat3::Identity() - b), m2_spin2 = y * b - b.transpose() * x;
+  block(0, 1) += e;
+  block(0, 3) -= e;
+  block(2, 1) -= e;
+  block(2, 3) += e;
+  block(3, 0) -= e.transpose();
+  block(3, 1) += m2_spin1;
+  block(3, 2) += e.transpose();
+  block(3, 3) += m2_spin2;
+  block(1, 0) += e.transpose();
+  block(1, 1) += x - m2_spin1;
+  block(1, 2) -= e.transpose();
+  block(1, 3) -= x + m2_spin2;
+}
+
 }  // namespace
 
 BeamEnds beam_ends(const Element& element, const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2) {
@@ -44,16 +65,22 @@ BeamStrain beam_strain(const Element& element, double s, const BeamEnds& ends) {
   return kinematics(element, s, ends).strain;
 }
 
-double beam_energy(const Element& element, const BeamStrain& strain) {
-  return element.length / 2 *
-         (strain.gamma.dot(element.normal_stiffness.cwiseProduct(strain.gamma)) +
-          strain.kappa.dot(element.bending_stiffness.cwiseProduct(strain.kappa)));
+BeamStrain elastic_strain(const ElementState& state, const BeamStrain& strain) {
+  if (state.hinge == Hinge::broken) return {Vec3::Zero(), Vec3::Zero()};
+  return {strain.gamma - state.offset.gamma, strain.kappa - state.offset.kappa};
 }
 
-BeamGradient beam_gradient(const Element& element, double s, const BeamEnds& ends) {
-  const Kinematics k = kinematics(element, s, ends);
-  const Vec3 n = k.rs * element.normal_stiffness.cwiseProduct(k.strain.gamma);
-  const Vec3 m0 = element.bending_stiffness.cwiseProduct(k.strain.kappa);
+double beam_energy(const Element& element, const BeamStrain& elastic) {
+  return element.length / 2 *
+         (elastic.gamma.dot(element.normal_stiffness.cwiseProduct(elastic.gamma)) +
+          elastic.kappa.dot(element.bending_stiffness.cwiseProduct(elastic.kappa)));
+}
+
+BeamGradient beam_gradient(const Element& element, const ElementState& state, const BeamEnds& ends) {
+  const Kinematics k = kinematics(element, element.s, ends);
+  const SectionForces forces = respond(element, state, k.strain).forces;
+  const Vec3 n = k.rs * forces.normal;
+  const Vec3 m0 = forces.moment;
   const Vec3 p = n.cross(k.d);
   const Mat3 inverse = inverse_left_jacobian(ends.psi);
   // B^T p with B = R1 t T(t psi) T(psi)^-1 R1^T, and A^T m0 with A = T(psi)^-1 R1^T
@@ -62,13 +89,19 @@ BeamGradient beam_gradient(const Element& element, double s, const BeamEnds& end
   return {-n, p - moment, n, moment};
 }
 
-void beam_tangent(const Element& element, double s, const BeamEnds& ends, BeamGradient& gradient,
-                  Mat12& tangent) {
-  const Kinematics k = kinematics(element, s, ends);
+void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
+                  BeamGradient& gradient, Mat12& tangent) {
+  if (state.hinge == Hinge::broken) {
+    gradient = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    tangent.setZero();
+    return;
+  }
+  const Kinematics k = kinematics(element, element.s, ends);
   const double t = k.t;
   const Vec3& psi = ends.psi;
-  const Vec3 n = k.rs * element.normal_stiffness.cwiseProduct(k.strain.gamma);
-  const Vec3 m0 = element.bending_stiffness.cwiseProduct(k.strain.kappa);
+  const SectionResponse response = respond(element, state, k.strain);
+  const Vec3 n = k.rs * response.forces.normal;
+  const Vec3& m0 = response.forces.moment;
   const Vec3 p = n.cross(k.d);
 
   const double x = psi.squaredNorm();
@@ -89,7 +122,11 @@ void beam_tangent(const Element& element, double s, const BeamEnds& ends, BeamGr
   gradient = {-n, p - u - w, n, u + w};
 
   const Mat3 skew_d = skew(k.d);
-  const Mat3 cs = k.rs * element.normal_stiffness.asDiagonal() * k.rs.transpose() / element.length;
+  SectionTangent section;
+  if (response.flows) section = section_tangent(element, state.hinge, response);
+  const Mat3 cs =
+      response.flows ? Mat3(k.rs * section.normal_gamma * k.rs.transpose() / element.length)
+                     : Mat3(k.rs * element.normal_stiffness.asDiagonal() * k.rs.transpose() / element.length);
   const Mat3 n_spin = cs * skew_d - skew(n);  // dn / dspin of the integration point
   const Mat3 p_spin = -skew_d * n_spin;       // dp / dspin of the integration point
   const Mat3 p_d = n_spin.transpose();        // dp / dd
@@ -99,7 +136,10 @@ void beam_tangent(const Element& element, double s, const BeamEnds& ends, BeamGr
                        t * t * f.f2 * derivative_of_double_cross(psi, p1) +
                        2 * t * t * t * t * f.df2 * psi.cross(psi_p) * psi.transpose());
   Mat3 h = derivative_of_inverse_transposed(c, psi, q + m0) + inverse.transpose() * dq;
-  h += inverse.transpose() * element.bending_stiffness.asDiagonal() * (1 / element.length);
+  if (response.flows)
+    h += inverse.transpose() * section.moment_kappa * (1 / element.length);
+  else
+    h += inverse.transpose() * element.bending_stiffness.asDiagonal() * (1 / element.length);
   h = ends.r1 * h * a;  // d(u + w) / d(spin2 - spin1)
 
   const Mat3 bt = b.transpose();
@@ -123,6 +163,8 @@ void beam_tangent(const Element& element, double s, const BeamEnds& ends, BeamGr
   block(1, 1) = p_spin * one_minus_b - m2_spin1;
   block(1, 2) = p_d - bt_p_d;
   block(1, 3) = p_spin * b - m2_spin2;
+  if (response.flows)
+    add_coupling(k.rs * section.normal_kappa * a * (1 / element.length), skew_d, b, tangent);
 }
 
 }  // namespace topple

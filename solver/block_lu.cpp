@@ -90,6 +90,22 @@ bool invert(double* block) {
   return true;
 }
 
+// Negative pivots of elimination in order, which Sylvester's law makes those of the eigenvalues.
+int negative_pivots(const double* block) {
+  double a[k_stride * 6];
+  std::copy(block, block + k_stride * 6, a);
+  int count = 0;
+  for (int k = 0; k < 6; ++k) {
+    const double pivot = a[k_stride * k + k];
+    count += pivot < 0;
+    for (int i = k + 1; i < 6; ++i) {
+      const double f = a[k_stride * i + k] / pivot;
+      for (int j = k; j < 6; ++j) a[k_stride * i + j] -= f * a[k_stride * k + j];
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 BlockLu::BlockLu(int nodes, const std::vector<std::pair<int, int>>& edges)
@@ -157,11 +173,13 @@ void BlockLu::fix(int i, int k) {
   values_[k_block * place + k_stride * k + k] = 1;  // diagonal blocks come first, in order
 }
 
-int BlockLu::factor() {
+int BlockLu::factor(bool count) {
   double* const v = values_.data();
   double scaled[k_block];
+  negative_ = 0;
   for (int k = 0; k < nodes_; ++k) {
     double* const diagonal = v + k_block * k;
+    if (count) negative_ += negative_pivots(diagonal);
     if (!invert(diagonal)) return node_at_[k];
     const Column& column = columns_[k];
     const std::size_t n = column.rows.size();

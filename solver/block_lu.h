@@ -26,8 +26,10 @@ class BlockLu {
   }
   /// Makes x[6 i + k] = b[6 i + k]: row and diagonal of a fixed direction.
   void fix(int i, int k);
-  /// Node at fault when a diagonal block is singular, else -1.
-  int factor();
+  /// Node at fault when a diagonal block is singular, else -1. `count`: also finds negative().
+  int factor(bool count = false);
+  /// Negative eigenvalues of the matrix last factored with `count`; it must be symmetric but for fixed rows.
+  int negative() const { return negative_; }
   /// Overwrites b (6 per node) with x.
   void solve(double* b) const;
 
@@ -48,6 +50,7 @@ class BlockLu {
   std::vector<int> lookup_;   ///< permuted (i, j) to block number, -1: none
   std::vector<Column> columns_;
   std::vector<double> values_;
+  int negative_ = 0;
 };
 
 }  // namespace topple

@@ -20,6 +20,19 @@ Mat3 member_triad(const Vec3& from, const Vec3& to, Vec3 up) {
   return triad;
 }
 
+// Integration point of element `e` of a member while it is elastic.
+double elastic_place(Scheme scheme, int e) {
+  if (scheme != Scheme::asi_gauss) return 0;
+  return e % 2 == 0 ? k_gauss_shift : -k_gauss_shift;
+}
+
+Eigen::Vector4d capacity(const Section& section, const Material& material) {
+  if (!(section.zy > 0 && section.zz > 0 && section.zt > 0))
+    throw BuildError("section", "section \"" + section.name + "\" of yielding material \"" + material.name +
+                                    "\" has no plastic moduli: give zy, zz and zt");
+  return material.yield * Eigen::Vector4d(section.area, section.zt / std::sqrt(3.), section.zy, section.zz);
+}
+
 // Counter-clockwise hull of points in the horizontal plane (Andrew 1979); collinear points are left out.
 std::vector<Vec3> convex_hull(std::vector<Vec3> points, double tolerance) {
   std::sort(points.begin(), points.end(),
@@ -87,6 +100,7 @@ std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, co
   element.normal_stiffness = {stuff.young * profile.area, shear * profile.area * profile.ky,
                               shear * profile.area * profile.kz};
   element.bending_stiffness = {shear * profile.j, stuff.young * profile.iy, stuff.young * profile.iz};
+  if (stuff.yield > 0) element.capacity = capacity(profile, stuff);
   std::vector<int> nodes;
   for (int i = 0; i <= total; ++i)
     nodes.push_back(node(from + (to - from) * (static_cast<double>(i) / total)));
@@ -103,7 +117,7 @@ std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, co
       element.node[0] = nodes[i];
       element.node[1] = nodes[i + 1];
       element.member = static_cast<int>(model_.members.size());
-      element.s = e % 2 == 0 ? k_gauss_shift : -k_gauss_shift;
+      element.s = elastic_place(model_.scheme, e);
       model_.elements.push_back(element);
       ++body().element_count;
     }

@@ -1,6 +1,7 @@
 #include "solver/body_system.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/beam.h"
 #include "solver/excitation.h"
@@ -46,13 +47,26 @@ BodySystem::BodySystem(const Model& whole, int body)
       fixed(count, 0u),
       force(count),
       moment(count),
-      lu(count, couplings(whole, whole.bodies[body])) {
+      lu(count, couplings(whole, whole.bodies[body])),
+      yields(false) {
   for (int i = 0; i < count; ++i)
     size = std::max(size, (model.node_position[first + i] - model.bodies[body].centre_of_gravity).norm());
   for (const Support& support : model.supports)
     if (model.node_body[support.node] == body) fixed[support.node - first] |= support.fixed;
   for (const Load& load : model.loads)
     if (model.node_body[load.node] == body) loads_.push_back(&load);
+  const Body& own = model.bodies[body];
+  for (int k = 0; k < own.element_count; ++k) {
+    const Element& element = model.elements[own.first_element + k];
+    elements.emplace_back();
+    yields = yields || std::isfinite(element.capacity[0]);
+  }
+  if (yields) {
+    joints.resize(count);
+    for (int k = 0; k < own.element_count; ++k)
+      for (int end = 0; end < 2; ++end)
+        joints[model.elements[own.first_element + k].node[end] - first].emplace_back(k, end);
+  }
   pairs.reserve(static_cast<std::size_t>(model.bodies[body].contact_point_count) * model.planes.size());
 }
 
@@ -124,7 +138,7 @@ void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMoti
     const Element& element = model.elements[e];
     const int i = element.node[0] - first, j = element.node[1] - first;
     const BeamGradient g = beam_gradient(
-        element, element.s,
+        element, elements[e - body.first_element],
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]));
     force[i] -= g.force1;
     moment[i] -= g.moment1;
@@ -145,7 +159,7 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
     const Element& element = model.elements[e];
     const int i = element.node[0] - first, j = element.node[1] - first;
     beam_tangent(
-        element, element.s,
+        element, elements[e - body.first_element],
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]), g,
         tangent);
     force[i] -= g.force1;
@@ -175,9 +189,10 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
     const int i = element.node[0] - first, j = element.node[1] - first;
     const BeamEnds ends =
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
-    const BeamStrain strain = beam_strain(element, element.s, ends);
-    sections[e] = section_forces(element, strain);
-    sum.strain += beam_energy(element, strain);
+    const ElementState& now = elements[e - body.first_element];
+    const BeamStrain elastic = elastic_strain(now, beam_strain(element, element.s, ends));
+    sections[e] = section_forces(element, elastic);
+    sum.strain += beam_energy(element, elastic);
   }
   for (const TouchingPair& pair : contacts) {
     // the printed law has no spring: what it takes in is dissipated
@@ -193,6 +208,10 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
   std::copy_n(state.velocity.begin() + first, count, motion.velocity.begin());
   std::copy_n(state.rotation.begin() + first, count, motion.rotation.begin());
   std::copy_n(state.angular_velocity.begin() + first, count, motion.angular_velocity.begin());
+}
+
+void BodySystem::load_elements(const State& state) {
+  std::copy_n(state.elements.begin() + model.bodies[index].first_element, elements.size(), elements.begin());
 }
 
 void BodySystem::store_stick(const std::vector<TouchingPair>& contacts, std::vector<Vec3>& stick) const {

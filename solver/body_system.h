@@ -62,6 +62,8 @@ class BodySystem {
                     const std::vector<TouchingPair>& contacts, std::vector<SectionForces>& sections) const;
   /// Copies this body's part of the state.
   void load(const State& state, BodyMotion& motion) const;
+  /// Copies the elements of this body. Steps begin with it; evaluations read `elements`.
+  void load_elements(const State& state);
   /// Writes stick springs of `contacts`; open contacts forget theirs.
   void store_stick(const std::vector<TouchingPair>& contacts, std::vector<Vec3>& stick) const;
   const std::vector<const Load*>& loads() const { return loads_; }
@@ -78,6 +80,10 @@ class BodySystem {
   std::vector<Vec3> force, moment;  ///< N, N m
   std::vector<TouchingPair> pairs;
   BlockLu lu;
+  std::vector<ElementState> elements;  ///< per element of the body; elastic until loaded
+  bool yields;                         ///< some element can
+  /// Per node, when it yields: elements that end there, numbered within the body, and at which end (0, 1).
+  std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
   void add_applied(const Parameters& parameters, double t);

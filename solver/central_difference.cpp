@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/beam.h"
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -71,6 +72,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
                                       IntegratorScratch& w, StepEnergy& energy) {
   const int n = s.count;
   s.load(state, w.start);
+  s.load_elements(state);
   w.trial.resize(n);
   w.travel.resize(n);
   const std::span<const Vec3> stick(state.stick);
@@ -83,7 +85,9 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     w.trial.rotation[i] = w.start.rotation[i] * exp_quaternion(h * w.trial.angular_velocity[i]);
     w.trial.rotation[i].normalize();
   }
-  s.evaluate(p, t + h, w.trial, stick, w.start.position);
+  HingeStep hinges;
+  do s.evaluate(p, t + h, w.trial, stick, w.start.position);
+  while (update_hinges(s, w.trial, hinges));
 
   // Contacts enter `force` at the half-step velocity; at touching nodes they are solved for at the new one.
   const std::size_t planes = s.model.planes.size();
@@ -130,6 +134,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     finite = finite && std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum());
   }
   book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.pairs, energy);
+  energy.plastic += commit_hinges(s, w.start, w.trial, state);
   s.store_stick(s.pairs, state.stick);
   StepStatus status;
   status.time = t + h;
@@ -147,7 +152,7 @@ double explicit_limit(BodySystem& s, const ContactLaw* law) {
     BeamGradient gradient;
     const auto& x = s.model.node_position;
     beam_tangent(
-        element, element.s,
+        element, ElementState{},
         beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
         gradient, tangents[e]);
   }

@@ -9,7 +9,7 @@ namespace topple {
 
 /// Energies that bodies exchanged in a step, J; added to.
 struct StepEnergy {
-  double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0;
+  double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0, plastic = 0;
 };
 
 /// Work of gravity, floor, loads and contacts on one body over a step from t to t + h between two evaluations

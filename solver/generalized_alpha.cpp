@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -32,6 +33,8 @@ class ImplicitStep {
       : s_(system), p_(parameters), state_(state), t_(t), h_(h), c_(parameters), w_(scratch) {}
 
   Attempt solve();
+  /// Solves again until the hinges agree with the solution.
+  Attempt solve_with_hinges();
   void accept(StepEnergy& energy);
 
  private:
@@ -55,6 +58,7 @@ class ImplicitStep {
 void ImplicitStep::predict() {
   const int n = s_.count;
   s_.load(state_, w_.start);
+  s_.load_elements(state_);
   w_.trial.resize(n);
   for (auto* array : {&w_.travel, &w_.turn, &w_.acceleration, &w_.angular_acceleration, &w_.algorithmic,
                       &w_.algorithmic_angular})
@@ -137,8 +141,20 @@ double ImplicitStep::correct(int& node) {
   return greatest;
 }
 
-Attempt ImplicitStep::solve() {
+Attempt ImplicitStep::solve_with_hinges() {
   predict();
+  Attempt attempt = solve();
+  if (!s_.yields) return attempt;
+  HingeStep hinges;
+  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, hinges)) {
+    const int before = attempt.iterations;
+    attempt = solve();
+    attempt.iterations += before;
+  }
+  return attempt;
+}
+
+Attempt ImplicitStep::solve() {
   const double cv = c_.gamma / (c_.beta * h_);
   const std::span<const Vec3> stick(state_.stick);
   const double tolerance = k_convergence * s_.size;
@@ -189,6 +205,7 @@ void ImplicitStep::accept(StepEnergy& energy) {
   s_.find_contacts(contact_law(p_, t_), w_.start, stick, w_.start.position, w_.contacts_start);
   s_.find_contacts(contact_law(p_, t_ + h_), w_.trial, stick, w_.start.position, s_.pairs);
   book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.pairs, energy);
+  energy.plastic += commit_hinges(s_, w_.start, w_.trial, state_);
   // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
   // takes out.
   for (int i = 0; i < s_.count; ++i) {
@@ -234,7 +251,7 @@ StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& param
   status.time = t + h;
   status.body = system.index;
   ImplicitStep implicit(system, parameters, state, t, h, scratch);
-  const Attempt attempt = implicit.solve();
+  const Attempt attempt = implicit.solve_with_hinges();
   status.newton_iterations = attempt.iterations;
   if (attempt.outcome == Outcome::converged) {
     implicit.accept(energy);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ struct Element {
   Mat3 triad;              ///< columns: local x, y, z in world axes
   Vec3 normal_stiffness;   ///< EA, kGAy, kGAz, N
   Vec3 bending_stiffness;  ///< GJ, EIy, EIz, N m^2
+  /// N0, N, and Mx0, My0, Mz0, N m, of the fully plastic section; infinite: elastic.
+  Eigen::Vector4d capacity = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity());
 };
 
 /// A straight member: a run of elements of one section and one material, two by two subsets.
@@ -77,9 +80,15 @@ struct Plane {
   double width;  ///< m, contact width; 0: that of the touching member
 };
 
+/// Where integration points stand (Eq. 1). asi_gauss: two by two elements have their stress points on the
+/// Gauss points of the pair, asi: in the middle; both have their hinges at the elements' ends (plasticity.h).
+/// midpoint: both in the middle.
+enum class Scheme { asi_gauss, asi, midpoint };
+
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
 /// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
 struct Model {
+  Scheme scheme = Scheme::asi_gauss;  ///< set before members are added
   std::vector<Material> materials;
   std::vector<Section> sections;
   std::vector<Vec3> node_position;  ///< m, reference

@@ -33,8 +33,9 @@ class Pencil {
     for (int e = 0; e < b.element_count; ++e) {
       const Element& element = model.elements[b.first_element + e];
       const int i = element.node[0], j = element.node[1];
-      beam_tangent(element, element.s, beam_ends(element, x[i], Quat::Identity(), x[j], Quat::Identity()),
-                   gradient, tangents_[e]);
+      beam_tangent(element, ElementState{},
+                   beam_ends(element, x[i], Quat::Identity(), x[j], Quat::Identity()), gradient,
+                   tangents_[e]);
     }
     for (int i = 0; i < s_.count; ++i)
       for (int k = 0; k < 6; ++k)

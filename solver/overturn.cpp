@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/hinges.h"
+#include "solver/plasticity.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -119,7 +121,7 @@ double slide(const Model& model, int index, const BodyPose& pose) {
   return std::hypot(now.x() - body.base_centre.x(), now.y() - body.base_centre.y());
 }
 
-Outcome::Outcome(const Model& model) {
+Outcome::Outcome(const Model& model) : formed_(model.elements.size(), 0) {
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
@@ -195,14 +197,37 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
         add(Event::Kind::impact, state.time, static_cast<double>(side));
       }
     }
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-      const Element& element = model.elements[e];
-      const Section& section = model.sections[model.members[element.member].section];
-      for (double end : {-1., 1.})
-        o.peak_stress =
-            std::max(o.peak_stress,
-                     equivalent_stress(section, forces_along(sections[e], element.length, element.s, end)));
+  }
+  observe_sections(model, state, sections, events);
+}
+
+void Outcome::observe_sections(const Model& model, const State& state,
+                               const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    const ElementState& now = state.elements[e];
+    const Member& member = model.members[element.member];
+    BodyOutcome& o = bodies_[member.body];
+    const Section& section = model.sections[member.section];
+    const bool yields = std::isfinite(element.capacity[0]);
+    for (int end = 0; end < 2; ++end) {
+      const SectionForces forces = forces_along(sections[e], element.length, element.s, 2 * end - 1);
+      o.peak_stress = std::max(o.peak_stress, equivalent_stress(section, forces));
+      if (!yields) continue;
+      const double f = yield_function(element, forces);
+      o.peak_yield_ratio = std::max(o.peak_yield_ratio.value_or(0), std::sqrt(f + 1));
+      const Hinge there = end == 0 ? Hinge::first : Hinge::second;
+      if (f > k_beside && now.hinge != Hinge::none && now.hinge != there && now.hinge != Hinge::middle &&
+          std::find(crowded_.begin(), crowded_.end(), element.member) == crowded_.end())
+        crowded_.push_back(element.member);
     }
+    const auto bit = static_cast<std::uint8_t>(1u << static_cast<unsigned>(now.hinge));
+    if (now.hinge == Hinge::none || (formed_[e] & bit) != 0) continue;
+    formed_[e] |= bit;
+    const bool broke = now.hinge == Hinge::broken;
+    ++(broke ? o.fractures : o.hinges);
+    events.push_back({broke ? Event::Kind::fracture : Event::Kind::hinge, state.step, state.time, member.body,
+                      static_cast<double>(now.hinge), static_cast<int>(e)});
   }
 }
 

@@ -43,12 +43,13 @@ double critical_angle(const Model& model, int body, const BodyPose& pose);
 double slide(const Model& model, int body, const BodyPose& pose);
 
 struct Event {
-  enum class Kind { uplift, impact, overturn };
+  enum class Kind { uplift, impact, overturn, hinge, fracture };
   Kind kind;
   std::int64_t step;
   double time;  ///< s
   int body;
-  double value;  ///< uplift, impact: index of the side; overturn: tilt, rad
+  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge, as a number
+  int element = -1;  ///< hinge, fracture: index into Model::elements
 };
 
 /// What happened to one body so far. Times in s, angles in rad, lengths in m.
@@ -60,8 +61,12 @@ struct BodyOutcome {
   std::optional<double> first_uplift;
   int impacts = 0;
   std::optional<double> first_impact;
-  double rebound_tilt = 0;              ///< greatest tilt since the first impact
-  double peak_stress = 0;               ///< Pa
+  double rebound_tilt = 0;  ///< greatest tilt since the first impact
+  double peak_stress = 0;   ///< Pa
+  /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
+  std::optional<double> peak_yield_ratio;
+  int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not
+  int fractures = 0;                    ///< elements that broke
   double peak_penetration = 0;          ///< greatest 1 - l/L
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
   std::vector<bool> lifted;             ///< per side of the support polygon
@@ -77,10 +82,18 @@ class Outcome {
                const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
                std::vector<Event>& events);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
+  /// Members of which an element holds a hinge while its other end passes yield too, by
+  /// k_beside (hinges.h): more elements would show both.
+  const std::vector<int>& crowded_members() const { return crowded_; }
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
+  void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
+                        std::vector<Event>& events);
+
   std::vector<BodyOutcome> bodies_;
+  std::vector<std::uint8_t> formed_;  ///< per element, bit 1 << Hinge: seen with it
+  std::vector<int> crowded_;
   std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
   std::vector<double> total_force_;                     ///< per body, N
   std::vector<std::vector<std::vector<int>>> side_of_;  ///< per body: contact point (from 0) to its sides

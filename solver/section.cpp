@@ -17,6 +17,11 @@ Inertia rectangle(double b, double h) {
   return {b * h, b * h * h * h / 12, h * b * b * b / 12};
 }
 
+// Plastic modulus of a rectangle bent across its height h.
+double rectangle_plastic(double b, double h) {
+  return b * h * h / 4;
+}
+
 // Saint-Venant torsion of a solid rectangle, Fourier series (Timoshenko & Goodier, Theory of Elasticity, art.
 // 109).
 double rectangle_torsion(double a, double b) {
@@ -48,6 +53,9 @@ void complete_section(Section& section, double poisson) {
       section.j = 2 * t * (a - t) * (a - t) * (b - t) * (b - t) / (a + b - 2 * t);
       section.ky = box_shear(n, a - t, b - t);
       section.kz = box_shear(n, b - t, a - t);
+      section.zy = rectangle_plastic(a, b) - rectangle_plastic(a - 2 * t, b - 2 * t);
+      section.zz = rectangle_plastic(b, a) - rectangle_plastic(b - 2 * t, a - 2 * t);
+      section.zt = 2 * (a - t) * (b - t) * t;
       break;
     }
     case Section::Shape::solid: {
@@ -57,6 +65,9 @@ void complete_section(Section& section, double poisson) {
       section.iz = outer.iz;
       section.j = rectangle_torsion(a, b);
       section.ky = section.kz = 10 * (1 + n) / (12 + 11 * n);
+      section.zy = rectangle_plastic(a, b);
+      section.zz = rectangle_plastic(b, a);
+      section.zt = std::min(a, b) * std::min(a, b) * (3 * std::max(a, b) - std::min(a, b)) / 6;
       break;
     }
     case Section::Shape::pipe: {
@@ -66,6 +77,8 @@ void complete_section(Section& section, double poisson) {
       section.iy = section.iz = k_pi / 4 * (std::pow(outer, 4) - std::pow(inner, 4));
       section.j = 2 * section.iy;
       section.ky = section.kz = 6 * (1 + n) * m2 * m2 / ((7 + 6 * n) * m2 * m2 + (20 + 12 * n) * m * m);
+      section.zy = section.zz = 4. / 3 * (std::pow(outer, 3) - std::pow(inner, 3));
+      section.zt = k_pi / 2 * section.zy;
       break;
     }
     case Section::Shape::custom:

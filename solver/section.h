@@ -5,12 +5,14 @@
 
 namespace topple {
 
-/// Linear elastic material.
+/// Linear elastic, perfectly plastic material.
 struct Material {
   std::string name;
-  double young = 0;    ///< Pa
-  double poisson = 0;  ///< -
-  double density = 0;  ///< kg/m^3
+  double young = 0;            ///< Pa
+  double poisson = 0;          ///< -
+  double density = 0;          ///< kg/m^3
+  double yield = 0;            ///< Pa; 0: elastic
+  double fracture_strain = 0;  ///< -; 0: never breaks
 };
 
 /// Cross-section in the local y-z plane of a member. `size = [a, b]` runs along y and z.
@@ -27,6 +29,9 @@ struct Section {
   double j = 0;          ///< m^4, torsion constant
   double ky = 0;         ///< shear coefficient in y
   double kz = 0;         ///< shear coefficient in z
+  double zy = 0;         ///< m^3, plastic modulus of bending in the local x-z plane
+  double zz = 0;         ///< m^3, likewise in the local x-y plane
+  double zt = 0;         ///< m^3, plastic modulus of torsion: Mx0 = zt yield / sqrt(3)
   double width = 0;      ///< m, contact width: the L of Eq. 2 is the mean of two of these
 
   /// Distances of the extreme fibres from the centre line, m.
@@ -35,7 +40,8 @@ struct Section {
 };
 
 /// Fills area, iy, iz, j, ky, kz, width from shape, sizes and thickness (thin-walled Bredt torsion
-/// for the box, Saint-Venant series for the solid, shear coefficients after Cowper 1966).
+/// for the box, Saint-Venant series for the solid, shear coefficients after Cowper 1966), and the plastic
+/// moduli zy, zz, zt (torsion: Bredt with the wall at yield; solid and pipe: Nadai's sand heap).
 /// shape must not be custom; sizes > 0; 0 < 2 thickness < smaller size.
 void complete_section(Section& section, double poisson);
 

@@ -5,9 +5,9 @@
 
 namespace topple {
 
-SectionForces section_forces(const Element& element, const BeamStrain& strain) {
-  return {element.normal_stiffness.cwiseProduct(strain.gamma),
-          element.bending_stiffness.cwiseProduct(strain.kappa)};
+SectionForces section_forces(const Element& element, const BeamStrain& elastic) {
+  return {element.normal_stiffness.cwiseProduct(elastic.gamma),
+          element.bending_stiffness.cwiseProduct(elastic.kappa)};
 }
 
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
@@ -18,7 +18,7 @@ void section_forces(const Model& model, const State& state, std::vector<SectionF
     const BeamStrain strain = beam_strain(
         element, element.s,
         beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
-    forces[e] = section_forces(element, strain);
+    forces[e] = section_forces(element, elastic_strain(state.elements[e], strain));
   }
 }
 

@@ -9,13 +9,8 @@
 
 namespace topple {
 
-/// Section forces of one element at its stress point r = -s, local axes.
-struct SectionForces {
-  Vec3 normal;  ///< N, Vy, Vz, N
-  Vec3 moment;  ///< Mx, My, Mz, N m
-};
-
-SectionForces section_forces(const Element& element, const BeamStrain& strain);
+/// At an elastic strain.
+SectionForces section_forces(const Element& element, const BeamStrain& elastic);
 
 /// Section forces of every element at `state`.
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);

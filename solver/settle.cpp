@@ -88,6 +88,7 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
   still.contact.restitution = 1;  // the normal force of Eq. 2 alone
   const int n = s.count;
   s.load(state, w.start);
+  s.load_elements(state);
   std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
   std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
   const std::vector<Vec3> origin = w.start.position;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "solver/rotation.h"
 
@@ -28,13 +29,20 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_acceleration);
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
+  for (auto& e : s.elements) {
+    double hinge = std::bit_cast<double>(e.hinge);
+    f(hinge);
+    if constexpr (!std::is_const_v<AnyState>) e.hinge = std::bit_cast<Hinge>(hinge);
+    for (auto* strain : {&e.offset.gamma, &e.offset.kappa})
+      for (int k = 0; k < 3; ++k) f((*strain)[k]);
+  }
   for (int k = 0; k < 3; ++k) f(s.floor_displacement[k]);
   for (int k = 0; k < 3; ++k) f(s.floor_velocity[k]);
   f(s.step_size);
   f(s.load_factor);
   auto& e = s.energy;
   for (auto* number : {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction,
-                       &e.normal_damping, &e.numerical, &e.start_total, &e.largest})
+                       &e.normal_damping, &e.numerical, &e.plastic, &e.start_total, &e.largest})
     f(*number);
 }
 
@@ -46,6 +54,7 @@ void resize(const Model& model, State& state) {
     array->assign(n, Vec3::Zero());
   state.rotation.assign(n, Quat::Identity());
   state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
+  state.elements.assign(model.elements.size(), {});
 }
 
 }  // namespace
@@ -73,7 +82,7 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
-  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 20);
+  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() + 20);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
   return numbers;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/element_state.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
 #include "solver/types.h"
@@ -23,10 +24,11 @@ struct EnergyLedger {
   double friction = 0;        ///< dissipated by tangential contact forces
   double normal_damping = 0;  ///< dissipated by normal contact forces
   double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
+  double plastic = 0;         ///< dissipated by hinges; moves of stress points and fracture are in it
   double start_total = 0;     ///< kinetic + strain + contact at the start
   double largest = 0;         ///< largest energy exchanged so far
 
-  double dissipated() const { return friction + normal_damping + numerical; }
+  double dissipated() const { return friction + normal_damping + numerical + plastic; }
   /// Energy that nothing explains.
   double unexplained() const {
     return kinetic + strain + gravity + contact - start_total - input + dissipated();
@@ -50,6 +52,7 @@ struct State {
   std::vector<Vec3> algorithmic_angular_acceleration;  ///< likewise, material axes
   /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
   std::vector<Vec3> stick;
+  std::vector<ElementState> elements;      ///< index as Model::elements
   Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)
   Vec3 floor_velocity = Vec3::Zero();      ///< m/s, high-passed
   /// Step size in use, 0: not chosen yet. Adaptive runs: s, tried next; displacement control: m or rad per

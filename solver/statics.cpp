@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/contact_law.h"
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 #include "solver/settle.h"
 
@@ -19,6 +20,13 @@ constexpr double k_least_part = 1. / 1024;  // of a load step
 
 bool is_fixed(const BodySystem& s, int node, int direction) {
   return s.fixed[node] >> direction & 1;
+}
+
+// Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
+// does the tangent tell whether an equilibrium is stable.
+bool is_conservative(const BodySystem& s) {
+  return std::all_of(s.loads().begin(), s.loads().end(),
+                     [](const Load* load) { return load->moment.isZero(0); });
 }
 
 // The floor at rest and the normal force of Eq. 2 alone, as when settling.
@@ -53,6 +61,18 @@ void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec
       hold(b);
     }
   }
+}
+
+/// Of the order of what holds a node of the body, N/m.
+double control_spring(const BodySystem& s) {
+  const Element& element = s.model.elements[s.model.bodies[s.index].first_element];
+  return element.normal_stiffness[0] / element.length;
+}
+
+void add_spring(BodySystem& s, int direction, double stiffness) {
+  Mat6 block = Mat6::Zero();
+  block(direction % 6, direction % 6) = stiffness;
+  s.lu.add(direction / 6, direction / 6, block);
 }
 
 }  // namespace
@@ -107,7 +127,10 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   status.body = s.index;
   const int controlled = travel ? 6 * (settings_.control->node - s.first) + settings_.control->direction : 0;
   const std::vector<double> growth = growing_loads(s);
-  std::vector<double> x(6 * s.count), by_factor;
+  std::vector<double> x(6 * s.count), by_factor, by_spring;
+  const double spring = travel ? control_spring(s) : 0;
+  HingeStep hinges;
+  s.load_elements(state);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
   double last = 0, moved = 0;
   const auto blame = [&](int node) {
@@ -119,15 +142,22 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
     evaluate(s, still, state, factor);
+    if (travel) add_spring(s, controlled, spring);
     if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
     for (int i = 0; i < s.count; ++i)
       for (int k = 0; k < 6; ++k) x[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
     s.lu.solve(x.data());
     if (travel) {
+      // The spring keeps a mechanism from being singular. What it would hold is put on as a load: so it does
+      // nothing to the solution, which moves the controlled direction by what is left of the way.
+      const double left = *travel - moved;
       by_factor = growth;
+      by_spring.assign(6 * s.count, 0.);
+      by_spring[controlled] = spring * left;
       s.lu.solve(by_factor.data());
-      const double change = (*travel - moved - x[controlled]) / by_factor[controlled];
-      for (int i = 0; i < 6 * s.count; ++i) x[i] += change * by_factor[i];
+      s.lu.solve(by_spring.data());
+      const double change = (left - x[controlled] - by_spring[controlled]) / by_factor[controlled];
+      for (int i = 0; i < 6 * s.count; ++i) x[i] += change * by_factor[i] + by_spring[i];
       factor += change;
       moved += x[controlled];
     }
@@ -153,7 +183,15 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     const double tolerance = k_convergence * s.size;
     if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
+      if (update_hinges(s, trial, hinges)) {
+        iteration = 0;
+        last = 0;
+        continue;
+      }
       evaluate(s, still, state, factor);
+      // directions in which it would run away: Newton stepped over a limit or a branching
+      if (!travel && is_conservative(s) && (s.lu.factor(true) >= 0 || s.lu.negative() > 0))
+        return blame(node);
       status.kind = StepStatus::Kind::ok;
       return status;
     }
@@ -195,6 +233,7 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
       energy.input += (share(state.load_factor) + share(factor)) / 2 *
                       (load->force.dot(trial.position[i] - start.position[i]) + load->moment.dot(turn));
     }
+    energy.plastic += commit_hinges(*system, start, trial, state);
     for (int i = 0; i < s.count; ++i) {
       const int g = s.first + i;
       energy.gravity -= s.model.node_mass[g] * still.gravity.dot(trial.position[i] - start.position[i]);

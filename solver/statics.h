@@ -39,7 +39,8 @@ class LoadPath {
 
   /// Balances the weight, without the loads that grow: load factor 0. `settled`: as settle() first.
   StepStatus start(const Parameters& parameters, bool settled, State& state);
-  /// The next load step: halved where Newton finds no equilibrium. no_equilibrium: not even k_least_part of
+  /// The next load step: halved where Newton finds no equilibrium, or without displacement control and
+  /// moments one that is not stable. no_equilibrium: not even k_least_part of
   /// it has one; `state` is then the last equilibrium found, and State::step counts it when it is new.
   /// State::time becomes the load factor, with displacement control the part of the way.
   StepStatus advance(const Parameters& parameters, State& state);

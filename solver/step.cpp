@@ -29,6 +29,7 @@ std::string format(const char* pattern, double a) {
 // Accelerations from the balance of forces at `state`. Leaves the body's motion in `motion`.
 void balance_accelerations(BodySystem& s, const Parameters& parameters, State& state, BodyMotion& motion) {
   s.load(state, motion);
+  s.load_elements(state);
   s.evaluate(parameters, state.time, motion, state.stick, motion.position);
   for (int i = 0; i < s.count; ++i) {
     const int g = s.first + i;
@@ -111,7 +112,7 @@ std::string StepStatus::message(const Model& model) const {
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
              when + "; try a smaller one, or generalized-alpha";
     case Kind::no_equilibrium:
-      return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
+      return format("no stable equilibrium was found at load factor %.6g: ", load_factor) + where +
              " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
              "path that turns down)";
     case Kind::uncontrolled:
@@ -232,6 +233,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   e.friction += exchanged.friction;
   e.normal_damping += exchanged.normal_damping;
   e.numerical += exchanged.numerical;
+  e.plastic += exchanged.plastic;
   e.kinetic = held.kinetic;
   e.strain = held.strain;
   e.contact = held.contact;

@@ -10,10 +10,12 @@
 namespace topple {
 namespace {
 
-constexpr double k_contact_part = 20;  // steps per period of a body on its contacts
-constexpr double k_closing_part = 4;   // steps in which a closing contact crosses its width
-constexpr double k_turn = 0.1;         // rad per step
-constexpr double k_speed_floor = 0.1;  // of the speed that the largest energy amounts to
+constexpr double k_contact_part = 20;   // steps per period of a body on its contacts
+constexpr double k_closing_part = 4;    // steps in which a closing contact crosses its width
+constexpr double k_turn = 0.1;          // rad per step
+constexpr double k_energy_part = 0.05;  // of the tolerance: energy that a step may leave unexplained
+constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at rest is below
+constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
 // Mean rotation of a body's nodes, rad/s.
 double spin(const Body& body, const State& state) {
@@ -60,7 +62,8 @@ double step_error(const Model& model, const Parameters& parameters, const State&
   const double factor = std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
   double total_mass = 0, greatest = 0;
   for (const Body& body : model.bodies) total_mass += body.mass;
-  const double floor = k_speed_floor * k_speed_floor * 2 * after.energy.largest / total_mass;
+  const double largest = after.energy.largest + total_mass * k_at_rest * k_at_rest;
+  const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
   for (const Body& body : model.bodies) {
     double change = 0, speed = 0;
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
@@ -77,7 +80,8 @@ double step_error(const Model& model, const Parameters& parameters, const State&
     const double allowed = parameters.tolerance * std::sqrt(speed / body.mass + floor);
     greatest = std::max(greatest, factor * h * std::sqrt(change / body.mass) / allowed);
   }
-  return greatest;
+  const double unexplained = std::abs(after.energy.unexplained() - before.energy.unexplained());
+  return std::max(greatest, unexplained / (k_energy_part * parameters.tolerance * largest));
 }
 
 double next_kink(const Model& model, const Parameters& parameters, double t) {

@@ -1,12 +1,16 @@
 #include "solver/io/export_csv.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "solver/io/scene.h"
+#include "solver/plasticity.h"
+#include "solver/section_forces.h"
 
 namespace topple::io {
 namespace {
@@ -110,6 +114,18 @@ void nodes_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   }
 }
 
+/// Greatest loading of the element's ends against the yield surface; absent where it cannot yield.
+void yield_ratio(CsvFile& csv, const Element& element, const SectionForces& forces, double s) {
+  if (!std::isfinite(element.capacity[0])) {
+    csv.none();
+    return;
+  }
+  double f = -1;
+  for (double end : {-1., 1.})
+    f = std::max(f, yield_function(element, forces_along(forces, element.length, s, end)));
+  csv.number(static_cast<float>(std::sqrt(f + 1)));
+}
+
 void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Member& member = model.members[static_cast<std::size_t>(model.elements[e].member)];
@@ -118,7 +134,8 @@ void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
     const double stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces);
     csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
     csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(stress);
-    csv.none().number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
+    yield_ratio(csv, model.elements[e], forces, row.s[e]);
+    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "solver/excitation.h"
 #include "solver/io/recording_format.h"
+#include "solver/plasticity.h"
 
 namespace topple::io {
 namespace {
@@ -58,8 +59,12 @@ void fill_nodes(const State& state, FrameRow& row) {
 void fill_elements(const Run& run, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    row.s[e] = static_cast<float>(model.elements[e].s);
-    const SectionForces& forces = run.sections()[e];
+    const Element& element = model.elements[e];
+    const Hinge hinge = run.state().elements[e].hinge;
+    const double place = hinge_place(element, hinge);
+    row.s[e] = static_cast<float>(-place);
+    row.hinge[e] = static_cast<std::uint8_t>(hinge);
+    const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, place);
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};
     for (int k = 0; k < 6; ++k) row.section_force[6 * e + k] = static_cast<float>(values[k]);

@@ -19,7 +19,8 @@ struct FrameRow {
   std::vector<float> rotation;       ///< n x 4, w x y z
   std::vector<float> section_force;  ///< e x 6: N, Vy, Vz, T, My, Mz at the stress point, N and N m
   std::vector<float> s;              ///< e, integration point
-  std::vector<std::uint8_t> hinge;   ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken
+  std::vector<std::uint8_t> hinge;   ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken,
+                                     ///< 4 in the middle
   std::vector<float> contact_depth;  ///< c, 1 - l/L; 0: open
   std::vector<float> contact_force;  ///< c x 3, N
   std::vector<double> energy;        ///< input, kinetic, strain, gravity, contact, friction, normal damping,

@@ -29,6 +29,8 @@ Handle event_kind() {
   insert("uplift", Event::Kind::uplift);
   insert("impact", Event::Kind::impact);
   insert("overturn", Event::Kind::overturn);
+  insert("hinge", Event::Kind::hinge);
+  insert("fracture", Event::Kind::fracture);
   return type;
 }
 
@@ -113,7 +115,7 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"rotation", f32, {n, 4}, "1", "w,x,y,z"},
        {"section_force", f32, {e, 6}, "N,N,N,N m,N m,N m", "N,Vy,Vz,T,My,Mz"},
        {"s", f32, {e}, "1", ""},
-       {"hinge", u8, {e}, "0 none, 1 first end, 2 second end, 3 broken", ""},
+       {"hinge", u8, {e}, "0 none, 1 first end, 2 second end, 3 broken, 4 in the middle", ""},
        {"contact_depth", f32, {c}, "1", ""},
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"energy",

@@ -357,7 +357,8 @@ std::vector<RecordedEvent> Recording::events() const {
                       .step = record.step,
                       .time = record.time,
                       .body = record.body,
-                      .value = record.value[0]};
+                      .value = record.value[0],
+                      .element = record.element};
     events.push_back({.branch = record.branch, .step = record.step, .time = record.time, .event = event});
   }
   return events;

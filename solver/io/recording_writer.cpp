@@ -216,7 +216,8 @@ void RecordingWriter::append(const RecordedEvent& event) {
                      .kind = static_cast<std::int32_t>(event.event.kind),
                      .step = event.step,
                      .time = event.time,
-                     .body = event.event.body};
+                     .body = event.event.body,
+                     .element = event.event.element};
   record.value[0] = event.event.value;
   pending_events_.push_back(sealed(record));
 }

@@ -16,11 +16,20 @@ constexpr double k_parallel = 1e-6;
 /// Materials and sections by name. Sections that builders add are not among them.
 class Library {
  public:
-  explicit Library(const Model& model) {
+  explicit Library(const Model& model) : model_(model) {
     for (const Material& material : model.materials) materials_.push_back(material.name);
     for (const Section& section : model.sections) sections_.push_back(section.name);
   }
-  int section(const Entry& entry) const { return index(entry, "section", sections_); }
+  /// Also checks that it can yield when the entry's material does.
+  int section(const Entry& entry) const {
+    const int found = index(entry, "section", sections_);
+    const Section& section = model_.sections[found];
+    const Material& stuff = model_.materials[material(entry)];
+    if (stuff.yield > 0 && !(section.zy > 0 && section.zz > 0 && section.zt > 0))
+      entry.fail("section", "\"" + section.name + "\" of material \"" + stuff.name +
+                                "\", which yields, has no plastic moduli: give zy, zz and zt");
+    return found;
+  }
   int material(const Entry& entry) const { return index(entry, "material", materials_); }
 
  private:
@@ -34,6 +43,7 @@ class Library {
                "there is no [[" + key + "]] \"" + name + "\"" + (names.empty() ? " nor any other" : known));
   }
 
+  const Model& model_;
   std::vector<std::string> materials_, sections_;
 };
 

@@ -1,6 +1,7 @@
 #include "solver/io/scene_keys.h"
 
 #include "solver/io/scene_key_rows.h"
+#include "solver/model.h"
 #include "solver/parameters.h"
 #include "solver/run.h"
 
@@ -22,7 +23,7 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("contact", T::table, "contact law");
   rows.plain("floor", T::table, "the floor, its face at z = 0").absent_means("no floor");
   rows.plain("wall", T::tables, "a plane wall");
-  rows.plain("material", T::tables, "linear elastic material");
+  rows.plain("material", T::tables, "elastic, or elastic and perfectly plastic, material");
   rows.plain("section", T::tables, "cross-section of members");
   rows.plain("cabinet", T::tables, "a steel cabinet, built from members");
   rows.plain("frame", T::tables, "anything made of straight members");
@@ -63,9 +64,9 @@ void add_run(std::vector<Key>& keys) {
   rows.plain("control", T::table, "a node that moves in equal parts while the loads follow")
       .absent_means("the loads grow by themselves")
       .only("analysis", {"static"});
-  rows.word("elements", {"asi-gauss"}, "where the integration points stand")
-      .later({"asi", "midpoint"})
-      .absent(0);
+  rows.word("elements", {"asi-gauss", "asi", "midpoint"},
+            "where the integration points stand; asi: in the middle while elastic; midpoint: always")
+      .absent(Scheme::asi_gauss);
   rows.plain("settle", T::boolean, "start from rest under gravity").absent(run.settle);
   rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows").absent(run.output_rate);
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
@@ -162,8 +163,10 @@ void add_material(std::vector<Key>& keys) {
   rows.number("young", D::stress, "Pa", 1e3, 1e13, "Young's modulus").required();
   rows.number("poisson", 0, 0.5, "Poisson's ratio").required();
   rows.number("density", D::density, "kg/m^3", 1e-3, 1e5, "density").required();
-  rows.later("yield", "yield stress");
-  rows.later("fracture_strain", "strain at fracture");
+  rows.number("yield", D::stress, "MPa", 1, 1e13, "yield stress").absent_means("elastic");
+  rows.number("fracture_strain", 1e-6, 10,
+              "strain of the extreme fibre or of the axis at fracture (hinges.h)")
+      .absent_means("never breaks");
 }
 
 void add_section(std::vector<Key>& keys) {
@@ -191,9 +194,18 @@ void add_section(std::vector<Key>& keys) {
   rows.number("ky", 1e-3, 1e3, "shear coefficient in y").required().only("shape", {"custom"});
   rows.number("kz", 1e-3, 1e3, "shear coefficient in z").required().only("shape", {"custom"});
   rows.number("width", D::length, "mm", 1e-3, k_large, "contact width").required().only("shape", {"custom"});
-  rows.later("zy", "plastic modulus");
-  rows.later("zz", "plastic modulus");
-  rows.later("zt", "plastic modulus in torsion");
+  rows.number("zy", D::section_modulus, "m^3", 1e-15, 100,
+              "plastic modulus of bending in the local x-z plane")
+      .absent_means("needed where the material yields")
+      .only("shape", {"custom"});
+  rows.number("zz", D::section_modulus, "m^3", 1e-15, 100,
+              "plastic modulus of bending in the local x-y plane")
+      .absent_means("needed where the material yields")
+      .only("shape", {"custom"});
+  rows.number("zt", D::section_modulus, "m^3", 1e-15, 100,
+              "plastic modulus of torsion: full torque over yield / sqrt(3)")
+      .absent_means("needed where the material yields")
+      .only("shape", {"custom"});
 }
 
 void add_probe(std::vector<Key>& keys) {

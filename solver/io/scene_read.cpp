@@ -43,6 +43,9 @@ Section read_section(const Entry& entry) {
     section.ky = entry.number("ky");
     section.kz = entry.number("kz");
     section.width = entry.number("width");
+    if (entry.has("zy")) section.zy = entry.number("zy");
+    if (entry.has("zz")) section.zz = entry.number("zz");
+    if (entry.has("zt")) section.zt = entry.number("zt");
     if (!entry.has("size")) section.size_y = section.size_z = section.width;
   }
   return section;
@@ -106,6 +109,7 @@ void check_pointer(const Entry& entry, const std::string& pointer) {
 
 void read_run(const Entry& root, Setup& setup) {
   const Entry run = root.entry("run");
+  setup.model.scheme = run.choice_as<Scheme>("elements");
   setup.run.duration = run.number("duration");
   setup.run.settle = run.flag("settle");
   setup.run.output_rate = run.number("output_rate");
@@ -176,8 +180,12 @@ void read_planes(const Entry& root, Setup& setup) {
 
 void read_materials_and_sections(const Entry& root, Setup& setup) {
   for (const Entry& entry : root.entries("material")) {
-    setup.model.materials.push_back(
-        {entry.name(), entry.number("young"), entry.number("poisson"), entry.number("density")});
+    Material material{entry.name(), entry.number("young"), entry.number("poisson"), entry.number("density")};
+    if (entry.has("yield")) material.yield = entry.number("yield");
+    if (entry.has("fracture_strain")) material.fracture_strain = entry.number("fracture_strain");
+    if (material.fracture_strain > 0 && !(material.yield > 0))
+      entry.fail("fracture_strain", "a material breaks where it has yielded: give yield as well");
+    setup.model.materials.push_back(material);
   }
   for (const Entry& entry : root.entries("section")) {
     Section section = read_section(entry);

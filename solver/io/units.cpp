@@ -48,6 +48,9 @@ const std::vector<Unit>& units() {
       {"m^4", D::second_moment, 1},
       {"cm^4", D::second_moment, 1e-8},
       {"mm^4", D::second_moment, 1e-12},
+      {"m^3", D::section_modulus, 1},
+      {"cm^3", D::section_modulus, 1e-6},
+      {"mm^3", D::section_modulus, 1e-9},
       {"rad/s", D::angular_velocity, 1},
       {"deg/s", D::angular_velocity, k_pi / 180},
       {"kg m^2", D::inertia, 1},
@@ -92,6 +95,8 @@ std::string_view dimension_name(Dimension dimension) {
       return "an area";
     case Dimension::second_moment:
       return "a second moment of area";
+    case Dimension::section_modulus:
+      return "a section modulus";
     case Dimension::angular_velocity:
       return "an angular velocity";
     case Dimension::inertia:

@@ -23,6 +23,7 @@ enum class Dimension {
   density,
   area,
   second_moment,
+  section_modulus,
   angular_velocity,
   inertia,
   moment,

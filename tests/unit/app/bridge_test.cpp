@@ -50,6 +50,30 @@ TEST_F(BridgeTest, members_are_drawn_from_their_first_to_their_last_node) {
   }
 }
 
+TEST_F(BridgeTest, a_hinge_is_a_ring_at_its_end_and_a_broken_element_is_open) {
+  const std::size_t whole = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters).tubes.size();
+  io::FrameRow row = end_;
+  row.hinge[0] = 1;
+  row.hinge[3] = 2;
+  const render::SceneFrame hinged = Bridge(scene_, extent_).frame(row, scene_.setup.parameters);
+  ASSERT_EQ(hinged.rings.size(), 2u);
+  EXPECT_LT(distance(hinged.rings[0].centre, seen(row, model().elements[0].node[0])), 1e-6);
+  EXPECT_LT(distance(hinged.rings[1].centre, seen(row, model().elements[3].node[1])), 1e-6);
+  EXPECT_EQ(hinged.tubes.size(), whole);
+
+  row.hinge[3] = 3;
+  const render::SceneFrame broken = Bridge(scene_, extent_).frame(row, scene_.setup.parameters);
+  EXPECT_EQ(broken.rings.size(), 1u);
+  ASSERT_EQ(broken.tubes.size(), whole + 1);
+  const std::size_t member = static_cast<std::size_t>(model().elements[3].member);
+  const render::Tube& one = broken.tubes[member];
+  const render::Tube& other = broken.tubes[member + 1];
+  EXPECT_EQ(one.member, other.member);
+  const auto& end = broken.stations[one.first_station + one.station_count - 1].position;
+  const auto& begin = broken.stations[other.first_station].position;
+  EXPECT_NEAR(distance(end, Vec3(begin[0], begin[1], begin[2])), 0.2 * model().elements[3].length, 1e-4);
+}
+
 TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
   const render::SceneFrame frame = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters);
   for (const render::Station& station : frame.stations) {

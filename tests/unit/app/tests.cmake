@@ -1,4 +1,5 @@
 add_executable(app_test
+  ${CMAKE_CURRENT_LIST_DIR}/analysis_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_output_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_scene_test.cpp

@@ -40,7 +40,7 @@ TEST_F(RecordingTest, an_unknown_version_is_named) {
     write_attribute(file, "version", 7);
   }
   EXPECT_EQ(read_error(path("a.h5")),
-            path("a.h5") + ": recording format 7 is not supported by this version, which reads format 1");
+            path("a.h5") + ": recording format 7 is not supported by this version, which reads format 2");
 }
 
 TEST_F(RecordingTest, a_closed_file_cut_at_any_length_is_refused) {

@@ -44,10 +44,39 @@ TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
             "s.toml:17:3: anchor: is not supported by this version");
   EXPECT_EQ(in_cabinet("damping = 0.01\n"),
             "s.toml:16:1: cabinet.free.damping: is not supported by this version");
-  EXPECT_EQ(error_of(replaced(k_scene, "poisson", "yield = 1\npoisson")),
-            "s.toml:5:1: material.steel.yield: is not supported by this version");
-  EXPECT_EQ(error_of(replaced(k_scene, "thickness", "zy = 1\nthickness")),
-            "s.toml:11:1: section.post.zy: is not supported by this version");
+}
+
+TEST(SceneErrors, yield_and_fracture_have_their_ranges_and_need_each_other) {
+  const auto with = [](const std::string& lines) {
+    return error_of(replaced(k_scene, "poisson", lines + "poisson"));
+  };
+  EXPECT_EQ(with("yield = 0\n"), "s.toml:5:9: material.steel.yield: 0 is outside 1e-06..1e+07 MPa");
+  EXPECT_EQ(
+      with("fracture_strain = 0.2\n"),
+      "s.toml:5:19: material.steel.fracture_strain: a material breaks where it has yielded: give yield as "
+      "well");
+  EXPECT_EQ(with("yield = \"235 MPa\"\nfracture_strain = 0.2\n"), "no error");
+  EXPECT_EQ(error_of(replaced(k_scene, "thickness", "zy = 1e-6\nthickness")),
+            "s.toml:11:1: section.post.zy: belongs to shape = custom, but shape is box");
+}
+
+TEST(SceneErrors, custom_section_of_a_material_that_yields_needs_plastic_moduli) {
+  const std::string moduli = "zy = \"1 cm^3\"\nzz = \"1 cm^3\"\nzt = \"1 cm^3\"\n";
+  const auto scene = [](const std::string& yield, const std::string& more) {
+    std::string text = replaced(k_scene, "poisson", yield + "poisson");
+    text =
+        replaced(text, "shape = \"box\"\nsize = [\"30 mm\", \"30 mm\"]\nthickness = \"1 mm\"\n",
+                 "shape = \"custom\"\narea = 1e-4\niy = 1e-8\niz = 1e-8\nj = 1e-8\nky = 1\nkz = 1\nwidth = "
+                 "\"30 mm\"\n" +
+                     more);
+    return error_of(text);
+  };
+  EXPECT_EQ(scene("", ""), "no error");
+  EXPECT_EQ(scene("yield = \"235 MPa\"\n", moduli), "no error");
+  EXPECT_NE(
+      scene("yield = \"235 MPa\"\n", "")
+          .find("\"post\" of material \"steel\", which yields, has no plastic moduli: give zy, zz and zt"),
+      std::string::npos);
 }
 
 TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
@@ -57,7 +86,6 @@ TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
                ? error.substr(0, error.find(": "))
                : error;
   };
-  EXPECT_EQ(refused("[run]\nelements = \"midpoint\"\n"), "s.toml:18:12");
   EXPECT_EQ(refused("[[shake]]\nfrequency = [1, 2]\ntype = \"sweep\"\n"), "s.toml:19:8");
   EXPECT_EQ(refused("[[shake]]\ntype = \"record\"\nfiles = []\n"), "s.toml:18:8");
   EXPECT_EQ(refused("[floor]\ntype = \"beams\"\n"), "s.toml:18:8");

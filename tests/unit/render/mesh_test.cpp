@@ -57,6 +57,20 @@ TEST(Mesh, lead_and_trail_draw_the_section_on) {
   EXPECT_NEAR(volume(solid_mesh(frame, left_out)), 0.04 * 0.04 * length, 1e-8);
 }
 
+TEST(Mesh, a_ring_is_a_torus_and_one_without_axis_or_size_is_left_out) {
+  SceneFrame frame;
+  frame.rings.push_back({{1, 2, 3}, {0, 0, 5}, 0.1f, {1, 0.5f, 0, 1}});
+  LeftOut left_out;
+  // 2 pi^2 R r^2, less what 32 x 10 facets cut off: 1 - sin(2 pi/n)/(2 pi/n) of each circle
+  const double torus = 2 * 9.8696 * 0.1 * 0.016 * 0.016;
+  EXPECT_NEAR(volume(solid_mesh(frame, left_out)), torus, 0.08 * torus);
+  EXPECT_EQ(left_out.total(), 0);
+  frame.rings = {
+      {{0, 0, 0}, {0, 0, 0}, 0.1f, {}}, {{0, 0, 0}, {0, 0, 1}, 0, {}}, {{NAN, 0, 0}, {0, 0, 1}, 0.1f, {}}};
+  EXPECT_TRUE(solid_mesh(frame, left_out).vertices.empty());
+  EXPECT_EQ(left_out.rings, 3);
+}
+
 TEST(Mesh, every_triangle_faces_the_way_its_normals_point) {
   SceneFrame frame = synthetic_cabinet(6);
   add_words(frame);

@@ -156,7 +156,7 @@ double energy_of(const Element& e, const Pose& p) {
   return beam_energy(e, beam_strain(e, e.s, ends_of(e, p)));
 }
 Eigen::Matrix<double, 12, 1> gradient_of(const Element& e, const Pose& p) {
-  const BeamGradient g = beam_gradient(e, e.s, ends_of(e, p));
+  const BeamGradient g = beam_gradient(e, {}, ends_of(e, p));
   Eigen::Matrix<double, 12, 1> v;
   v << g.force1, g.moment1, g.force2, g.moment2;
   return v;
@@ -226,7 +226,7 @@ TEST(Beam, gradient_balances_forces_and_moments) {
     for (double angle : k_turns) {
       const Element e = random_element(rng, s);
       const Pose p = random_pose(rng, e, angle);
-      const BeamGradient g = beam_gradient(e, s, ends_of(e, p));
+      const BeamGradient g = beam_gradient(e, {}, ends_of(e, p));
       EXPECT_LT((g.force1 + g.force2).norm(), 1e-15);
       const Vec3 moments = g.moment1 + g.moment2 + (p.x2 - p.x1).cross(g.force2);
       EXPECT_LT(moments.norm(), 1e-14) << "s " << s << ", turn " << angle;
@@ -242,7 +242,7 @@ TEST(Beam, tangent_is_the_derivative_of_the_gradient) {
       const Pose p = random_pose(rng, e, angle);
       BeamGradient g;
       Mat12 tangent;
-      beam_tangent(e, s, ends_of(e, p), g, tangent);
+      beam_tangent(e, {}, ends_of(e, p), g, tangent);
       const auto alone = gradient_of(e, p);
       Eigen::Matrix<double, 12, 1> both;
       both << g.force1, g.moment1, g.force2, g.moment2;
@@ -273,7 +273,7 @@ TEST(Beam, tangent_is_continuous_where_series_and_closed_forms_meet) {
       for (int side = 0; side < 2; ++side) {
         std::mt19937 same(seed);
         BeamGradient g;
-        beam_tangent(e, s, ends_of(e, random_pose(same, e, edge * (1 + (side == 0 ? -1e-12 : 1e-12)))), g,
+        beam_tangent(e, {}, ends_of(e, random_pose(same, e, edge * (1 + (side == 0 ? -1e-12 : 1e-12)))), g,
                      tangent[side]);
       }
       // the closed forms of the second derivatives cancel to 3e-11 at 0.3 (rotation_test)

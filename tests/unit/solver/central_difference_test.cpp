@@ -19,7 +19,7 @@ double dense_limit(const Model& model, int index) {
     const Element& element = model.elements[e];
     BeamGradient g;
     Mat12 tangent;
-    beam_tangent(element, element.s,
+    beam_tangent(element, {},
                  beam_ends(element, model.node_position[element.node[0]], Quat::Identity(),
                            model.node_position[element.node[1]], Quat::Identity()),
                  g, tangent);

@@ -169,6 +169,8 @@ TEST(Statics, displacement_control_passes_the_limit_load_of_lees_frame) {
 TEST(Statics, load_step_beyond_the_limit_keeps_what_converged_and_says_where_and_when) {
   topple::Setup setup = lees_frame(10);
   setup.model.loads[0].force = {0, 0, -25000};
+  for (int i = 0; i < setup.model.node_total(); ++i)
+    setup.model.supports.push_back({i, 0x2a});  // in its plane
   topple::Run run(setup);
   while (!run.over()) run.advance();
   const StepStatus& status = run.status();
@@ -184,6 +186,27 @@ TEST(Statics, load_step_beyond_the_limit_keeps_what_converged_and_says_where_and
   const std::string text = status.message(setup.model);
   for (const char* part : {"\"lee\"", "element ", "load factor 0.74"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+// Euler: pi^2 EI/(4 L^2) for a clamped column, in both directions at once.
+TEST(Statics, straight_column_is_not_followed_beyond_eulers_load) {
+  const double euler = k_pi * k_pi * k_bending / 4;
+  topple::Setup setup = chain(8, {-2 * euler, 0, 0}, Vec3::Zero(), 10);
+  topple::Run run(setup);
+  while (!run.over()) run.advance();
+  ASSERT_EQ(run.status().kind, StepStatus::Kind::no_equilibrium);
+  // 16 elements: second order in their length; 1/1024 of a load step
+  EXPECT_NEAR(run.state().load_factor, 0.5, 0.002);
+}
+
+TEST(Statics, column_with_a_small_push_follows_the_bent_branch) {
+  const double euler = k_pi * k_pi * k_bending / 4;
+  const topple::Setup setup = chain(8, {-1.2 * euler, 0, 1e-3 * euler}, Vec3::Zero(), 20);
+  topple::Run run(setup);
+  const State& state = end_of(run);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+  // elastica: the tip of a column under 1.2 of Euler's load stands off by about 0.7 L
+  EXPECT_GT(state.position[8].z(), 0.6);
 }
 
 TEST(Statics, mechanism_is_named) {

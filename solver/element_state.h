@@ -1,0 +1,33 @@
+// What happens at an element's stress point, and what an element remembers of it.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/types.h"
+
+namespace topple {
+
+/// Strains at the stress point r = -s (Eq. 1) in the frame of the integration point.
+struct BeamStrain {
+  Vec3 gamma;  ///< axial strain, shear strains along y and z
+  Vec3 kappa;  ///< twist and curvatures about y and z, 1/m
+};
+
+/// Section forces of one element at its stress point r = -s, local axes.
+struct SectionForces {
+  Vec3 normal;  ///< N, Vy, Vz, N
+  Vec3 moment;  ///< Mx, My, Mz, N m
+};
+
+/// Where an element has its plastic hinge: where its section flows (plasticity.h). middle: of the `midpoint`
+/// scheme. broken: it carries nothing.
+enum class Hinge : std::int64_t { none, first, second, broken, middle };
+
+/// Part of State, one per element.
+struct ElementState {
+  Hinge hinge = Hinge::none;
+  /// Strain at the elastic stress point at which the section forces vanish: what flowed so far.
+  BeamStrain offset{Vec3::Zero(), Vec3::Zero()};
+};
+
+}  // namespace topple

@@ -1,0 +1,54 @@
+// Plastic hinges of a body: where they form, move and break. For dynamics and statics alike:
+//
+//   system.load_elements(state);                     // once per step
+//   HingeStep hinges;
+//   do solve(trial);                                 // to convergence, evaluate_with_tangent
+//   while (update_hinges(system, trial, hinges));
+//   energy = commit_hinges(system, start, trial, state);
+//
+// Both ends of an element are checked by equilibrium. Where f > 0 the element gets a hinge there and the step
+// is solved again with its flow (plasticity.h). A hinge that unloads goes when the step is accepted.
+#pragma once
+
+#include <vector>
+
+#include "solver/body_system.h"
+
+namespace topple {
+
+inline constexpr double k_yielding = 1e-8;   ///< of f: above it a section is fully plastic
+inline constexpr double k_unloading = 1e-3;  ///< of f: hysteresis
+inline constexpr double k_beside = 1e-3;     ///< of f: joint rule of update_hinges
+inline constexpr double k_crowded = 1e-2;    ///< of f: one hinge per element, update_hinges
+inline constexpr int k_most_redos = 60;      ///< of one step
+
+/// What the solutions of one step changed so far.
+struct HingeStep {
+  std::vector<bool> formed;  ///< per element of the body; once per step
+  int redos = 0;
+};
+
+/// Looks at a converged solution `trial` of a step and changes system.elements. True: the step must be solved
+/// again. In this order, each followed by a new solution:
+/// - Sections that flow beyond their limits break (breaks).
+/// - The section with the greatest f gets a hinge, and with it those nearly as far (symmetric ones). The last
+///   end at a joint that is not held stays elastic: hinges at all ends leave the joint's rotation
+///   undetermined. It yields all the same once loaded k_beside beyond its surface while the others lie on
+///   theirs: then the directions of flow differ.
+/// - An element holds one hinge. When its other end is loaded k_crowded beyond yield the hinge moves there:
+///   in turns both flow, each a step late (Outcome::crowded_members).
+/// False too after k_most_redos: the next step goes on from there.
+bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step);
+
+/// Takes the flow of the accepted solution into system.elements and `state`; hinges loaded k_unloading below
+/// yield go. Returns the energy, J, that flow and fracture took, by the trapezoidal rule like all work.
+double commit_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& end, State& state);
+
+/// A fully plastic section breaks when
+///   |kappa_y| size_z/2, |kappa_z| size_y/2 or the stretch gamma_x (tension only)
+/// reaches fracture_strain, or an elastic shear strain V/(k G A) reaches sqrt(3) fracture_strain (von Mises).
+/// kappa and gamma_x are those of the whole element: flow is spread over its length.
+bool breaks(const Model& model, const Element& element, const BeamStrain& strain,
+            const SectionForces& forces);
+
+}  // namespace topple
