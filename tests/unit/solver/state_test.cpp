@@ -40,8 +40,8 @@ TEST(State, pack_and_unpack_give_the_same_bits) {
 }
 
 TEST(State, every_member_has_its_own_place_in_a_checkpoint) {
-  // 25 numbers per node, 3 per stick spring, 7 per element, time, step, floor's six, step size, load factor and
-  // 11 energies
+  // 25 numbers per node, 3 per stick spring, 7 per element, time, step, floor's six, step size, load factor
+  // and 11 energies
   const Simulation sim = rocking();
   const std::size_t expected = 25 * static_cast<std::size_t>(sim.model.node_total()) +
                                3 * sim.model.contact_points.size() * sim.model.planes.size() +
