@@ -88,7 +88,7 @@ struct Curve {
         q1.slerp(t, q2));
   }
   /// The halves of a broken one.
-  render::Station stub(double t) const {
+  render::Station stump(double t) const {
     return t < 0.5 ? station(x1 + t * length * (q1 * Vec3::UnitX()), q1)
                    : station(x2 - (1 - t) * length * (q2 * Vec3::UnitX()), q2);
   }
@@ -201,7 +201,7 @@ void Bridge::add_ghost(const io::FrameRow& row, render::SceneFrame& out) const {
 }
 
 // Between its nodes an element is a cubic in space with the nodes' directions at its ends, its section
-// turning evenly. A broken one is two stubs, each as its node stands.
+// turning evenly. A broken one is two stumps, each as its node stands.
 void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
                        std::vector<render::Tube>& tubes) const {
   const Model& model = scene_.setup.model;
@@ -232,7 +232,7 @@ void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& st
           end(0);
           begin(0);
         }
-        stations.push_back(broken ? curve.stub(t) : curve.at(t));
+        stations.push_back(broken ? curve.stump(t) : curve.at(t));
         stations.back().value = static_cast<float>(
             k_mega * equivalent_stress(model.sections[static_cast<std::size_t>(member.section)],
                                        forces_at(model, row, e, 2 * t - 1)));
