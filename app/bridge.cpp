@@ -327,7 +327,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
                           render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
   out.caption.title = scene_.title;
-  out.caption.lines.push_back(fmt::format("t = {:.2f} s", row.time));
+  out.caption.lines.push_back(instant_in_words(setup, row.time, row.step));
   if (!parameters.shakes.empty()) {
     const Shake& shake = parameters.shakes.front();
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;

@@ -181,7 +181,12 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
                                    {p.x + k_size, p.y + k_size}, colour);
           else if (event.event.kind == Event::Kind::impact)
             list.AddLine({p.x, p.y - k_size}, {p.x, p.y + k_size}, colour, 2);
-          else
+          else if (event.event.kind == Event::Kind::hinge)
+            list.AddCircle(p, k_size, colour, 12, 1.5f);
+          else if (event.event.kind == Event::Kind::fracture) {
+            list.AddLine({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour, 1.5f);
+            list.AddLine({p.x - k_size, p.y + k_size}, {p.x + k_size, p.y - k_size}, colour, 1.5f);
+          } else
             list.AddRectFilled({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
         });
   }

@@ -229,7 +229,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   };
   line(fonts_.text, k_text, player_.scene().title);
   line(fonts_.small, k_quiet_text,
-       fmt::format("t = {:.2f} s   {}", player_.time(), shake_in_words(player_.parameters())));
+       instant_in_words(player_.scene().setup, player_.time(), row.step) + "   " +
+           shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));

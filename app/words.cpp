@@ -29,6 +29,11 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
   return line;
 }
 
+std::string instant_in_words(const Setup& setup, double time, std::int64_t step) {
+  return setup.run.analysis == Analysis::statics ? fmt::format("load step {}", step)
+                                                 : fmt::format("t = {:.2f} s", time);
+}
+
 std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
