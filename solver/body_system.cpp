@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "solver/beam.h"
 #include "solver/excitation.h"
@@ -9,12 +10,8 @@
 namespace topple {
 namespace {
 
-std::vector<std::pair<int, int>> couplings(const Model& model, const Body& body) {
-  std::vector<std::pair<int, int>> edges;
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-    edges.emplace_back(model.elements[e].node[0] - body.first_node,
-                       model.elements[e].node[1] - body.first_node);
-  return edges;
+int first_node(const Model& model, int body) {
+  return model.bodies[body].first_node;
 }
 
 }  // namespace
@@ -37,108 +34,177 @@ void BodyMotion::resize(int nodes) {
   angular_velocity.resize(nodes);
 }
 
-BodySystem::BodySystem(const Model& whole, int body)
+BodySystem::BodySystem(const Model& whole, int body) : BodySystem(whole, std::vector<int>{body}, {}) {}
+
+BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<ElementPair> pairs)
     : model(whole),
-      index(body),
-      first(whole.bodies[body].first_node),
-      count(whole.bodies[body].node_count),
+      bodies(std::move(which)),
+      near(std::move(pairs)),
+      index(bodies.front()),
+      first(first_node(whole, index)),
+      count(0),
       size(0),
-      contact_mass(whole.bodies[body].mass / std::max(1, whole.bodies[body].contact_point_count)),
-      fixed(count, 0u),
-      force(count),
-      moment(count),
-      lu(count, couplings(whole, whole.bodies[body])),
+      mass(0),
+      lu(0, {}),
       yields(false) {
-  for (int i = 0; i < count; ++i)
-    size = std::max(size, (model.node_position[first + i] - model.bodies[body].centre_of_gravity).norm());
-  for (const Support& support : model.supports)
-    if (model.node_body[support.node] == body) fixed[support.node - first] |= support.fixed;
-  for (const Load& load : model.loads)
-    if (model.node_body[load.node] == body) loads_.push_back(&load);
-  const Body& own = model.bodies[body];
-  for (int k = 0; k < own.element_count; ++k) {
-    const Element& element = model.elements[own.first_element + k];
-    elements.emplace_back();
-    yields = yields || std::isfinite(element.capacity[0]);
+  add_nodes();
+  std::vector<std::pair<int, int>> couplings;
+  for (const int b : bodies) {
+    const Body& body = model.bodies[b];
+    mass += body.mass;
+    contact_mass_.push_back(body.mass / std::max(1, body.contact_point_count));
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+      const Element& element = model.elements[e];
+      own_elements.push_back({e, local(element.node[0]), local(element.node[1])});
+      couplings.emplace_back(own_elements.back().i, own_elements.back().j);
+      yields = yields || std::isfinite(element.capacity[0]);
+    }
   }
+  for (const ElementPair& pair : near) {
+    member_pairs_.push_back(member_pair(pair));
+    const auto& ends = member_pairs_.back().node;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) couplings.emplace_back(ends[i], ends[j]);
+  }
+  lu = BlockLu(count, couplings);
+  elements.resize(own_elements.size());
   if (yields) {
     joints.resize(count);
-    for (int k = 0; k < own.element_count; ++k)
-      for (int end = 0; end < 2; ++end)
-        joints[model.elements[own.first_element + k].node[end] - first].emplace_back(k, end);
+    for (int k = 0; k < static_cast<int>(own_elements.size()); ++k) {
+      joints[own_elements[k].i].emplace_back(k, 0);
+      joints[own_elements[k].j].emplace_back(k, 1);
+    }
   }
-  pairs.reserve(static_cast<std::size_t>(model.bodies[body].contact_point_count) * model.planes.size());
+  for (const Load& load : model.loads)
+    if (std::find(bodies.begin(), bodies.end(), model.node_body[load.node]) != bodies.end())
+      loads.push_back({&load, local(load.node)});
+}
+
+void BodySystem::add_nodes() {
+  for (const int b : bodies) {
+    const Body& body = model.bodies[b];
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+      node.push_back(i);
+      size = std::max(size, (model.node_position[i] - body.centre_of_gravity).norm());
+    }
+  }
+  for (const ElementPair& pair : near)
+    for (const int e : {pair.a, pair.b})
+      for (const int i : model.elements[e].node)
+        if (local(i) < 0) node.push_back(i);
+  count = static_cast<int>(node.size());
+  force.resize(count);
+  moment.resize(count);
+  fixed.assign(count, 0u);
+  for (const Support& support : model.supports)
+    if (const int i = local(support.node); i >= 0) fixed[i] |= support.fixed;
+}
+
+MemberPair BodySystem::member_pair(const ElementPair& pair) const {
+  MemberPair out;
+  out.elements = pair;
+  out.L = contact_length(model, pair);
+  double inverse = 0;
+  int k = 0;
+  for (const int e : {pair.a, pair.b}) {
+    const int body = model.node_body[model.elements[e].node[0]];
+    const auto own = std::find(bodies.begin(), bodies.end(), body);
+    if (own != bodies.end()) inverse += 1 / contact_mass_[own - bodies.begin()];
+    for (const int i : model.elements[e].node) out.node[k++] = local(i);
+  }
+  out.mass = 1 / inverse;
+  out.start.fill(Vec3::Zero());
+  out.stick.fill(Vec3::Zero());
+  return out;
+}
+
+int BodySystem::local(int global) const {
+  int before = 0;
+  for (const int b : bodies) {
+    const Body& body = model.bodies[b];
+    if (global >= body.first_node && global < body.first_node + body.node_count)
+      return before + global - body.first_node;
+    before += body.node_count;
+  }
+  const auto held = std::find(node.begin() + std::min<std::ptrdiff_t>(before, node.size()), node.end(), global);
+  return held == node.end() ? -1 : static_cast<int>(held - node.begin());
 }
 
 void BodySystem::add_applied(const Parameters& parameters, double t) {
   const Vec3 field = parameters.gravity - floor_acceleration(parameters.shakes, t);
   for (int i = 0; i < count; ++i) {
-    force[i] = model.node_mass[first + i] * field;
+    force[i] = model.node_mass[node[i]] * field;
     moment[i].setZero();
   }
-  for (const Load* load : loads_) {
+  for (const auto& [load, i] : loads) {
     const double factor = loads_grow && load->history.empty() ? t : load_factor(*load, t);
-    force[load->node - first] += factor * load->force;
-    moment[load->node - first] += factor * load->moment;
+    force[i] += factor * load->force;
+    moment[i] += factor * load->moment;
   }
+}
+
+ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotion& motion,
+                                       std::span<const Vec3> stick_start, std::span<const Vec3> start) const {
+  const Vec3 stick = stick_start[pair.point * model.planes.size() + pair.plane] + motion.position[pair.node] -
+                     start[pair.node];
+  return {model.planes[pair.plane].normal, pair.depth,    pair.L, motion.velocity[pair.node], stick,
+          contact_mass_[pair.own_body],    false};
 }
 
 void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
                                std::span<const Vec3> stick_start, std::span<const Vec3> start,
-                               std::vector<TouchingPair>& found) const {
-  found.clear();
-  const Body& body = model.bodies[index];
-  const int planes = static_cast<int>(model.planes.size());
-  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
-    const ContactPoint& point = model.contact_points[p];
-    const int i = point.node - first;
-    for (int k = 0; k < planes; ++k) {
-      const Plane& plane = model.planes[k];
-      const double width = plane.width > 0 ? plane.width : point.width;
-      const double L = (point.width + width) / 2;
-      const double l = plane.normal.dot(motion.position[i] - plane.point) + width / 2;
-      const double depth = 1 - l / L;
-      if (!(depth > 0)) continue;
-      const Vec3 stick =
-          stick_start[static_cast<std::size_t>(p) * planes + k] + motion.position[i] - start[i];
-      const ContactInput input{plane.normal, depth, L, motion.velocity[i], stick, contact_mass};
-      found.push_back({p, k, depth, L, contact_force(law, input)});
+                               Contacts& found) const {
+  found.planes.clear();
+  int before = 0;
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const Body& body = model.bodies[bodies[b]];
+    for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+      const ContactPoint& point = model.contact_points[p];
+      const int i = before + point.node - body.first_node;
+      for (int k = 0; k < static_cast<int>(model.planes.size()); ++k) {
+        const Plane& plane = model.planes[k];
+        const double width = plane.width > 0 ? plane.width : point.width;
+        const double L = (point.width + width) / 2;
+        const double l = plane.normal.dot(motion.position[i] - plane.point) + width / 2;
+        const double depth = 1 - l / L;
+        if (!(depth > 0)) continue;
+        TouchingPair pair{p, k, i, b, depth, L, {}};
+        pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
+        found.planes.push_back(pair);
+      }
     }
+    before += body.node_count;
   }
+  find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 
 template <bool with_tangent>
 void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
                               std::span<const Vec3> stick_start, std::span<const Vec3> start,
                               double velocity_factor) {
-  find_contacts(law, motion, stick_start, start, pairs);
-  const int planes = static_cast<int>(model.planes.size());
-  for (const TouchingPair& pair : pairs) {
-    const int i = model.contact_points[pair.point].node - first;
-    force[i] += pair.out.force;
+  find_contacts(law, motion, stick_start, start, contacts);
+  for (const TouchingPair& pair : contacts.planes) {
+    force[pair.node] += pair.out.force;
     if constexpr (with_tangent) {
-      const Vec3 stick = stick_start[static_cast<std::size_t>(pair.point) * planes + pair.plane] +
-                         motion.position[i] - start[i];
-      const ContactInput input{
-          model.planes[pair.plane].normal, pair.depth, pair.L, motion.velocity[i], stick, contact_mass};
       Mat3 by_position, by_velocity;
-      contact_force(law, input, by_position, by_velocity);
+      contact_force(law, plane_contact(pair, motion, stick_start, start), by_position, by_velocity);
       Mat6 block = Mat6::Zero();
       block.topLeftCorner<3, 3>() = -by_position - velocity_factor * by_velocity;
-      lu.add(i, i, block);
+      lu.add(pair.node, pair.node, block);
     }
   }
+  add_forces(contacts.members, member_pairs_, force);
+  if constexpr (with_tangent) add_tangent(law, contacts.members, member_pairs_, velocity_factor, lu);
 }
 
 void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                           std::span<const Vec3> stick_start, std::span<const Vec3> start) {
   add_applied(parameters, t);
-  const Body& body = model.bodies[index];
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+  for (std::size_t k = 0; k < own_elements.size(); ++k) {
+    const auto [e, i, j] = own_elements[k];
     const Element& element = model.elements[e];
-    const int i = element.node[0] - first, j = element.node[1] - first;
     const BeamGradient g = beam_gradient(
-        element, elements[e - body.first_element],
+        element, elements[k],
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]));
     force[i] -= g.force1;
     moment[i] -= g.moment1;
@@ -152,14 +218,13 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                        double velocity_factor) {
   add_applied(parameters, t);
-  const Body& body = model.bodies[index];
   Mat12 tangent;
   BeamGradient g;
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+  for (std::size_t k = 0; k < own_elements.size(); ++k) {
+    const auto [e, i, j] = own_elements[k];
     const Element& element = model.elements[e];
-    const int i = element.node[0] - first, j = element.node[1] - first;
     beam_tangent(
-        element, elements[e - body.first_element],
+        element, elements[k],
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]), g,
         tangent);
     force[i] -= g.force1;
@@ -174,58 +239,79 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
   add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
 }
 
-BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
-                              const std::vector<TouchingPair>& contacts,
+BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,
                               std::vector<SectionForces>& sections) const {
   BodyEnergy sum;
   for (int i = 0; i < count; ++i) {
     const Vec3& w = motion.angular_velocity[i];
-    sum.kinetic += 0.5 * model.node_mass[first + i] * motion.velocity[i].squaredNorm() +
-                   0.5 * w.dot(model.node_inertia[first + i] * w);
+    sum.kinetic += 0.5 * model.node_mass[node[i]] * motion.velocity[i].squaredNorm() +
+                   0.5 * w.dot(model.node_inertia[node[i]] * w);
   }
-  const Body& body = model.bodies[index];
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+  for (std::size_t k = 0; k < own_elements.size(); ++k) {
+    const auto [e, i, j] = own_elements[k];
     const Element& element = model.elements[e];
-    const int i = element.node[0] - first, j = element.node[1] - first;
     const BeamEnds ends =
         beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
-    const ElementState& now = elements[e - body.first_element];
-    const BeamStrain elastic = elastic_strain(now, beam_strain(element, element.s, ends));
+    const BeamStrain elastic = elastic_strain(elements[k], beam_strain(element, element.s, ends));
     sections[e] = section_forces(element, elastic);
     sum.strain += beam_energy(element, elastic);
   }
-  for (const TouchingPair& pair : contacts) {
+  for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
     if (law.kind != ContactLawKind::printed) sum.contact += penalty_energy(law, pair.depth, pair.L);
     sum.contact += pair.out.stick_energy;
   }
+  sum.contact += stored_energy(law, now.members, member_pairs_);
   return sum;
 }
 
 void BodySystem::load(const State& state, BodyMotion& motion) const {
   motion.resize(count);
-  std::copy_n(state.position.begin() + first, count, motion.position.begin());
-  std::copy_n(state.velocity.begin() + first, count, motion.velocity.begin());
-  std::copy_n(state.rotation.begin() + first, count, motion.rotation.begin());
-  std::copy_n(state.angular_velocity.begin() + first, count, motion.angular_velocity.begin());
+  for (int i = 0; i < count; ++i) {
+    motion.position[i] = state.position[node[i]];
+    motion.velocity[i] = state.velocity[node[i]];
+    motion.rotation[i] = state.rotation[node[i]];
+    motion.angular_velocity[i] = state.angular_velocity[node[i]];
+  }
 }
 
-void BodySystem::load_elements(const State& state) {
-  std::copy_n(state.elements.begin() + model.bodies[index].first_element, elements.size(), elements.begin());
+void BodySystem::load_memory(const State& state) {
+  for (std::size_t k = 0; k < own_elements.size(); ++k) elements[k] = state.elements[own_elements[k].element];
+  auto stick = state.member_sticks.begin();
+  for (MemberPair& pair : member_pairs_) {
+    for (int k = 0; k < 4; ++k) pair.start[k] = state.position[node[pair.node[k]]];
+    pair.stick.fill(Vec3::Zero());
+    while (stick != state.member_sticks.end() && stick->elements < pair.elements) ++stick;
+    for (; stick != state.member_sticks.end() && stick->elements == pair.elements; ++stick)
+      pair.stick[stick->place] = stick->stick;
+  }
 }
 
-void BodySystem::store_stick(const std::vector<TouchingPair>& contacts, std::vector<Vec3>& stick) const {
-  const Body& body = model.bodies[index];
+void BodySystem::store_stick(const Contacts& now, State& state) const {
   const std::size_t planes = model.planes.size();
-  std::fill_n(stick.begin() + body.first_contact_point * planes, body.contact_point_count * planes,
-              Vec3::Zero());
-  for (const TouchingPair& pair : contacts) stick[pair.point * planes + pair.plane] = pair.out.stick;
+  for (const int b : bodies) {
+    const Body& body = model.bodies[b];
+    std::fill_n(state.stick.begin() + body.first_contact_point * planes, body.contact_point_count * planes,
+                Vec3::Zero());
+  }
+  for (const TouchingPair& pair : now.planes)
+    state.stick[pair.point * planes + pair.plane] = pair.out.stick;
+
+  std::erase_if(state.member_sticks, [&](const MemberStick& stick) {
+    return std::binary_search(near.begin(), near.end(), stick.elements);
+  });
+  for (const MemberTouch& touch : now.members.touches)
+    state.member_sticks.push_back({near[touch.pair], touch.place, touch.out.stick});
+  std::sort(state.member_sticks.begin(), state.member_sticks.end(),
+            [](const MemberStick& a, const MemberStick& b) {
+              return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
+            });
 }
 
-int BodySystem::element_at(int node) const {
-  const Body& body = model.bodies[index];
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-    if (model.elements[e].node[0] == node || model.elements[e].node[1] == node) return e;
+int BodySystem::element_at(int global) const {
+  for (const OwnElement& own : own_elements)
+    if (model.elements[own.element].node[0] == global || model.elements[own.element].node[1] == global)
+      return own.element;
   return -1;
 }
 

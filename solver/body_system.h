@@ -1,4 +1,4 @@
-// Forces on the nodes of one body and their derivatives.
+// Forces on the nodes of one body, or of bodies that may touch each other, and their derivatives.
 #pragma once
 
 #include <span>
@@ -6,6 +6,7 @@
 
 #include "solver/block_lu.h"
 #include "solver/contact_law.h"
+#include "solver/member_contact.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
 #include "solver/section_forces.h"
@@ -17,12 +18,20 @@ namespace topple {
 struct TouchingPair {
   int point;  ///< index into Model::contact_points
   int plane;
+  int node;      ///< of the point, numbered within the system
+  int own_body;  ///< likewise
   double depth;  ///< 1 - l/L, > 0
   double L;      ///< m
   ContactOutput out;
 };
 
-/// Motion of one body's nodes, numbered from 0 within the body.
+/// What touches at some instant.
+struct Contacts {
+  std::vector<TouchingPair> planes;
+  MemberContacts members;
+};
+
+/// Motion of the nodes of a system, numbered from 0 within it.
 struct BodyMotion {
   std::vector<Vec3> position, velocity;  ///< m, m/s, floor's frame
   std::vector<Quat> rotation;
@@ -31,7 +40,7 @@ struct BodyMotion {
   void resize(int nodes);
 };
 
-/// Energies of one body that depend on where it is, J.
+/// Energies of a system that depend on where it is, J.
 struct BodyEnergy {
   double kinetic = 0, strain = 0, contact = 0;
 };
@@ -39,14 +48,19 @@ struct BodyEnergy {
 /// Factor of a load at time t.
 double load_factor(const Load& load, double t);
 
-/// One body of a model with its sparse solver and scratch. All arrays are per node of the body.
+/// Bodies of a model that may touch each other, or one alone, with their sparse solver and scratch. Arrays are
+/// per node of the system: those of its bodies one after the other, then held nodes of others that they may
+/// touch.
 class BodySystem {
  public:
   BodySystem(const Model& model, int body);
+  /// `near`: pairs of elements that may touch; of each at least one belongs to `bodies`, the other too or its
+  /// nodes are held.
+  BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> near);
 
   /// Applied minus internal force and moment (world axes) at time t: gravity, -m a(t), loads, beams,
   /// contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills `force`,
-  /// `moment` and `pairs`.
+  /// `moment` and `contacts`.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
   /// The same with the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
@@ -56,41 +70,65 @@ class BodySystem {
                              double velocity_factor);
   /// Contacts alone, into `found`.
   void find_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
-                     std::span<const Vec3> start, std::vector<TouchingPair>& found) const;
-  /// Also fills this body's part of `sections`, one per element of the model.
-  BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion,
-                    const std::vector<TouchingPair>& contacts, std::vector<SectionForces>& sections) const;
-  /// Copies this body's part of the state.
+                     std::span<const Vec3> start, Contacts& found) const;
+  /// Also fills this system's part of `sections`, one per element of the model.
+  BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
+                    std::vector<SectionForces>& sections) const;
+  /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
-  /// Copies the elements of this body. Steps begin with it; evaluations read `elements`.
-  void load_elements(const State& state);
+  /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.
+  void load_memory(const State& state);
   /// Writes stick springs of `contacts`; open contacts forget theirs.
-  void store_stick(const std::vector<TouchingPair>& contacts, std::vector<Vec3>& stick) const;
-  const std::vector<const Load*>& loads() const { return loads_; }
+  void store_stick(const Contacts& contacts, State& state) const;
+  /// Of a touching pair at `motion`.
+  ContactInput plane_contact(const TouchingPair& pair, const BodyMotion& motion,
+                             std::span<const Vec3> stick_start, std::span<const Vec3> start) const;
+  const std::vector<MemberPair>& member_pairs() const { return member_pairs_; }
+  /// Number of a node within the system, -1: it is not in it.
+  int local(int node) const;
   /// Element at a node, for messages.
   int element_at(int node) const;
 
+  /// An element between two nodes of the system.
+  struct OwnElement {
+    int element;  ///< index into Model::elements
+    int i, j;
+  };
+  struct OwnLoad {
+    const Load* load;
+    int node;
+  };
+
   const Model& model;
-  const int index;                  ///< of the body
-  const int first, count;           ///< nodes
-  double size;                      ///< m, greatest distance of a node from the centre of gravity
-  double contact_mass;              ///< kg, share of one contact point
+  const std::vector<int> bodies;
+  const std::vector<ElementPair> near;
+  const int index, first;           ///< of the first body: its number, its first node
+  std::vector<int> node;            ///< per node of the system, index into the model
+  int count;                        ///< nodes
+  double size;                      ///< m, greatest distance of a node from its body's centre of gravity
+  double mass;                      ///< kg, of the bodies
   std::vector<unsigned> fixed;      ///< per node, bits as in Support
   bool loads_grow = false;          ///< statics: t is the load factor, in which loads without history grow
   std::vector<Vec3> force, moment;  ///< N, N m
-  std::vector<TouchingPair> pairs;
+  Contacts contacts;
   BlockLu lu;
-  std::vector<ElementState> elements;  ///< per element of the body; elastic until loaded
-  bool yields;                         ///< some element can
-  /// Per node, when it yields: elements that end there, numbered within the body, and at which end (0, 1).
+  std::vector<OwnElement> own_elements;
+  std::vector<ElementState> elements;  ///< per own element; elastic until loaded
+  std::vector<OwnLoad> loads;
+  bool yields;  ///< some element can
+  /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
+  void add_nodes();
+  MemberPair member_pair(const ElementPair& pair) const;
   void add_applied(const Parameters& parameters, double t);
   template <bool with_tangent>
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
-  std::vector<const Load*> loads_;
+
+  std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
+  std::vector<MemberPair> member_pairs_;  // per pair in `near`
 };
 
 }  // namespace topple

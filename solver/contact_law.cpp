@@ -1,5 +1,6 @@
 #include "solver/contact_law.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace topple {
@@ -11,9 +12,35 @@ double power(double x, double q) {
   return std::pow(x, q);
 }
 
-double penalty_slope(const ContactLaw& law, double depth, double L) {
-  if (law.q == 1) return -law.alpha / L;
-  return -law.alpha * law.q * power(depth, law.q - 1) / L;  // by l
+// Hardening between members over alpha, as a function of x = (depth - 0.8)/0.2.
+constexpr double k_hardening = 10, k_hardening_range = 1 - k_hardening_depth, k_steepest = 0.98;
+
+double hardening_place(double depth) {
+  return (depth - k_hardening_depth) / k_hardening_range;
+}
+
+double hardening_slope(double x) {
+  const double y = std::min(x, k_steepest);
+  return k_hardening * 2 * y / ((1 - y) * (1 - y) * (1 - y));
+}
+
+double hardening_force(double x) {
+  const double y = std::min(x, k_steepest), root = y / (1 - y);
+  return k_hardening * root * root + hardening_slope(x) * (x - y);
+}
+
+// Integral of hardening_force from 0.
+double hardening_energy(double x) {
+  const double y = std::min(x, k_steepest), beyond = x - y;
+  return k_hardening * (y + 2 * std::log1p(-y) + y / (1 - y)) + hardening_force(y) * beyond +
+         hardening_slope(x) * beyond * beyond / 2;
+}
+
+double penalty_slope(const ContactLaw& law, double depth, double L, bool between_members) {
+  double slope = law.q == 1 ? 1 : law.q * power(depth, law.q - 1);
+  if (const double x = hardening_place(depth); between_members && x > 0)
+    slope += hardening_slope(x) / k_hardening_range;
+  return -law.alpha * slope / L;  // by l
 }
 
 struct Derivatives {
@@ -78,7 +105,8 @@ ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivative
   out.tangential.setZero();
   out.stick.setZero();
   const Vec3& n = in.normal;
-  const double p = penalty_force(law, in.depth), dp = penalty_slope(law, in.depth, in.L);
+  const double p = penalty_force(law, in.depth, in.between_members),
+               dp = penalty_slope(law, in.depth, in.L, in.between_members);
   if (law.kind == ContactLawKind::coulomb) {
     coulomb(law, in, p, dp, out, derivatives);
   } else if (law.kind == ContactLawKind::paper) {
@@ -117,12 +145,19 @@ ContactLaw contact_law(const Parameters& parameters, double t) {
   return law;
 }
 
-double penalty_force(const ContactLaw& law, double depth) {
-  return depth > 0 ? law.alpha * power(depth, law.q) : 0;
+double penalty_force(const ContactLaw& law, double depth, bool between_members) {
+  if (!(depth > 0)) return 0;
+  double force = power(depth, law.q);
+  if (const double x = hardening_place(depth); between_members && x > 0) force += hardening_force(x);
+  return law.alpha * force;
 }
 
-double penalty_energy(const ContactLaw& law, double depth, double L) {
-  return depth > 0 ? law.alpha * L / (law.q + 1) * depth * power(depth, law.q) : 0;
+double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members) {
+  if (!(depth > 0)) return 0;
+  double energy = depth * power(depth, law.q) / (law.q + 1);
+  if (const double x = hardening_place(depth); between_members && x > 0)
+    energy += k_hardening_range * hardening_energy(x);
+  return law.alpha * L * energy;
 }
 
 double normal_loss(double restitution) {

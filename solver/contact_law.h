@@ -1,4 +1,4 @@
-// Penalty forces between a point and a plane, after Eqs. 2 and 3.
+// Penalty forces at one contact, after Eqs. 2 and 3.
 #pragma once
 
 #include "solver/parameters.h"
@@ -17,12 +17,16 @@ inline constexpr double k_stick_damping = 0.2;
 /// logarithm.
 ContactLaw contact_law(const Parameters& parameters, double t);
 
-/// P = alpha (1 - l/L)^q for l <= L, else 0, N (Eq. 2; the direction is the geometric normal).
-/// depth: 1 - l/L.
-double penalty_force(const ContactLaw& law, double depth);
+/// Between members the force hardens beyond this depth.
+inline constexpr double k_hardening_depth = 0.8;
 
-/// Energy stored by penalty_force at `depth`, J: alpha L / (q + 1) depth^(q + 1).
-double penalty_energy(const ContactLaw& law, double depth, double L);
+/// P = alpha (1 - l/L)^q for l <= L, else 0, N (Eq. 2; the direction is the geometric normal).
+/// depth: 1 - l/L. Between members, where centre lines must not meet, and x = (depth - 0.8)/0.2 > 0:
+///   + 10 alpha x^2/(1 - x)^2, from x = 0.98 on with constant slope.
+double penalty_force(const ContactLaw& law, double depth, bool between_members = false);
+
+/// Energy stored by penalty_force at `depth`, J: alpha L / (q + 1) depth^(q + 1), and that of the hardening.
+double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members = false);
 
 /// m_n = (1 - e^2)/(1 + e^2): share of the normal force that depends on the direction of motion so that an
 /// impact returns with restitution e.
@@ -30,12 +34,13 @@ double normal_loss(double restitution);
 
 /// What meets at a contact.
 struct ContactInput {
-  Vec3 normal;    ///< unit, from the plane to the point
+  Vec3 normal;    ///< unit, towards the body that the force acts on
   double depth;   ///< 1 - l/L, > 0
   double L;       ///< m
-  Vec3 velocity;  ///< m/s, of the point relative to the plane
+  Vec3 velocity;  ///< m/s, relative to the other side
   Vec3 stick;     ///< m, tangential travel since sticking began (coulomb law)
   double mass;    ///< kg, share of the body that the contact carries
+  bool between_members = false;
 };
 
 /// Force on the point and its parts; derivatives by the point's position and velocity when asked for.

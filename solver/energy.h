@@ -12,12 +12,11 @@ struct StepEnergy {
   double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0, plastic = 0;
 };
 
-/// Work of gravity, floor, loads and contacts on one body over a step from t to t + h between two evaluations
+/// Work of gravity, floor, loads and contacts on a system over a step from t to t + h between two evaluations
 /// of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick springs are not booked:
 /// their energy is known at both ends. What an edit of the contact law puts into them counts as input.
 void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
                const BodyMotion& start, const BodyMotion& end,
-               const std::vector<TouchingPair>& contacts_start, const std::vector<TouchingPair>& contacts_end,
-               StepEnergy& energy);
+               const Contacts& contacts_start, const Contacts& contacts_end, StepEnergy& energy);
 
 }  // namespace topple

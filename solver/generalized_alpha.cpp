@@ -18,7 +18,7 @@ constexpr double k_good_rate = 0.1;
 constexpr int k_patience = 6;
 constexpr double k_cycling_rate = 0.7;
 
-enum class Outcome { converged, diverged, not_finite, singular };
+enum class Outcome { converged, diverged, not_finite, singular, too_far };
 
 struct Attempt {
   Outcome outcome;
@@ -38,9 +38,6 @@ class ImplicitStep {
   void accept(StepEnergy& energy);
 
  private:
-  std::span<const Vec3> body_part(const std::vector<Vec3>& all) const {
-    return {all.data() + s_.first, std::size_t(s_.count)};
-  }
   void predict();
   void update_trial();
   double correct(int& node);
@@ -58,14 +55,14 @@ class ImplicitStep {
 void ImplicitStep::predict() {
   const int n = s_.count;
   s_.load(state_, w_.start);
-  s_.load_elements(state_);
+  s_.load_memory(state_);
   w_.trial.resize(n);
   for (auto* array : {&w_.travel, &w_.turn, &w_.acceleration, &w_.angular_acceleration, &w_.algorithmic,
                       &w_.algorithmic_angular})
     array->resize(n);
   w_.right_hand_side.resize(6 * n);
   for (int i = 0; i < n; ++i) {
-    const int g = s_.first + i;
+    const int g = s_.node[i];
     w_.travel[i] = h_ * (state_.velocity[g] + h_ / 2 * state_.algorithmic_acceleration[g]);
     w_.turn[i] = h_ * (state_.angular_velocity[g] + h_ / 2 * state_.algorithmic_angular_acceleration[g]);
   }
@@ -74,7 +71,7 @@ void ImplicitStep::predict() {
 void ImplicitStep::update_trial() {
   const double beta = c_.beta, gamma = c_.gamma, am = c_.alpha_m, af = c_.alpha_f;
   for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.first + i;
+    const int g = s_.node[i];
     const auto advance = [&](const Vec3& step, const Vec3& v0, const Vec3& a0, const Vec3& balance0, Vec3& v1,
                              Vec3& a1, Vec3& balance1) {
       a1 = (step - h_ * v0 - h_ * h_ * (0.5 - beta) * a0) / (beta * h_ * h_);
@@ -95,7 +92,7 @@ void ImplicitStep::update_trial() {
 void ImplicitStep::add_inertia_tangent() {
   const double ca = (1 - c_.alpha_m) / ((1 - c_.alpha_f) * c_.beta * h_ * h_), cv = c_.gamma / (c_.beta * h_);
   for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.first + i;
+    const int g = s_.node[i];
     const Mat3& j = s_.model.node_inertia[g];
     const Vec3& omega = w_.trial.angular_velocity[i];
     const Mat3 r0 = w_.start.rotation[i].toRotationMatrix(), r1 = w_.trial.rotation[i].toRotationMatrix();
@@ -112,7 +109,7 @@ void ImplicitStep::add_inertia_tangent() {
 
 void ImplicitStep::fill_residual() {
   for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.first + i;
+    const int g = s_.node[i];
     const Mat3& j = s_.model.node_inertia[g];
     const Vec3& omega = w_.trial.angular_velocity[i];
     const Vec3 force = s_.force[i] - s_.model.node_mass[g] * w_.acceleration[i];
@@ -135,7 +132,7 @@ double ImplicitStep::correct(int& node) {
     const double length = std::max(shift.norm(), s_.size * spin.norm());
     if (!(length <= greatest)) {
       greatest = length;
-      node = s_.first + i;
+      node = s_.node[i];
     }
   }
   return greatest;
@@ -144,12 +141,18 @@ double ImplicitStep::correct(int& node) {
 Attempt ImplicitStep::solve_with_hinges() {
   predict();
   Attempt attempt = solve();
-  if (!s_.yields) return attempt;
   HingeStep hinges;
   while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, hinges)) {
     const int before = attempt.iterations;
     attempt = solve();
     attempt.iterations += before;
+  }
+  if (attempt.outcome != Outcome::converged || s_.near.empty()) return attempt;
+  const int passed =
+      passed_unseen(s_.contacts.members, s_.member_pairs(), w_.start.position, w_.trial.position);
+  if (passed >= 0) {
+    attempt.outcome = Outcome::too_far;
+    attempt.node = s_.node[s_.member_pairs()[passed].node[0]];
   }
   return attempt;
 }
@@ -160,7 +163,7 @@ Attempt ImplicitStep::solve() {
   const double tolerance = k_convergence * s_.size;
   double last = 0;
   bool fresh = true, cycling = false;
-  int node = s_.first;
+  int node = s_.node.front();
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     update_trial();
     if (fresh) {
@@ -175,7 +178,7 @@ Attempt ImplicitStep::solve() {
         fill_residual();
         const double* const left = &w_.right_hand_side[6 * singular];
         const bool finite = std::all_of(left, left + 6, [](double x) { return std::isfinite(x); });
-        return {finite ? Outcome::singular : Outcome::not_finite, iteration, s_.first + singular};
+        return {finite ? Outcome::singular : Outcome::not_finite, iteration, s_.node[singular]};
       }
     } else {
       s_.evaluate(p_, t_ + h_, w_.trial, stick, w_.start.position);
@@ -203,13 +206,13 @@ Attempt ImplicitStep::solve() {
 void ImplicitStep::accept(StepEnergy& energy) {
   const std::span<const Vec3> stick(state_.stick);
   s_.find_contacts(contact_law(p_, t_), w_.start, stick, w_.start.position, w_.contacts_start);
-  s_.find_contacts(contact_law(p_, t_ + h_), w_.trial, stick, w_.start.position, s_.pairs);
-  book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.pairs, energy);
+  s_.find_contacts(contact_law(p_, t_ + h_), w_.trial, stick, w_.start.position, s_.contacts);
+  book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.contacts, energy);
   energy.plastic += commit_hinges(s_, w_.start, w_.trial, state_);
   // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
   // takes out.
   for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.first + i;
+    const int g = s_.node[i];
     const Mat3& j = s_.model.node_inertia[g];
     const double m = s_.model.node_mass[g];
     const Vec3 &v0 = w_.start.velocity[i], &v1 = w_.trial.velocity[i];
@@ -228,7 +231,7 @@ void ImplicitStep::accept(StepEnergy& energy) {
     state_.algorithmic_acceleration[g] = w_.algorithmic[i];
     state_.algorithmic_angular_acceleration[g] = w_.algorithmic_angular[i];
   }
-  s_.store_stick(s_.pairs, state_.stick);
+  s_.store_stick(s_.contacts, state_);
 }
 
 }  // namespace
@@ -249,7 +252,6 @@ StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& param
                                      double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy) {
   StepStatus status;
   status.time = t + h;
-  status.body = system.index;
   ImplicitStep implicit(system, parameters, state, t, h, scratch);
   const Attempt attempt = implicit.solve_with_hinges();
   status.newton_iterations = attempt.iterations;
@@ -260,8 +262,10 @@ StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& param
   if (halvings == 0) {
     status.kind = attempt.outcome == Outcome::not_finite ? StepStatus::Kind::not_finite
                   : attempt.outcome == Outcome::singular ? StepStatus::Kind::singular
+                  : attempt.outcome == Outcome::too_far  ? StepStatus::Kind::passed_through
                                                          : StepStatus::Kind::newton_diverged;
     status.node = attempt.node;
+    status.body = system.model.node_body[attempt.node];
     status.element = system.element_at(attempt.node);
     return status;
   }

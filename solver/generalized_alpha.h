@@ -23,18 +23,18 @@ struct GeneralizedAlpha {
   explicit GeneralizedAlpha(const Parameters& parameters);
 };
 
-/// Scratch of the integrators for one body.
+/// Scratch of the integrators for one system.
 struct IntegratorScratch {
   BodyMotion start, trial;
   std::vector<Vec3> travel, turn;  ///< unknowns: displacement, rotation vector (material) of the step
   std::vector<Vec3> acceleration, angular_acceleration, algorithmic, algorithmic_angular;
   std::vector<double> right_hand_side;
-  std::vector<TouchingPair> contacts_start;
+  Contacts contacts_start;
 };
 
-/// Advances one body of `state` by h from time t with the balance of forces taken at the end of the step
+/// Advances the bodies of `system` in `state` by h from time t with the balance of forces taken at the end of the step
 /// (Brüls & Cardona 2010). Newton to convergence; a step that does not converge is halved, at most `halvings`
-/// times. On failure the body's part of `state` is undefined.
+/// times. On failure their part of `state` is undefined.
 StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
                                      double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy);
 

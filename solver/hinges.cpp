@@ -14,8 +14,9 @@ constexpr double k_together = 0.9;
 // f is compared in these units, so that rounding does not decide between symmetric sections.
 constexpr double k_same = 1e-6;
 
-BeamEnds ends_at(const BodySystem& s, const Element& element, const BodyMotion& motion) {
-  const int i = element.node[0] - s.first, j = element.node[1] - s.first;
+BeamEnds ends_at(const BodySystem& s, std::size_t k, const BodyMotion& motion) {
+  const auto [e, i, j] = s.own_elements[k];
+  const Element& element = s.model.elements[e];
   return beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
 }
 
@@ -41,7 +42,6 @@ class Update {
   Update(BodySystem& system, const BodyMotion& trial, HingeStep& step)
       : s_(system),
         model_(system.model),
-        first_(model_.bodies[system.index].first_element),
         trial_(trial),
         step_(step) {
     step_.formed.resize(s_.elements.size(), false);
@@ -53,9 +53,9 @@ class Update {
 
  private:
   int count() const { return static_cast<int>(s_.elements.size()); }
-  const Element& element(int k) const { return model_.elements[first_ + k]; }
+  const Element& element(int k) const { return model_.elements[s_.own_elements[k].element]; }
   BeamStrain strain(int k) const {
-    return beam_strain(element(k), element(k).s, ends_at(s_, element(k), trial_));
+    return beam_strain(element(k), element(k).s, ends_at(s_, k, trial_));
   }
   double loading(int k, const SectionForces& forces, double xi) const {
     return yield_function(element(k), forces_along(forces, element(k).length, element(k).s, xi));
@@ -69,14 +69,13 @@ class Update {
 
   BodySystem& s_;
   const Model& model_;
-  const int first_;
   const BodyMotion& trial_;
   HingeStep& step_;
 };
 
 // The joint's rotation is not held, and all other ends there have hinges or are broken.
 bool Update::is_last(int k, int end) const {
-  const int node = element(k).node[end] - s_.first;
+  const int node = end == 0 ? s_.own_elements[k].i : s_.own_elements[k].j;
   if (s_.fixed[node] >> 3 == 7) return false;
   return std::none_of(s_.joints[node].begin(), s_.joints[node].end(), [&](const auto& joint) {
     const Hinge hinge = s_.elements[joint.first].hinge;
@@ -171,13 +170,13 @@ bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step)
 double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& end, State& state) {
   if (!s.yields) return 0;
   double taken = 0;
-  const int first = s.model.bodies[s.index].first_element;
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
-    const Element& element = s.model.elements[first + k];
-    ElementState &now = s.elements[k], &before = state.elements[first + k];
+    const int e = s.own_elements[k].element;
+    const Element& element = s.model.elements[e];
+    ElementState &now = s.elements[k], &before = state.elements[e];
     if (before.hinge == Hinge::broken || now.hinge == Hinge::none) continue;
-    const BeamStrain strain0 = beam_strain(element, element.s, ends_at(s, element, start));
-    const BeamStrain strain1 = beam_strain(element, element.s, ends_at(s, element, end));
+    const BeamStrain strain0 = beam_strain(element, element.s, ends_at(s, k, start));
+    const BeamStrain strain1 = beam_strain(element, element.s, ends_at(s, k, end));
     const BeamStrain elastic0 = elastic_strain(before, strain0);
     const SectionForces forces0 = section_forces(element, elastic0);
     const SectionResponse response = respond(element, now, strain1);

@@ -1,6 +1,6 @@
-// Plastic hinges of a body: where they form, move and break. For dynamics and statics alike:
+// Plastic hinges of a system: where they form, move and break. For dynamics and statics alike:
 //
-//   system.load_elements(state);                     // once per step
+//   system.load_memory(state);                       // once per step
 //   HingeStep hinges;
 //   do solve(trial);                                 // to convergence, evaluate_with_tangent
 //   while (update_hinges(system, trial, hinges));
@@ -24,7 +24,7 @@ inline constexpr int k_most_redos = 60;      ///< of one step
 
 /// What the solutions of one step changed so far.
 struct HingeStep {
-  std::vector<bool> formed;  ///< per element of the body; once per step
+  std::vector<bool> formed;  ///< per element of the system; once per step
   int redos = 0;
 };
 

@@ -17,10 +17,11 @@ constexpr double k_furthest = 0.25;     // of the body's size: more is falling, 
 
 // Force that rounding of the coordinates makes in the stiffest element, N.
 double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
-  const Body& body = s.model.bodies[s.index];
   double stiffness = 0, reach = s.size;
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-    stiffness = std::max(stiffness, s.model.elements[e].normal_stiffness.x() / s.model.elements[e].length);
+  for (const auto& own : s.own_elements) {
+    const Element& element = s.model.elements[own.element];
+    stiffness = std::max(stiffness, element.normal_stiffness.x() / element.length);
+  }
   for (const Vec3& x : position) reach = std::max(reach, x.norm());
   return 8 * std::numeric_limits<double>::epsilon() * reach * stiffness;
 }
@@ -28,7 +29,7 @@ double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
 // K + M/sigma^2 of the last evaluation's tangent, and its fixed rows, into the solver.
 void add_mass(BodySystem& s, double sigma) {
   for (int i = 0; i < s.count; ++i) {
-    const int g = s.first + i;
+    const int g = s.node[i];
     Mat6 block = Mat6::Zero();
     block.diagonal().head<3>().setConstant(s.model.node_mass[g] / (sigma * sigma));
     block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
@@ -58,8 +59,8 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
       Eigen::Map<Vec3> shift(&v[6 * i]), spin(&v[6 * i + 3]);
       for (int k = 0; k < 6; ++k)
         if (s.fixed[i] >> k & 1) v[6 * i + k] = 0;
-      const Vec3 impulse = s.model.node_mass[s.first + i] * shift,
-                 turn = s.model.node_inertia[s.first + i] * spin;
+      const Vec3 impulse = s.model.node_mass[s.node[i]] * shift,
+                 turn = s.model.node_inertia[s.node[i]] * spin;
       before += impulse.dot(shift) + turn.dot(spin);
       shift = impulse / (sigma * sigma);
       spin = turn / (sigma * sigma);
@@ -69,8 +70,8 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
     s.lu.solve(v.data());
     for (int i = 0; i < s.count; ++i) {
       const Vec3 shift(&v[6 * i]), spin(&v[6 * i + 3]);
-      after += s.model.node_mass[s.first + i] * shift.squaredNorm() +
-               spin.dot(s.model.node_inertia[s.first + i] * spin);
+      after += s.model.node_mass[s.node[i]] * shift.squaredNorm() +
+               spin.dot(s.model.node_inertia[s.node[i]] * spin);
     }
     if (!(after > 0)) return false;  // held everywhere
     growth = std::sqrt(after / before);
@@ -81,19 +82,19 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
 
 }  // namespace
 
-StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
+StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
   Parameters still = parameters;
   still.shakes.clear();
   still.contact.kind = ContactLawKind::coulomb;
   still.contact.restitution = 1;  // the normal force of Eq. 2 alone
   const int n = s.count;
   s.load(state, w.start);
-  s.load_elements(state);
+  s.load_memory(state);
   std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
   std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
   const std::vector<Vec3> origin = w.start.position;
   w.right_hand_side.resize(6 * n);
-  const double weight = s.model.bodies[s.index].mass * parameters.gravity.norm();
+  const double weight = s.mass * parameters.gravity.norm();
   const double balanced = k_balance * weight + rounding(s, origin);
   double sigma = k_first_sigma;
   StepStatus status;
@@ -113,11 +114,12 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
       }
     }
     add_mass(s, sigma);
-    s.store_stick(s.pairs, state.stick);
+    s.store_stick(s.contacts, state);
+    s.load_memory(state);
     if (left < balanced && sigma > 1) {
       if (tips_over(s, still, state, w)) return status;
       for (int i = 0; i < n; ++i) {
-        const int g = s.first + i;
+        const int g = s.node[i];
         state.position[g] = w.start.position[i];
         state.rotation[g] = w.start.rotation[i];
         state.velocity[g].setZero();
@@ -141,8 +143,9 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
     }
     if (furthest > k_furthest * s.size) return status;
     // stick springs travel along: evaluate them from where they were
-    s.find_contacts(still.contact, w.trial, state.stick, w.start.position, s.pairs);
-    s.store_stick(s.pairs, state.stick);
+    s.find_contacts(still.contact, w.trial, state.stick, w.start.position, s.contacts);
+    s.store_stick(s.contacts, state);
+    s.load_memory(state);
     std::swap(w.start, w.trial);
     sigma = std::clamp(sigma * (step < 0.01 * s.size ? 2 : 0.5), k_first_sigma / 16, k_last_sigma);
   }

@@ -40,10 +40,61 @@ void each_number(AnyState& s, F f) {
   for (int k = 0; k < 3; ++k) f(s.floor_velocity[k]);
   f(s.step_size);
   f(s.load_factor);
+  f(s.near_slack);
   auto& e = s.energy;
   for (auto* number : {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction,
                        &e.normal_damping, &e.numerical, &e.plastic, &e.start_total, &e.largest})
     f(*number);
+}
+
+// Pairs of elements as numbers of eight bytes, as in a checkpoint.
+double as_number(const ElementPair& pair) {
+  return std::bit_cast<double>(std::int64_t{pair.a} << 32 | pair.b);
+}
+
+ElementPair as_pair(double number) {
+  const auto bits = std::bit_cast<std::int64_t>(number);
+  return {static_cast<int>(bits >> 32), static_cast<int>(bits & 0xffffffff)};
+}
+
+// Calls f on the counts and entries of what touches, which differ from state to state.
+template <class F>
+void each_touching(const State& s, F f) {
+  f(std::bit_cast<double>(static_cast<std::int64_t>(s.near.size())));
+  for (const ElementPair& pair : s.near) f(as_number(pair));
+  f(std::bit_cast<double>(static_cast<std::int64_t>(s.member_sticks.size())));
+  for (const MemberStick& stick : s.member_sticks) {
+    f(as_number(stick.elements));
+    f(std::bit_cast<double>(static_cast<std::int64_t>(stick.place)));
+    for (int k = 0; k < 3; ++k) f(stick.stick[k]);
+  }
+}
+
+// Inverse of each_touching; false when there are too few or too many numbers.
+bool read_touching(std::span<const double> numbers, const Model& model, State& s) {
+  std::size_t next = 0;
+  const auto read = [&] { return next < numbers.size() ? numbers[next++] : (next = numbers.size() + 1, 0.); };
+  const auto read_count = [&](std::size_t width) {
+    const auto count = std::bit_cast<std::int64_t>(read());
+    const bool fits = count >= 0 && next <= numbers.size() &&
+                      static_cast<std::size_t>(count) <= (numbers.size() - next) / width;
+    if (!fits) next = numbers.size() + 1;
+    return fits ? static_cast<std::size_t>(count) : 0;
+  };
+  const auto is_element = [&](int e) { return e >= 0 && e < static_cast<int>(model.elements.size()); };
+  s.near.resize(read_count(1));
+  for (ElementPair& pair : s.near) {
+    pair = as_pair(read());
+    if (!is_element(pair.a) || !is_element(pair.b)) return false;
+  }
+  s.member_sticks.resize(read_count(5));
+  for (MemberStick& stick : s.member_sticks) {
+    stick.elements = as_pair(read());
+    stick.place = static_cast<int>(std::bit_cast<std::int64_t>(read()));
+    if (stick.place < 0 || stick.place > 4) return false;
+    for (int k = 0; k < 3; ++k) stick.stick[k] = read();
+  }
+  return next == numbers.size();
 }
 
 void resize(const Model& model, State& state) {
@@ -82,9 +133,11 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
-  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() + 20);
+  numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
+                  state.near.size() + 5 * state.member_sticks.size() + 24);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
+  each_touching(state, [&](double x) { numbers.push_back(x); });
   return numbers;
 }
 
@@ -93,7 +146,8 @@ State unpack(const Model& model, std::span<const double> numbers) {
   resize(model, state);
   std::size_t count = 1;
   each_number(state, [&](double&) { ++count; });
-  if (count != numbers.size()) throw std::invalid_argument("a checkpoint of another model");
+  if (count > numbers.size() || !read_touching(numbers.subspan(count), model, state))
+    throw std::invalid_argument("a checkpoint of another model");
   state.step = std::bit_cast<std::int64_t>(numbers[0]);
   std::size_t next = 1;
   each_number(state, [&](double& x) { x = numbers[next++]; });
@@ -110,12 +164,14 @@ std::uint64_t hash(const State& state) {
   };
   mix(static_cast<std::uint64_t>(state.step));
   each_number(state, [&](double x) { mix(std::bit_cast<std::uint64_t>(x)); });
+  each_touching(state, [&](double x) { mix(std::bit_cast<std::uint64_t>(x)); });
   return sum;
 }
 
 bool is_finite(const State& state) {
   bool finite = true;
   each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
+  for (const MemberStick& stick : state.member_sticks) finite = finite && stick.stick.allFinite();
   return finite;
 }
 

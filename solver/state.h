@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/element_state.h"
+#include "solver/member_contact.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
 #include "solver/types.h"
@@ -52,6 +53,9 @@ struct State {
   std::vector<Vec3> algorithmic_angular_acceleration;  ///< likewise, material axes
   /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
   std::vector<Vec3> stick;
+  std::vector<MemberStick> member_sticks;  ///< in the order of elements, then places
+  std::vector<ElementPair> near;           ///< that may touch before `near_slack` is used up, in order
+  double near_slack = 0;                   ///< m, that bodies may still approach each other
   std::vector<ElementState> elements;      ///< index as Model::elements
   Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)
   Vec3 floor_velocity = Vec3::Zero();      ///< m/s, high-passed

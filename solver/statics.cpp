@@ -25,8 +25,8 @@ bool is_fixed(const BodySystem& s, int node, int direction) {
 // Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
 // does the tangent tell whether an equilibrium is stable.
 bool is_conservative(const BodySystem& s) {
-  return std::all_of(s.loads().begin(), s.loads().end(),
-                     [](const Load* load) { return load->moment.isZero(0); });
+  return std::all_of(s.loads.begin(), s.loads.end(),
+                     [](const auto& own) { return own.load->moment.isZero(0); });
 }
 
 // The floor at rest and the normal force of Eq. 2 alone, as when settling.
@@ -108,12 +108,10 @@ void LoadPath::evaluate(BodySystem& s, const Parameters& still, const State& sta
 // Derivative of the applied forces by the load factor, six numbers per node.
 std::vector<double> LoadPath::growing_loads(const BodySystem& s) const {
   std::vector<double> loads(6 * s.count, 0.);
-  for (const Load* load : s.loads())
-    for (int k = 0; k < 6; ++k) {
-      const int i = load->node - s.first;
+  for (const auto& [load, i] : s.loads)
+    for (int k = 0; k < 6; ++k)
       if (load->history.empty() && !is_fixed(s, i, k))
         loads[6 * i + k] += k < 3 ? load->force[k] : load->moment[k - 3];
-    }
   return loads;
 }
 
@@ -130,7 +128,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   std::vector<double> x(6 * s.count), by_factor, by_spring;
   const double spring = travel ? control_spring(s) : 0;
   HingeStep hinges;
-  s.load_elements(state);
+  s.load_memory(state);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
   double last = 0, moved = 0;
   const auto blame = [&](int node) {
@@ -226,9 +224,10 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
   for (auto& system : systems_) {
     const BodySystem& s = *system;
     const BodyMotion &start = start_[s.index], &trial = trial_[s.index];
-    for (const Load* load : s.loads()) {
+    for (const auto& own : s.loads) {
+      const Load* const load = own.load;
+      const int i = own.node;
       const auto share = [&](double at) { return load->history.empty() ? at : load_factor(*load, at); };
-      const int i = load->node - s.first;
       const Vec3 turn = start.rotation[i] * log_quaternion(start.rotation[i].conjugate() * trial.rotation[i]);
       energy.input += (share(state.load_factor) + share(factor)) / 2 *
                       (load->force.dot(trial.position[i] - start.position[i]) + load->moment.dot(turn));
@@ -242,8 +241,8 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
       state.velocity[g].setZero();
       state.angular_velocity[g].setZero();
     }
-    s.store_stick(s.pairs, state.stick);
-    const BodyEnergy held = s.energy(still.contact, trial, s.pairs, sections_);
+    s.store_stick(s.contacts, state);
+    const BodyEnergy held = s.energy(still.contact, trial, s.contacts, sections_);
     energy.strain += held.strain;
     energy.contact += held.contact;
   }
@@ -269,7 +268,7 @@ StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& st
   StepStatus status;
   IntegratorScratch scratch;
   for (auto& system : systems_)
-    if (settled && status.ok()) status = settle_body(*system, parameters, state, scratch);
+    if (settled && status.ok()) status = settle_system(*system, parameters, state, scratch);
   if (!status.ok()) return status;
   status = balance(parameters, state, {0});
   if (!status.ok() || !settings_.control) return status;

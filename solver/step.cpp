@@ -11,6 +11,7 @@
 #include "solver/energy.h"
 #include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
+#include "solver/islands.h"
 #include "solver/settle.h"
 #include "solver/step_control.h"
 
@@ -29,10 +30,10 @@ std::string format(const char* pattern, double a) {
 // Accelerations from the balance of forces at `state`. Leaves the body's motion in `motion`.
 void balance_accelerations(BodySystem& s, const Parameters& parameters, State& state, BodyMotion& motion) {
   s.load(state, motion);
-  s.load_elements(state);
+  s.load_memory(state);
   s.evaluate(parameters, state.time, motion, state.stick, motion.position);
   for (int i = 0; i < s.count; ++i) {
-    const int g = s.first + i;
+    const int g = s.node[i];
     for (int k = 0; k < 3; ++k) {
       if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
       if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
@@ -68,14 +69,14 @@ double jump(const Model& model, const Vec3& floor, State& state) {
 }  // namespace
 
 struct Workspace::Impl {
-  explicit Impl(const Model& model) : sections(model.elements.size()) {
-    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-      systems.push_back(std::make_unique<BodySystem>(model, b));
-  }
-  std::vector<std::unique_ptr<BodySystem>> systems;
+  explicit Impl(const Model& model)
+      : islands(model), sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {}
+  const std::vector<BodySystem*>& systems() const { return islands.systems(); }
+
+  Islands islands;
   IntegratorScratch scratch;
   BodyMotion motion;
-  std::vector<TouchingPair> pairs;
+  Contacts contacts;
   std::vector<ContactForce> contact_forces;
   std::vector<SectionForces> sections;
   State next;
@@ -115,6 +116,9 @@ std::string StepStatus::message(const Model& model) const {
       return format("no stable equilibrium was found at load factor %.6g: ", load_factor) + where +
              " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
              "path that turns down)";
+    case Kind::passed_through:
+      return "members would pass through each other unseen in the step " + when + ": " + where +
+             "; try a smaller time_step";
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::ok:
@@ -123,23 +127,28 @@ std::string StepStatus::message(const Model& model) const {
   return "";
 }
 
-StepStatus settle(const Model&, const Parameters& parameters, State& state, Workspace& workspace) {
+StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
   StepStatus status;
-  for (auto& system : workspace.impl().systems) {
-    status = settle_body(*system, parameters, state, workspace.impl().scratch);
+  look_around(model, state, 0);
+  workspace.impl().islands.arrange(state.near);
+  for (auto& system : workspace.impl().systems()) {
+    status = settle_system(*system, parameters, state, workspace.impl().scratch);
     if (!status.ok()) return status;
   }
   return status;
 }
 
-void prepare(const Model&, const Parameters& parameters, State& state, Workspace& workspace) {
+void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
+  state.near_slack = 0;
+  look_around(model, state, 0);
+  w.islands.arrange(state.near);
   EnergyLedger& energy = state.energy;
   energy.kinetic = energy.strain = energy.contact = 0;
-  for (auto& system : w.systems) {
+  for (auto& system : w.systems()) {
     balance_accelerations(*system, parameters, state, w.motion);
     const BodyEnergy part =
-        system->energy(contact_law(parameters, state.time), w.motion, system->pairs, w.sections);
+        system->energy(contact_law(parameters, state.time), w.motion, system->contacts, w.sections);
     energy.kinetic += part.kinetic;
     energy.strain += part.strain;
     energy.contact += part.contact;
@@ -149,6 +158,7 @@ void prepare(const Model&, const Parameters& parameters, State& state, Workspace
 }
 
 void resume(const Model& model, const State& state, Workspace& workspace) {
+  workspace.impl().islands.arrange(state.near);
   section_forces(model, state, workspace.impl().sections);
 }
 
@@ -161,7 +171,7 @@ constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
 
 // With the stiffer of the two laws of a passage.
-void find_explicit_limit(const Parameters& parameters, Workspace::Impl& w) {
+void find_explicit_limit(const Model& model, const Parameters& parameters, Workspace::Impl& w) {
   ContactLaw law = parameters.contact;
   if (parameters.contact_passage.over > 0) {
     law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
@@ -171,21 +181,23 @@ void find_explicit_limit(const Parameters& parameters, Workspace::Impl& w) {
   w.explicit_limit.reset();
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
-  for (auto& system : w.systems)
-    if (const double limit = explicit_limit(*system, &law); limit < w.explicit_limit.value_or(1e300)) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (BodySystem* const system = w.islands.alone(b)) {
+      const double limit = explicit_limit(*system, &law);
+      if (limit >= w.explicit_limit.value_or(1e300)) continue;
       w.explicit_limit = limit;
-      w.limiting_body = system->index;
+      w.limiting_body = b;
     }
 }
 
-// One step of size h into w.next.
-StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
-                    int halvings, Workspace::Impl& w) {
+// One step of size h from w.next, whose near elements are known, into w.next.
+StepStatus try_known(const Model& model, const Parameters& parameters, const State& state, double h,
+                     int halvings, Workspace::Impl& w) {
   const double t = state.time;
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
   if (is_explicit) {
-    find_explicit_limit(parameters, w);
+    find_explicit_limit(model, parameters, w);
     if (h > *w.explicit_limit) {
       status.kind = StepStatus::Kind::step_too_long;
       status.limit = *w.explicit_limit;
@@ -195,18 +207,17 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     }
   }
   State& next = w.next;
-  next = state;
   if (parameters.adaptive) change_step(next, h);
   StepEnergy exchanged;
   if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack);
       !floor.isZero(0)) {
     exchanged.input = jump(model, floor, next);
-    for (auto& system : w.systems) balance_accelerations(*system, parameters, next, w.motion);
+    for (auto& system : w.systems()) balance_accelerations(*system, parameters, next, w.motion);
   }
 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
-  for (auto& system : w.systems) {
+  for (auto& system : w.systems()) {
     status = is_explicit
                  ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
                  : advance_generalized_alpha(*system, parameters, next, t, h, halvings, w.scratch, exchanged);
@@ -214,7 +225,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     rejected += status.rejected;
     if (!status.ok()) break;
     const BodyEnergy part =
-        system->energy(contact_law(parameters, t + h), w.scratch.trial, system->pairs, w.sections);
+        system->energy(contact_law(parameters, t + h), w.scratch.trial, system->contacts, w.sections);
     held.kinetic += part.kinetic;
     held.strain += part.strain;
     held.contact += part.contact;
@@ -246,6 +257,29 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   return status;
 }
 
+// One step of size h into w.next.
+StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
+                    int halvings, Workspace::Impl& w) {
+  constexpr int k_most_looks = 4;
+  double travel = likely_travel(state, h);
+  StepStatus status;
+  for (int look = 0; look < k_most_looks; ++look) {
+    w.next = state;
+    look_around(model, w.next, travel);
+    w.islands.arrange(w.next.near);
+    status = try_known(model, parameters, state, h, halvings, w);
+    if (!status.ok() || model.bodies.size() < 2) return status;
+    travel = greatest_travel(state, w.next);
+    if (2 * travel < w.next.near_slack) {
+      w.next.near_slack -= 2 * travel;
+      return status;
+    }
+  }
+  status.kind = StepStatus::Kind::passed_through;
+  status.time = w.next.time;
+  return status;
+}
+
 // The size to try next after one of size h with this error and these iterations.
 double next_size(double h, double error, int iterations) {
   double growth = error > 0 ? k_safety / std::sqrt(error) : k_most_growth;
@@ -262,7 +296,7 @@ double fit(double h, double left) {
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
                          double until) {
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
-  if (is_explicit) find_explicit_limit(parameters, w);
+  if (is_explicit) find_explicit_limit(model, parameters, w);
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
   h = is_explicit ? k_explicit_share * *w.explicit_limit : std::min(h, look_ahead(model, parameters, state));
@@ -314,11 +348,11 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
                                                 const State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
   w.contact_forces.clear();
-  for (auto& system : w.systems) {
+  for (auto& system : w.systems()) {
     system->load(state, w.motion);
     system->find_contacts(contact_law(parameters, state.time), w.motion, state.stick, w.motion.position,
-                          w.pairs);
-    for (const TouchingPair& pair : w.pairs)
+                          w.contacts);
+    for (const TouchingPair& pair : w.contacts.planes)
       w.contact_forces.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
   }
   return w.contact_forces;

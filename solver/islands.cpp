@@ -1,0 +1,86 @@
+#include "solver/islands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace topple {
+namespace {
+
+constexpr double k_margin = 0.05;  // m, around surfaces: how far bodies come before they are looked for again
+
+}  // namespace
+
+double likely_travel(const State& state, double h) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    greatest = std::max(greatest, h * state.velocity[i].norm() + h * h / 2 * state.acceleration[i].norm());
+  return greatest;
+}
+
+double greatest_travel(const State& from, const State& to) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < from.position.size(); ++i)
+    greatest = std::max(greatest, (to.position[i] - from.position[i]).squaredNorm());
+  return std::sqrt(greatest);
+}
+
+void look_around(const Model& model, State& state, double travel) {
+  if (model.bodies.size() < 2 || state.near_slack > 2 * travel) return;
+  state.near_slack = std::max(k_margin, 4 * travel);
+  state.near = near_elements(model, state.position, state.near_slack);
+}
+
+Islands::Islands(const Model& model) : model_(model), held_(held_bodies(model)) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    alone_.push_back(held_[b] ? nullptr : std::make_unique<BodySystem>(model, b));
+    if (!held_[b]) systems_.push_back(alone_.back().get());
+  }
+}
+
+BodySystem* Islands::joined(const std::vector<int>& bodies, std::vector<ElementPair> near) {
+  const auto same = std::find_if(joined_before_.begin(), joined_before_.end(), [&](const auto& system) {
+    return system && system->bodies == bodies && system->near == near;
+  });
+  joined_.push_back(same != joined_before_.end()
+                        ? std::move(*same)
+                        : std::make_unique<BodySystem>(model_, bodies, std::move(near)));
+  return joined_.back().get();
+}
+
+void Islands::arrange(const std::vector<ElementPair>& near) {
+  if (near == near_) return;
+  near_ = near;
+  const int count = static_cast<int>(model_.bodies.size());
+  std::vector<int> parent(count);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int b) {
+    while (parent[b] != b) b = parent[b] = parent[parent[b]];
+    return b;
+  };
+  const auto body_of = [&](int element) { return model_.members[model_.elements[element].member].body; };
+  for (const ElementPair& pair : near) {
+    const int a = body_of(pair.a), b = body_of(pair.b);
+    if (held_[a] || held_[b]) continue;
+    const int ra = root(a), rb = root(b);
+    parent[std::max(ra, rb)] = std::min(ra, rb);
+  }
+  std::vector<std::vector<int>> bodies(count);
+  std::vector<std::vector<ElementPair>> pairs(count);
+  for (int b = 0; b < count; ++b)
+    if (!held_[b]) bodies[root(b)].push_back(b);
+  for (const ElementPair& pair : near) {
+    const int a = body_of(pair.a);
+    pairs[root(held_[a] ? body_of(pair.b) : a)].push_back(pair);
+  }
+  std::swap(joined_, joined_before_);
+  joined_.clear();
+  systems_.clear();
+  for (int b = 0; b < count; ++b) {
+    if (bodies[b].empty()) continue;
+    systems_.push_back(pairs[b].empty() ? alone_[b].get() : joined(bodies[b], std::move(pairs[b])));
+  }
+  joined_before_.clear();
+}
+
+}  // namespace topple

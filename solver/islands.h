@@ -1,0 +1,43 @@
+// Which bodies may touch each other now, and the systems that they make.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/body_system.h"
+#include "solver/model.h"
+#include "solver/state.h"
+
+namespace topple {
+
+/// Most that a node is likely to move within h, m.
+double likely_travel(const State& state, double h);
+
+/// Greatest displacement of a node from one state to another, m.
+double greatest_travel(const State& from, const State& to);
+
+/// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
+void look_around(const Model& model, State& state, double travel);
+
+/// Systems of bodies that may touch each other: what happens in one does not depend on the others. Bodies
+/// whose nodes are all held are in none.
+class Islands {
+ public:
+  explicit Islands(const Model& model);
+  /// Systems of `near`, in the order of their first bodies; those that it does not change are kept.
+  void arrange(const std::vector<ElementPair>& near);
+  const std::vector<BodySystem*>& systems() const { return systems_; }
+  /// One body without the others, nullptr: held.
+  BodySystem* alone(int body) const { return alone_[body].get(); }
+
+ private:
+  BodySystem* joined(const std::vector<int>& bodies, std::vector<ElementPair> near);
+
+  const Model& model_;
+  std::vector<bool> held_;
+  std::vector<ElementPair> near_;
+  std::vector<std::unique_ptr<BodySystem>> alone_, joined_, joined_before_;
+  std::vector<BodySystem*> systems_;
+};
+
+}  // namespace topple
