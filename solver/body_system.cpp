@@ -126,7 +126,8 @@ int BodySystem::local(int global) const {
       return before + global - body.first_node;
     before += body.node_count;
   }
-  const auto held = std::find(node.begin() + std::min<std::ptrdiff_t>(before, node.size()), node.end(), global);
+  const auto held =
+      std::find(node.begin() + std::min<std::ptrdiff_t>(before, node.size()), node.end(), global);
   return held == node.end() ? -1 : static_cast<int>(held - node.begin());
 }
 
@@ -147,7 +148,7 @@ ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotio
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start) const {
   const Vec3 stick = stick_start[pair.point * model.planes.size() + pair.plane] + motion.position[pair.node] -
                      start[pair.node];
-  return {model.planes[pair.plane].normal, pair.depth,    pair.L, motion.velocity[pair.node], stick,
+  return {model.planes[pair.plane].normal, pair.depth, pair.L, motion.velocity[pair.node], stick,
           contact_mass_[pair.own_body],    false};
 }
 
@@ -294,8 +295,7 @@ void BodySystem::store_stick(const Contacts& now, State& state) const {
     std::fill_n(state.stick.begin() + body.first_contact_point * planes, body.contact_point_count * planes,
                 Vec3::Zero());
   }
-  for (const TouchingPair& pair : now.planes)
-    state.stick[pair.point * planes + pair.plane] = pair.out.stick;
+  for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
 
   std::erase_if(state.member_sticks, [&](const MemberStick& stick) {
     return std::binary_search(near.begin(), near.end(), stick.elements);

@@ -48,9 +48,9 @@ struct BodyEnergy {
 /// Factor of a load at time t.
 double load_factor(const Load& load, double t);
 
-/// Bodies of a model that may touch each other, or one alone, with their sparse solver and scratch. Arrays are
-/// per node of the system: those of its bodies one after the other, then held nodes of others that they may
-/// touch.
+/// Bodies of a model that may touch each other, or one alone, with their sparse solver and scratch. Arrays
+/// are per node of the system: those of its bodies one after the other, then held nodes of others that they
+/// may touch.
 class BodySystem {
  public:
   BodySystem(const Model& model, int body);

@@ -8,17 +8,17 @@
 
 namespace topple {
 
-/// Advances the bodies of `system` in `state` by h from time t with central differences in velocity form; rotations
-/// likewise in material axes. Velocity-dependent contact forces are taken at the new velocity, node by node; between members by
-/// sweeps over what touches.
-/// not_finite: the new motion is not; their part of `state` is then undefined.
+/// Advances the bodies of `system` in `state` by h from time t with central differences in velocity form;
+/// rotations likewise in material axes. Velocity-dependent contact forces are taken at the new velocity, node
+/// by node; between members by sweeps over what touches. not_finite: the new motion is not; their part of
+/// `state` is then undefined.
 StepStatus advance_central_difference(BodySystem& system, const Parameters& parameters, State& state,
                                       double t, double h, IntegratorScratch& scratch, StepEnergy& energy);
 
 /// Greatest stable step of central differences, s: 2 over the highest frequency of the unloaded reference
 /// pose, by power iteration on M^-1 K. With a law every contact point holds on to every plane: Eq. 2 at
-/// 1 - l/L = 1 (below q = 1: at 0.01, where it is stiffer) along the normal, the stick spring across it; where
-/// there are more bodies every node holds on to one member likewise, before hardening.
+/// 1 - l/L = 1 (below q = 1: at 0.01, where it is stiffer) along the normal, the stick spring across it;
+/// where there are more bodies every node holds on to one member likewise, before hardening.
 double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr);
 
 }  // namespace topple

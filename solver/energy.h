@@ -16,7 +16,7 @@ struct StepEnergy {
 /// of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick springs are not booked:
 /// their energy is known at both ends. What an edit of the contact law puts into them counts as input.
 void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
-               const BodyMotion& start, const BodyMotion& end,
-               const Contacts& contacts_start, const Contacts& contacts_end, StepEnergy& energy);
+               const BodyMotion& start, const BodyMotion& end, const Contacts& contacts_start,
+               const Contacts& contacts_end, StepEnergy& energy);
 
 }  // namespace topple

@@ -32,9 +32,9 @@ struct IntegratorScratch {
   Contacts contacts_start;
 };
 
-/// Advances the bodies of `system` in `state` by h from time t with the balance of forces taken at the end of the step
-/// (Brüls & Cardona 2010). Newton to convergence; a step that does not converge is halved, at most `halvings`
-/// times. On failure their part of `state` is undefined.
+/// Advances the bodies of `system` in `state` by h from time t with the balance of forces taken at the end of
+/// the step (Brüls & Cardona 2010). Newton to convergence; a step that does not converge is halved, at most
+/// `halvings` times. On failure their part of `state` is undefined.
 StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
                                      double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy);
 

@@ -40,10 +40,7 @@ struct Candidate {
 class Update {
  public:
   Update(BodySystem& system, const BodyMotion& trial, HingeStep& step)
-      : s_(system),
-        model_(system.model),
-        trial_(trial),
-        step_(step) {
+      : s_(system), model_(system.model), trial_(trial), step_(step) {
     step_.formed.resize(s_.elements.size(), false);
   }
 
@@ -54,9 +51,7 @@ class Update {
  private:
   int count() const { return static_cast<int>(s_.elements.size()); }
   const Element& element(int k) const { return model_.elements[s_.own_elements[k].element]; }
-  BeamStrain strain(int k) const {
-    return beam_strain(element(k), element(k).s, ends_at(s_, k, trial_));
-  }
+  BeamStrain strain(int k) const { return beam_strain(element(k), element(k).s, ends_at(s_, k, trial_)); }
   double loading(int k, const SectionForces& forces, double xi) const {
     return yield_function(element(k), forces_along(forces, element(k).length, element(k).s, xi));
   }

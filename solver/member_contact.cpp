@@ -190,8 +190,9 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
     contact_force(weighted(law, touch.weight), touch.input, by_position, by_velocity);
     const bool turns = touch.l > k_thin * pair.L;
     const Mat3 turning =
-        turns ? Mat3(touch.out.normal / touch.l * (Mat3::Identity() - touch.normal * touch.normal.transpose()))
-              : Mat3(Mat3::Zero());
+        turns
+            ? Mat3(touch.out.normal / touch.l * (Mat3::Identity() - touch.normal * touch.normal.transpose()))
+            : Mat3(Mat3::Zero());
     const Mat3 local = -by_position - velocity_factor * by_velocity - turning;
     for (int k = 0; k < 4; ++k)
       for (int m = 0; m < 4; ++m)
@@ -224,7 +225,7 @@ double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
 }
 
 int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pairs,
-                   std::span<const Vec3> start, std::span<const Vec3> end) {
+                  std::span<const Vec3> start, std::span<const Vec3> end) {
   for (const MemberTouch& touch : at_end.touches)
     if (!(touch.l > 0)) return touch.pair;
   for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {

@@ -30,9 +30,9 @@ struct MemberStick {
 /// Two elements that may touch, within a system.
 struct MemberPair {
   ElementPair elements;
-  std::array<int, 4> node;  ///< ends of a, then of b, numbered within the system
-  double L;                 ///< m
-  double mass;              ///< kg, share of the bodies that a contact carries
+  std::array<int, 4> node;    ///< ends of a, then of b, numbered within the system
+  double L;                   ///< m
+  double mass;                ///< kg, share of the bodies that a contact carries
   std::array<Vec3, 4> start;  ///< m, of the nodes where the step began: on which side they were
   std::array<Vec3, 5> stick;  ///< m, per place, where the step began
 };
@@ -45,9 +45,9 @@ struct MemberTouch {
   double weight;                ///< of its energy in the pair's
   NearestPoints at;
   std::array<Vec3, 4> ends;  ///< m, of a, then of b
-  Vec3 normal;   ///< unit, from b to a; keeps its side while l goes through zero
-  double l;      ///< m, along the normal; <= 0: they went through each other
-  double depth;  ///< 1 - l/L
+  Vec3 normal;               ///< unit, from b to a; keeps its side while l goes through zero
+  double l;                  ///< m, along the normal; <= 0: they went through each other
+  double depth;              ///< 1 - l/L
   ContactInput input;
   ContactOutput out;
 };
@@ -55,8 +55,8 @@ struct MemberTouch {
 /// Part of the force that turns two nearly parallel elements: -kappa' (U - sum U/4) d(sin^2)/dx.
 struct MemberBlend {
   int pair;
-  double slope, curvature;  ///< of kappa by sin^2
-  double surplus;           ///< J, U where they are nearest less that of the four ends
+  double slope, curvature;                  ///< of kappa by sin^2
+  double surplus;                           ///< J, U where they are nearest less that of the four ends
   std::array<Vec3, 4> by_sine, by_surplus;  ///< derivatives by the nodes
 };
 
@@ -94,6 +94,6 @@ double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
 /// the step from `start` to `end` is too long to see what happened between. -1: none, as below a relative
 /// speed of L/(2 h).
 int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pairs,
-                   std::span<const Vec3> start, std::span<const Vec3> end);
+                  std::span<const Vec3> start, std::span<const Vec3> end);
 
 }  // namespace topple

@@ -44,8 +44,7 @@ std::vector<std::pair<int, int>> near_bodies(const std::vector<Box>& boxes, cons
   const auto cell_of = [&](const Box& box) {
     const Vec3 x = box.center() / cell;
     Cell at;
-    for (int k = 0; k < 3; ++k)
-      at[k] = static_cast<int>(std::floor(std::clamp(x[k], -1e9, 1e9)));
+    for (int k = 0; k < 3; ++k) at[k] = static_cast<int>(std::floor(std::clamp(x[k], -1e9, 1e9)));
     return at;
   };
   // Centres of boxes that overlap are at most one cell apart.
@@ -101,7 +100,7 @@ NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, con
   double t = std::clamp((uv * s + vr) / vv, 0., 1.);
   s = std::clamp((uv * t - ur) / uu, 0., 1.);
   t = std::clamp((uv * s + vr) / vv, 0., 1.);
-  return {s, t, s > 0 && s < 1, t > 0 && t < 1, r + s * u - t * v};
+  return {s, t, s > 0 && s<1, t> 0 && t < 1, r + s * u - t * v};
 }
 
 double contact_length(const Model& model, const ElementPair& pair) {

@@ -79,7 +79,8 @@ void resume(const Model& model, const State& state, Workspace& workspace);
 
 /// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at
 /// most. On failure `state` is as before the call. The implicit methods halve their step within the call when
-/// Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64, an adaptive one down to k_least_step.
+/// Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64, an
+/// adaptive one down to k_least_step.
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until = std::numeric_limits<double>::infinity());
 

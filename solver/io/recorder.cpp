@@ -1,15 +1,6 @@
 #include "solver/io/recording_writer.h"
 
 namespace topple::io {
-namespace {
-
-RowShape shape_of(const Model& model) {
-  RowShape shape = row_shape(model);
-  shape.state = pack(start_state(model, std::vector<BodyStart>(model.bodies.size()))).size();
-  return shape;
-}
-
-}  // namespace
 
 struct Recorder::Impl {
   RecordingWriter writer;
@@ -17,7 +8,7 @@ struct Recorder::Impl {
 
 Recorder::Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
                    const Model& model)
-    : impl_(new Impl{RecordingWriter(path, scene_name, scene_text, model, shape_of(model))}) {}
+    : impl_(new Impl{RecordingWriter(path, scene_name, scene_text, model, row_shape(model))}) {}
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;

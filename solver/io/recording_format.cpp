@@ -54,6 +54,8 @@ Handle record_type<CheckpointRecord>() {
                               {"step", offsetof(R, step), H5T_STD_I64LE},
                               {"time", offsetof(R, time), H5T_IEEE_F64LE},
                               {"hash", offsetof(R, hash), H5T_STD_U64LE},
+                              {"first", offsetof(R, first), H5T_STD_I64LE},
+                              {"count", offsetof(R, count), H5T_STD_I64LE},
                               {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
 }
 

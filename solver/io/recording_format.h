@@ -5,7 +5,7 @@
 //   /model/...     fixed data, see recording_model.cpp; every fixed data set has its CRC-32C as attribute
 //   /frames/index  one FrameRecord a row, written last: its extent is the number of complete frames
 //   /frames/NAME   the fields of FrameRow, one row a frame (frame_fields)
-//   /checkpoints/index, /checkpoints/state     likewise; `state` holds pack(State)
+//   /checkpoints/index, /checkpoints/state     likewise; `state` holds pack(State), one after the other
 //   /events, /edits, /blobs, /branches, /result, /summary
 //
 // All data sets exist before SWMR writing starts and nothing is of variable length. Rows are only ever
@@ -34,9 +34,8 @@ inline constexpr hsize_t k_chunk_rows = 32;
 /// Sizes that all rows of one recording share.
 struct RowShape {
   std::size_t nodes = 0, elements = 0, contacts = 0, bodies = 0;
-  std::size_t state = 0;  ///< numbers of pack(State)
 };
-/// Of a model's rows; without `state`.
+/// Of a model's rows.
 RowShape row_shape(const Model& model);
 
 // Records. `checksum` is the CRC-32C of the bytes before it; the order of the members leaves no gaps.
@@ -49,10 +48,11 @@ struct FrameRecord {
 };
 struct CheckpointRecord {
   std::int32_t branch = k_not_written;
-  std::uint32_t data_checksum = 0;  ///< of the row of /checkpoints/state
+  std::uint32_t data_checksum = 0;  ///< of its numbers in /checkpoints/state
   std::int64_t step = 0;
   double time = 0;
   std::uint64_t hash = 0;
+  std::int64_t first = 0, count = 0;  ///< of its numbers
   std::uint32_t checksum = 0, unused = 0;
 };
 struct EventRecord {

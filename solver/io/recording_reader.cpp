@@ -195,8 +195,7 @@ struct Recording::Impl {
     shape = {.nodes = first(fields[0]),
              .elements = first(fields[2]),
              .contacts = first(fields[5]),
-             .bodies = first(fields[8]),
-             .state = first(checkpoint_state)};
+             .bodies = first(fields[8])};
     const auto expected = frame_fields(shape);
     for (std::size_t i = 0; i < k_field_count; ++i) {
       if (fields[i].row_dims() != expected[i].dims) {
@@ -210,7 +209,12 @@ struct Recording::Impl {
     checkpoints = read_records<CheckpointRecord>(checkpoint_index, "checkpoints/index");
     recorded_events = read_records<EventRecord>(event_rows, "events");
     for (const RowReader& field : fields) frames.resize(std::min<std::size_t>(frames.size(), field.rows()));
-    checkpoints.resize(std::min<std::size_t>(checkpoints.size(), checkpoint_state.rows()));
+    const auto numbers = static_cast<std::int64_t>(checkpoint_state.rows());
+    for (const CheckpointRecord& record : checkpoints)
+      if (record.first < 0 || record.count < 0 || record.first > numbers)
+        throw Hdf5Error("checkpoints/index is damaged");
+    while (!checkpoints.empty() && checkpoints.back().count > numbers - checkpoints.back().first)
+      checkpoints.pop_back();
     frame_instants = instants(frames);
     checkpoint_instants = instants(checkpoints);
     history = read_history(read_records<BranchRecord>(branch_rows, "branches"),
@@ -373,8 +377,9 @@ Checkpoint Recording::checkpoint(std::int64_t index) const {
                           .step = record.step,
                           .time = record.time,
                           .hash = record.hash,
-                          .state = std::vector<double>(impl_->shape.state)};
-    impl_->checkpoint_state.read(static_cast<hsize_t>(index), 1, checkpoint.state.data());
+                          .state = std::vector<double>(static_cast<std::size_t>(record.count))};
+    impl_->checkpoint_state.read(static_cast<hsize_t>(record.first), static_cast<hsize_t>(record.count),
+                                 checkpoint.state.data());
     if (crc32c(std::as_bytes(std::span(checkpoint.state))) != record.data_checksum) {
       throw Hdf5Error("checkpoint " + std::to_string(index) + " is damaged (checksum differs)");
     }

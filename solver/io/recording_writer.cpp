@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 // Index chunks are rewritten at every flush while they fill, so they stay small.
 constexpr hsize_t k_index_chunk_rows = 64;
-constexpr hsize_t k_byte_chunk = 4096;
+constexpr hsize_t k_byte_chunk = 4096, k_number_chunk = 4096;
 
 std::string system_text(int error) {
   return std::generic_category().message(error);
@@ -87,7 +87,7 @@ void RowSet::describe(const char* units, const char* columns) {
 
 RecordingWriter::RecordingWriter(const std::string& path, const std::string& scene_name,
                                  const std::string& scene_text, const Model& model, const RowShape& shape)
-    : path_(destination(path)), part_(path_), shown_path_(path), state_numbers_(shape.state) {
+    : path_(destination(path)), part_(path_), shown_path_(path) {
   part_ += ".part-" + std::to_string(getpid());
   std::error_code ignored;
   fs::remove(part_, ignored);  // of a process that had the same number and died here
@@ -168,7 +168,7 @@ void RecordingWriter::create_rows() {
   }
   const Handle checkpoints = group("checkpoints");
   checkpoint_index_ = records(checkpoints, "index", CheckpointRecord{});
-  checkpoint_state_ = RowSet(checkpoints, "state", H5T_IEEE_F64LE, {state_numbers_}, 1);
+  checkpoint_state_ = RowSet(checkpoints, "state", H5T_IEEE_F64LE, {}, k_number_chunk);
   events_ = records(file_, "events", EventRecord{});
   edits_ = records(file_, "edits", EditRecord{});
   blobs_ = RowSet(file_, "blobs", H5T_STD_U8LE, {}, k_byte_chunk);
@@ -197,16 +197,17 @@ void RecordingWriter::append(const FrameRow& row) {
 }
 
 void RecordingWriter::append(const Checkpoint& checkpoint) {
-  if (checkpoint.state.size() != state_numbers_)
-    throw std::invalid_argument("checkpoint: wrong size of the state");
   guarded([&] {
-    checkpoint_state_.append(checkpoint.state.data(), 1);
+    const auto first = static_cast<std::int64_t>(checkpoint_state_.rows());
+    checkpoint_state_.append(checkpoint.state.data(), checkpoint.state.size());
     pending_checkpoints_.push_back(
         sealed(CheckpointRecord{.branch = checkpoint.branch,
                                 .data_checksum = crc32c(std::as_bytes(std::span(checkpoint.state))),
                                 .step = checkpoint.step,
                                 .time = checkpoint.time,
-                                .hash = checkpoint.hash}));
+                                .hash = checkpoint.hash,
+                                .first = first,
+                                .count = static_cast<std::int64_t>(checkpoint.state.size())}));
   });
 }
 

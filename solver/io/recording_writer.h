@@ -20,6 +20,7 @@ class RowSet {
   RowSet(hid_t group, const char* name, hid_t type, std::vector<hsize_t> row_dims, hsize_t chunk_rows,
          const void* fill = nullptr);
   void append(const void* rows, std::size_t count);
+  hsize_t rows() const { return dims_[0]; }
   void flush();
   /// Lets go of it without closing.
   void release();
@@ -71,7 +72,6 @@ class RecordingWriter {
 
   std::filesystem::path path_, part_;
   std::string shown_path_;
-  std::size_t state_numbers_;
   std::array<FrameField, k_field_count> descriptions_{};
   std::array<std::size_t, k_field_count> field_bytes_{};
   std::optional<std::string> failure_;

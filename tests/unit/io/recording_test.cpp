@@ -41,7 +41,7 @@ TEST_F(RecordingTest, rows_events_and_checkpoints_read_back_to_the_last_bit) {
 }
 
 TEST_F(RecordingTest, a_model_without_contacts_planes_or_elements_can_be_recorded) {
-  const RowShape shape{.nodes = 1, .elements = 0, .contacts = 0, .bodies = 1, .state = 8};
+  const RowShape shape{.nodes = 1, .elements = 0, .contacts = 0, .bodies = 1};
   RecordingWriter writer(path("a.h5"), "", "", Model{}, shape);
   for (int i = 0; i < 70; ++i) writer.append(fake_row(shape, i, i));
   writer.finish("stopped", "");

@@ -50,10 +50,10 @@ TEST(Collision, random_drops) {
       run.advance();
       greatest = std::max(greatest, state.energy.balance_error());
     }
-    std::cout << seed << " " << run.status().message(setup.model) << " t " << state.time << " steps " << state.step
-              << " rejected " << run.rejected_steps() << " newton " << run.newton_iterations() << " balance "
-              << greatest << " kin " << state.energy.kinetic << " start " << start << " contact "
-              << state.energy.contact << " crossing " << std::endl;
+    std::cout << seed << " " << run.status().message(setup.model) << " t " << state.time << " steps "
+              << state.step << " rejected " << run.rejected_steps() << " newton " << run.newton_iterations()
+              << " balance " << greatest << " kin " << state.energy.kinetic << " start " << start
+              << " contact " << state.energy.contact << " crossing " << std::endl;
   }
 }
 

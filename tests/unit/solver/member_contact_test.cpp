@@ -110,7 +110,8 @@ TEST(MemberContact, tangent_is_the_derivative_of_the_force) {
   std::vector<std::pair<int, int>> edges;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j) edges.emplace_back(i, j);
-  for (double angle : {0., 0.11, 0.5, 1.5})  // where the lines are blended kappa's second derivative is left out
+  for (double angle :
+       {0., 0.11, 0.5, 1.5})  // where the lines are blended kappa's second derivative is left out
     for (int trial = 0; trial < 10; ++trial) {
       Pair pair = random_pair(rng, angle);
       const Vec3 slide = random_vector(rng, 0.3);
