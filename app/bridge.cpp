@@ -103,6 +103,7 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
   expect_same_model(model, row);
   const Vec3 shift = floor_shift(row);
   for (int i = 0; i < model.node_total(); ++i) {
+    if (model.bodies[model.node_body[i]].ground) continue;
     low = low.cwiseMin(position(row, i) + shift);
     high = high.cwiseMax(position(row, i) + shift);
   }
@@ -337,7 +338,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     out.trace = {"floor acceleration, gal", extent_.time_s, extent_.acceleration_gal,
                  static_cast<float>(row.time)};
   }
-  for (std::size_t b = 0; b < setup.model.bodies.size(); ++b)
+  for (std::size_t b = 0; b < static_cast<std::size_t>(setup.model.furniture_total()); ++b)
     out.caption.lines.push_back(body_in_words(setup.model, row, b));
   std::string contact;
   if (!setup.model.planes.empty())

@@ -21,7 +21,7 @@ class RunExtent {
   /// of milliseconds does not darken all the rest.
   double colour_top() const;
 
-  Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of all nodes, floor's displacement included
+  Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of the furniture's nodes, with the floor's way
   std::vector<float> time_s, acceleration_gal;   ///< along the first shake's direction
 
  private:

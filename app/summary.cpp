@@ -13,6 +13,7 @@ using nlohmann::ordered_json;
 
 constexpr double k_degrees = 180 / k_pi;
 constexpr double k_good_balance = 1e-3;
+constexpr double k_pinched = 0.95;  // 1 - l/L between members
 
 ordered_json number(double x) {
   return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
@@ -46,7 +47,8 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"peak_yield_ratio", number(o.peak_yield_ratio)},
           {"hinges", o.hinges},
           {"fractures", o.fractures},
-          {"peak_penetration_ratio", number(o.peak_penetration)}};
+          {"peak_penetration_ratio", number(o.peak_penetration)},
+          {"peak_pinch_ratio", number(o.peak_pinch)}};
 }
 
 bool is_static(const Run& run) {
@@ -97,6 +99,12 @@ ordered_json warnings(const Run& run) {
                       "the floor or wall; a larger alpha or width holds it",
                       run.setup().model.bodies[b].name, bodies[b].peak_penetration));
   const Model& model = run.setup().model;
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (bodies[b].peak_pinch > k_pinched)
+      list.push_back(
+          fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
+                      "larger alpha keeps them apart",
+                      model.bodies[b].name, 1 - bodies[b].peak_pinch));
   if (const auto& crowded = run.outcome().crowded_members(); !crowded.empty()) {
     std::string names;
     for (const int member : crowded)
@@ -190,9 +198,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
                   {"final_velocity_m_s", vector(state.floor_velocity)}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    out["bodies"].push_back(
-        body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, static_cast<int>(b))));
+  for (int b = 0; b < model.furniture_total(); ++b)
+    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, b)));
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {
     const ProbeOutcome& probe = run.probes()[k];

@@ -109,7 +109,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
     return [b](const io::FrameRow& row) { return row.body[11 * b + 7] * k_degrees; };
   };
   double critical = 0, most = k_least_tilt;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+  for (std::size_t b = 0; b < furniture; ++b) {
     if (!rows.empty()) critical = std::max(critical, rows.back()->body[11 * b + 10] * k_degrees);
     most = std::max(most, 1.1 * peak(rows, tilt(b)));
   }
@@ -123,14 +124,14 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
     add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
              k_text, label);
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < furniture; ++b) {
     add_curve(list, lane, player.ghost_way(), tilt(b), k_ghost, 1);
     add_curve(list, lane, rows, tilt(b), body_colour(b), 1.6f);
   }
   const float line = ImGui::GetTextLineHeight();
   float y = lane.top - 2;
   add_text(list, label_left, y, k_text, critical > 0 ? "tilt" : "tilt, °");
-  for (std::size_t b = 0; b < bodies.size() && y + 2 * line < lane.bottom + line; ++b) {
+  for (std::size_t b = 0; b < furniture && y + 2 * line < lane.bottom + line; ++b) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
                        body_colour(b));

@@ -232,7 +232,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
        instant_in_words(player_.scene().setup, player_.time(), row.step) + "   " +
            shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
   render::LeftOut left_out;
   const float legend = 190 * scale_;

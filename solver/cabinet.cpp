@@ -92,7 +92,7 @@ Placing place(const CabinetSpec& spec, double width) {
   const Vec3 posed_half = (pose * half).cwiseAbs();
   const Mat3 rotation = Eigen::AngleAxisd(spec.yaw, Vec3::UnitZ()).toRotationMatrix() * pose;
   // local z runs from 0 to the height: turn about the box's middle
-  return {rotation, Vec3(spec.at_x, spec.at_y, posed_half.z() + width / 2) - rotation * Vec3(0, 0, half.z())};
+  return {rotation, spec.at + Vec3(0, 0, posed_half.z() + width / 2) - rotation * Vec3(0, 0, half.z())};
 }
 
 class CabinetBuilder {
@@ -340,11 +340,11 @@ BodyStart add_cabinet(Model& model, const CabinetSpec& spec) {
     const Eigen::AngleAxisd yaw(spec.yaw, Vec3::UnitZ());
     double reach = 0, lowest = 1e300;
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
-      const Vec3 x = yaw.inverse() * (model.node_position[i] - Vec3(spec.at_x, spec.at_y, 0));
+      const Vec3 x = yaw.inverse() * (model.node_position[i] - Vec3(spec.at.x(), spec.at.y(), 0));
       reach = std::max(reach, std::abs(x.x()));
       lowest = std::min(lowest, x.z());
     }
-    start.pivot = Vec3(spec.at_x, spec.at_y, lowest) + yaw * Vec3(std::copysign(reach, spec.tilt), 0, 0);
+    start.pivot = Vec3(spec.at.x(), spec.at.y(), lowest) + yaw * Vec3(std::copysign(reach, spec.tilt), 0, 0);
     start.rotation = yaw * Vec3(0, spec.tilt, 0);
   }
   return start;

@@ -30,7 +30,7 @@ struct CabinetSpec {
   double cg_height = 0.895;     ///< m above the bottom centre lines
   Inertia inertia = Inertia::panels;
   Vec3 inertia_given = Vec3::Zero();  ///< kg m^2 about the centre of gravity
-  double at_x = 0, at_y = 0;          ///< m, centre of the footprint in its pose
+  Vec3 at = Vec3::Zero();             ///< m, centre of the footprint in its pose, and its height
   double yaw = 0;                     ///< rad
   Pose pose = Pose::upright;
   double tilt = 0;  ///< rad, about the bottom edge on the +x side before yaw; negative: -x side
@@ -65,7 +65,23 @@ struct FrameSpec {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-/// Adds a cabinet that touches z = 0 with its members' surface. Throws BuildError.
+/// A floor or wall of members: two crossing rows of straight lines, each a member of two elements that is
+/// held everywhere.
+struct GridSpec {
+  std::string name;
+  Vec3 origin = Vec3::Zero();                      ///< m, on the face that bodies touch
+  Vec3 along = Vec3::UnitX(), up = Vec3::UnitY();  ///< unit, in the face
+  Vec3 normal = Vec3::UnitZ();                     ///< unit, towards the bodies
+  double from[2] = {-3, -3}, to[2] = {3, 3};       ///< m, extent in the two directions
+  double spacing = 0.3;                            ///< m, of the lines; they lie at its whole multiples
+  int section = 0, material = 0;
+};
+
+/// Adds the grid as a body of the ground, with centre lines half a contact width behind the face. Throws
+/// BuildError.
+BodyStart add_grid(Model& model, const GridSpec& spec);
+
+/// Adds a cabinet whose members' surface touches the height of `at`. Throws BuildError.
 BodyStart add_cabinet(Model& model, const CabinetSpec& spec);
 
 /// Adds a frame, once per copy. The user's node k of copy c is `first_node + k` of body c. Throws BuildError.

@@ -36,13 +36,6 @@ double hardening_energy(double x) {
          hardening_slope(x) * beyond * beyond / 2;
 }
 
-double penalty_slope(const ContactLaw& law, double depth, double L, bool between_members) {
-  double slope = law.q == 1 ? 1 : law.q * power(depth, law.q - 1);
-  if (const double x = hardening_place(depth); between_members && x > 0)
-    slope += hardening_slope(x) / k_hardening_range;
-  return -law.alpha * slope / L;  // by l
-}
-
 struct Derivatives {
   Mat3* by_position = nullptr;
   Mat3* by_velocity = nullptr;
@@ -106,7 +99,7 @@ ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivative
   out.stick.setZero();
   const Vec3& n = in.normal;
   const double p = penalty_force(law, in.depth, in.between_members),
-               dp = penalty_slope(law, in.depth, in.L, in.between_members);
+               dp = -penalty_stiffness(law, in.depth, in.L, in.between_members);
   if (law.kind == ContactLawKind::coulomb) {
     coulomb(law, in, p, dp, out, derivatives);
   } else if (law.kind == ContactLawKind::paper) {
@@ -150,6 +143,13 @@ double penalty_force(const ContactLaw& law, double depth, bool between_members) 
   double force = power(depth, law.q);
   if (const double x = hardening_place(depth); between_members && x > 0) force += hardening_force(x);
   return law.alpha * force;
+}
+
+double penalty_stiffness(const ContactLaw& law, double depth, double L, bool between_members) {
+  double slope = law.q == 1 ? 1 : law.q * power(depth, law.q - 1);
+  if (const double x = hardening_place(depth); between_members && x > 0)
+    slope += hardening_slope(x) / k_hardening_range;
+  return law.alpha * slope / L;
 }
 
 double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members) {

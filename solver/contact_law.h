@@ -25,6 +25,9 @@ inline constexpr double k_hardening_depth = 0.8;
 ///   + 10 alpha x^2/(1 - x)^2, from x = 0.98 on with constant slope.
 double penalty_force(const ContactLaw& law, double depth, bool between_members = false);
 
+/// -dP/dl, N/m.
+double penalty_stiffness(const ContactLaw& law, double depth, double L, bool between_members = false);
+
 /// Energy stored by penalty_force at `depth`, J: alpha L / (q + 1) depth^(q + 1), and that of the hardening.
 double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members = false);
 

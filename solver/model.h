@@ -70,6 +70,7 @@ struct Body {
   std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
   std::vector<std::array<int, 4>> panels;  ///< nodes of flat sheets, for pictures only
+  bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
 };
 
 /// A plane floor or wall. Its centre line lies width/2 behind its face, so that l = L is surface touch.
@@ -104,6 +105,12 @@ struct Model {
   std::vector<Plane> planes;
 
   int node_total() const { return static_cast<int>(node_position.size()); }
+  /// Bodies that are not ground: the first ones.
+  int furniture_total() const {
+    int count = static_cast<int>(bodies.size());
+    while (count > 0 && bodies[count - 1].ground) --count;
+    return count;
+  }
 };
 
 /// How a body starts: a rigid rotation of its reference pose about a line, then velocities.

@@ -33,7 +33,8 @@ bool is_floor(const Plane& plane) {
 }
 
 bool has_floor(const Model& model) {
-  return std::any_of(model.planes.begin(), model.planes.end(), is_floor);
+  return std::any_of(model.planes.begin(), model.planes.end(), is_floor) ||
+         std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.ground; });
 }
 
 bool is_supported(const Model& model, int body) {
@@ -121,7 +122,8 @@ double slide(const Model& model, int index, const BodyPose& pose) {
   return std::hypot(now.x() - body.base_centre.x(), now.y() - body.base_centre.y());
 }
 
-Outcome::Outcome(const Model& model) : formed_(model.elements.size(), 0) {
+Outcome::Outcome(const Model& model)
+    : formed_(model.elements.size(), 0), furniture_(model.furniture_total()) {
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
@@ -141,9 +143,27 @@ Outcome::Outcome(const Model& model) : formed_(model.elements.size(), 0) {
   }
 }
 
+void Outcome::carry(const Model& model, int e, double place, const Vec3& force) {
+  const Element& element = model.elements[e];
+  const int b = model.members[element.member].body;
+  const Body& body = model.bodies[b];
+  if (body.support_polygon.empty() || !(force.z() > 0)) return;
+  const Vec3 &x0 = model.node_position[element.node[0]], &x1 = model.node_position[element.node[1]];
+  const double base = body.support_polygon.front().z(), slack = 1e-6 + 1e-6 * (x1 - x0).norm();
+  const Vec3 x = x0 + place * (x1 - x0);
+  if (x.z() > base + slack) return;
+  total_force_[b] += force.z();
+  const std::size_t sides = body.support_polygon.size();
+  for (std::size_t i = 0; i < sides; ++i) {
+    const Vec3 edge = body.support_polygon[(i + 1) % sides] - body.support_polygon[i];
+    const Vec3 to = x - body.support_polygon[i];
+    if (std::abs(edge.x() * to.y() - edge.y() * to.x()) < slack * edge.norm()) side_force_[b][i] += force.z();
+  }
+}
+
 void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
-                      const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
-                      std::vector<Event>& events) {
+                      const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
+                      const std::vector<SectionForces>& sections, std::vector<Event>& events) {
   for (auto& sides : side_force_) std::fill(sides.begin(), sides.end(), 0.);
   std::fill(total_force_.begin(), total_force_.end(), 0.);
   for (const ContactForce& f : forces) {
@@ -154,9 +174,18 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     for (int side : side_of_[b][f.point - model.bodies[b].first_contact_point])
       side_force_[b][side] += f.normal;
   }
+  for (const MemberForce& f : between) {
+    carry(model, f.elements.a, f.s, f.force);
+    carry(model, f.elements.b, f.t, -f.force);
+    for (const int e : {f.elements.a, f.elements.b}) {
+      double& pinch = bodies_[model.members[model.elements[e].member].body].peak_pinch;
+      pinch = std::max(pinch, f.depth);
+    }
+  }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     BodyOutcome& o = bodies_[b];
     const Body& body = model.bodies[b];
+    if (body.ground) continue;
     const BodyPose pose = body_pose(model, state, static_cast<int>(b));
     const double before = o.tilt - o.critical, time_before = o.time;
     o.time = state.time;
@@ -232,7 +261,8 @@ void Outcome::observe_sections(const Model& model, const State& state,
 }
 
 bool Outcome::all_overturned(double time) const {
-  return std::all_of(bodies_.begin(), bodies_.end(), [&](const BodyOutcome& o) {
+  // those of the ground never change
+  return std::all_of(bodies_.begin(), bodies_.begin() + furniture_, [&](const BodyOutcome& o) {
     return o.over_60_since && time - *o.over_60_since >= k_fallen_for;
   });
 }

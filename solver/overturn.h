@@ -67,7 +67,8 @@ struct BodyOutcome {
   std::optional<double> peak_yield_ratio;
   int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not
   int fractures = 0;                    ///< elements that broke
-  double peak_penetration = 0;          ///< greatest 1 - l/L
+  double peak_penetration = 0;          ///< greatest 1 - l/L at planes
+  double peak_pinch = 0;                ///< likewise between members, where 1 would be one through the other
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
   std::vector<bool> lifted;             ///< per side of the support polygon
   double time = 0;                      ///< of this observation
@@ -77,10 +78,10 @@ struct BodyOutcome {
 class Outcome {
  public:
   explicit Outcome(const Model& model);
-  /// Takes in one accepted step. `forces`: contact forces of that state. Appends to `events`.
+  /// Takes in one accepted step. `forces`, `between`: contact forces of that state. Appends to `events`.
   void observe(const Model& model, const Parameters& parameters, const State& state,
-               const std::vector<ContactForce>& forces, const std::vector<SectionForces>& sections,
-               std::vector<Event>& events);
+               const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
+               const std::vector<SectionForces>& sections, std::vector<Event>& events);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
   /// Members of which an element holds a hinge while its other end passes yield too, by
   /// k_beside (hinges.h): more elements would show both.
@@ -88,11 +89,14 @@ class Outcome {
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
+  /// What a force on a place of an element adds to what sides of the body's base carry.
+  void carry(const Model& model, int element, double place, const Vec3& force);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);
 
   std::vector<BodyOutcome> bodies_;
   std::vector<std::uint8_t> formed_;  ///< per element, bit 1 << Hinge: seen with it
+  int furniture_;                     ///< bodies
   std::vector<int> crowded_;
   std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
   std::vector<double> total_force_;                     ///< per body, N

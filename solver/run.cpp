@@ -100,7 +100,7 @@ void Run::observe() {
   const Model& model = setup_->model;
   const State& state = now_.state;
   see_forces();
-  now_.outcome.observe(model, now_.parameters, state, contacts_, sections_, events_);
+  now_.outcome.observe(model, now_.parameters, state, contacts_, member_contacts(), sections_, events_);
 
   for (std::size_t k = 0; k < now_.probes.size(); ++k) {
     const Probe& probe = setup_->probes[k];

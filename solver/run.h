@@ -90,6 +90,7 @@ class Run {
   const std::vector<Event>& events() const { return events_; }
   const std::vector<LoadStep>& load_steps() const { return now_.load_steps; }
   const std::vector<ContactForce>& contacts() const { return contacts_; }
+  const std::vector<MemberForce>& member_contacts() const { return member_forces(workspace_); }
   const std::vector<SectionForces>& sections() const { return sections_; }
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
   std::int64_t rejected_steps() const { return now_.rejected_steps; }
@@ -104,7 +105,7 @@ class Run {
 
   const Setup* setup_;
   RunPoint now_;
-  Workspace workspace_;
+  mutable Workspace workspace_;
   std::optional<LoadPath> path_;  // static runs
   StepStatus status_;
   std::vector<Event> events_;

@@ -78,6 +78,7 @@ struct Workspace::Impl {
   BodyMotion motion;
   Contacts contacts;
   std::vector<ContactForce> contact_forces;
+  std::vector<MemberForce> member_forces;
   std::vector<SectionForces> sections;
   State next;
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
@@ -348,14 +349,23 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
                                                 const State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
   w.contact_forces.clear();
+  w.member_forces.clear();
   for (auto& system : w.systems()) {
     system->load(state, w.motion);
+    system->load_memory(state);
     system->find_contacts(contact_law(parameters, state.time), w.motion, state.stick, w.motion.position,
                           w.contacts);
     for (const TouchingPair& pair : w.contacts.planes)
       w.contact_forces.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
+    for (const MemberTouch& touch : w.contacts.members.touches)
+      w.member_forces.push_back(
+          {system->near[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
   }
   return w.contact_forces;
+}
+
+const std::vector<MemberForce>& member_forces(Workspace& workspace) {
+  return workspace.impl().member_forces;
 }
 
 const std::vector<SectionForces>& section_forces(Workspace& workspace) {

@@ -51,6 +51,14 @@ struct ContactForce {
   Vec3 force;     ///< N, on the point, normal and tangential
 };
 
+/// Force between two members at the newest state.
+struct MemberForce {
+  ElementPair elements;
+  double s, t;   ///< 0..1, where on a and on b
+  double depth;  ///< 1 - l/L, > 0
+  Vec3 force;    ///< N, on a; b has its opposite
+};
+
 /// Scratch of the integrators; may be thrown away at any time. Sized for one model.
 class Workspace {
  public:
@@ -87,10 +95,13 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
 /// Greatest stable step of central differences with all contacts closed, s; none before the first such step.
 std::optional<double> explicit_limit(Workspace& workspace);
 
-/// Contact forces at `state`, ordered by point then plane; the span lives until the next call with
+/// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
 /// `workspace`.
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
+
+/// Forces between members of the last call of contact_forces.
+const std::vector<MemberForce>& member_forces(Workspace& workspace);
 
 /// Section forces of every element at the state that prepare, resume or the last successful step left.
 const std::vector<SectionForces>& section_forces(Workspace& workspace);

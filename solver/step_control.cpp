@@ -25,6 +25,35 @@ double spin(const Body& body, const State& state) {
   return sum.norm() / body.node_count;
 }
 
+// As contact_limit, for the members of all bodies that are near each other.
+double member_limit(const Model& model, const ContactLaw& law, const State& state) {
+  double limit = std::numeric_limits<double>::infinity();
+  std::vector<double> stiffness(model.bodies.size(), 0.);
+  const auto body_of = [&](int e) { return model.members[model.elements[e].member].body; };
+  for (const ElementPair& pair : state.near) {
+    const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
+    const auto& x = state.position;
+    const auto& v = state.velocity;
+    const NearestPoints at = nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]);
+    const double L = contact_length(model, pair), l = at.between.norm(), gap = l - L;
+    if (gap < 0) {
+      const double depth = -gap / L;
+      const double k = penalty_stiffness(law, depth, L, true);
+      stiffness[body_of(pair.a)] += k;
+      stiffness[body_of(pair.b)] += k;
+    } else {
+      const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
+      const double closing = -relative.dot(at.between) / l;
+      if (closing * k_longest_step > gap)
+        limit = std::min(limit, std::max(gap / closing, L / (k_closing_part * closing)));
+    }
+  }
+  for (std::size_t b = 0; b < stiffness.size(); ++b)
+    if (stiffness[b] > 0)
+      limit = std::min(limit, 2 * k_pi * std::sqrt(model.bodies[b].mass / stiffness[b]) / k_contact_part);
+  return limit;
+}
+
 double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const State& state) {
   double stiffness = 0, limit = std::numeric_limits<double>::infinity();
   for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
@@ -34,7 +63,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
       const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
       const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
       if (depth > 0)
-        stiffness += law.q * law.alpha / L * std::pow(depth, law.q - 1);
+        stiffness += penalty_stiffness(law, depth, L);
       else if (closing * k_longest_step > gap)
         limit = std::min(limit, std::max(gap / closing, L / (k_closing_part * closing)));
     }
@@ -47,7 +76,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
-  double limit = k_longest_step;
+  double limit = std::min(k_longest_step, member_limit(model, law, state));
   for (const Body& body : model.bodies) {
     limit = std::min(limit, contact_limit(model, body, law, state));
     if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;

@@ -97,7 +97,7 @@ class CsvFile {
 };
 
 void bodies_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b) {
     const double* values = row.body.data() + 11 * b;
     csv.number(row.time).text(model.bodies[b].name).numbers(values, 7);
     csv.number(values[7] * 180 / k_pi).numbers(values + 8, 2).end_row();

@@ -1,9 +1,11 @@
 // Cabinets and frames of a scene.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "solver/cabinet.h"
 #include "solver/io/scene_read.h"
+#include "solver/proximity.h"
 
 namespace topple::io {
 namespace {
@@ -70,8 +72,7 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
     spec.inertia_given = entry.vector("inertia");
   }
   const std::vector<double> at = entry.numbers("at");
-  spec.at_x = at[0];
-  spec.at_y = at[1];
+  spec.at = Vec3(at[0], at[1], at.size() > 2 ? at[2] : 0);
   spec.yaw = entry.number("yaw");
   spec.pose = entry.choice_as<CabinetSpec::Pose>("pose");
   spec.tilt = entry.number("tilt");
@@ -191,6 +192,76 @@ void build(const Entry& entry, F&& builder) {
   }
 }
 
+using Box = Eigen::AlignedBox3d;
+
+Box starting_box(const Setup& setup) {
+  Box box;
+  for (const Vec3& x : start_state(setup.model, setup.starts).position) box.extend(x);
+  return box;
+}
+
+void read_grid(const Entry& entry, const Library& library, GridSpec spec, const Box& furniture,
+               Setup& setup) {
+  spec.section = library.section(entry);
+  spec.material = library.material(entry);
+  spec.spacing = entry.number("spacing");
+  const double extent = entry.number("extent");
+  const bool is_floor = spec.normal == Vec3::UnitZ();
+  Box reach;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 x = furniture.corner(static_cast<Box::CornerType>(corner)) - spec.origin;
+    reach.extend(Vec3(x.dot(spec.along), x.dot(spec.up), 0));
+  }
+  for (int k = 0; k < 2; ++k) {
+    spec.from[k] = reach.min()[k] - extent;
+    spec.to[k] = reach.max()[k] + extent;
+  }
+  if (!is_floor) spec.from[1] = 0;  // walls stand on z = 0
+  build(entry, [&] { setup.starts.push_back(add_grid(setup.model, spec)); });
+  check_size(entry, setup.model.elements.size());
+}
+
+/// Floors and walls of members, after the furniture.
+void read_grids(const Entry& root, const Library& library, Setup& setup) {
+  const Box furniture = starting_box(setup);
+  if (const Entry floor = root.entry("floor"); floor.present() && is_beams(floor)) {
+    GridSpec spec;
+    spec.name = "floor";
+    read_grid(floor, library, spec, furniture, setup);
+  }
+  for (const Entry& wall : root.entries("wall")) {
+    if (!is_beams(wall)) continue;
+    GridSpec spec;
+    spec.name = wall.name();
+    const std::vector<double> at = wall.numbers("at");
+    spec.origin = Vec3(at[0], at[1], 0);
+    spec.normal = wall.direction("normal");
+    if (std::abs(spec.normal.z()) > 1e-9) wall.fail("normal", "of a wall of beams is horizontal");
+    spec.along = Vec3::UnitZ().cross(spec.normal).normalized();
+    spec.up = Vec3::UnitZ();
+    read_grid(wall, library, spec, furniture, setup);
+  }
+}
+
+/// Bodies that start within each other cannot be told apart by contact.
+void check_overlap(const Entry& root, const Setup& setup) {
+  constexpr double k_deep = 0.5;  // of L, of the distance of centre lines
+  const Model& model = setup.model;
+  if (model.bodies.size() < 2) return;
+  const State start = start_state(model, setup.starts);
+  for (const ElementPair& pair : near_elements(model, start.position, 0)) {
+    const Element &a = model.elements[pair.a], &b = model.elements[pair.b];
+    const auto& x = start.position;
+    const Vec3 between = nearest_points(x[a.node[0]], x[a.node[1]], x[b.node[0]], x[b.node[1]]).between;
+    if (between.norm() > k_deep * contact_length(model, pair)) continue;
+    const auto name = [&](const Element& e) {
+      const Member& member = model.members[e.member];
+      return "\"" + model.bodies[member.body].name + "\" (" + member.name + ")";
+    };
+    root.fail("the bodies " + name(a) + " and " + name(b) + " overlap at the start");
+  }
+}
+
 }  // namespace
 
 void read_bodies(const Entry& root, Setup& setup) {
@@ -219,6 +290,8 @@ void read_bodies(const Entry& root, Setup& setup) {
   if (model.bodies.empty()) {
     root.fail("there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
   }
+  read_grids(root, library, setup);
+  check_overlap(root, setup);
 }
 
 }  // namespace topple::io

@@ -33,6 +33,8 @@ class Row {
   /// Words that may stand instead of the numbers.
   Row& or_word(Words words) { return key_.choices = std::move(words), *this; }
   /// One number is enough, also outside of a list.
+  /// Numbers of which the last ones may be left out.
+  Row& at_least(int count) { return key_.least_count = count, *this; }
   Row& or_one() { return key_.least_count = 1, *this; }
 
  private:

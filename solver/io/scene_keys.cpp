@@ -1,5 +1,6 @@
 #include "solver/io/scene_keys.h"
 
+#include "solver/cabinet.h"
 #include "solver/io/scene_key_rows.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
@@ -136,15 +137,26 @@ void add_contact(std::vector<Key>& keys) {
       .only("law", {"paper", "printed"});
 }
 
+// Of a floor or wall made of members; `extent`: how far it goes by default, m.
+void add_beams(Rows& rows, double extent) {
+  const GridSpec grid{};
+  rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
+      .absent(0)
+      .only("type", {"plane"});
+  rows.plain("section", T::text, "a [[section]], of its members").required().only("type", {"beams"});
+  rows.plain("material", T::text, "a [[material]]").required().only("type", {"beams"});
+  rows.number("spacing", D::length, "mm", 0.01, k_large, "of its members in both directions")
+      .absent(grid.spacing)
+      .only("type", {"beams"});
+  rows.number("extent", D::length, "m", 0, 100, "beyond where the bodies start")
+      .absent(extent)
+      .only("type", {"beams"});
+}
+
 void add_floor(std::vector<Key>& keys) {
   Rows rows(keys, "floor");
-  rows.word("type", {"plane"}, "how it is made").later({"beams"}).absent(0);
-  rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
-      .absent(0);
-  rows.later("section", "of floor beams");
-  rows.later("material", "of floor beams");
-  rows.later("spacing", "of floor beams");
-  rows.later("extent", "of floor beams");
+  rows.word("type", {"plane", "beams"}, "plane, or a two-way grid of members").absent(0);
+  add_beams(rows, 2.5);
 }
 
 void add_wall(std::vector<Key>& keys) {
@@ -152,9 +164,8 @@ void add_wall(std::vector<Key>& keys) {
   rows.plain("name", T::text, "not \"floor\"").absent_means("wall-1, ...");
   rows.numbers("at", 2, D::length, "m", -k_far, k_far, "x and y of a point on its face, at z = 0").required();
   rows.numbers("normal", 3, -1e6, 1e6, "towards the bodies; made a unit vector").required();
-  rows.word("type", {"plane"}, "how it is made").later({"beams"}).absent(0);
-  rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
-      .absent(0);
+  rows.word("type", {"plane", "beams"}, "plane, or a two-way grid of members").absent(0);
+  add_beams(rows, 0.5);
 }
 
 void add_material(std::vector<Key>& keys) {

@@ -26,8 +26,10 @@ void add_cabinet(std::vector<Key>& keys) {
                "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
       .or_word({"panels", "solid"})
       .absent(cabinet.inertia);
-  rows.numbers("at", 2, D::length, "m", -k_far, k_far, "centre of the footprint in its pose")
-      .absent(std::vector{cabinet.at_x, cabinet.at_y});
+  rows.numbers("at", 3, D::length, "m", -k_far, k_far,
+               "centre of the footprint in its pose, and the height that it stands on")
+      .at_least(2)
+      .absent(std::vector{0., 0.});
   rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical")
       .absent(cabinet.yaw);
   rows.word("pose", {"upright", "on-back", "on-front", "on-side"}, "how it stands or lies")

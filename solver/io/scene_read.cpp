@@ -167,11 +167,16 @@ void read_actions(const Entry& root, Setup& setup) {
   law.slip_speed = contact.number("slip_speed");
 }
 
+bool is_beams(const Entry& entry) {
+  return entry.choice("type") == 1;
+}
+
 void read_planes(const Entry& root, Setup& setup) {
-  if (const Entry floor = root.entry("floor"); floor.present()) {
+  if (const Entry floor = root.entry("floor"); floor.present() && !is_beams(floor)) {
     setup.model.planes.push_back({"floor", Vec3::Zero(), Vec3::UnitZ(), floor.number("width")});
   }
   for (const Entry& wall : root.entries("wall")) {
+    if (is_beams(wall)) continue;
     const std::vector<double> at = wall.numbers("at");
     setup.model.planes.push_back(
         {wall.name(), Vec3(at[0], at[1], 0), wall.direction("normal"), wall.number("width")});

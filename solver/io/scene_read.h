@@ -13,14 +13,17 @@ void read_run(const Entry& root, Setup& setup);
 /// [[shake]] and [contact].
 void read_actions(const Entry& root, Setup& setup);
 
-/// [floor] first, then each [[wall]].
+/// A [floor] or [[wall]] made of members.
+bool is_beams(const Entry& entry);
+
+/// Planes: [floor] first, then each [[wall]].
 void read_planes(const Entry& root, Setup& setup);
 
 /// [[material]] and [[section]]; sections are completed with the Poisson's ratio of the first member that
 /// uses them.
 void read_materials_and_sections(const Entry& root, Setup& setup);
 
-/// [[cabinet]] in the order of the file, then [[frame]].
+/// [[cabinet]] in the order of the file, then [[frame]], then floors and walls of members.
 void read_bodies(const Entry& root, Setup& setup);
 
 /// [[probe]]; after the bodies.

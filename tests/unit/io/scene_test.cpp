@@ -77,7 +77,7 @@ TEST(Scene, absent_keys_of_bodies_have_the_defaults_of_the_structs) {
   EXPECT_DOUBLE_EQ(spec.size.z() / 2, spec.cg_height) << "the documented default of cg_height";
   EXPECT_TRUE(entry.is_word("inertia"));
   EXPECT_EQ(entry.choice_as<CabinetSpec::Inertia>("inertia"), spec.inertia);
-  EXPECT_EQ(entry.numbers("at"), (std::vector<double>{spec.at_x, spec.at_y}));
+  EXPECT_EQ(entry.numbers("at"), (std::vector<double>{spec.at.x(), spec.at.y()}));
   EXPECT_EQ(entry.number("yaw"), spec.yaw);
   EXPECT_EQ(entry.choice_as<CabinetSpec::Pose>("pose"), spec.pose);
   EXPECT_EQ(entry.number("tilt"), spec.tilt);

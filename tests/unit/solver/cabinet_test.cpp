@@ -270,8 +270,8 @@ TEST(Cabinet, poses_lie_on_the_face_they_name_with_the_footprint_at_its_place) {
       SCOPED_TRACE(testing::Message() << "pose " << static_cast<int>(c.pose) << ", yaw " << yaw);
       CabinetSpec spec = tall_cabinet();
       spec.pose = c.pose;
-      spec.at_x = 2;
-      spec.at_y = -3;
+      spec.at.x() = 2;
+      spec.at.y() = -3;
       const Cabinet straight = built(spec);
       spec.yaw = yaw;
       const Cabinet turned = built(spec);
@@ -331,7 +331,7 @@ TEST(Cabinet, tilt_turns_about_the_bottom_edge_it_leans_on) {
         spec.tilt = tilt;
         spec.yaw = yaw;
         spec.pose = pose;
-        spec.at_x = 1;
+        spec.at.x() = 1;
         const Cabinet c = built(spec);
         const State state = start_state(c.model, {c.start});
         const Vec3 forward = Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Vec3::UnitX();

@@ -107,7 +107,7 @@ TEST(CentralDifference, step_over_the_limit_is_refused_and_leaves_the_state) {
   small.size = {0.2, 0.3, 0.5};
   small.cg_height = 0.25;
   small.mass = 5;
-  small.at_x = 3;
+  small.at.x() = 3;
   add_cabinet(model, small);
   const double limit = std::min(dense_limit(model, 0), dense_limit(model, 1));
   ASSERT_LT(dense_limit(model, 1), dense_limit(model, 0));

@@ -159,7 +159,7 @@ Observed watch(Simulation& sim, double seconds) {
   for (int i = 0; i <= steps; ++i) {
     if (i > 0 && !sim.advance(1)) break;
     section_forces(sim.model, sim.state, sections);
-    outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), sections, o.events);
+    outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, sections, o.events);
   }
   o.outcome = outcome.bodies()[0];
   o.final_tilt = o.outcome.tilt;
@@ -281,7 +281,7 @@ TEST(Overturn, slow_push_lifts_a_side_between_two_thirds_and_all_of_g_b_over_h_a
       if (outcome.bodies()[0].beyond_since) break;
       ASSERT_TRUE(sim.advance(1));
       section_forces(sim.model, sim.state, sections);
-      outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), sections, events);
+      outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, sections, events);
       if (!events.empty() && lifted_at == 0) lifted_at = sim.parameters.shakes[0].amplitude;
     }
     EXPECT_GT(lifted_at, 0.65 * threshold);
