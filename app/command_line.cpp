@@ -23,7 +23,8 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"study", "compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"compare", "report", "recover"};
+constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn", "penalty"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -46,6 +47,11 @@ std::string seconds(const std::string& text) {
 std::string rate(const std::string& text) {
   const std::optional<int> value = whole_number<int>(text);
   return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
+}
+
+std::string job_count(const std::string& text) {
+  const std::optional<int> value = whole_number<int>(text);
+  return value && *value >= 1 && *value <= 256 ? "" : "\"" + text + "\" is not a whole number in 1..256";
 }
 
 std::string mode_count(const std::string& text) {
@@ -85,6 +91,7 @@ class CommandLine {
     add_export();
     add_modes();
     add_verify();
+    add_study();
     add_check();
     add_info();
     add_scenes();
@@ -224,6 +231,38 @@ class CommandLine {
     command.callback([this] { action_ = [this] { return verify_command(verify_); }; });
   }
 
+  void add_study() {
+    CLI::App& command = add_command("study", "a family of runs as table and charts",
+                                    "study elements -o elements-study --jobs 1");
+    command.add_option("KIND", kind_, "elements: error of the three schemes against elements and CPU time")
+        ->required()
+        ->type_name("");
+    command.add_option("SCENE", study_scene_)->group("");
+    add_path(command, "-o,--output", study_.folder, "DIR",
+             "folder for KIND.csv, .json, .svg and .png (required)");
+    command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
+    command.add_option("--jobs", jobs_, "solutions at a time, default 1, at which CPU times are undisturbed")
+        ->type_name("N")
+        ->check(job_count, "", "count");
+    command.add_flag("--quiet", study_.quiet, "no progress");
+    for (const char* later : {"--x", "--y", "--ensemble", "--spread"}) add_later_option(command, later);
+    add_later_flag(command, "--resume");
+    command.callback([this] {
+      check_study();
+      study_.jobs = whole_number<int>(jobs_).value_or(study_.jobs);
+      action_ = [this] { return study_command(study_); };
+    });
+  }
+
+  void check_study() const {
+    if (std::find(std::begin(k_later_studies), std::end(k_later_studies), kind_) != std::end(k_later_studies))
+      refuse("study " + kind_);
+    if (kind_ != "elements") throw BadInput("\"" + kind_ + "\" is not a study; known: elements");
+    if (!study_scene_.empty())
+      throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_scene_ + "\")");
+    if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");
+  }
+
   void add_check() {
     CLI::App& command = add_command("check", "validate scenes without running them",
                                     "check my-office.toml --set shake.1.amplitude=\"0.2 g\"");
@@ -292,6 +331,8 @@ class CommandLine {
   InfoOptions info_;
   ModesOptions modes_;
   VerifyOptions verify_;
+  StudyOptions study_;
+  std::string kind_, study_scene_, jobs_;
   std::string count_;
 };
 
