@@ -237,7 +237,8 @@ class CommandLine {
     command.add_option("KIND", kind_, "elements: error of the three schemes against elements and CPU time")
         ->required()
         ->type_name("");
-    command.add_option("SCENE", study_scene_)->group("");
+    command.add_option("SCENE", study_scene_, "none for elements, which has scenes of its own")
+        ->type_name("");
     add_path(command, "-o,--output", study_.folder, "DIR",
              "folder for KIND.csv, .json, .svg and .png (required)");
     command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");

@@ -87,8 +87,8 @@ void write_results(const study::ElementsStudy& results, const ordered_json& json
   write_whole_file(stem + ".csv", study::csv_text(json["rows"]));
   write_whole_file(stem + ".json", json_text(json, 2) + "\n");
   const std::string origin =
-      fmt::format("topple {}; {}, {} cores, {} at work", TOPPLE_VERSION, study::processor_name(),
-                  study::core_count(), json["settings"]["jobs"].get<int>());
+      fmt::format("topple {} on {}, {} cores; solutions at a time: {}", TOPPLE_VERSION,
+                  study::processor_name(), study::core_count(), json["settings"]["jobs"].get<int>());
   const auto draw = [&](const char* extension, study::ChartFormat format) {
     try {
       write_whole_file(stem + extension, study::run_gnuplot(elements_chart(results, origin, format)));

@@ -24,7 +24,7 @@ struct Quantity {
   std::string name;    ///< "elastica-deflection"
   std::string title;   ///< for charts: "Elastica: tip deflection"
   std::string unit;    ///< "m", "rad", "Hz", "1"
-  std::string source;  ///< of the reference
+  std::string source;  ///< of the reference; like the title without _ ^ { } @ & ~
   bool charted;        ///< has a panel of its own
   int order;           ///< with which midpoint elements converge
   double reference = 0;
