@@ -69,8 +69,9 @@ TEST(ElementsStudy, hinges_at_element_ends_give_exact_collapse_loads) {
     for (const int n : k_elements_per_member) {
       SCOPED_TRACE(scheme_name(scheme) + " " + std::to_string(n));
       EXPECT_LT(error("beam-collapse", scheme, n), 1e-9);
-      // 2e-6 is the change of shape; with hinges that form at the end of a load step it can be missed by more
-      EXPECT_LT(error("portal-collapse", scheme, n), n == 2 ? 2e-5 : 2e-6);
+      // 2e-6 is the change of shape. One load step of the portal of two asi elements stands out by 2e-5.
+      const bool stands_out = scheme == Scheme::asi && n == 2;
+      EXPECT_LT(error("portal-collapse", scheme, n), stands_out ? 2e-5 : 2e-6);
     }
 }
 
