@@ -146,6 +146,7 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.body, b.body, out.body);
   mix(a.floor_acceleration, b.floor_acceleration, out.floor_acceleration);
   mix(a.floor_displacement, b.floor_displacement, out.floor_displacement);
+  out.load_factor = (1 - u) * a.load_factor + u * b.load_factor;
   const auto turn = [u](const auto& x, const auto& y, auto& to, std::size_t at) {
     const Quat q =
         Quat(x[at], x[at + 1], x[at + 2], x[at + 3]).slerp(u, Quat(y[at], y[at + 1], y[at + 2], y[at + 3]));

@@ -192,7 +192,7 @@ class CommandLine {
     add_path(command, "RECORDING", export_.recording, "", "recording").required();
     for (const char* later : {"--xdmf", "--vtk"}) add_later_option(command, later);
     add_path(command, "--csv", export_.csv, "DIR",
-             "folder for bodies.csv, nodes.csv, elements.csv and floor.csv")
+             "folder for bodies.csv, nodes.csv, elements.csv, floor.csv and energy.csv")
         .required();
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }

@@ -143,11 +143,7 @@ std::string dynamic_head(const ordered_json& s) {
                      s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
                      text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
-  const auto& e = s["energy"];
-  out +=
-      fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
-                  text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
-  return out;
+  return out + energy_in_words(s["energy"]) + "\n";
 }
 
 }  // namespace
@@ -210,6 +206,14 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
 
 std::string json_text(const ordered_json& value, int indent) {
   return value.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string energy_in_words(const ordered_json& e) {
+  const auto plastic = e["plastic_J"].is_null() ? 0 : e["plastic_J"].get<double>();
+  return fmt::format("energy: {} J came in, {} J dissipated{}, balance error {}\n",
+                     text(e["input_J"], "{:.4g}"), text(e["dissipated_J"], "{:.4g}"),
+                     plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
+                     text(e["balance_error"], "{:.1e}"));
 }
 
 std::string summary_table(const ordered_json& s) {

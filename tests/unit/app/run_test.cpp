@@ -178,6 +178,17 @@ TEST_F(RunTest, overrides_are_part_of_the_recording) {
   EXPECT_NEAR(what["bodies"][0]["mass_kg"], 50, 1e-9);
 }
 
+TEST_F(RunTest, a_recording_tells_the_energies_of_its_newest_instant) {
+  const Ended ended = topple({"run", "s.toml", "-o", "a.h5", "--json", "-"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json energy = info("a.h5")["energy"], summary = json_of(ended.out)["energy"];
+  for (const auto& [key, value] : energy.items())
+    EXPECT_NEAR(value, summary[key].get<double>(), 1e-12 * (1 + std::abs(value.get<double>()))) << key;
+  for (const char* key : {"plastic_J", "friction_J", "normal_damping_J", "numerical_J", "balance_error"})
+    EXPECT_TRUE(energy.contains(key)) << key;
+  EXPECT_NE(topple({"info", "a.h5"}).out.find("\nenergy: "), std::string::npos);
+}
+
 TEST_F(RunTest, a_name_that_is_not_utf_8_spoils_nothing) {
   write_bytes("\xff.toml", k_shaken);
   const Ended ended = topple({"run", "\xff.toml", "-o", "a.h5", "--json", "-"});
