@@ -162,7 +162,8 @@ class CommandLine {
     const auto add_time = [&](const char* name, double& value, const char* about) {
       return command.add_option(name, value, about)->type_name("SECONDS")->check(seconds, "", "seconds");
     };
-    CLI::Option* at = add_time("--at", at_, "time of the still")->needs(still);
+    CLI::Option* at =
+        add_time("--at", at_, "time of the still; statics: part of the way, 0..1")->needs(still);
     still->needs(at);
     CLI::Option* from = add_time("--from", from_, "first instant");
     CLI::Option* to = add_time("--to", to_, "last instant");

@@ -9,6 +9,7 @@
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/summary.h"
+#include "app/words.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
@@ -31,10 +32,10 @@ ordered_json describe(const io::Scene& scene) {
   out["title"] = scene.title;
   static const char* const k_analyses[] = {"dynamic", "static", "modes"};
   out["analysis"] = k_analyses[static_cast<std::size_t>(setup.run.analysis)];
-  const bool is_static = setup.run.analysis == Analysis::statics;
-  out["duration_s"] = is_static ? ordered_json(nullptr) : ordered_json(setup.run.duration);
-  out["time_step_s"] = is_static ? ordered_json(nullptr) : ordered_json(setup.parameters.time_step);
-  if (is_static) out["load_steps"] = setup.run.statics.load_steps;
+  const bool loads = is_static(setup);
+  out["duration_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.run.duration);
+  out["time_step_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.parameters.time_step);
+  if (loads) out["load_steps"] = setup.run.statics.load_steps;
   out["nodes"] = setup.model.node_total();
   out["elements"] = setup.model.elements.size();
   out["contact_points"] = setup.model.contact_points.size();
