@@ -67,7 +67,9 @@ void add_run(std::vector<Key>& keys) {
   rows.word("elements", {"asi-gauss", "asi", "midpoint"},
             "where the integration points stand; asi: in the middle while elastic; midpoint: always")
       .absent(Scheme::asi_gauss);
-  rows.plain("settle", T::boolean, "start from rest under gravity").absent(run.settle);
+  rows.plain("settle", T::boolean,
+             "start from rest under gravity and the loads at t = 0 (static: load factor 0)")
+      .absent(run.settle);
   rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows").absent(run.output_rate);
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
   rows.word("stop_when", {"never", "all-overturned", "at-rest"},

@@ -170,5 +170,45 @@ TEST(Settle, supported_frame_sags_as_the_static_solution) {
   EXPECT_LT(state.position[2].z(), -1e-6);
 }
 
+// A beam that carries 5 N at its tip, of a load with `history`.
+Model loaded_beam(std::vector<std::pair<double, double>> history) {
+  Model model = cantilever(plain_section(3e-4, 4e-8, 9e-8, 6e-8, 0.7, 0.6), steel(), 1, 2, Vec3(0, 1, -5),
+                           Vec3::Zero());
+  for (Load& load : model.loads) load.history = history;
+  return model;
+}
+
+TEST(Settle, constant_loads_are_carried_from_the_start) {
+  const Model model = loaded_beam({});
+  const Parameters p;
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  ASSERT_TRUE(settle(model, p, state, workspace).ok());
+  BodySystem system(model, 0);
+  BodyMotion motion = reference_motion(model);
+  ASSERT_GT(solve_statics(system, p, 0, motion), 0);
+  for (int i = 0; i < model.node_total(); ++i)
+    EXPECT_LT((state.position[i] - motion.position[i]).norm(), 1e-9);
+  EXPECT_GT(state.position[2].y(), 1e-6);
+  prepare(model, p, state, workspace);
+  const Vec3 tip = state.position[2];
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(step(model, p, state, workspace).ok());
+  EXPECT_LT((state.position[2] - tip).norm(), 1e-9);
+  EXPECT_LT(state.energy.kinetic, 1e-12);
+}
+
+TEST(Settle, loads_with_a_history_act_as_at_the_start) {
+  const auto settled_tip = [](const Model& model) {
+    State state = start_state(model, {BodyStart{}});
+    Workspace workspace(model);
+    EXPECT_TRUE(settle(model, {}, state, workspace).ok());
+    return state.position[2];
+  };
+  const Vec3 full = settled_tip(loaded_beam({})), none = settled_tip(loaded_beam({{0, 0}, {1, 1}}));
+  EXPECT_NEAR(none.y(), 0, 1e-12);
+  EXPECT_LT((settled_tip(loaded_beam({{0, 1}, {1, 0}})) - full).norm(), 1e-12);
+  EXPECT_NEAR(settled_tip(loaded_beam({{0, 0.5}, {1, 1}})).y() / full.y(), 0.5, 1e-4);
+}
+
 }  // namespace
 }  // namespace topple::test
