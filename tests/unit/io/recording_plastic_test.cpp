@@ -119,5 +119,78 @@ TEST_F(PlasticRecordingTest, energies_are_exported_with_their_names) {
                                          last.plastic, last.balance_error()}));
 }
 
+TEST_F(PlasticRecordingTest, hinge_and_fracture_events_come_back_and_are_those_that_the_outcome_counts) {
+  record([](const topple::Run&) {});
+  const std::vector<RecordedEvent> read = Recording(path("a.h5")).events();
+  ASSERT_EQ(read.size(), events_.size());
+  const Model& model = scene_.setup.model;
+  std::vector<int> hinges(model.bodies.size()), fractures(model.bodies.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const Event &back = read[i].event, &sent = events_[i];
+    EXPECT_EQ(back.kind, sent.kind);
+    EXPECT_EQ(read[i].step, sent.step);
+    EXPECT_EQ(read[i].time, sent.time);
+    EXPECT_EQ(back.body, sent.body);
+    EXPECT_EQ(back.value, sent.value);
+    EXPECT_EQ(back.element, sent.element);
+    if (back.kind != Event::Kind::hinge && back.kind != Event::Kind::fracture) continue;
+    const Element& element = model.elements.at(static_cast<std::size_t>(back.element));
+    EXPECT_EQ(model.members.at(static_cast<std::size_t>(element.member)).body, back.body);
+    EXPECT_EQ(back.value == static_cast<double>(Hinge::broken), back.kind == Event::Kind::fracture);
+    ++(back.kind == Event::Kind::hinge ? hinges : fractures).at(static_cast<std::size_t>(back.body));
+  }
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    EXPECT_EQ(hinges[b], outcome_[b].hinges) << model.bodies[b].name;
+    EXPECT_EQ(fractures[b], outcome_[b].fractures) << model.bodies[b].name;
+    EXPECT_GT(hinges[b], 0) << model.bodies[b].name;
+  }
+  EXPECT_EQ(fractures, (std::vector<int>{0, 1}));  // "bends", "breaks"
+}
+
+TEST_F(PlasticRecordingTest, element_tables_are_those_of_the_solver) {
+  struct Expected {
+    double time, yield_ratio, s;
+    int hinge;
+  };
+  std::vector<Expected> expected;
+  const Model& model = scene_.setup.model;
+  record([&](const topple::Run& run) {
+    for (std::size_t e = 0; e < model.elements.size(); ++e) {
+      const Element& element = model.elements[e];
+      const ElementState& state = run.state().elements[e];
+      double f = -1;
+      for (const double end : {-1., 1.})
+        f = std::max(
+            f, yield_function(element, forces_along(run.sections()[e], element.length, element.s, end)));
+      const bool flowed = !state.offset.kappa.isZero(0) || !state.offset.gamma.isZero(0);
+      int hinge = static_cast<int>(state.hinge);
+      if (state.hinge == Hinge::none && flowed) hinge = k_flowed_first;  // clamped at the first end
+      expected.push_back({run.state().time, std::sqrt(f + 1), -hinge_place(element, state.hinge), hinge});
+    }
+  });
+  export_csv(Recording(path("a.h5")), path("csv"));
+  std::istringstream text(bytes_of(path("csv/elements.csv")));
+  std::string line;
+  std::getline(text, line);
+  std::size_t row = 0;
+  std::vector<int> seen(7);
+  for (; std::getline(text, line); ++row) {
+    ASSERT_LT(row, expected.size());
+    std::vector<std::string> fields;
+    std::istringstream parts(line);
+    for (std::string field; std::getline(parts, field, ',');) fields.push_back(field);
+    ASSERT_EQ(fields.size(), 14u) << line;
+    const Expected& e = expected[row];
+    EXPECT_EQ(std::stod(fields[0]), e.time);
+    // from section forces in single precision, taken along the element
+    EXPECT_NEAR(std::stod(fields[11]), e.yield_ratio, 1e-5 * (1e-2 + e.yield_ratio)) << line;
+    EXPECT_EQ(std::stof(fields[12]), static_cast<float>(e.s)) << line;
+    EXPECT_EQ(std::stoi(fields[13]), e.hinge) << line;
+    ++seen.at(static_cast<std::size_t>(e.hinge));
+  }
+  EXPECT_EQ(row, expected.size());
+  for (const int code : {0, 1, 3, 5}) EXPECT_GT(seen[static_cast<std::size_t>(code)], 0) << code;
+}
+
 }  // namespace
 }  // namespace topple::io::testing
