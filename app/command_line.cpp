@@ -169,7 +169,8 @@ class CommandLine {
     const auto add_time = [&](const char* name, double& value, const char* about) {
       return command.add_option(name, value, about)->type_name("SECONDS")->check(seconds, "", "seconds");
     };
-    CLI::Option* at = add_time("--at", at_, "time of the still")->needs(still);
+    CLI::Option* at =
+        add_time("--at", at_, "time of the still; statics: part of the way, 0..1")->needs(still);
     still->needs(at);
     CLI::Option* from = add_time("--from", from_, "first instant");
     CLI::Option* to = add_time("--to", to_, "last instant");
@@ -199,7 +200,7 @@ class CommandLine {
     add_path(command, "RECORDING", export_.recording, "", "recording").required();
     for (const char* later : {"--xdmf", "--vtk"}) add_later_option(command, later);
     add_path(command, "--csv", export_.csv, "DIR",
-             "folder for bodies.csv, nodes.csv, elements.csv and floor.csv")
+             "folder for bodies.csv, nodes.csv, elements.csv, floor.csv and energy.csv")
         .required();
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }

@@ -17,6 +17,7 @@ StepStatus advance_central_difference(BodySystem& system, const Parameters& para
 /// Greatest stable step of central differences, s: 2 over the highest frequency of the unloaded reference
 /// pose, by power iteration on M^-1 K. With a law every contact point holds on to every plane: Eq. 2 at
 /// 1 - l/L = 1 (below q = 1: at 0.01, where it is stiffer) along the normal, the stick spring across it.
-double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr);
+/// `busiest`: index into the model of the node that has most of the kinetic energy of that mode.
+double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr, int* busiest = nullptr);
 
 }  // namespace topple

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -91,7 +92,9 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
   s.load_elements(state);
   std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
   std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
-  const std::vector<Vec3> origin = w.start.position;
+  const BodyMotion before = w.start;
+  const std::vector<Vec3>& origin = before.position;
+  HingeStep hinges;
   w.right_hand_side.resize(6 * n);
   const double weight = s.model.bodies[s.index].mass * parameters.gravity.norm();
   const double balanced = k_balance * weight + rounding(s, origin);
@@ -100,6 +103,10 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
   status.time = state.time;
   status.body = s.index;
   status.kind = StepStatus::Kind::not_settled;
+  const auto blame = [&](int node) {
+    status.node = s.first + node;
+    status.element = s.element_at(status.node);
+  };
   for (int round = 0; round < k_most_rounds; ++round) {
     s.lu.set_zero();
     s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
@@ -115,7 +122,12 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
     add_mass(s, sigma);
     s.store_stick(s.pairs, state.stick);
     if (left < balanced && sigma > 1) {
+      if (!s.loads_grow && update_hinges(s, w.start, hinges)) {
+        sigma = k_first_sigma;
+        continue;
+      }
       if (tips_over(s, still, state, w)) return status;
+      if (!s.loads_grow) commit_hinges(s, before, w.start, state);
       for (int i = 0; i < n; ++i) {
         const int g = s.first + i;
         state.position[g] = w.start.position[i];
@@ -123,10 +135,14 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
         state.velocity[g].setZero();
         state.angular_velocity[g].setZero();
       }
-      status.kind = StepStatus::Kind::ok;
+      status = {};
+      status.time = state.time;
       return status;
     }
-    if (s.lu.factor() >= 0) return status;
+    if (const int singular = s.lu.factor(); singular >= 0) {
+      blame(singular);
+      return status;
+    }
     s.lu.solve(w.right_hand_side.data());
     w.trial = w.start;
     double furthest = 0, step = 0;
@@ -136,7 +152,11 @@ StepStatus settle_body(BodySystem& s, const Parameters& parameters, State& state
       w.trial.rotation[i] = exp_quaternion(spin) * w.trial.rotation[i];
       w.trial.rotation[i].normalize();
       step = std::max(step, shift.norm());
-      furthest = std::max(furthest, (w.trial.position[i] - origin[i]).norm());
+      const double travel = (w.trial.position[i] - origin[i]).norm();
+      if (!(travel <= furthest)) {
+        furthest = travel;
+        blame(i);
+      }
       if (!std::isfinite(furthest + spin.sum())) return status;
     }
     if (furthest > k_furthest * s.size) return status;

@@ -80,7 +80,7 @@ struct Workspace::Impl {
   std::vector<SectionForces> sections;
   State next;
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
-  int limiting_body = -1;
+  int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;
 };
 
@@ -105,8 +105,8 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::singular:
       return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
     case Kind::not_settled:
-      return where +
-             " does not come to rest under gravity; does it stand on something, and can alpha "
+      return "before the first step, " + when + ": " + where +
+             " does not come to rest under gravity; does it stand on something, and can alpha and the steel "
              "carry it? settle = false starts it as it is";
     case Kind::step_too_long:
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
@@ -171,11 +171,14 @@ void find_explicit_limit(const Parameters& parameters, Workspace::Impl& w) {
   w.explicit_limit.reset();
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
-  for (auto& system : w.systems)
-    if (const double limit = explicit_limit(*system, &law); limit < w.explicit_limit.value_or(1e300)) {
+  for (auto& system : w.systems) {
+    int node = -1;
+    if (const double limit = explicit_limit(*system, &law, &node); limit < w.explicit_limit.value_or(1e300)) {
       w.explicit_limit = limit;
       w.limiting_body = system->index;
+      w.limiting_node = node;
     }
+  }
 }
 
 // One step of size h into w.next.
@@ -191,6 +194,8 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
       status.limit = *w.explicit_limit;
       status.time = t;
       status.body = w.limiting_body;
+      status.node = w.limiting_node;
+      status.element = w.systems[static_cast<std::size_t>(w.limiting_body)]->element_at(w.limiting_node);
       return status;
     }
   }
