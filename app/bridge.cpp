@@ -115,6 +115,8 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
                                               forces_at(model, row, e, xi)));
   }
   peak_stress_.push_back(peak);
+  way.push_back(static_cast<float>(row.time));
+  load_factor.push_back(static_cast<float>(row.load_factor));
   if (parameters.shakes.empty()) return;
   time_s.push_back(static_cast<float>(row.time));
   acceleration_gal.push_back(
@@ -147,6 +149,7 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.body, b.body, out.body);
   mix(a.floor_acceleration, b.floor_acceleration, out.floor_acceleration);
   mix(a.floor_displacement, b.floor_displacement, out.floor_displacement);
+  out.load_factor = (1 - u) * a.load_factor + u * b.load_factor;
   const auto turn = [u](const auto& x, const auto& y, auto& to, std::size_t at) {
     const Quat q =
         Quat(x[at], x[at + 1], x[at + 2], x[at + 3]).slerp(u, Quat(y[at], y[at + 1], y[at + 2], y[at + 3]));
@@ -328,15 +331,27 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
                           render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
   out.caption.title = scene_.title;
-  out.caption.lines.push_back(instant_in_words(setup, row.time, row.step));
+  out.caption.lines.push_back(instant_in_words(setup, row));
   if (!parameters.shakes.empty()) {
     const Shake& shake = parameters.shakes.front();
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
     out.caption.lines.push_back(
         fmt::format("{};  now {:+.0f} gal, {:+.0f} mm", shake_in_words(parameters), a, 1e3 * d));
-    out.trace = {"floor acceleration, gal", extent_.time_s, extent_.acceleration_gal,
-                 static_cast<float>(row.time)};
+    out.trace = {.label = "floor acceleration, gal",
+                 .at = extent_.time_s,
+                 .value = extent_.acceleration_gal,
+                 .cursor = static_cast<float>(row.time)};
+  }
+  if (is_static(setup)) {
+    const float steps = static_cast<float>(setup.run.statics.load_steps);
+    out.trace = {.label = "load factor",
+                 .unit = "load steps",
+                 .whole = true,
+                 .at = extent_.way,
+                 .value = extent_.load_factor,
+                 .cursor = steps * static_cast<float>(row.time)};
+    for (float& at : out.trace.at) at *= steps;
   }
   for (std::size_t b = 0; b < static_cast<std::size_t>(setup.model.furniture_total()); ++b)
     out.caption.lines.push_back(body_in_words(setup.model, row, b));

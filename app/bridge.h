@@ -10,9 +10,9 @@
 
 namespace topple::app {
 
-/// What pictures of one run share: the range of the colours, the space that bodies move through and the trace
-/// of the floor. Rows are added one after the other; add() throws io::InputError on a row of another model,
-/// such as an older version may have built from the same scene.
+/// What pictures of one run share: the range of the colours, the space that bodies move through and the
+/// traces of the floor and of the load factor. Rows are added one after the other; add() throws
+/// io::InputError on a row of another model, such as an older version may have built from the same scene.
 class RunExtent {
  public:
   void add(const Model& model, const Parameters& parameters, const io::FrameRow& row);
@@ -23,6 +23,7 @@ class RunExtent {
 
   Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of the furniture's nodes, with the floor's way
   std::vector<float> time_s, acceleration_gal;   ///< along the first shake's direction
+  std::vector<float> way, load_factor;           ///< per row: State::time of a static run, and its loads
 
  private:
   std::vector<double> peak_stress_;  ///< Pa, of each row

@@ -23,7 +23,8 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"study", "compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"compare", "report", "recover"};
+constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn", "penalty"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -46,6 +47,11 @@ std::string seconds(const std::string& text) {
 std::string rate(const std::string& text) {
   const std::optional<int> value = whole_number<int>(text);
   return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
+}
+
+std::string job_count(const std::string& text) {
+  const std::optional<int> value = whole_number<int>(text);
+  return value && *value >= 1 && *value <= 256 ? "" : "\"" + text + "\" is not a whole number in 1..256";
 }
 
 std::string mode_count(const std::string& text) {
@@ -85,6 +91,7 @@ class CommandLine {
     add_export();
     add_modes();
     add_verify();
+    add_study();
     add_check();
     add_info();
     add_scenes();
@@ -162,7 +169,8 @@ class CommandLine {
     const auto add_time = [&](const char* name, double& value, const char* about) {
       return command.add_option(name, value, about)->type_name("SECONDS")->check(seconds, "", "seconds");
     };
-    CLI::Option* at = add_time("--at", at_, "time of the still")->needs(still);
+    CLI::Option* at =
+        add_time("--at", at_, "time of the still; statics: part of the way, 0..1")->needs(still);
     still->needs(at);
     CLI::Option* from = add_time("--from", from_, "first instant");
     CLI::Option* to = add_time("--to", to_, "last instant");
@@ -192,7 +200,7 @@ class CommandLine {
     add_path(command, "RECORDING", export_.recording, "", "recording").required();
     for (const char* later : {"--xdmf", "--vtk"}) add_later_option(command, later);
     add_path(command, "--csv", export_.csv, "DIR",
-             "folder for bodies.csv, nodes.csv, elements.csv and floor.csv")
+             "folder for bodies.csv, nodes.csv, elements.csv, floor.csv and energy.csv")
         .required();
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }
@@ -222,6 +230,39 @@ class CommandLine {
     add_path(command, "--json", verify_.json, "FILE|-", "write the rows as JSON; - for standard output");
     command.add_flag("--quiet", verify_.quiet, "no progress");
     command.callback([this] { action_ = [this] { return verify_command(verify_); }; });
+  }
+
+  void add_study() {
+    CLI::App& command = add_command("study", "a family of runs as table and charts",
+                                    "study elements -o elements-study --jobs 1");
+    command.add_option("KIND", kind_, "elements: error of the three schemes against elements and CPU time")
+        ->required()
+        ->type_name("");
+    command.add_option("SCENE", study_scene_, "none for elements, which has scenes of its own")
+        ->type_name("");
+    add_path(command, "-o,--output", study_.folder, "DIR",
+             "folder for KIND.csv, .json, .svg and .png (required)");
+    command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
+    command.add_option("--jobs", jobs_, "solutions at a time, default 1, at which CPU times are undisturbed")
+        ->type_name("N")
+        ->check(job_count, "", "count");
+    command.add_flag("--quiet", study_.quiet, "no progress");
+    for (const char* later : {"--x", "--y", "--ensemble", "--spread"}) add_later_option(command, later);
+    add_later_flag(command, "--resume");
+    command.callback([this] {
+      check_study();
+      study_.jobs = whole_number<int>(jobs_).value_or(study_.jobs);
+      action_ = [this] { return study_command(study_); };
+    });
+  }
+
+  void check_study() const {
+    if (std::find(std::begin(k_later_studies), std::end(k_later_studies), kind_) != std::end(k_later_studies))
+      refuse("study " + kind_);
+    if (kind_ != "elements") throw BadInput("\"" + kind_ + "\" is not a study; known: elements");
+    if (!study_scene_.empty())
+      throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_scene_ + "\")");
+    if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");
   }
 
   void add_check() {
@@ -292,6 +333,8 @@ class CommandLine {
   InfoOptions info_;
   ModesOptions modes_;
   VerifyOptions verify_;
+  StudyOptions study_;
+  std::string kind_, study_scene_, jobs_;
   std::string count_;
 };
 

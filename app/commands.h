@@ -73,6 +73,15 @@ struct VerifyOptions {
 };
 int verify_command(const VerifyOptions& options);
 
+struct StudyOptions {
+  std::string folder;  ///< created when missing
+  int jobs = 1;        ///< solutions at a time
+  bool quick = false;  ///< within a time budget
+  bool quiet = false;
+};
+/// The element comparison.
+int study_command(const StudyOptions& options);
+
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 
 struct InfoOptions {

@@ -9,6 +9,7 @@
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/summary.h"
+#include "app/words.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
@@ -29,8 +30,12 @@ ordered_json describe(const io::Scene& scene) {
   out["kind"] = "scene";
   out["scene"] = scene.name;
   out["title"] = scene.title;
-  out["duration_s"] = setup.run.duration;
-  out["time_step_s"] = setup.parameters.time_step;
+  static const char* const k_analyses[] = {"dynamic", "static", "modes"};
+  out["analysis"] = k_analyses[static_cast<std::size_t>(setup.run.analysis)];
+  const bool loads = is_static(setup);
+  out["duration_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.run.duration);
+  out["time_step_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.parameters.time_step);
+  if (loads) out["load_steps"] = setup.run.statics.load_steps;
   out["nodes"] = setup.model.node_total();
   out["elements"] = setup.model.elements.size();
   out["contact_points"] = setup.model.contact_points.size();
@@ -66,6 +71,26 @@ ordered_json describe(const LoggedEdit& logged) {
           {"value", edit.key == Edit::Key::direction ? vector(edit.value) : ordered_json(edit.value.x())}};
 }
 
+bool is_static(const ordered_json& description) {
+  return description["analysis"] == "static";
+}
+
+/// The ledger at one instant, named as in the summary.
+ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
+  const std::vector<double>& e = row.energy;
+  return {{"input_J", e[0]},
+          {"kinetic_J", e[1]},
+          {"strain_J", e[2]},
+          {"gravity_J", e[3]},
+          {"contact_J", e[4]},
+          {"dissipated_J", e[5] + e[6] + e[7] + e[8]},
+          {"friction_J", e[5]},
+          {"normal_damping_J", e[6]},
+          {"numerical_J", e[7]},
+          {"plastic_J", e[8]},
+          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[9])}};
+}
+
 ordered_json describe(const io::Recording& recording) {
   ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
   const std::int32_t newest = recording.newest_branch();
@@ -74,10 +99,12 @@ ordered_json describe(const io::Recording& recording) {
   out["status"] = recording.status();
   out["frames"] = recording.frame_count();
   out["recorded_s"] = shown.empty() ? 0 : recording.index()[shown.back()].time;
+  out["recorded_steps"] = shown.empty() ? 0 : recording.index()[shown.back()].step;
   out["checkpoints"] = recording.checkpoint_count();
   if (recording.checkpoint_count() > 0)
     out["last_state_hash"] =
         fmt::format("{:016x}", recording.checkpoint(recording.checkpoint_count() - 1).hash);
+  if (!shown.empty()) out["energy"] = describe_energy(recording.frame(shown.back()), is_static(out));
   out["branches"] = ordered_json::array();
   for (const Branch& b : recording.history().branches)
     out["branches"].push_back({{"id", b.id}, {"parent", b.parent}, {"fork_step", b.fork_step}});
@@ -123,8 +150,10 @@ std::string verdict(const ordered_json& v) {
 std::string table(const ordered_json& d) {
   std::string out = fmt::format("{} {}: {}\n", d["kind"].get<std::string>(), d["scene"].get<std::string>(),
                                 d["title"].get<std::string>());
-  out += fmt::format("duration {:g} s, time step {:g} s; {} nodes, {} elements, {} contact points\n",
-                     d["duration_s"].get<double>(), d["time_step_s"].get<double>(), d["nodes"].get<int>(),
+  out += is_static(d) ? fmt::format("{} load steps", d["load_steps"].get<int>())
+                      : fmt::format("duration {:g} s, time step {:g} s", d["duration_s"].get<double>(),
+                                    d["time_step_s"].get<double>());
+  out += fmt::format("; {} nodes, {} elements, {} contact points\n", d["nodes"].get<int>(),
                      d["elements"].get<int>(), d["contact_points"].get<int>());
   for (const auto& b : d["bodies"]) {
     const auto &c = b["centre_of_gravity_m"], &i = b["inertia_kg_m2"];
@@ -135,15 +164,19 @@ std::string table(const ordered_json& d) {
         c[2].get<double>(), i[0].get<double>(), i[1].get<double>(), i[2].get<double>());
   }
   if (d["kind"] != "recording") return out;
-  out += fmt::format("{}: {} frames to {:g} s, {} checkpoints, last state {}\n",
-                     d["status"].get<std::string>(), d["frames"].get<long>(), d["recorded_s"].get<double>(),
+  out += fmt::format("{}: {} frames to {}, {} checkpoints, last state {}\n", d["status"].get<std::string>(),
+                     d["frames"].get<long>(),
+                     is_static(d) ? fmt::format("load step {}", d["recorded_steps"].get<long>())
+                                  : fmt::format("{:g} s", d["recorded_s"].get<double>()),
                      d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
+  if (!is_static(d) && d.contains("energy")) out += energy_in_words(d["energy"]);
   if (d["branches"].size() > 1 || !d["edits"].empty())
     out += fmt::format("{}, {}\n", counted(d["branches"].size(), "branch", "branches"),
                        counted(d["edits"].size(), "edit", "edits"));
   for (const auto& e : d["events"])
-    out += fmt::format("{:>10.4f} s  {} {}\n", e["time_s"].get<double>(), e["body"].get<std::string>(),
-                       e["kind"].get<std::string>());
+    out += (is_static(d) ? fmt::format("load step {:>4}", e["step"].get<long>())
+                         : fmt::format("{:>10.4f} s", e["time_s"].get<double>())) +
+           fmt::format("  {} {}\n", e["body"].get<std::string>(), e["kind"].get<std::string>());
   return out;
 }
 

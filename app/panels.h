@@ -23,7 +23,8 @@ void begin_panel(const char* name, const Box& box);
 /// Buttons for play, pause, steps, speed, restart, branches, undo and redo.
 void draw_transport_bar(Player& player, const Box& box);
 
-/// Floor acceleration and tilt over time, with marks for events, edits and forks; dragging scrubs.
+/// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
+/// events, edits and forks; dragging scrubs.
 void draw_timeline(Player& player, const Box& box);
 
 /// Sliders of what may be edited. What was refused, and why, is left in `refused`.

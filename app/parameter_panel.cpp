@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/panels.h"
+#include "app/words.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/scene.h"
 
@@ -142,9 +143,11 @@ class Row {
 
 void draw_parameters(Player& player, std::string& refused) {
   const Parameters& parameters = player.parameters();
+  const bool loads = is_static(player.scene().setup);
   ImGui::BeginDisabled(!player.can_edit());
   int heading = -2;
   for (const auto& [key, shake] : editable(parameters)) {
+    if (loads && (key == Edit::Key::time_step || key == Edit::Key::restitution)) continue;
     const auto slider = std::find_if(std::begin(k_sliders), std::end(k_sliders),
                                      [k = key](const Slider& s) { return s.key == k; });
     const bool of_shake =

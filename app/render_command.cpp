@@ -18,6 +18,7 @@
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/window_picture.h"
+#include "app/words.h"
 #include "render/osmesa_context.h"
 #include "render/picture.h"
 #include "render/video.h"
@@ -79,15 +80,19 @@ class Replay {
   std::vector<double> times_;
 };
 
-/// Refuses what can be refused before anything runs. `last`: time of the last instant, s.
-void check_times(const RenderOptions& o, double first, double last, const std::string& what) {
-  constexpr double k_slack = 1e-6;  // s, times are sums of rounded steps
+/// Refuses what can be refused before anything runs. `last`: time of the last instant, s; of a static run its
+/// part of the way.
+void check_times(const RenderOptions& o, bool loads, double first, double last, const std::string& what) {
+  constexpr double k_slack = 1e-6;  // times are sums of rounded steps
+  const char *const seconds = loads ? "" : " s", *const unit = loads ? " of the way through the loads" : " s";
   if (o.at && (*o.at < first - k_slack || *o.at > last + k_slack))
-    throw BadInput(fmt::format("--at: {:g} s is outside {}, {:g}..{:g} s", *o.at, what, first, last));
+    throw BadInput(
+        fmt::format("--at: {:g}{} is outside {}, {:g}..{:g}{}", *o.at, seconds, what, first, last, unit));
   const double from = std::max(o.from.value_or(first), first), to = std::min(o.to.value_or(last), last);
   if (from > to + k_slack)
-    throw BadInput(fmt::format("--from, --to: nothing lies between {:g} and {:g} s; {} has {:g}..{:g} s",
-                               o.from.value_or(first), o.to.value_or(last), what, first, last));
+    throw BadInput(fmt::format("--from, --to: nothing lies between {:g} and {:g}{}; {} has {:g}..{:g}{}",
+                               o.from.value_or(first), o.to.value_or(last), seconds, what, first, last,
+                               unit));
 }
 
 void check_outputs(const RenderOptions& o) {
@@ -178,7 +183,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   const Replay replay(recording);
   if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
   const double first = replay.first(), last = replay.last();
-  check_times(o, first, last, "the recording");
+  check_times(o, is_static(scene->setup), first, last, "the recording");
   defer_interrupts();
   check_outputs(o);
   int code = k_done;
@@ -213,7 +218,7 @@ int render_command(const RenderOptions& options) {
     return draw(options, options.source, nullptr);
   }
   const auto scene = std::make_shared<const io::Scene>(io::load_scene(options.source, options.overrides));
-  check_times(options, 0, scene->setup.run.duration, "the scene");
+  check_times(options, is_static(scene->setup), 0, scene->setup.run.duration, "the scene");
   defer_interrupts();
   check_outputs(options);
   const TemporaryFile file;

@@ -11,6 +11,7 @@
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/summary.h"
+#include "app/words.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
 
@@ -31,13 +32,18 @@ void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Prog
   if (recorder) recorder->write(observer.last(run));
 }
 
+/// What follows the number up to which there is something.
+const char* extent_unit(bool loads) {
+  return loads ? " of the way" : " s";
+}
+
 /// The error of a recording that broke off, and how far it can be read.
-io::WriteError with_remains(const io::WriteError& error, const std::string& path) {
+io::WriteError with_remains(const io::WriteError& error, const std::string& path, bool loads) {
   try {
     const io::Recording left(path);
     if (left.frame_count() == 0) return error;
-    return io::WriteError(
-        fmt::format("{}; it can be read up to {:.6g} s", error.what(), left.index().back().time));
+    return io::WriteError(fmt::format("{}; it can be read up to {:.6g}{}", error.what(),
+                                      left.index().back().time, extent_unit(loads)));
   } catch (const io::InputError&) {
     return error;
   }
@@ -68,7 +74,8 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
         recorder->flush();
       }
       begun = recorded;
-      Progress progress(scene.name, "s simulated", scene.setup.run.duration, quiet);
+      Progress progress(scene.name, is_static(scene.setup) ? "of the load path" : "s simulated",
+                        scene.setup.run.duration, quiet);
       step_through(run, observer, recorded ? &*recorder : nullptr, progress);
     }
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -78,13 +85,13 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
     result.recorded = recorded;
     result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
     if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);
-    const bool is_static = scene.setup.run.analysis == Analysis::statics;
     if (status == "interrupted")
-      result.trouble = is_static ? fmt::format("interrupted at load factor {:.6g}", run.state().load_factor)
-                                 : fmt::format("interrupted at {:.6g} s", run.state().time);
+      result.trouble = is_static(scene.setup)
+                           ? fmt::format("interrupted at load factor {:.6g}", run.state().load_factor)
+                           : fmt::format("interrupted at {:.6g} s", run.state().time);
   } catch (const io::WriteError& error) {
     if (!begun) throw;
-    throw with_remains(error, path);
+    throw with_remains(error, path, is_static(scene.setup));
   }
   return result;
 }
@@ -105,11 +112,11 @@ int run_command(const RunOptions& options) {
   }
   const RecordedRun result = record(scene, options.recording, options.quiet);
   if (!result.trouble.empty())
-    say(result.trouble + (result.recorded
-                              ? fmt::format("; {} holds everything up to {:.6g}{}", options.recording,
-                                            result.summary["simulated_s"].get<double>(),
-                                            result.summary["analysis"] == "static" ? " of the way" : " s")
-                              : ""));
+    say(result.trouble +
+        (result.recorded
+             ? fmt::format("; {} holds everything up to {:.6g}{}", options.recording,
+                           result.summary["simulated_s"].get<double>(), extent_unit(is_static(scene.setup)))
+             : ""));
   for (const auto& warning : result.summary["warnings"]) say("warning: " + warning.get<std::string>());
   if (json_to_output) {
     fmt::print("{}\n", json_text(result.summary, 2));

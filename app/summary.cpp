@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/words.h"
+
 namespace topple::app {
 namespace {
 
@@ -51,10 +53,6 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"peak_pinch_ratio", number(o.peak_pinch)}};
 }
 
-bool is_static(const Run& run) {
-  return run.setup().run.analysis == Analysis::statics;
-}
-
 std::string integrator_name(Integrator integrator) {
   switch (integrator) {
     case Integrator::central_difference:
@@ -70,7 +68,7 @@ std::string integrator_name(Integrator integrator) {
 /// The mean of an adaptive run.
 ordered_json time_step(const Run& run) {
   const Parameters& p = run.parameters();
-  if (is_static(run) || (p.adaptive && run.state().step == 0)) return nullptr;
+  if (is_static(run.setup()) || (p.adaptive && run.state().step == 0)) return nullptr;
   return number(p.adaptive ? run.state().time / static_cast<double>(run.state().step) : p.time_step);
 }
 
@@ -114,7 +112,7 @@ ordered_json warnings(const Run& run) {
                    "; more elements or divisions show it");
   }
   const double balance = run.state().energy.balance_error();
-  if (!is_static(run) && balance > k_good_balance)
+  if (!is_static(run.setup()) && balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
                                balance, k_good_balance));
   return list;
@@ -151,11 +149,7 @@ std::string dynamic_head(const ordered_json& s) {
                      s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
                      text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
-  const auto& e = s["energy"];
-  out +=
-      fmt::format("energy: {} J came in, {} J dissipated, balance error {}\n\n", text(e["input_J"], "{:.4g}"),
-                  text(e["dissipated_J"], "{:.4g}"), text(e["balance_error"], "{:.1e}"));
-  return out;
+  return out + energy_in_words(s["energy"]) + "\n";
 }
 
 }  // namespace
@@ -170,30 +164,32 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["scene"] = scene.name;
   out["status"] = status;
   if (!run.status().ok()) out["message"] = run.status().message(run.setup().model);
-  out["analysis"] = is_static(run) ? "static" : "dynamic";
+  out["analysis"] = is_static(run.setup()) ? "static" : "dynamic";
   out["simulated_s"] = number(state.time);
   out["wall_s"] = number(wall_s);
   out["realtime_factor"] =
-      wall_s > 0 && !is_static(run) ? number(state.time / wall_s) : ordered_json(nullptr);
-  out["integrator"] = is_static(run) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
+      wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);
+  out["integrator"] =
+      is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
   out["time_step_s"] = time_step(run);
-  out["adaptive"] = p.adaptive && !is_static(run);
+  out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();
-  out["energy"] = {{"input_J", number(e.input)},
-                   {"kinetic_J", number(e.kinetic)},
-                   {"strain_J", number(e.strain)},
-                   {"gravity_J", number(e.gravity)},
-                   {"contact_J", number(e.contact)},
-                   {"start_J", number(e.start_total)},
-                   {"dissipated_J", number(e.dissipated())},
-                   {"friction_J", number(e.friction)},
-                   {"normal_damping_J", number(e.normal_damping)},
-                   {"numerical_J", number(e.numerical)},
-                   {"plastic_J", number(e.plastic)},
-                   {"balance_error", is_static(run) ? ordered_json(nullptr) : number(e.balance_error())}};
+  out["energy"] = {
+      {"input_J", number(e.input)},
+      {"kinetic_J", number(e.kinetic)},
+      {"strain_J", number(e.strain)},
+      {"gravity_J", number(e.gravity)},
+      {"contact_J", number(e.contact)},
+      {"start_J", number(e.start_total)},
+      {"dissipated_J", number(e.dissipated())},
+      {"friction_J", number(e.friction)},
+      {"normal_damping_J", number(e.normal_damping)},
+      {"numerical_J", number(e.numerical)},
+      {"plastic_J", number(e.plastic)},
+      {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
                   {"final_velocity_m_s", vector(state.floor_velocity)}};
   out["bodies"] = ordered_json::array();
@@ -210,13 +206,21 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
          {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
   }
   out["static"] = load_steps(run);
-  out["peak_load_factor"] = is_static(run) ? peak_load_factor(run) : ordered_json(nullptr);
+  out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = warnings(run);
   return out;
 }
 
 std::string json_text(const ordered_json& value, int indent) {
   return value.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string energy_in_words(const ordered_json& e) {
+  const auto plastic = e["plastic_J"].is_null() ? 0 : e["plastic_J"].get<double>();
+  return fmt::format("energy: {} J came in, {} J dissipated{}, balance error {}\n",
+                     text(e["input_J"], "{:.4g}"), text(e["dissipated_J"], "{:.4g}"),
+                     plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
+                     text(e["balance_error"], "{:.1e}"));
 }
 
 std::string summary_table(const ordered_json& s) {

@@ -22,4 +22,7 @@ std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 /// The summary as a table of a few lines, without its warnings.
 std::string summary_table(const nlohmann::ordered_json& summary);
 
+/// The line about `energy`, named as in the summary.
+std::string energy_in_words(const nlohmann::ordered_json& energy);
+
 }  // namespace topple::app

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "app/panels.h"
+#include "app/words.h"
 #include "render/overlay.h"
 #include "solver/io/edit_text.h"
 
@@ -29,10 +30,10 @@ ImU32 body_colour(std::size_t body) {
   return k_colours[body % std::size(k_colours)];
 }
 
-/// Time to the right, one quantity upwards.
+/// Time, or the way through the loads, to the right; one quantity upwards.
 struct Lane {
   float left, right, top, bottom;
-  double length;     // s
+  double length;     // s; statics: of the whole way
   double low, high;  // of the quantity
   float x(double t) const { return left + static_cast<float>(t / length) * (right - left); }
   float y(double value) const {
@@ -102,6 +103,22 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_text, top);
 }
 
+void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
+  const auto factor = [](const io::FrameRow& row) { return row.load_factor; };
+  double least = 0, greatest = 0;
+  for (const RowPtr& row : rows) {
+    least = std::min(least, row->load_factor);
+    greatest = std::max(greatest, row->load_factor);
+  }
+  lane.low = 1.08 * least;
+  lane.high = greatest > least ? 1.08 * greatest : 1;
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
+  add_curve(list, lane, rows, factor, k_floor_colours[0], 1.3f);
+  add_text(list, label_left, lane.top, k_text, "load factor");
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_text,
+           fmt::format("up to {:.4g}", greatest));
+}
+
 void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
   const std::vector<RowPtr>& rows = player.way();
   const auto& bodies = player.scene().setup.model.bodies;
@@ -139,24 +156,34 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   }
 }
 
-std::string event_text(const Model& model, const io::RecordedEvent& event) {
+/// When, of a step that has a row in a static run.
+std::string when(const Player& player, std::int64_t step, double time) {
+  if (!is_static(player.scene().setup)) return fmt::format("{:.3f} s", time);
+  const auto at = std::find_if(player.way().begin(), player.way().end(),
+                               [step](const RowPtr& row) { return row->step == step; });
+  return at == player.way().end() ? fmt::format("load step {}", step)
+                                  : instant_in_words(player.scene().setup, **at);
+}
+
+std::string event_text(const Player& player, const io::RecordedEvent& event) {
   const char* what = event.event.kind == Event::Kind::uplift     ? "lifts off"
                      : event.event.kind == Event::Kind::impact   ? "strikes the floor"
                      : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
                      : event.event.kind == Event::Kind::fracture ? "breaks a member"
                                                                  : "passes its critical angle";
-  return fmt::format("{:.3f} s: {} {}", event.time,
+  const Model& model = player.scene().setup.model;
+  return fmt::format("{}: {} {}", when(player, event.step, event.time),
                      model.bodies[static_cast<std::size_t>(event.event.body)].name, what);
 }
 
-std::string edit_text(const LoggedEdit& edit) {
+std::string edit_text(const Player& player, const LoggedEdit& edit) {
   const io::Key& key = io::key_of(edit.edit.key);
   const Vec3& v = edit.edit.value;
   const std::string value =
       edit.edit.key == Edit::Key::direction
           ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
           : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
-  return fmt::format("{:.3f} s: {} = {}", edit.time, io::edit_key(edit.edit), value);
+  return fmt::format("{}: {} = {}", when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
 }
 
 /// Marks along the top of the tilt lane; the one under the mouse says what it is.
@@ -170,12 +197,11 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
     shape(ImVec2(x, y));
     if (std::abs(mouse.x - x) < k_size && std::abs(mouse.y - y) < 2 * k_size) hovered = text();
   };
-  const Model& model = player.scene().setup.model;
   const float y = lane.bottom + k_size + 2;
   for (const io::RecordedEvent& event : player.events()) {
     const ImU32 colour = body_colour(static_cast<std::size_t>(event.event.body));
     mark(
-        event.time, y, [&] { return event_text(model, event); },
+        event.time, y, [&] { return event_text(player, event); },
         [&](ImVec2 p) {
           if (event.event.kind == Event::Kind::uplift)
             list.AddTriangleFilled({p.x - k_size, p.y + k_size}, {p.x, p.y - k_size},
@@ -193,7 +219,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   }
   for (const LoggedEdit& edit : player.edits())
     mark(
-        edit.time, lane.top, [&] { return edit_text(edit); },
+        edit.time, lane.top, [&] { return edit_text(player, edit); },
         [&](ImVec2 p) { list.AddNgonFilled(p, k_size, IM_COL32(150, 60, 140, 255), 4); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
@@ -208,16 +234,22 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
 }
 
-void add_times(ImDrawList& list, const Lane& lane) {
-  const render::Ticks ticks =
-      render::nice_ticks(0, lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
+/// Seconds; of a static run the load factor, or where displacements are controlled the load step.
+void add_axis(ImDrawList& list, const Lane& lane, const Player& player, float label_left) {
+  const Setup& setup = player.scene().setup;
+  const bool loads = is_static(setup), steps = loads && setup.run.statics.control;
+  const double scale = steps ? setup.run.statics.load_steps : 1;
+  const render::Ticks ticks = render::nice_ticks(
+      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
   for (double t : ticks.values) {
     t += 0.;  // makes 0 of -0
-    const float x = lane.x(t);
+    if (steps && t != std::round(t)) continue;
+    const float x = lane.x(t / scale);
     list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
-    const std::string label = fmt::format("{:.{}f} s", t, ticks.decimals);
+    const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
     add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_text, label);
   }
+  if (loads) add_text(list, label_left, lane.bottom + 11, k_text, steps ? "load step" : "load factor");
 }
 
 }  // namespace
@@ -238,9 +270,12 @@ void draw_timeline(Player& player, const Box& box) {
   Lane upper = lane, lower = lane;
   upper.bottom = lane.top + 0.4f * height;
   lower.top = lane.top + 0.46f * height;
-  add_acceleration(list, upper, player.way(), label_left);
+  if (is_static(player.scene().setup))
+    add_load_factor(list, upper, player.way(), label_left);
+  else
+    add_acceleration(list, upper, player.way(), label_left);
   add_tilts(list, lower, player, label_left);
-  add_times(list, lower);
+  add_axis(list, lower, player, label_left);
 
   const float x = lane.x(player.time());
   list.AddLine({x, lane.top}, {x, lane.bottom}, IM_COL32(200, 40, 40, 255), 1.5f);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/panels.h"
+#include "app/words.h"
 
 namespace topple::app {
 namespace {
@@ -112,6 +113,7 @@ void choose_branch(Player& player) {
 
 void draw_transport_bar(Player& player, const Box& box) {
   begin_panel("transport", box);
+  const bool loads = is_static(player.scene().setup);
   if (icon_button("##start", Icon::to_start, "To the start (Home)")) player.to_start();
   if (icon_button("##back", Icon::back, "One instant back ( , )")) player.step(-1);
   if (icon_button("##play", player.playing() ? Icon::pause : Icon::play,
@@ -127,7 +129,7 @@ void draw_transport_bar(Player& player, const Box& box) {
   if (text_button("-##slower", "Half the speed ( [ )", player.speed() > k_least_speed)) player.slower();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(speed_text(player.speed()).c_str());
-  tooltip("Simulated seconds per second, asked for");
+  tooltip(loads ? "Load paths per second, asked for" : "Simulated seconds per second, asked for");
   ImGui::SameLine();
   if (text_button("+##faster", "Twice the speed ( ] )", player.speed() < k_most_speed)) player.faster();
   gap();
@@ -139,7 +141,10 @@ void draw_transport_bar(Player& player, const Box& box) {
   if (text_button("Undo", "Takes the last change back, from now on (Ctrl+Z)", player.can_undo()))
     player.undo();
   if (text_button("Redo", "(Ctrl+Shift+Z)", player.can_redo())) player.redo();
-  const std::string clock = fmt::format("{:.2f} s of {:.6g} s", player.time(), player.length());
+  const auto row = loads ? player.row() : std::nullopt;
+  const std::string clock = row     ? instant_in_words(player.scene().setup, *row)
+                            : loads ? ""
+                                    : fmt::format("{:.2f} s of {:.6g} s", player.time(), player.length());
   const float width = ImGui::CalcTextSize(clock.c_str()).x;
   const float right = ImGui::GetWindowContentRegionMax().x - width;
   if (right > ImGui::GetCursorPosX()) {

@@ -229,8 +229,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   };
   line(fonts_.text, k_text, player_.scene().title);
   line(fonts_.small, k_quiet_text,
-       instant_in_words(player_.scene().setup, player_.time(), row.step) + "   " +
-           shake_in_words(player_.parameters()));
+       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
   for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
@@ -281,7 +280,8 @@ void Viewer::draw_status() {
   if (!refused_.empty()) words = "Refused: " + refused_;
   if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
   const double least_step = io::key_of(Edit::Key::time_step).least;
-  if (failed && player_.can_edit() && player_.parameters().time_step >= 2 * least_step) {
+  if (failed && player_.can_edit() && !is_static(player_.scene().setup) &&
+      player_.parameters().time_step >= 2 * least_step) {
     if (ImGui::SmallButton("Halve the step and retry")) {
       player_.begin_edit();
       player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});

@@ -29,9 +29,14 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
   return line;
 }
 
-std::string instant_in_words(const Setup& setup, double time, std::int64_t step) {
-  return setup.run.analysis == Analysis::statics ? fmt::format("load step {}", step)
-                                                 : fmt::format("t = {:.2f} s", time);
+bool is_static(const Setup& setup) {
+  return setup.run.analysis == Analysis::statics;
+}
+
+std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
+  return is_static(setup) ? fmt::format("load step {} of {}, load factor {:.4g}", row.step,
+                                        setup.run.statics.load_steps, row.load_factor)
+                          : fmt::format("t = {:.2f} s", row.time);
 }
 
 std::string shake_in_words(const Parameters& parameters) {
@@ -45,6 +50,7 @@ std::string shake_in_words(const Parameters& parameters) {
 
 std::string status_in_words(const Player& player) {
   const LiveStatus& status = player.status();
+  const bool loads = is_static(player.scene().setup);
   switch (status.kind) {
     case LiveStatus::Kind::starting:
       return "Bringing the bodies to rest under gravity …";
@@ -59,8 +65,9 @@ std::string status_in_words(const Player& player) {
       break;
     case LiveStatus::Kind::over:
       if (player.at_head())
-        return fmt::format("The run ended at {:.2f} s. R runs it again, dragging on the timeline looks back.",
-                           player.time());
+        return (loads ? "All load steps are done."
+                      : fmt::format("The run ended at {:.2f} s.", player.time())) +
+               " R runs it again, dragging on the timeline looks back.";
       break;
     default:
       break;
@@ -68,11 +75,13 @@ std::string status_in_words(const Player& player) {
   if (player.way().empty())
     return status.message.empty() ? "The recording holds no instants." : status.message;
   if (player.at_head())
-    return player.playing() ? fmt::format("Running: {:.2f} times real time asked, {:.2f} reached.",
-                                          player.speed(), status.achieved)
+    return player.playing() ? loads ? "Running through the load steps."
+                                    : fmt::format("Running: {:.2f} times real time asked, {:.2f} reached.",
+                                                  player.speed(), status.achieved)
                             : "Paused. Space goes on; parameters can be changed now and while it runs.";
   std::string words = player.replay() ? "Recording" : "Looking back";
-  words += player.playing() ? fmt::format(", played at {:g} times real time", player.speed()) : "";
+  if (player.playing())
+    words += loads ? ", played" : fmt::format(", played at {:g} times real time", player.speed());
   if (!status.message.empty()) return words + "; " + status.message;
   return words + ". C continues from here as a new branch" +
          (player.replay() ? "." : ", End returns to the newest instant.");

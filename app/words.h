@@ -10,8 +10,11 @@ namespace topple::app {
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
 
-/// "t = 1.23 s"; of a static run "load step 12".
-std::string instant_in_words(const Setup& setup, double time, std::int64_t step);
+/// Its rows go by load step and load factor, not by time.
+bool is_static(const Setup& setup);
+
+/// "t = 1.23 s"; of a static run "load step 12 of 40, load factor 3.42".
+std::string instant_in_words(const Setup& setup, const io::FrameRow& row);
 
 /// "floor: 0.5 Hz, 190 gal" of the first shake; empty without one.
 std::string shake_in_words(const Parameters& parameters);

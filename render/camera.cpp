@@ -132,7 +132,7 @@ Camera fit_camera(NamedView view, const SceneFrame& frame, float aspect) {
   Room room{-0.92f, 0.92f, -0.84f, 0.72f};
   if (!frame.legend.quantity.empty()) room.right = 0.68f;
   const Camera whole = fit_box(rows, low, high, room, aspect);
-  if (frame.trace.time_s.empty()) return whole;
+  if (frame.trace.at.empty()) return whole;
   // The trace takes the lower left corner: bodies that would stand behind it go beside or above it,
   // whichever shows them larger.
   constexpr float k_trace_right = -0.36f;

@@ -216,32 +216,32 @@ bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
 // ---- trace
 
 struct Sample {
-  float time, value;
+  float at, value;
 };
 
 std::vector<Sample> drawable_samples(const Trace& trace, LeftOut& left_out) {
   std::vector<Sample> samples;
-  const std::size_t count = std::min(trace.time_s.size(), trace.value.size());
+  const std::size_t count = std::min(trace.at.size(), trace.value.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const bool ordered = samples.empty() || trace.time_s[i] > samples.back().time;
-    if (std::isfinite(trace.time_s[i]) && std::abs(trace.value[i]) < 1e30f && ordered) {
-      samples.push_back({trace.time_s[i], trace.value[i]});
+    const bool ordered = samples.empty() || trace.at[i] > samples.back().at;
+    if (std::isfinite(trace.at[i]) && std::abs(trace.value[i]) < 1e30f && ordered) {
+      samples.push_back({trace.at[i], trace.value[i]});
     } else {
       ++left_out.trace_points;
     }
   }
-  left_out.trace_points += static_cast<int>(std::max(trace.time_s.size(), trace.value.size()) - count);
+  left_out.trace_points += static_cast<int>(std::max(trace.at.size(), trace.value.size()) - count);
   return samples;
 }
 
 /// The samples as a line, with no more than the least and greatest of each pixel column.
 std::vector<ImVec2> polyline(const std::vector<Sample>& samples, float left, float right, float zero_y,
                              float scale) {
-  const float begin = samples.front().time;
-  const float span = samples.back().time - begin;
+  const float begin = samples.front().at;
+  const float span = samples.back().at - begin;
   std::vector<ImVec2> points;
   const auto place = [&](const Sample& s) {
-    return ImVec2(left + (right - left) * ((s.time - begin) / span), zero_y - scale * s.value);
+    return ImVec2(left + (right - left) * ((s.at - begin) / span), zero_y - scale * s.value);
   };
   for (std::size_t i = 0; i < samples.size();) {
     const float column = std::floor(place(samples[i]).x);
@@ -267,7 +267,7 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   const float right = std::round(at.margin + 0.29f * at.width);
   const float small_line = at.line(at.fonts.small);
   if (samples.size() < 2 || bottom - top < 3.5f * small_line) return;
-  const float span = samples.back().time - samples.front().time;
+  const float span = samples.back().at - samples.front().at;
   if (!std::isfinite(span)) return;
 
   at.list.AddRectFilled({left, top}, {right, bottom}, k_sheet_colour, 4 * at.unit);
@@ -294,19 +294,21 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   at.list.AddPolyline(points.data(), static_cast<int>(points.size()), k_trace_colour, 0,
                       std::max(1.0f, 1.3f * at.unit));
 
-  const auto time_label = [&](float seconds) { return number(seconds, span < 10 ? 1 : 0) + " s"; };
-  const std::string first = time_label(samples.front().time);
-  const std::string last = time_label(samples.back().time);
+  const auto end_label = [&](float x) {
+    return number(x, !trace.whole && span < 10 ? 1 : 0) + " " + trace.unit;
+  };
+  const std::string first = end_label(samples.front().at);
+  const std::string last = end_label(samples.back().at);
   const float label_y = plot_bottom + std::round(1 * at.unit);
   at.text(at.fonts.small, plot_left, label_y, k_quiet_colour, first);
   at.text(at.fonts.small, plot_right - text_width(*at.fonts.small, last), label_y, k_quiet_colour, last);
 
-  const float share = (trace.cursor_s - samples.front().time) / span;
+  const float share = (trace.cursor - samples.front().at) / span;
   if (share >= 0 && share <= 1) {
     const float x = std::round(plot_left + (plot_right - plot_left) * share);
     const float half = std::max(0.5f, 0.75f * at.unit);
     at.list.AddRectFilled({x - half, plot_top}, {x + half, plot_bottom}, k_cursor_colour);
-    const auto after = std::ranges::lower_bound(samples, trace.cursor_s, {}, &Sample::time);
+    const auto after = std::ranges::lower_bound(samples, trace.cursor, {}, &Sample::at);
     if (after != samples.end()) {
       at.list.AddCircleFilled({x, zero_y - scale * after->value}, 3.5f * at.unit, k_cursor_colour, 16);
     }
@@ -361,7 +363,7 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
   const bool has_legend = can_be_drawn(frame.legend, left_out);
   const float column_left = has_legend ? std::round(0.825f * width) : width - at.margin;
   const float note_top = draw_note(at, frame.caption.note, boxes);
-  const bool has_trace = !frame.trace.time_s.empty();
+  const bool has_trace = !frame.trace.at.empty();
   const float trace_bottom = note_top - std::round(8 * unit);
   const float trace_top = has_trace ? std::round(trace_bottom - 0.165f * height) : trace_bottom;
   const float words_bottom = draw_words(at, frame.caption, has_legend ? column_left - at.margin : column_left,

@@ -81,12 +81,14 @@ struct Legend {
   bool square_root = false;  ///< colours go with the root of the share of the range: small values stay apart
 };
 
-/// A trace of the floor's motion, drawn small in a corner with a cursor at `cursor_s`.
+/// A trace of one quantity over the run, drawn small in a corner with a cursor.
 struct Trace {
-  std::string label;          ///< "floor acceleration, gal"
-  std::vector<float> time_s;  ///< increasing
-  std::vector<float> value;   ///< same length
-  float cursor_s = 0;
+  std::string label;         ///< "floor acceleration, gal"
+  std::string unit = "s";    ///< of `at`
+  bool whole = false;        ///< `at` counts: written without decimals
+  std::vector<float> at;     ///< increasing
+  std::vector<float> value;  ///< same length
+  float cursor = 0;          ///< in `at`
 };
 
 /// Words of the picture.

@@ -278,6 +278,10 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
 
 void BodySystem::load_memory(const State& state) {
   for (std::size_t k = 0; k < own_elements.size(); ++k) elements[k] = state.elements[own_elements[k].element];
+  load_sticks(state);
+}
+
+void BodySystem::load_sticks(const State& state) {
   auto stick = state.member_sticks.begin();
   for (MemberPair& pair : member_pairs_) {
     for (int k = 0; k < 4; ++k) pair.start[k] = state.position[node[pair.node[k]]];

@@ -78,6 +78,8 @@ class BodySystem {
   void load(const State& state, BodyMotion& motion) const;
   /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.
   void load_memory(const State& state);
+  /// What touching members remember, alone.
+  void load_sticks(const State& state);
   /// Writes stick springs of `contacts`; open contacts forget theirs.
   void store_stick(const Contacts& contacts, State& state) const;
   /// Of a touching pair at `motion`.

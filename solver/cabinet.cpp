@@ -148,17 +148,22 @@ class CabinetBuilder {
     }
   }
 
-  // Two diagonals of area A = G t d^3 / (2 E a b) each have the shear stiffness G t a / b of the a x b sheet.
+  // Bracing::panels.
   int brace_section(const std::string& name, double a, double b) {
     const Section& post = model_.sections[spec_.section];
     const Material& material = model_.materials[spec_.material];
     const double diagonal = std::hypot(a, b);
     Section brace = post;
-    brace.size_y = brace.size_z = k_brace_size * post.width;
     brace.name = spec_.name + "." + name;
     brace.shape = Section::Shape::custom;
     brace.area =
         spec_.panel_thickness * diagonal * diagonal * diagonal / (4 * (1 + material.poisson) * a * b);
+    const double narrower = std::sqrt(post.area / brace.area);
+    brace.size_y *= narrower;
+    brace.size_z *= narrower;
+    brace.zy /= narrower;
+    brace.zz /= narrower;
+    brace.zt /= narrower;
     brace.ky = post.ky * post.area / brace.area;
     brace.kz = post.kz * post.area / brace.area;
     model_.sections.push_back(brace);
@@ -313,9 +318,6 @@ class CabinetBuilder {
                                     " times that (shelves carry mass inside)");
   }
 
-  /// Drawn side and extreme fibres of a diagonal over the post's width: it stands for a sheet and has no
-  /// section of its own.
-  static constexpr double k_brace_size = 0.3;
   /// Least mass of a node over the mean: keeps the explicit step from collapsing.
   static constexpr double k_least_share = 0.03;
 

@@ -23,6 +23,13 @@ struct BuildError : std::runtime_error {
 struct CabinetSpec {
   enum class Inertia { panels, solid, given };
   enum class Pose { upright, on_back, on_front, on_side };
+  /// panels: two diagonals of area A = G t d^3 / (2 E a b) each have the shear stiffness G t a / b of the a x
+  /// b sheet of thickness t, d their length. Second moments, torsion constant and shear stiffness are those
+  /// of the post, of area A0 and plastic moduli Z0. A section with A and these second moments, as the post
+  /// but for its proportions of width to wall, has its fibres at c0 sqrt(A0/A) and the moduli Z = Z0
+  /// sqrt(A/A0), so that Z/sqrt(A I) and c/sqrt(I/A) are the post's:
+  ///   N0 = yield A,  My0 = yield Zy,  Mz0 = yield Zz,  Mx0 = yield Zt / sqrt(3)
+  /// The diagonals yield at sqrt(3)/(2 (1 + nu)) (a/b + b/a) times the shear force of the yielding sheet.
   enum class Bracing { panels, none };
   std::string name;
   Vec3 size{0.38, 0.88, 1.79};  ///< m, depth (x), width (y), height (z)

@@ -153,7 +153,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     k = end;
   }
 
-  bool finite = true;
+  int lost = -1;  // first node whose motion is not finite
   for (int i = 0; i < n; ++i) {
     const int g = s.node[i];
     const Mat3& j = s.model.node_inertia[g];
@@ -175,7 +175,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
     state.angular_velocity[g] = omega;
     state.acceleration[g] = state.algorithmic_acceleration[g] = acceleration;
     state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] = angular;
-    finite = finite && std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum());
+    if (lost < 0 && !std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum())) lost = g;
   }
   book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.contacts, energy);
   energy.plastic += commit_hinges(s, w.start, w.trial, state);
@@ -183,11 +183,15 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   StepStatus status;
   status.time = t + h;
   status.body = s.index;
-  if (!finite) status.kind = StepStatus::Kind::not_finite;
+  if (lost >= 0) {
+    status.kind = StepStatus::Kind::not_finite;
+    status.node = lost;
+    status.element = s.element_at(lost);
+  }
   return status;
 }
 
-double explicit_limit(BodySystem& s, const ContactLaw* law) {
+double explicit_limit(BodySystem& s, const ContactLaw* law, int* busiest) {
   const int n = s.count;
   const std::size_t count = s.own_elements.size();
   std::vector<Mat12> tangents(count);
@@ -227,6 +231,17 @@ double explicit_limit(BodySystem& s, const ContactLaw* law) {
     }
     value = kv.norm() / v.norm();
     v = kv / kv.norm();
+  }
+  double most = -1;
+  for (int i = 0; busiest && i < n; ++i) {
+    const int g = s.node[i];
+    const Vec3 shift = v.segment<3>(6 * i), spin = v.segment<3>(6 * i + 3);
+    const double share =
+        s.model.node_mass[g] * shift.squaredNorm() + spin.dot(s.model.node_inertia[g] * spin);
+    if (share > most) {
+      most = share;
+      *busiest = g;
+    }
   }
   return 2 / std::sqrt(value);
 }

@@ -19,6 +19,7 @@ StepStatus advance_central_difference(BodySystem& system, const Parameters& para
 /// pose, by power iteration on M^-1 K. With a law every contact point holds on to every plane: Eq. 2 at
 /// 1 - l/L = 1 (below q = 1: at 0.01, where it is stiffer) along the normal, the stick spring across it;
 /// where there are more bodies every node holds on to one member likewise, before hardening.
-double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr);
+/// `busiest`: index into the model of the node that has most of the kinetic energy of that mode.
+double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr, int* busiest = nullptr);
 
 }  // namespace topple

@@ -42,7 +42,9 @@ bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t 
   auto next = std::find_if(edits.begin(), edits.end(),
                            [&](const LoggedEdit& e) { return e.step > run.state().step; });
   while (run.state().step < step) {
-    if (!run.advance().ok()) return false;
+    const std::int64_t before = run.state().step;
+    // a load step that fails counts when it got a part of its way
+    if (!run.advance().ok() && run.state().step == before) return false;
     for (; next != edits.end() && next->step == run.state().step; ++next) run.edit(next->edit);
   }
   return true;

@@ -22,7 +22,7 @@ struct RunSettings {
   Analysis analysis = Analysis::dynamic;
   StaticSettings statics = {};
   double duration = 10;      ///< s; statics: 1, the whole path
-  bool settle = true;        ///< start from rest under gravity
+  bool settle = true;        ///< start from rest under gravity and the loads at t = 0
   double output_rate = 100;  ///< Hz, of recorded rows
   StopWhen stop_when = StopWhen::never;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/hinges.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -92,7 +93,9 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
   s.load_memory(state);
   std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
   std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
-  const std::vector<Vec3> origin = w.start.position;
+  const BodyMotion before = w.start;
+  const std::vector<Vec3>& origin = before.position;
+  HingeStep hinges;
   w.right_hand_side.resize(6 * n);
   const double weight = s.mass * parameters.gravity.norm();
   const double balanced = k_balance * weight + rounding(s, origin);
@@ -101,6 +104,11 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
   status.time = state.time;
   status.body = s.index;
   status.kind = StepStatus::Kind::not_settled;
+  const auto blame = [&](int node) {
+    status.node = s.node[node];
+    status.body = s.model.node_body[status.node];
+    status.element = s.element_at(status.node);
+  };
   for (int round = 0; round < k_most_rounds; ++round) {
     s.lu.set_zero();
     s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
@@ -115,9 +123,14 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
     }
     add_mass(s, sigma);
     s.store_stick(s.contacts, state);
-    s.load_memory(state);
+    s.load_sticks(state);
     if (left < balanced && sigma > 1) {
+      if (!s.loads_grow && update_hinges(s, w.start, hinges)) {
+        sigma = k_first_sigma;
+        continue;
+      }
       if (tips_over(s, still, state, w)) return status;
+      if (!s.loads_grow) commit_hinges(s, before, w.start, state);
       for (int i = 0; i < n; ++i) {
         const int g = s.node[i];
         state.position[g] = w.start.position[i];
@@ -125,10 +138,14 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
         state.velocity[g].setZero();
         state.angular_velocity[g].setZero();
       }
-      status.kind = StepStatus::Kind::ok;
+      status = {};
+      status.time = state.time;
       return status;
     }
-    if (s.lu.factor() >= 0) return status;
+    if (const int singular = s.lu.factor(); singular >= 0) {
+      blame(singular);
+      return status;
+    }
     s.lu.solve(w.right_hand_side.data());
     w.trial = w.start;
     double furthest = 0, step = 0;
@@ -138,14 +155,18 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
       w.trial.rotation[i] = exp_quaternion(spin) * w.trial.rotation[i];
       w.trial.rotation[i].normalize();
       step = std::max(step, shift.norm());
-      furthest = std::max(furthest, (w.trial.position[i] - origin[i]).norm());
+      const double travel = (w.trial.position[i] - origin[i]).norm();
+      if (!(travel <= furthest)) {
+        furthest = travel;
+        blame(i);
+      }
       if (!std::isfinite(furthest + spin.sum())) return status;
     }
     if (furthest > k_furthest * s.size) return status;
     // stick springs travel along: evaluate them from where they were
     s.find_contacts(still.contact, w.trial, state.stick, w.start.position, s.contacts);
     s.store_stick(s.contacts, state);
-    s.load_memory(state);
+    s.load_sticks(state);
     std::swap(w.start, w.trial);
     sigma = std::clamp(sigma * (step < 0.01 * s.size ? 2 : 0.5), k_first_sigma / 16, k_last_sigma);
   }

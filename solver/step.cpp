@@ -82,7 +82,7 @@ struct Workspace::Impl {
   std::vector<SectionForces> sections;
   State next;
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
-  int limiting_body = -1;
+  int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;
 };
 
@@ -107,8 +107,8 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::singular:
       return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
     case Kind::not_settled:
-      return where +
-             " does not come to rest under gravity; does it stand on something, and can alpha "
+      return "before the first step, " + when + ": " + where +
+             " does not come to rest under gravity; does it stand on something, and can alpha and the steel "
              "carry it? settle = false starts it as it is";
     case Kind::step_too_long:
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
@@ -182,13 +182,16 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
   w.explicit_limit.reset();
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    if (BodySystem* const system = w.islands.alone(b)) {
-      const double limit = explicit_limit(*system, &law);
-      if (limit >= w.explicit_limit.value_or(1e300)) continue;
-      w.explicit_limit = limit;
-      w.limiting_body = b;
-    }
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    BodySystem* const system = w.islands.alone(b);
+    if (!system) continue;
+    int node = -1;
+    const double limit = explicit_limit(*system, &law, &node);
+    if (limit >= w.explicit_limit.value_or(1e300)) continue;
+    w.explicit_limit = limit;
+    w.limiting_body = b;
+    w.limiting_node = node;
+  }
 }
 
 // One step of size h from w.next, whose near elements are known, into w.next.
@@ -204,6 +207,8 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
       status.limit = *w.explicit_limit;
       status.time = t;
       status.body = w.limiting_body;
+      status.node = w.limiting_node;
+      status.element = w.systems[static_cast<std::size_t>(w.limiting_body)]->element_at(w.limiting_node);
       return status;
     }
   }

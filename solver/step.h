@@ -73,9 +73,10 @@ class Workspace {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Brings the bodies to rest under gravity on floors, walls and supports: positions, rotations and stick
-/// springs of `state` change, velocities become zero. Normal penalty forces of Eq. 2 with stick springs serve
-/// for every law. not_settled: a body has nothing to rest on, or tips over by itself.
+/// Brings the bodies to rest under gravity and the loads at t = 0 on floors, walls and supports: positions,
+/// rotations and stick springs of `state` change, velocities become zero. Normal penalty forces of Eq. 2 with
+/// stick springs serve for every law. not_settled: a body has nothing to rest on, tips over by itself, or
+/// collapses.
 StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
 
 /// Initial accelerations and energies of `state`; call once before the first step and after a change of

@@ -139,6 +139,10 @@ void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   }
 }
 
+void energy_row(CsvFile& csv, const FrameRow& row) {
+  csv.number(row.time).numbers(row.energy.data(), row.energy.size()).end_row();
+}
+
 void floor_row(CsvFile& csv, const FrameRow& row) {
   csv.number(row.time).numbers(row.floor_acceleration, 3).numbers(row.floor_displacement, 3).end_row();
 }
@@ -161,6 +165,9 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   CsvFile elements(base / "elements.csv",
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
   CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
+  CsvFile energy(base / "energy.csv",
+                 "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,"
+                 "numerical_J,plastic_J,balance_error");
   for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
     const FrameRow row = recording.frame(i);
     expect_same_model(model, row);
@@ -168,8 +175,9 @@ void write_csv(const Recording& recording, const Model& model, const std::string
     nodes_rows(nodes, model, row);
     elements_rows(elements, model, row);
     floor_row(floor, row);
+    energy_row(energy, row);
   }
-  CsvFile* const files[] = {&bodies, &nodes, &elements, &floor};
+  CsvFile* const files[] = {&bodies, &nodes, &elements, &floor, &energy};
   for (CsvFile* file : files) file->close();
   for (CsvFile* file : files) file->publish();
 }

@@ -102,9 +102,9 @@ class Recording {
 /// True when the file's first bytes are those of HDF5.
 bool is_recording(const std::string& path);
 
-/// Writes bodies.csv, nodes.csv, elements.csv and floor.csv into `folder` (created when missing), as
-/// interface 4 fixes them, of the way to the newest branch. Each file appears whole or not at all. Throws
-/// WriteError, InputError.
+/// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
+/// run) into `folder` (created when missing), of the way to the newest branch. Each file appears whole or not
+/// at all. Throws WriteError, InputError.
 void export_csv(const Recording& recording, const std::string& folder);
 
 }  // namespace topple::io

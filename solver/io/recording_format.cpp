@@ -126,13 +126,14 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"energy",
         f64,
-        {9},
-        "J,J,J,J,J,J,J,J,1",
-        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,balance_error"},
+        {10},
+        "J,J,J,J,J,J,J,J,J,1",
+        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,balance_error"},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
        {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},
-       {"floor_displacement", f64, {3}, "m", "x,y,z"}}};
+       {"floor_displacement", f64, {3}, "m", "x,y,z"},
+       {"load_factor", f64, {}, "1", ""}}};
 }
 
 std::size_t row_bytes(const FrameField& field) {
@@ -157,7 +158,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.hinge.resize(shape.elements);
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
-  row.energy.resize(9);
+  row.energy.resize(10);
   row.body.resize(11 * shape.bodies);
   row.rung.resize(shape.bodies);
   return row;

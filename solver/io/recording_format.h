@@ -25,7 +25,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 2;
+inline constexpr std::int32_t k_format_version = 3;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// Rows per chunk of the frame fields, and rows gathered before they are handed to HDF5.
@@ -109,7 +109,7 @@ struct FrameField {
   const char* units;
   const char* columns;  ///< names along the last dimension, comma-separated
 };
-inline constexpr std::size_t k_field_count = 12;
+inline constexpr std::size_t k_field_count = 13;
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape);
 std::size_t row_bytes(const FrameField& field);
 
@@ -135,7 +135,8 @@ auto field_bytes(Row& row) {
                                           bytes(row.body),
                                           bytes(row.rung),
                                           bytes(row.floor_acceleration),
-                                          bytes(row.floor_displacement)};
+                                          bytes(row.floor_displacement),
+                                          bytes(std::span(&row.load_factor, 1))};
 }
 
 /// A row of zeros with arrays of the right sizes.

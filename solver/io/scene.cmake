@@ -1,6 +1,7 @@
 include(${PROJECT_SOURCE_DIR}/assets/embed.cmake)
 
 file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml
+  ${PROJECT_SOURCE_DIR}/assets/scenes/elements/*.toml
   ${PROJECT_SOURCE_DIR}/assets/scenes/verify/*.toml)
 topple_embed(
   TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_scenes.cpp.in

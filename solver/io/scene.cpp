@@ -69,8 +69,9 @@ Scene load_scene(const std::string& path_or_name, const std::vector<std::string>
     if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
     names += (names.empty() ? "" : ", ") + std::string(scene.name);
   }
-  for (const BuiltinScene& scene : verification_scenes())
-    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
+  for (const auto* scenes : {&verification_scenes(), &study_scenes()})
+    for (const BuiltinScene& scene : *scenes)
+      if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
   throw InputError(path_or_name + ": no such file or built-in scene; built-in: " + names);
 }
 

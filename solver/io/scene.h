@@ -52,5 +52,7 @@ struct BuiltinScene {
 const std::vector<BuiltinScene>& builtin_scenes();
 /// The same of those that `topple verify` runs, "verify/NAME".
 const std::vector<BuiltinScene>& verification_scenes();
+/// The same of the benchmarks of `topple study elements`, "elements/NAME".
+const std::vector<BuiltinScene>& study_scenes();
 
 }  // namespace topple::io

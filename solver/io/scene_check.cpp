@@ -37,7 +37,11 @@ std::string expected_quantity(const Key& key) {
 
 class Checker {
  public:
-  explicit Checker(const std::string& origin) : origin_(origin) {}
+  Checker(const Node& root, const std::string& origin) : origin_(origin) {
+    const Key& key = *find_key("run", "analysis");
+    const Node* run = root.find(key.table);
+    analysis_ = chosen(key, run ? *run : Node{});
+  }
 
   void table(const Node& node, std::string_view name, const std::string& path) const {
     for (const Item& item : node.items) {
@@ -50,7 +54,7 @@ class Checker {
       if (key.table != name || !key.required || node.find(key.name) || !applies(key, node)) continue;
       std::string message = "missing";
       if (!key.of.empty())
-        message += "; " + std::string(key.of) + " = \"" + chosen(key, node) + "\" needs it";
+        message += "; " + std::string(key.of) + " = \"" + chosen(choice_of(key), node) + "\" needs it";
       fail(node.place, below(path, key.name), message + " (" + std::string(key.about) + ")");
     }
   }
@@ -74,23 +78,33 @@ class Checker {
     return *key;
   }
 
-  // The word that the key's choice stands at, written or by default.
-  static std::string chosen(const Key& key, const Node& table) {
-    if (const Node* node = table.find(key.of)) return node->is_number() ? shown(*node) : node->text;
-    const Key& choice = *find_key(key.table, key.of);
+  // The word at which a choice stands, written or by default.
+  static std::string chosen(const Key& choice, const Node& table) {
+    if (const Node* node = table.find(choice.name)) return node->is_number() ? shown(*node) : node->text;
     if (choice.type == KeyType::number) return default_text(choice);
     return choice.fallback.empty()
                ? ""
                : std::string(choice.choices[static_cast<std::size_t>(choice.fallback[0])]);
   }
 
+  static const Key& choice_of(const Key& key) { return *find_key(key.table, key.of); }
+
   static bool applies(const Key& key, const Node& table) {
-    return key.of.empty() || contains(key.when, chosen(key, table));
+    return key.of.empty() || contains(key.when, chosen(choice_of(key), table));
+  }
+
+  // A word that is no analysis is told where it stands.
+  bool serves_analysis(const Key& key) const {
+    return key.analyses.empty() || contains(key.analyses, analysis_) ||
+           !contains(find_key("run", "analysis")->choices, analysis_);
   }
 
   void belongs(const Key& key, const Node& table, const Item& item, const std::string& path) const {
+    if (!serves_analysis(key))
+      fail(item.key_place, below(path, item.key),
+           "belongs to analysis = " + joined(key.analyses, " or ") + ", but analysis is " + analysis_);
     if (applies(key, table)) return;
-    const std::string word = chosen(key, table);
+    const std::string word = chosen(choice_of(key), table);
     const std::string of(key.of);
     fail(item.key_place, below(path, item.key),
          "belongs to " + of + " = " + joined(key.when, " or ") + ", but " + of +
@@ -287,6 +301,7 @@ class Checker {
   }
 
   const std::string& origin_;
+  std::string analysis_;
 };
 
 // Names are unique among the entries of these kinds together.
@@ -329,7 +344,7 @@ void check_scene(const Node& root, const std::string& origin) {
          "schema " + shown(*version) + " is not supported by this version, which reads schema " +
              short_number(schema.most));
   }
-  Checker(origin).table(root, "", "");
+  Checker(root, origin).table(root, "", "");
   const Node* floor = root.find("floor");
   check_names(root, origin, {"shake"}, {});
   check_names(root, origin, {"wall"},

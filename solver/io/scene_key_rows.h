@@ -28,6 +28,8 @@ class Row {
   Row& absent_means(std::string_view text) { return key_.otherwise = text, *this; }
   /// Belongs to these choices of another key of the table.
   Row& only(std::string_view of, Words when) { return key_.of = of, key_.when = std::move(when), *this; }
+  /// Belongs to these choices of run.analysis.
+  Row& only_in(Words analyses) { return key_.analyses = std::move(analyses), *this; }
   /// Words of the contract that this version refuses.
   Row& later(Words words) { return key_.later = std::move(words), *this; }
   /// Words that may stand instead of the numbers.

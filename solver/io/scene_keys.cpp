@@ -20,7 +20,7 @@ void add_top(std::vector<Key>& keys) {
   rows.integer("topple", 1, 1, "schema version").required();
   rows.plain("title", T::text, "one line on what it shows").absent_means("the scene's name");
   rows.plain("run", T::table, "how it is stepped");
-  rows.plain("shake", T::tables, "acceleration of the floor; several add up");
+  rows.plain("shake", T::tables, "acceleration of the floor; several add up").only_in({"dynamic"});
   rows.plain("contact", T::table, "contact law");
   rows.plain("floor", T::table, "the floor, its face at z = 0").absent_means("no floor");
   rows.plain("wall", T::tables, "a plane wall");
@@ -38,27 +38,35 @@ void add_run(std::vector<Key>& keys) {
   const Parameters parameters{};
   const RunSettings run{};
   rows.word("analysis", {"dynamic", "static", "modes"}, "what is computed").absent(run.analysis);
-  rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time").absent(run.duration);
+  rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time")
+      .absent(run.duration)
+      .only_in({"dynamic"});
   rows.word("integrator", {"auto", "generalized-alpha", "central-difference", "newmark"},
             "auto is generalized-alpha")
-      .absent(0);
+      .absent(0)
+      .only_in({"dynamic"});
   rows.words("want", {"motion", "stress"}, "what the scene is for").absent(0);
   rows.number("beta", 0.01, 1, "of the Newmark method")
       .absent(parameters.beta)
-      .only("integrator", {"newmark"});
+      .only("integrator", {"newmark"})
+      .only_in({"dynamic"});
   rows.number("gamma", 0, 1, "of the Newmark method; 1/2 is of second order, more damps")
       .absent(parameters.gamma)
-      .only("integrator", {"newmark"});
+      .only("integrator", {"newmark"})
+      .only_in({"dynamic"});
   rows.number("spectral_radius", 0, 1, "at infinite frequency")
       .absent(parameters.spectral_radius)
-      .only("integrator", {"auto", "generalized-alpha"});
+      .only("integrator", {"auto", "generalized-alpha"})
+      .only_in({"dynamic"});
   rows.number("time_step", D::time, "s", 1e-7, 0.1,
               "fixed step, or one that follows the motion (central-difference: 0.9 of its limit)")
       .or_word({"auto"})
-      .absent(parameters.time_step);
+      .absent(parameters.time_step)
+      .only_in({"dynamic"});
   rows.number("tolerance", 1e-9, 0.1, "local error of the adaptive step over the travel of the body")
       .absent(parameters.tolerance)
-      .only("time_step", {"auto"});
+      .only("time_step", {"auto"})
+      .only_in({"dynamic"});
   rows.integer("load_steps", 1, 1e5, "equal parts in which the loads grow")
       .absent(run.statics.load_steps)
       .only("analysis", {"static"});
@@ -68,12 +76,17 @@ void add_run(std::vector<Key>& keys) {
   rows.word("elements", {"asi-gauss", "asi", "midpoint"},
             "where the integration points stand; asi: in the middle while elastic; midpoint: always")
       .absent(Scheme::asi_gauss);
-  rows.plain("settle", T::boolean, "start from rest under gravity").absent(run.settle);
-  rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows").absent(run.output_rate);
+  rows.plain("settle", T::boolean,
+             "start from rest under gravity and the loads at t = 0 (static: load factor 0)")
+      .absent(run.settle);
+  rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows")
+      .absent(run.output_rate)
+      .only_in({"dynamic"});
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
   rows.word("stop_when", {"never", "all-overturned", "at-rest"},
             "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
-      .absent(run.stop_when);
+      .absent(run.stop_when)
+      .only_in({"dynamic"});
 }
 
 void add_control(std::vector<Key>& keys) {
@@ -119,7 +132,7 @@ void add_shake(std::vector<Key>& keys) {
 void add_contact(std::vector<Key>& keys) {
   Rows rows(keys, "contact");
   const ContactLaw law{};
-  rows.word("law", {"coulomb", "paper", "printed"}, "contact_law.h").absent(law.kind);
+  rows.word("law", {"coulomb", "paper", "printed"}, "contact_law.h").absent(law.kind).only_in({"dynamic"});
   rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
               "penalty coefficient of Eq. 2")
       .absent(law.alpha);
@@ -128,13 +141,16 @@ void add_contact(std::vector<Key>& keys) {
   rows.later("friction_static", "coefficient of static friction");
   rows.number("restitution", 0, 1, "coefficient of restitution")
       .absent(law.restitution)
-      .only("law", {"coulomb"});
+      .only("law", {"coulomb"})
+      .only_in({"dynamic"});
   rows.number("normal_speed", D::velocity, "m/s", 1e-6, 10, "closing speed below which restitution fades")
       .absent(law.normal_speed)
-      .only("law", {"coulomb"});
+      .only("law", {"coulomb"})
+      .only_in({"dynamic"});
   rows.number("slip_speed", D::velocity, "m/s", 1e-6, 10, "smooths the direction of slip")
       .absent(law.slip_speed)
-      .only("law", {"paper", "printed"});
+      .only("law", {"paper", "printed"})
+      .only_in({"dynamic"});
 }
 
 // Of a floor or wall made of members; `extent`: how far it goes by default, m.

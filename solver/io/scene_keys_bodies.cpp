@@ -38,9 +38,11 @@ void add_cabinet(std::vector<Key>& keys) {
               "about the bottom edge on the +x side before yaw; negative: on the -x side")
       .absent(cabinet.tilt);
   rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
-      .absent(cabinet.velocity);
+      .absent(cabinet.velocity)
+      .only_in({"dynamic"});
   rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
-      .absent(cabinet.angular_velocity);
+      .absent(cabinet.angular_velocity)
+      .only_in({"dynamic"});
   rows.plain("section", T::text, "a [[section]]").required();
   rows.plain("material", T::text, "a [[material]]").required();
   rows.integer("shelves", 0, 20, "shelves").absent(cabinet.shelves);
@@ -70,9 +72,11 @@ void add_frame(std::vector<Key>& keys) {
   rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
       .absent_means("one, where it is");
   rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
-      .absent(frame.velocity);
+      .absent(frame.velocity)
+      .only_in({"dynamic"});
   rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
-      .absent(frame.angular_velocity);
+      .absent(frame.angular_velocity)
+      .only_in({"dynamic"});
 }
 
 void add_frame_members(std::vector<Key>& keys) {
@@ -97,8 +101,9 @@ void add_frame_loads(std::vector<Key>& keys) {
   rows.integer("node", 0, 1e6, "node").required();
   rows.numbers("force", 3, D::force, "N", -1e9, 1e9, "force").absent(Vec3::Zero());
   rows.numbers("moment", 3, D::moment, "N m", -1e9, 1e9, "moment").absent(Vec3::Zero());
-  rows.history("history", -1e6, 1e6, "[time, factor], times increasing, linear in between")
-      .absent_means("1 at all times");
+  rows.history("history", -1e6, 1e6,
+               "[time, factor], times increasing, linear in between; static: over the load factor")
+      .absent_means("1 at all times; static: the load factor");
 }
 
 void add_frame_masses(std::vector<Key>& keys) {

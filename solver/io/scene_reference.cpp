@@ -90,11 +90,12 @@ std::string absent_text(const Key& key) {
 
 std::string meaning_text(const Key& key) {
   std::string text(key.about);
-  if (!key.of.empty()) {
-    text += "; only with `" + std::string(key.of) + "` = ";
-    for (std::size_t k = 0; k < key.when.size(); ++k)
-      text += (k ? " or `" : "`") + std::string(key.when[k]) + "`";
-  }
+  const auto only_with = [&](std::string_view of, const std::vector<std::string_view>& words) {
+    text += "; only with `" + std::string(of) + "` = ";
+    for (std::size_t k = 0; k < words.size(); ++k) text += (k ? " or `" : "`") + std::string(words[k]) + "`";
+  };
+  if (!key.of.empty()) only_with(key.of, key.when);
+  if (!key.analyses.empty()) only_with("analysis", key.analyses);
   return text;
 }
 

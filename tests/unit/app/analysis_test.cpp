@@ -47,7 +47,71 @@ TEST_F(AnalysisTest, static_run_without_equilibrium_fails_and_keeps_what_converg
   EXPECT_EQ(s["static"].back()["converged"], false);
   for (const char* part : {"body \"beam\"", "element ", "load factor ", "pull.h5 holds everything"})
     EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
-  EXPECT_EQ(topple({"info", "pull.h5"}).code, 0);
+  EXPECT_EQ(topple({"info", "pull.h5", "--verify"}).code, 0);
+}
+
+class FailureTest : public AnalysisTest {
+ protected:
+  /// An arm of steel that yields at 235 MPa, its first node held in `fix`, `mass` at the other.
+  static std::string arm(const std::string& run, const std::string& fix, const std::string& mass) {
+    std::string library = k_library;
+    library.insert(library.find("[[section]]"), "yield = \"235 MPa\"\n");
+    return "topple = 1\n[run]\n" + run + library + R"(
+[[frame]]
+name = "arm"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "post", material = "steel" }]
+supports = [{ node = 0, fix = ")" +
+           fix + "\" }]\nmasses = [{ node = 1, mass = \"" + mass +
+           "\" }]\nloads = [{ node = 1, force = [0, 0, -10] }]\n";
+  }
+  /// Fails with exit 1, says `parts`, and leaves an older recording alone.
+  void expect_no_start(const std::string& scene, const std::vector<std::string>& parts) {
+    write_bytes("arm.toml", scene);
+    write_bytes("a.h5", "older");
+    const Ended ended = topple({"run", "arm.toml", "-o", "a.h5", "--json", "-", "--quiet"});
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    for (const std::string& part : parts) EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("body \"arm\", member \"member-0\" (element "), std::string::npos) << ended.err;
+    EXPECT_EQ(Json::parse(ended.out)["status"], "diverged");
+    EXPECT_EQ(bytes_of("a.h5"), "older");
+  }
+};
+
+TEST_F(FailureTest, yield_stress_of_zero_is_bad_input) {
+  for (const char* zero : {"yield = 0", "yield = \"0 MPa\""}) {
+    std::string text = arm("duration = 0.1\n", "xyzXYZ", "1 kg");
+    text.replace(text.find("yield = \"235 MPa\""), 17, zero);
+    write_bytes("arm.toml", text);
+    expect_one_line({"run", "arm.toml"}, 2, "material.steel.yield: ");
+    expect_one_line({"check", "arm.toml"}, 2, " is outside 1e-06..1e+07 MPa");
+  }
+}
+
+TEST_F(FailureTest, a_mechanism_in_a_static_run_is_told) {
+  expect_no_start(arm("analysis = \"static\"\ngravity = [0, 0, 0]\n", "xyz", "1 kg"),
+                  {"no stable equilibrium was found at load factor 0", "a mechanism"});
+  expect_no_start(arm("analysis = \"static\"\n", "xyz", "1 kg"),
+                  {"before the first step, at 0 s", "does not come to rest under gravity"});
+}
+
+TEST_F(FailureTest, a_scene_that_collapses_under_its_own_weight_is_told) {
+  expect_no_start(arm("analysis = \"static\"\n", "xyzXYZ", "100 kg"),
+                  {"no stable equilibrium was found at load factor 0", "beyond what it carries"});
+  expect_no_start(arm("duration = 0.1\n", "xyzXYZ", "100 kg"),
+                  {"before the first step, at 0 s", "does not come to rest under gravity"});
+}
+
+TEST_F(FailureTest, a_step_a_hundred_times_too_long_is_told_and_what_converged_stays_readable) {
+  const Ended ended =
+      topple({"run", "yielding", "--set", "run.time_step=0.05", "-o", "a.h5", "--json", "-", "--quiet"});
+  EXPECT_EQ(ended.code, 1);
+  const std::string message = Json::parse(ended.out)["message"];
+  for (const char* part : {"the step at 1.7", " s has no converged solution: body \"heavy\", member \"",
+                           "(element ", "try a smaller time_step"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_NE(ended.err.find("a.h5 holds everything up to 1.7 s"), std::string::npos) << ended.err;
+  EXPECT_EQ(topple({"info", "a.h5", "--verify"}).code, 0);
 }
 
 TEST_F(AnalysisTest, modes_of_a_free_cabinet_begin_with_six_rigid_ones) {
@@ -62,9 +126,10 @@ TEST_F(AnalysisTest, modes_of_a_free_cabinet_begin_with_six_rigid_ones) {
 }
 
 TEST_F(AnalysisTest, scene_that_asks_for_modes_is_not_recorded) {
-  write_bytes("s.toml", k_shaken);
+  write_bytes("s.toml", loaded(0));
   expect_one_line({"run", "s.toml", "--set", "run.analysis=modes", "-o", "a.h5"}, 2,
                   "modes are not recorded");
+  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.analysis=modes"}).code, 0);
 }
 
 TEST_F(AnalysisTest, adaptive_and_newmark_runs_say_so) {

@@ -1,5 +1,6 @@
 #include "app/bridge.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -88,8 +89,32 @@ TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
     EXPECT_NEAR(square, 1, 1e-5);
   }
   EXPECT_GT(frame.legend.maximum, 0);
-  EXPECT_EQ(frame.trace.time_s.size(), 2u);
-  EXPECT_FLOAT_EQ(frame.trace.cursor_s, 0.1f);
+  EXPECT_EQ(frame.trace.at.size(), 2u);
+  EXPECT_FLOAT_EQ(frame.trace.cursor, 0.1f);
+}
+
+TEST(StaticBridge, pictures_of_a_static_run_tell_load_step_and_load_factor) {
+  const io::Scene scene = io::load_scene("portal-pushover");
+  topple::Run run(scene.setup);
+  RunExtent extent;
+  io::FrameRow row;
+  for (int k = 0; k < 3; ++k) {
+    if (k > 0) {
+      ASSERT_TRUE(run.advance().ok());
+    }
+    row = io::frame_row(run);
+    extent.add(scene.setup.model, scene.setup.parameters, row);
+  }
+  const render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
+  EXPECT_EQ(frame.caption.lines.front(),
+            fmt::format("load step 2 of 40, load factor {:.4g}", run.state().load_factor));
+  EXPECT_EQ(frame.trace.label, "load factor");
+  EXPECT_EQ(frame.trace.unit, "load steps");
+  EXPECT_EQ(frame.trace.at, (std::vector<float>{0, 1, 2}));
+  ASSERT_EQ(frame.trace.value.size(), 3u);
+  EXPECT_FLOAT_EQ(frame.trace.value[2], static_cast<float>(run.state().load_factor));
+  EXPECT_FLOAT_EQ(frame.trace.cursor, 2);
+  EXPECT_GT(run.state().load_factor, 0.1);  // the loads move 3 mm
 }
 
 TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {

@@ -79,7 +79,7 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
     EXPECT_EQ(number(floor.back()[1 + static_cast<std::size_t>(k)]), last.floor_acceleration[k]);
     EXPECT_EQ(number(floor.back()[4 + static_cast<std::size_t>(k)]), last.floor_displacement[k]);
   }
-  EXPECT_EQ(files().size(), 2u + 2u + 4u);  // scene, recording, two folders, four tables
+  EXPECT_EQ(files().size(), 2u + 2u + 5u);  // scene, recording, two folders, five tables
 }
 
 TEST_F(ExportTest, tables_are_the_same_every_time_and_replace_older_ones) {

@@ -113,6 +113,17 @@ TEST_F(RenderTest, instants_outside_the_recording_are_refused) {
   EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "s.toml"}));
 }
 
+TEST_F(RenderTest, static_runs_go_by_the_part_of_the_way) {
+  expect_one_line({"render", "portal-pushover", "--still", "a.png", "--at", "2"}, 2,
+                  "--at: 2 is outside the scene, 0..1 of the way through the loads");
+  std::vector<std::string> pictures;
+  for (const char* at : {"0.1", "0.7"}) {
+    draw({"portal-pushover", "--ui", "--still", "a.png", "--at", at});
+    pictures.push_back(bytes_of("a.png"));
+  }
+  EXPECT_NE(pictures[0], pictures[1]);
+}
+
 TEST_F(RenderTest, what_a_failed_run_computed_is_drawn_and_the_failure_told) {
   write_bytes("beam.toml", k_beam);
   const std::vector<std::string> set{"--set", "run.integrator=central-difference", "--size", "320x180"};

@@ -62,6 +62,14 @@ TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
   EXPECT_NE(table.find("\nprobe middle: "), std::string::npos) << table;
 }
 
+TEST_F(SummaryTest, plastic_energy_is_told_where_steel_flowed) {
+  Json s = summary(scene_, run_, "completed", 0.5);
+  EXPECT_EQ(summary_table(s).find("plastic"), std::string::npos);
+  s["energy"]["plastic_J"] = 12.5;
+  EXPECT_NE(summary_table(s).find("J dissipated (12.5 J of it by plastic flow), balance error"),
+            std::string::npos);
+}
+
 TEST_F(SummaryTest, columns_stay_in_line_under_long_names) {
   Json s = summary(scene_, run_, "completed", 0.5);
   s["bodies"][0]["name"] = "a cabinet with a grown-up näme";

@@ -19,7 +19,7 @@ class UsageTest : public ProgramTest {
 
 TEST_F(UsageTest, help_and_version_go_to_standard_output) {
   EXPECT_EQ(topple({"--version"}).out, "topple " TOPPLE_VERSION "\n");
-  for (const char* command : {"", "run", "render", "export", "verify", "check", "info", "scenes"}) {
+  for (const char* command : {"", "run", "render", "export", "verify", "study", "check", "info", "scenes"}) {
     SCOPED_TRACE(command);
     const Ended ended =
         topple(*command ? std::vector<std::string>{command, "--help"} : std::vector<std::string>{"--help"});
@@ -73,14 +73,37 @@ TEST_F(UsageTest, empty_names_are_refused) {
 }
 
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
-  for (const char* command : {"study", "compare", "report", "recover"}) {
+  for (const char* command : {"compare", "report", "recover"}) {
     const std::string refusal = std::string(command) + ": not supported by this version";
     expect_one_line({command}, 2, refusal);
     expect_one_line({command, "s.toml", "-o", "out"}, 2, refusal);
   }
+  for (const char* kind : {"precision", "stability", "overturn", "penalty"}) {
+    const std::string refusal = std::string("study ") + kind + ": not supported by this version";
+    expect_one_line({"study", kind}, 2, refusal);
+    expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
+  }
+  for (const char* option : {"--x", "--y", "--ensemble", "--spread"})
+    expect_one_line({"study", "elements", "-o", "out", option, "1"}, 2,
+                    std::string(option) + ": not supported by this version");
+  expect_one_line({"study", "elements", "-o", "out", "--resume"}, 2,
+                  "--resume: not supported by this version");
   expect_one_line({"run", "s.toml", "--estimate"}, 2, "--estimate: not supported by this version");
   expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
+}
+
+TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
+  expect_one_line({"study"}, 2, "KIND is required");
+  expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
+  expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
+  expect_one_line({"study", "frob", "-o", "out"}, 2, "\"frob\" is not a study; known: elements");
+  expect_one_line({"study", "elements", "s.toml", "-o", "out"}, 2,
+                  "study elements: has scenes of its own and takes none (found \"s.toml\")");
+  expect_one_line({"study", "elements", "-o", "out", "--set", "run.elements=asi"}, 2, "not expected: ");
+  for (const char* jobs : {"", "0", "-1", "257", "two", "1.5"})
+    expect_one_line({"study", "elements", "-o", "out", "--jobs", jobs}, 2,
+                    "--jobs: \"" + std::string(jobs) + "\" is not a whole number in 1..256");
 }
 
 TEST_F(UsageTest, sizes_that_no_picture_has_are_refused) {

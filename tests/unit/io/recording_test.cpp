@@ -191,7 +191,7 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
                            "0.1,\"shelf, \"\"blue\"\"\",post-1,0,1000,0,0,0,0,0,"))
       << elements;
   EXPECT_TRUE(elements.ends_with("post-1,1,0,0,0,0,0,0,0,,-0.25,2\n")) << elements;
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out/csv")), {}), 4);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out/csv")), {}), 5);
 }
 
 TEST_F(RecordingTest, tables_of_a_damaged_recording_do_not_appear_by_half) {

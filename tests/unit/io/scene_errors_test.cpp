@@ -95,6 +95,43 @@ TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
             "s.toml:16:9: cabinet.free.model: \"elastic\" is not supported by this version");
 }
 
+TEST(SceneErrors, keys_of_another_analysis_are_refused) {
+  const std::string but = ": belongs to analysis = dynamic, but analysis is static";
+  for (const char* line :
+       {"duration = 1", "integrator = \"newmark\"", "beta = 0.25", "gamma = 0.5", "spectral_radius = 0.5",
+        "time_step = 1e-3", "tolerance = 1e-3", "output_rate = 10", "stop_when = \"never\""}) {
+    const std::string key(line, std::string(line).find(' '));
+    EXPECT_EQ(after_beam("[run]\nanalysis = \"static\"\n" + std::string(line) + "\n"),
+              "s.toml:19:1: run." + key + but);
+    EXPECT_EQ(after_beam("[run]\n" + std::string(line) + "\nanalysis = \"modes\"\n"),
+              "s.toml:18:1: run." + key + ": belongs to analysis = dynamic, but analysis is modes");
+  }
+  for (const char* line :
+       {"law = \"coulomb\"", "restitution = 0.5", "normal_speed = 0.1", "slip_speed = 0.1"}) {
+    const std::string key(line, std::string(line).find(' '));
+    EXPECT_EQ(after_beam("[contact]\n" + std::string(line) + "\n[run]\nanalysis = \"static\"\n"),
+              "s.toml:18:1: contact." + key + but);
+  }
+  EXPECT_EQ(after_beam("[run]\nanalysis = \"static\"\n[[shake]]\nfrequency = 1\namplitude = 1\n"),
+            "s.toml:19:3: shake" + but);
+  for (const char* key : {"velocity", "angular_velocity"}) {
+    const std::string line = std::string(key) + " = [1, 0, 0]\n";
+    EXPECT_EQ(in_cabinet(line + "[run]\nanalysis = \"static\"\nsettle = false\n"),
+              "s.toml:16:1: cabinet.free." + std::string(key) + but);
+    EXPECT_EQ(error_of(replaced(k_scene, "supports", line + "supports") +
+                       "[run]\nanalysis = \"static\"\nsettle = false\n"),
+              "s.toml:16:1: frame.beam." + std::string(key) + but);
+  }
+  EXPECT_EQ(after_beam("[run]\nanalysis = \"static\"\nload_steps = 3\nsettle = false\ngravity = [0, 0, -1]\n"
+                       "elements = \"asi\"\nwant = [\"stress\"]\n[contact]\nalpha = \"90 kgf\"\nq = 1\n"
+                       "friction = 0.5\n"),
+            "no error");
+  EXPECT_EQ(error_of(k_scene, {"run.analysis=static", "run.duration=1"}),
+            "--set run.duration=1: run.duration" + but);
+  EXPECT_EQ(after_beam("[contact]\nrestitution = 0.5\n[run]\nanalysis = \"statik\"\n"),
+            "s.toml:20:12: run.analysis: \"statik\" is not one of dynamic, static, modes");
+}
+
 TEST(SceneErrors, keys_of_a_choice_not_made_are_refused) {
   EXPECT_EQ(after_beam("[contact]\nlaw = \"paper\"\nrestitution = 0.5\n"),
             "s.toml:19:1: contact.restitution: belongs to law = coulomb, but law is paper");

@@ -30,7 +30,7 @@ TEST(Camera, every_named_view_holds_the_whole_bounds_and_touches_their_limits) {
       frame.bounds_max = box[1];
       if (with_words) {
         frame.legend.quantity = "stress";
-        frame.trace.time_s = {0, 1};
+        frame.trace.at = {0, 1};
         frame.trace.value = {0, 1};
       }
       for (const NamedView view : k_views) {

@@ -110,8 +110,8 @@ TEST(Picture, words_bear_numbers_that_are_not_finite) {
   frame.legend.maximum = k_nan;
   frame.legend.mark = k_infinity;
   frame.trace.value[7] = k_nan;
-  frame.trace.time_s[9] = k_infinity;
-  frame.trace.cursor_s = k_nan;
+  frame.trace.at[9] = k_infinity;
+  frame.trace.cursor = k_nan;
   LeftOut left_out;
   drawn(frame, NamedView::iso, &left_out);
   EXPECT_EQ(left_out.legends, 1);

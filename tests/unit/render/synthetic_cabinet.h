@@ -135,11 +135,11 @@ inline void add_words(SceneFrame& frame) {
   frame.trace.label = "floor acceleration, gal";
   for (int i = 0; i <= 2000; ++i) {
     const float t = 0.015f * static_cast<float>(i);
-    frame.trace.time_s.push_back(t);
+    frame.trace.at.push_back(t);
     frame.trace.value.push_back(330 * std::exp(-0.012f * (t - 11) * (t - 11)) *
                                 (std::sin(5.1f * t) + 0.4f * std::sin(13.7f * t + 1)));
   }
-  frame.trace.cursor_s = 12.48f;
+  frame.trace.cursor = 12.48f;
   frame.arrows.push_back({{0.245f, -0.45f, 0.005f}, {0.17f, -0.45f, 0.42f}, {0.83f, 0.33f, 0.13f, 1}});
   frame.arrows.push_back({{0.245f, 0.45f, 0.005f}, {0.17f, 0.45f, 0.36f}, {0.83f, 0.33f, 0.13f, 1}});
 }

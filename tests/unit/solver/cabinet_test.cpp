@@ -368,6 +368,57 @@ TEST(Cabinet, diagonals_have_the_shear_stiffness_of_the_sheets) {
   EXPECT_EQ(found, 1);
 }
 
+TEST(Cabinet, diagonals_yield_as_a_section_of_their_area_with_the_posts_second_moments) {
+  CabinetSpec spec = tall_cabinet();
+  Model model = steel_model();
+  model.materials[0].yield = 235e6;
+  add_cabinet(model, spec);
+  const Section& post = model.sections[spec.section];
+  int found = 0;
+  for (const Element& element : model.elements) {
+    const Member& member = model.members[element.member];
+    if (!member.name.starts_with("brace-")) continue;
+    ++found;
+    const Section& s = model.sections[member.section];
+    EXPECT_NE(s.area, post.area);
+    EXPECT_EQ(s.iy, post.iy);
+    const auto shape = [](double modulus, double area, double second) {
+      return modulus / std::sqrt(area * second);
+    };
+    const auto slenderness = [](double fibre, double area, double second) {
+      return fibre / std::sqrt(second / area);
+    };
+    EXPECT_NEAR(shape(s.zy, s.area, s.iy), shape(post.zy, post.area, post.iy), 1e-14);
+    EXPECT_NEAR(shape(s.zz, s.area, s.iz), shape(post.zz, post.area, post.iz), 1e-14);
+    EXPECT_NEAR(shape(s.zt, s.area, s.j), shape(post.zt, post.area, post.j), 1e-14);
+    EXPECT_NEAR(slenderness(s.fibre_z(), s.area, s.iy), slenderness(post.fibre_z(), post.area, post.iy),
+                1e-14);
+    // no fibre nearer than the radius of gyration, and a full section bears more than its first fibre
+    EXPECT_GT(s.fibre_y(), std::sqrt(s.iz / s.area));
+    EXPECT_GT(s.zz, s.iz / s.fibre_y());
+    const double yield = 235e6;
+    EXPECT_DOUBLE_EQ(element.capacity[0], yield * s.area);
+    EXPECT_DOUBLE_EQ(element.capacity[1], yield * s.zt / std::sqrt(3.));
+    EXPECT_DOUBLE_EQ(element.capacity[2], yield * s.zy);
+    EXPECT_DOUBLE_EQ(element.capacity[3], yield * s.zz);
+  }
+  EXPECT_EQ(found, 24);  // two elements of two diagonals of six faces
+}
+
+TEST(Cabinet, yielding_diagonals_carry_a_known_multiple_of_the_yielding_sheets_shear) {
+  CabinetSpec spec = tall_cabinet();
+  Model model = steel_model();
+  const double yield = model.materials[0].yield = 235e6, nu = model.materials[0].poisson;
+  add_cabinet(model, spec);
+  const double a = 0.88, b = 1.79, d = std::hypot(a, b);
+  for (const Member& m : model.members) {
+    if (m.name != "brace-front-a") continue;
+    const double diagonals = 2 * model.elements[m.first_element].capacity[0] * a / d;
+    const double sheet = yield / std::sqrt(3.) * spec.panel_thickness * a;
+    EXPECT_NEAR(diagonals / sheet, std::sqrt(3.) / (2 * (1 + nu)) * (a / b + b / a), 1e-12);
+  }
+}
+
 // A cabinet that leans to -x moves as the mirror image of one that leans to +x.
 TEST(Cabinet, mirrored_starts_give_mirrored_motions) {
   for (auto kind : {ContactLawKind::coulomb, ContactLawKind::paper}) {

@@ -128,6 +128,7 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/io/scene.cpp", "app/main.h", true},
                            {"solver/io/scene.cpp", "GL/gl.h", false},
                            {"solver/study/map.cpp", "render/image.h", true},
+                           {"solver/study/map.cpp", "app/files.h", true},
                            {"render/camera.cpp", "solver/types.h", true},
                            {"render/camera.cpp", "solver/io/scene.h", true},
                            {"render/camera.cpp", "app/main.h", true},
@@ -144,6 +145,9 @@ TEST(Layout, right_arrows_are_not_objected_to) {
                            {"solver/io/scene.cpp", "fstream", false},
                            {"solver/io/scene.cpp", "hdf5.h", false},
                            {"solver/study/map.cpp", "solver/io/scene.h", true},
+                           {"solver/study/map.cpp", "solver/modes.h", true},
+                           {"solver/study/map.cpp", "thread", false},
+                           {"app/main.cpp", "solver/study/map.h", true},
                            {"render/gl.cpp", "GL/gl.h", false},
                            {"app/main.cpp", "render/camera.h", true},
                            {"app/main.cpp", "solver/run.h", true}};

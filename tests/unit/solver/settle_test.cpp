@@ -170,5 +170,93 @@ TEST(Settle, supported_frame_sags_as_the_static_solution) {
   EXPECT_LT(state.position[2].z(), -1e-6);
 }
 
+// A beam that carries 5 N at its tip, of a load with `history`.
+Model loaded_beam(std::vector<std::pair<double, double>> history) {
+  Model model = cantilever(plain_section(3e-4, 4e-8, 9e-8, 6e-8, 0.7, 0.6), steel(), 1, 2, Vec3(0, 1, -5),
+                           Vec3::Zero());
+  for (Load& load : model.loads) load.history = history;
+  return model;
+}
+
+TEST(Settle, constant_loads_are_carried_from_the_start) {
+  const Model model = loaded_beam({});
+  const Parameters p;
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  ASSERT_TRUE(settle(model, p, state, workspace).ok());
+  BodySystem system(model, 0);
+  BodyMotion motion = reference_motion(model);
+  ASSERT_GT(solve_statics(system, p, 0, motion), 0);
+  for (int i = 0; i < model.node_total(); ++i)
+    EXPECT_LT((state.position[i] - motion.position[i]).norm(), 1e-9);
+  EXPECT_GT(state.position[2].y(), 1e-6);
+  prepare(model, p, state, workspace);
+  const Vec3 tip = state.position[2];
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(step(model, p, state, workspace).ok());
+  EXPECT_LT((state.position[2] - tip).norm(), 1e-9);
+  EXPECT_LT(state.energy.kinetic, 1e-12);
+}
+
+TEST(Settle, loads_with_a_history_act_as_at_the_start) {
+  const auto settled_tip = [](const Model& model) {
+    State state = start_state(model, {BodyStart{}});
+    Workspace workspace(model);
+    EXPECT_TRUE(settle(model, {}, state, workspace).ok());
+    return state.position[2];
+  };
+  const Vec3 full = settled_tip(loaded_beam({})), none = settled_tip(loaded_beam({{0, 0}, {1, 1}}));
+  EXPECT_NEAR(none.y(), 0, 1e-12);
+  EXPECT_LT((settled_tip(loaded_beam({{0, 1}, {1, 0}})) - full).norm(), 1e-12);
+  EXPECT_NEAR(settled_tip(loaded_beam({{0, 0.5}, {1, 1}})).y() / full.y(), 0.5, 1e-4);
+}
+
+// A beam of 30 mm held at both ends that carries a mass in its middle. Its hinges bear 8 Mp/L = 2373 N.
+Model loaded_shelf(double mass) {
+  Model model = steel_model();
+  model.materials[0].yield = 235e6;
+  FrameSpec spec;
+  spec.name = "shelf";
+  spec.nodes = {Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(1, 0, 0)};
+  spec.members = {{{0, 1}, 0, 0}, {{1, 2}, 0, 0}};
+  spec.supports = {{0, k_clamped}, {2, k_clamped & ~1u}};
+  spec.masses = {{1, mass}};
+  add_frame(model, spec);
+  return model;
+}
+
+TEST(Settle, what_weight_makes_yield_has_flowed_before_the_first_step) {
+  Model model = loaded_shelf(150);
+  model.supports[1].fixed = 0x0f & ~1u;  // free to turn: first yield at 16 Mp/3L, 1582 N, collapse at 1780 N
+  model.node_mass[1] += 18;
+  const Parameters p;
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  const StepStatus status = settle(model, p, state, workspace);
+  ASSERT_TRUE(status.ok()) << status.message(model);
+  int hinges = 0;
+  for (const ElementState& element : state.elements) hinges += element.hinge != Hinge::none;
+  EXPECT_EQ(hinges, 1);
+  EXPECT_EQ(state.elements[0].hinge, Hinge::first);
+  prepare(model, p, state, workspace);
+  const Vec3 middle = state.position[1];
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(step(model, p, state, workspace).ok());
+  EXPECT_LT((state.position[1] - middle).norm(), 1e-9);
+  EXPECT_LT(state.energy.kinetic, 1e-12);
+}
+
+TEST(Settle, a_body_that_collapses_under_its_own_weight_is_told_with_element_and_time) {
+  Model model = loaded_shelf(150);
+  model.supports[1].fixed = 0;  // a cantilever: yields at 60 kg
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  const StepStatus status = settle(model, {}, state, workspace);
+  EXPECT_EQ(status.kind, StepStatus::Kind::not_settled);
+  EXPECT_EQ(status.body, 0);
+  ASSERT_GE(status.element, 0);
+  const std::string text = status.message(model);
+  for (const char* part : {"at 0 s", "body \"shelf\"", "member \"member-1\"", "(element "})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace topple::test

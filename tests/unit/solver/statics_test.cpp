@@ -43,6 +43,18 @@ const State& end_of(topple::Run& run) {
   return run.state();
 }
 
+TEST(Statics, loads_that_grow_take_no_part_in_settling) {
+  // far beyond what the column carries: settled with it there would be no start
+  topple::Setup setup = chain(4, {-100 * k_bending, 0, 0}, Vec3::Zero(), 1000);
+  setup.parameters.gravity = Vec3(-1e-6, 0, 0);
+  setup.run.settle = true;
+  const topple::Run run(setup);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+  EXPECT_EQ(run.state().load_factor, 0);
+  for (const Vec3& x : run.state().position) EXPECT_LT(x.x(), 1 + 1e-12);
+  EXPECT_NEAR(run.state().position[4].x(), 1, 1e-5);
+}
+
 TEST(Statics, elastica_under_a_tip_load) {
   struct Case {
     double load, shortening, deflection, angle;
