@@ -208,7 +208,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
       status.time = t;
       status.body = w.limiting_body;
       status.node = w.limiting_node;
-      status.element = w.systems[static_cast<std::size_t>(w.limiting_body)]->element_at(w.limiting_node);
+      status.element = w.islands.alone(w.limiting_body)->element_at(w.limiting_node);
       return status;
     }
   }
