@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "solver/generalized_alpha.h"
 #include "unit/solver/fixtures.h"
 
@@ -100,6 +102,71 @@ TEST(Newmark, damped_rule_slows_a_rigid_rotation_and_the_ledger_says_so) {
   const double lost = before - kinetic_energy(sim.model, sim.state) - sim.state.energy.strain;
   EXPECT_GT(lost, 0.01 * before);
   EXPECT_LT(sim.state.energy.balance_error(), 1e-3);
+}
+
+// A mass of 10 kg swings at 7.72 m/s round the end of a stiff bar without mass of its own (method.md 8).
+struct Swing {
+  Vec3 x{3.0443, 0, 0}, v{0, 7.72, 0}, a = Vec3::Zero();
+  double strain = 0;
+  double energy() const { return 5 * v.squaredNorm() + strain; }
+};
+constexpr double k_swing_stiffness = 1e10;  // N, of the bar's section
+
+// One step of average acceleration for a point mass on a spring, Newton from the circle.
+void step_alone(Swing& s, double h) {
+  constexpr double L = 3.0443, m = 10;
+  Vec3 x = (s.x + h * s.v).normalized() * L, a;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    a = 4 / (h * h) * (x - s.x - h * s.v) - s.a;
+    const double l = x.norm(), tension = k_swing_stiffness * (l / L - 1);
+    const Vec3 n = x / l;
+    const Mat3 tangent = (4 * m / (h * h) + tension / l) * Mat3::Identity() +
+                         (k_swing_stiffness / L - tension / l) * n * n.transpose();
+    x -= tangent.inverse() * (m * a + tension * n);
+  }
+  a = 4 / (h * h) * (x - s.x - h * s.v) - s.a;
+  s.v += h / 2 * (s.a + a);
+  s.x = x;
+  s.a = a;
+  s.strain = k_swing_stiffness / (2 * L) * (x.norm() - L) * (x.norm() - L);
+}
+
+Simulation swinging(double h) {
+  Model model;
+  Material material = steel();
+  material.young = 1e13;
+  material.density = 1e-3;
+  model.materials.push_back(material);
+  model.sections.push_back(plain_section(1e-3, 1e-3, 1e-3, 1e-3, 1, 1));
+  FrameSpec spec;
+  spec.name = "pendulum";
+  spec.nodes = {{0, 0, 0}, {3.0443, 0, 0}};
+  spec.members.push_back({{0, 1}, 0, 0});
+  spec.supports.push_back({0, 0x7});
+  spec.masses.emplace_back(1, 10.);
+  spec.velocity = {0, 7.72, 0};
+  spec.angular_velocity = {0, 0, 7.72 / 3.0443};
+  const std::vector<BodyStart> starts = add_frame(model, spec);
+  return Simulation(model, starts, newmark(k_average, h));
+}
+
+TEST(Newmark, stiff_pendulum_moves_as_a_point_mass_stable_or_not) {
+  for (double h : {0.01, 0.005}) {
+    Simulation sim = swinging(h);
+    Swing alone;
+    const double before = alone.energy();
+    for (int i = 0; i < std::lround(6.5 / h); ++i) {
+      step_alone(alone, h);
+      const StepStatus status = sim.advance();
+      ASSERT_TRUE(status.ok()) << status.message(sim.model);
+      EXPECT_EQ(status.rejected, 0) << sim.state.time;
+    }
+    // the bar weighs 3e-7 of the mass; at 10 ms its share has grown as the motion has
+    EXPECT_NEAR(sim.state.energy.kinetic + sim.state.energy.strain, alone.energy(), 1e-5 * before);
+    EXPECT_NEAR(alone.energy() / before, h > 0.007 ? 2.0726 : 0.9999, 1e-4);
+    EXPECT_EQ(sim.state.position[0], Vec3(Vec3::Zero()));
+    EXPECT_EQ(sim.state.velocity[0], Vec3(Vec3::Zero()));
+  }
 }
 
 // Simo & Vu-Quoc 1988: two legs of 10, a force out of the plane at the elbow that rises to 50 at 1 and falls
