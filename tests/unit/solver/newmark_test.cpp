@@ -143,7 +143,7 @@ Simulation swinging(double h) {
   spec.nodes = {{0, 0, 0}, {3.0443, 0, 0}};
   spec.members.push_back({{0, 1}, 0, 0});
   spec.supports.push_back({0, 0x7});
-  spec.masses.emplace_back(1, 10.);
+  spec.masses = {{1, 10.}};
   spec.velocity = {0, 7.72, 0};
   spec.angular_velocity = {0, 0, 7.72 / 3.0443};
   const std::vector<BodyStart> starts = add_frame(model, spec);
