@@ -169,51 +169,5 @@ TEST(Newmark, stiff_pendulum_moves_as_a_point_mass_stable_or_not) {
   }
 }
 
-// Simo & Vu-Quoc 1988: two legs of 10, a force out of the plane at the elbow that rises to 50 at 1 and falls
-// to 0 at 2; masses of the line and its rotary inertia 20, 10, 10 about local x, y, z.
-TEST(Newmark, right_angle_cantilever_swings_as_published) {
-  Model model;
-  Material material = steel();
-  material.young = 1e6;
-  material.poisson = 0;
-  material.density = 1;
-  model.materials.push_back(material);
-  model.sections.push_back(plain_section(1, 1e-3, 1e-3, 2e-3, 2, 2));
-  FrameSpec spec;
-  spec.name = "legs";
-  constexpr int k_members = 5;
-  for (int i = 0; i <= k_members; ++i) spec.nodes.push_back({10. * i / k_members, 0, 0});
-  for (int i = 1; i <= k_members; ++i) spec.nodes.push_back({10, 10. * i / k_members, 0});
-  for (int i = 0; i < 2 * k_members; ++i) spec.members.push_back({{i, i + 1}, 0, 0});
-  spec.supports.push_back({0, k_clamped});
-  spec.loads.push_back({k_members, {0, 0, 50}, Vec3::Zero(), {{0, 0}, {1, 1}, {2, 0}}});
-  add_frame(model, spec);
-  for (Mat3& inertia : model.node_inertia) inertia.setZero();
-  for (const Element& element : model.elements)
-    for (int node : element.node)
-      model.node_inertia[node] +=
-          element.triad * (element.length / 2 * Vec3(20, 10, 10)).asDiagonal() * element.triad.transpose();
-  Simulation sim(model, {BodyStart{}}, newmark(k_average, 0.05));
-  double greatest = 0, greatest_at = 0, least = 0, least_at = 0;
-  while (sim.state.time < 18) {
-    ASSERT_TRUE(sim.advance(1));
-    const double z = sim.state.position[2 * k_members].z();
-    if (z > greatest) {
-      greatest = z;
-      greatest_at = sim.state.time;
-    }
-    if (z < least) {
-      least = z;
-      least_at = sim.state.time;
-    }
-  }
-  // tip +8.25 at 7.44, -9.73 at 15.87 (method.md 8), converged in step and mesh; ours are coarser
-  EXPECT_NEAR(greatest, 8.25, 0.25);
-  EXPECT_NEAR(greatest_at, 7.44, 0.25);
-  EXPECT_NEAR(least, -9.73, 0.3);
-  EXPECT_NEAR(least_at, 15.87, 0.3);
-  EXPECT_LT(sim.state.energy.balance_error(), 1e-3);
-}
-
 }  // namespace
 }  // namespace topple::test
