@@ -178,11 +178,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
                               const std::vector<TouchingPair>& contacts,
                               std::vector<SectionForces>& sections) const {
   BodyEnergy sum;
-  for (int i = 0; i < count; ++i) {
-    const Vec3& w = motion.angular_velocity[i];
-    sum.kinetic += 0.5 * model.node_mass[first + i] * motion.velocity[i].squaredNorm() +
-                   0.5 * w.dot(model.node_inertia[first + i] * w);
-  }
+  sum.kinetic = kinetic_energy(motion);
   const Body& body = model.bodies[index];
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[e];
@@ -198,6 +194,16 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion,
     // the printed law has no spring: what it takes in is dissipated
     if (law.kind != ContactLawKind::printed) sum.contact += penalty_energy(law, pair.depth, pair.L);
     sum.contact += pair.out.stick_energy;
+  }
+  return sum;
+}
+
+double BodySystem::kinetic_energy(const BodyMotion& motion) const {
+  double sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3& w = motion.angular_velocity[i];
+    sum += 0.5 * model.node_mass[first + i] * motion.velocity[i].squaredNorm() +
+           0.5 * w.dot(model.node_inertia[first + i] * w);
   }
   return sum;
 }

@@ -60,6 +60,7 @@ class BodySystem {
   /// Also fills this body's part of `sections`, one per element of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion,
                     const std::vector<TouchingPair>& contacts, std::vector<SectionForces>& sections) const;
+  double kinetic_energy(const BodyMotion& motion) const;  ///< J
   /// Copies this body's part of the state.
   void load(const State& state, BodyMotion& motion) const;
   /// Copies the elements of this body. Steps begin with it; evaluations read `elements`.
