@@ -184,6 +184,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"gravity_J", number(e.gravity)},
       {"contact_J", number(e.contact)},
       {"start_J", number(e.start_total)},
+      {"final_J", number(e.kinetic + e.strain + e.contact)},
       {"dissipated_J", number(e.dissipated())},
       {"friction_J", number(e.friction)},
       {"normal_damping_J", number(e.normal_damping)},

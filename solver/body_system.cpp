@@ -243,11 +243,7 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,
                               std::vector<SectionForces>& sections) const {
   BodyEnergy sum;
-  for (int i = 0; i < count; ++i) {
-    const Vec3& w = motion.angular_velocity[i];
-    sum.kinetic += 0.5 * model.node_mass[node[i]] * motion.velocity[i].squaredNorm() +
-                   0.5 * w.dot(model.node_inertia[node[i]] * w);
-  }
+  sum.kinetic = kinetic_energy(motion);
   for (std::size_t k = 0; k < own_elements.size(); ++k) {
     const auto [e, i, j] = own_elements[k];
     const Element& element = model.elements[e];
@@ -263,6 +259,16 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
     sum.contact += pair.out.stick_energy;
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
+  return sum;
+}
+
+double BodySystem::kinetic_energy(const BodyMotion& motion) const {
+  double sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vec3& w = motion.angular_velocity[i];
+    sum += 0.5 * model.node_mass[node[i]] * motion.velocity[i].squaredNorm() +
+           0.5 * w.dot(model.node_inertia[node[i]] * w);
+  }
   return sum;
 }
 

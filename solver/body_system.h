@@ -74,6 +74,7 @@ class BodySystem {
   /// Also fills this system's part of `sections`, one per element of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
                     std::vector<SectionForces>& sections) const;
+  double kinetic_energy(const BodyMotion& motion) const;  ///< J
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
   /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.

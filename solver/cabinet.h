@@ -57,6 +57,13 @@ struct FrameMember {
   Vec3 up = Vec3::Zero();  ///< zero: z, or x for a vertical member
 };
 
+/// Added to what a node has from its members.
+struct PointMass {
+  int node;
+  double mass;                  ///< kg
+  Vec3 inertia = Vec3::Zero();  ///< kg m^2 about the node, [Ixx, Iyy, Izz] in world axes, reference pose
+};
+
 /// Anything made of straight members. Node numbers in supports, loads and masses count from 0 within the
 /// frame.
 struct FrameSpec {
@@ -65,9 +72,9 @@ struct FrameSpec {
   std::vector<FrameMember> members;
   std::vector<Support> supports;
   std::vector<Load> loads;
-  std::vector<std::pair<int, double>> masses;  ///< node, kg
-  double mass = 0;                             ///< kg, 0: from the densities
-  std::vector<Vec3> copies;                    ///< translations; empty: one at the origin
+  std::vector<PointMass> masses;
+  double mass = 0;           ///< kg, 0: from the densities
+  std::vector<Vec3> copies;  ///< translations; empty: one at the origin
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 };

@@ -34,18 +34,20 @@ void add_one(Model& model, const FrameSpec& spec, const std::string& name, const
   for (int i = 0; i < count; ++i)
     if (width[i] == 0) throw BuildError("nodes", "node " + std::to_string(i) + " belongs to no member");
   builder.add_material_mass();
-  for (const auto& [node, mass] : spec.masses) model.node_mass[first + node] += mass;
   if (spec.mass > 0) {
     double from_density = 0, added = 0;
     for (int i = first; i < model.node_total(); ++i) from_density += model.node_mass[i];
-    for (const auto& [node, mass] : spec.masses) added += mass;
+    for (const PointMass& point : spec.masses) added += point.mass;
     if (!(spec.mass > added)) throw BuildError("mass", "is not above the sum of `masses`");
-    const double factor = (spec.mass - added) / (from_density - added);
+    const double factor = (spec.mass - added) / from_density;
     for (int i = first; i < model.node_total(); ++i) {
       model.node_mass[i] *= factor;
       model.node_inertia[i] *= factor;
     }
-    for (const auto& [node, mass] : spec.masses) model.node_mass[first + node] += mass * (1 - factor);
+  }
+  for (const PointMass& point : spec.masses) {
+    model.node_mass[first + point.node] += point.mass;
+    model.node_inertia[first + point.node] += point.inertia.asDiagonal();
   }
   for (std::size_t i = 0; i < width.size(); ++i)
     builder.add_contact_point(first + static_cast<int>(i), width[i]);

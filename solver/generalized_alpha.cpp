@@ -17,6 +17,9 @@ constexpr double k_good_rate = 0.1;
 // From this iteration on corrections that shrink no faster than this are halved.
 constexpr int k_patience = 6;
 constexpr double k_cycling_rate = 0.7;
+// A predicted pose that takes more than this many times the body's kinetic energy to get to is no start for
+// Newton.
+constexpr double k_reach = 2;
 
 enum class Outcome { converged, diverged, not_finite, singular, too_far };
 
@@ -39,7 +42,11 @@ class ImplicitStep {
 
  private:
   void predict();
+  void hold_supports(int i, Vec3& shift, Vec3& spin) const;
+  bool beyond_reach() const;
+  void start_from_pose();
   void update_trial();
+  void form_tangent();
   double correct(int& node);
   void add_inertia_tangent();
   void fill_residual();
@@ -50,6 +57,8 @@ class ImplicitStep {
   const double t_, h_;
   const GeneralizedAlpha c_;
   IntegratorScratch& w_;
+  bool predicted_ = false;
+  bool every_tangent_ = false;
 };
 
 void ImplicitStep::predict() {
@@ -65,7 +74,38 @@ void ImplicitStep::predict() {
     const int g = s_.node[i];
     w_.travel[i] = h_ * (state_.velocity[g] + h_ / 2 * state_.algorithmic_acceleration[g]);
     w_.turn[i] = h_ * (state_.angular_velocity[g] + h_ / 2 * state_.algorithmic_angular_acceleration[g]);
+    if (s_.fixed[i] == 0) continue;
+    Vec3 spin = w_.start.rotation[i] * w_.turn[i];
+    hold_supports(i, w_.travel[i], spin);
+    w_.turn[i] = w_.start.rotation[i].conjugate() * spin;
   }
+  predicted_ = true;
+}
+
+// No stiffness brings back what rounding moves a support.
+void ImplicitStep::hold_supports(int i, Vec3& shift, Vec3& spin) const {
+  for (int k = 0; k < 3; ++k) {
+    if (s_.fixed[i] >> k & 1) shift[k] = 0;
+    if (s_.fixed[i] >> (3 + k) & 1) spin[k] = 0;
+  }
+}
+
+// Where the step is long for stiff members, velocities and accelerations ring about the motion, and what
+// they predict strains the members far beyond what the body can do. Compressed members make the tangent
+// indefinite there: Newton goes astray, or finds them folded. The forces of the predicted pose over the way
+// to it bound the rise of a convex potential.
+bool ImplicitStep::beyond_reach() const {
+  double rise = 0;
+  for (int i = 0; i < s_.count; ++i)
+    rise -= s_.force[i].dot(w_.travel[i]) + s_.moment[i].dot(w_.start.rotation[i] * w_.turn[i]);
+  return rise > k_reach * s_.kinetic_energy(w_.start);
+}
+
+// The tangent of the pose in which the step starts leads along what is stiff there.
+void ImplicitStep::start_from_pose() {
+  std::fill(w_.travel.begin(), w_.travel.end(), Vec3::Zero());
+  std::fill(w_.turn.begin(), w_.turn.end(), Vec3::Zero());
+  every_tangent_ = true;
 }
 
 void ImplicitStep::update_trial() {
@@ -126,7 +166,8 @@ void ImplicitStep::fill_residual() {
 double ImplicitStep::correct(int& node) {
   double greatest = 0;
   for (int i = 0; i < s_.count; ++i) {
-    const Vec3 shift(&w_.right_hand_side[6 * i]), spin(&w_.right_hand_side[6 * i + 3]);
+    Vec3 shift(&w_.right_hand_side[6 * i]), spin(&w_.right_hand_side[6 * i + 3]);
+    hold_supports(i, shift, spin);
     w_.travel[i] += shift;
     w_.turn[i] += inverse_left_jacobian(w_.turn[i]) * (w_.start.rotation[i].conjugate() * spin);
     const double length = std::max(shift.norm(), s_.size * spin.norm());
@@ -157,8 +198,16 @@ Attempt ImplicitStep::solve_with_hinges() {
   return attempt;
 }
 
+void ImplicitStep::form_tangent() {
+  s_.lu.set_zero();
+  s_.evaluate_with_tangent(p_, t_ + h_, w_.trial, state_.stick, w_.start.position, c_.gamma / (c_.beta * h_));
+  add_inertia_tangent();
+  for (int i = 0; i < s_.count; ++i)
+    for (int k = 0; k < 6; ++k)
+      if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
+}
+
 Attempt ImplicitStep::solve() {
-  const double cv = c_.gamma / (c_.beta * h_);
   const std::span<const Vec3> stick(state_.stick);
   const double tolerance = k_convergence * s_.size;
   double last = 0;
@@ -167,12 +216,13 @@ Attempt ImplicitStep::solve() {
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     update_trial();
     if (fresh) {
-      s_.lu.set_zero();
-      s_.evaluate_with_tangent(p_, t_ + h_, w_.trial, stick, w_.start.position, cv);
-      add_inertia_tangent();
-      for (int i = 0; i < s_.count; ++i)
-        for (int k = 0; k < 6; ++k)
-          if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
+      form_tangent();
+      if (predicted_ && beyond_reach()) {
+        start_from_pose();
+        update_trial();
+        form_tangent();
+      }
+      predicted_ = false;
       const int singular = s_.lu.factor();
       if (singular >= 0) {
         fill_residual();
@@ -197,7 +247,7 @@ Attempt ImplicitStep::solve() {
     }
     // Newton jumps to and fro over the edge between open and closed, stick and slip: half a step lands there
     cycling = iteration >= k_patience && rate > k_cycling_rate;
-    fresh = rate > k_good_rate && iteration > 1;
+    fresh = every_tangent_ || (rate > k_good_rate && iteration > 1);
     last = size;
   }
   return {Outcome::diverged, k_most_iterations, node};

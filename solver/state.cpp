@@ -126,7 +126,11 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
   for (const Support& support : model.supports)
     for (int k = 0; k < 3; ++k) {
       if (support.fixed >> k & 1) state.velocity[support.node][k] = 0;
-      if (support.fixed >> (3 + k) & 1) state.angular_velocity[support.node].setZero();
+      if (support.fixed >> (3 + k) & 1) {
+        Vec3 omega = state.rotation[support.node] * state.angular_velocity[support.node];
+        omega[k] = 0;
+        state.angular_velocity[support.node] = state.rotation[support.node].conjugate() * omega;
+      }
     }
   return state;
 }

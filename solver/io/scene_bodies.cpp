@@ -149,7 +149,8 @@ FrameSpec read_frame(const Entry& entry, const Library& library) {
     spec.loads.push_back({node, load.vector("force"), load.vector("moment"), load.history("history")});
   }
   for (const Entry& mass : entry.entries("masses")) {
-    spec.masses.emplace_back(read_node(mass, "node", mass.integer("node"), spec), mass.number("mass"));
+    const int node = read_node(mass, "node", mass.integer("node"), spec);
+    spec.masses.push_back({node, mass.number("mass"), mass.vector("inertia")});
   }
   if (entry.has("mass")) spec.mass = entry.number("mass");
   spec.copies = entry.vectors("copies");

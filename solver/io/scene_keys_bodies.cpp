@@ -110,6 +110,9 @@ void add_frame_masses(std::vector<Key>& keys) {
   Rows rows(keys, "frame.masses");
   rows.integer("node", 0, 1e6, "node").required();
   rows.number("mass", D::mass, "kg", 0, 1e7, "added to the node").required();
+  rows.numbers("inertia", 3, D::inertia, "kg m^2", 0, 1e7,
+               "[Ixx, Iyy, Izz] about the node along the axes of the world, at the start; added to the node")
+      .absent(Vec3(Vec3::Zero()));
 }
 
 }  // namespace

@@ -334,7 +334,7 @@ TEST(Scene, frames_carry_supports_loads_masses_and_copies) {
       "supports = [{ node = 0, fix = \"xyz\" }, { node = 0, fix = \"X\" }]\n"
       "loads = [{ node = 1, force = [0, 0, \"-1 kN\"], moment = [1, 2, 3], history = [[0, 1], [\"500 ms\", "
       "0]] }]\n"
-      "masses = [{ node = 1, mass = \"2 kg\" }]\n"
+      "masses = [{ node = 1, mass = \"2 kg\", inertia = [1, 2, 3] }]\n"
       "copies = [[0, 0, 0], [0, \"2 m\", 0]]\nvelocity = [1, 0, 0]\n"
       "[[probe]]\nname = \"tip\"\nbody = \"beam-2\"\nnode = 1\n[[probe]]\nbody = \"beam\"\n";
   const topple::Setup setup = parse_scene(text, "s.toml").setup;
@@ -351,6 +351,8 @@ TEST(Scene, frames_carry_supports_loads_masses_and_copies) {
   EXPECT_EQ(setup.model.loads[0].moment, Vec3(1, 2, 3));
   EXPECT_EQ(setup.model.loads[0].history, (std::vector<std::pair<double, double>>{{0, 1}, {0.5, 0}}));
   EXPECT_NEAR(setup.model.bodies[0].mass, 2 + 7850 * 116e-6, 1e-9);
+  const Mat3 added = setup.model.node_inertia[1] - setup.model.node_inertia[0];
+  EXPECT_LT((added - Mat3(Vec3(1, 2, 3).asDiagonal())).norm(), 1e-14);
   ASSERT_EQ(setup.probes.size(), 2u);
   EXPECT_EQ(setup.probes[0].body, 1);
   EXPECT_EQ(setup.model.node_position[setup.probes[0].node], Vec3(1, 2, 0));

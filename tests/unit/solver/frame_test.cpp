@@ -121,9 +121,11 @@ TEST(Frame, asked_mass_is_met_with_added_masses_kept) {
   spec.name = "bar";
   spec.nodes = {{0, 0, 0}, {1, 0, 0}};
   spec.members = {{{0, 1}, 0, 0}};
-  spec.masses = {{1, 4.}};
+  spec.masses = {{1, 4., {1, 2, 3}}};
   spec.mass = 10;
   add_frame(model, spec);
+  const Mat3 added = model.node_inertia[1] - model.node_inertia[0];
+  EXPECT_LT((added - Mat3(Vec3(1, 2, 3).asDiagonal())).norm(), 1e-14);
   EXPECT_NEAR(model.bodies[0].mass, 10, 1e-12);
   EXPECT_NEAR(model.node_mass[1] - model.node_mass[0], 4, 1e-12);
   EXPECT_NEAR(model.node_mass[2], 4, 1e-12);  // two thirds of the remaining 6 kg

@@ -124,6 +124,10 @@ TEST(State, supported_directions_start_at_rest) {
   EXPECT_EQ(state.velocity[0], Vec3(Vec3::Zero()));
   EXPECT_EQ(state.angular_velocity[0], Vec3(Vec3::Zero()));
   EXPECT_GT(state.velocity[1].norm(), 0);
+  model.supports[0].fixed = 0x1f;  // free to turn about z
+  start.rotation = {0, 0, 0.5};
+  const State hinged = start_state(model, {start});
+  EXPECT_LT((hinged.rotation[0] * hinged.angular_velocity[0] - Vec3(0, 0, 1)).norm(), 1e-15);
 }
 
 TEST(State, is_finite_sees_every_number) {
