@@ -7,6 +7,7 @@
 namespace topple {
 namespace {
 
+constexpr double k_aligned = 1e-6;  // of k_parallel: there is no nearest point, and kappa is below 1e-11
 constexpr double k_thin = 0.02;  // of L: nearer than this the turning of the normal is left out of tangents
 
 using Ends = std::array<Vec3, 4>;
@@ -65,7 +66,7 @@ class PairFinder {
     if (!(nearest.between.squaredNorm() < pair.L * pair.L)) return;
     const Crossing lines = crossing(x_);
     const double x = std::min(lines.sine2 / k_parallel, 1.);
-    const double kappa = x * x * (3 - 2 * x);
+    const double kappa = x < k_aligned ? 0 : x * x * (3 - 2 * x);
     const std::size_t first = found.touches.size();
     if (kappa > 0) add(0, nearest, kappa, velocity, start);
     if (kappa == 1) return;

@@ -120,6 +120,9 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::passed_through:
       return "members would pass through each other unseen in the step " + when + ": " + where +
              "; try a smaller time_step";
+    case Kind::energy_lost:
+      return "more than a tenth of the energy is unaccounted for after the step " + when + ": " + where +
+             "; try a smaller time_step";
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::ok:
@@ -170,6 +173,7 @@ constexpr double k_most_growth = 2;     // from step to step
 constexpr double k_most_shrinking = 5;  // of a step that is tried again
 constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
+constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
 
 // With the stiffer of the two laws of a passage.
 void find_explicit_limit(const Model& model, const Parameters& parameters, Workspace::Impl& w) {
@@ -191,6 +195,24 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
     w.explicit_limit = limit;
     w.limiting_body = b;
     w.limiting_node = node;
+  }
+}
+
+// Body and element with the greatest contact force of the newest step.
+void blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
+  double greatest = 0;
+  const auto blame = [&](const BodySystem& system, double force, int node) {
+    if (!(force > greatest)) return;
+    greatest = force;
+    status.node = node;
+    status.body = system.model.node_body[node];
+    status.element = system.element_at(node);
+  };
+  for (const BodySystem* system : w.systems()) {
+    for (const TouchingPair& pair : system->contacts.planes)
+      blame(*system, pair.out.normal, system->node[pair.node]);
+    for (const MemberTouch& touch : system->contacts.members.touches)
+      blame(*system, touch.out.normal, system->node[system->member_pairs()[touch.pair].node[0]]);
   }
 }
 
@@ -259,6 +281,10 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
+  } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy) {
+    status.kind = StepStatus::Kind::energy_lost;
+    status.time = next.time;
+    blame_hardest_contact(w, status);
   }
   return status;
 }

@@ -25,7 +25,8 @@ struct StepStatus {
     step_too_long,
     no_equilibrium,
     uncontrolled,
-    passed_through
+    passed_through,
+    energy_lost
   };
   Kind kind = Kind::ok;
   double time = 0;  ///< s
@@ -86,10 +87,14 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
 /// Fills the workspace from a state that was stepped before, such as a checkpoint; leaves the state as it is.
 void resume(const Model& model, const State& state, Workspace& workspace);
 
+/// Part of the largest energy exchanged so far that no step may leave unexplained: more is not the motion of
+/// the model.
+inline constexpr double k_lost_balance = 0.1;
+
 /// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at
-/// most. On failure `state` is as before the call. The implicit methods halve their step within the call when
-/// Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64, an
-/// adaptive one down to k_least_step.
+/// most. On failure `state` is as before the call. energy_lost: the step is much too long for what happens in
+/// it. The implicit methods halve their step within the call when Newton does not converge or members would
+/// pass through each other unseen: a fixed one down to 1/64, an adaptive one down to k_least_step.
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until = std::numeric_limits<double>::infinity());
 

@@ -38,12 +38,17 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
 TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
   EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"),
             "s.toml:18:1: contact.friction_static: is not supported by this version");
-  EXPECT_EQ(after_beam("[floor]\nspacing = 1\n"),
-            "s.toml:18:1: floor.spacing: is not supported by this version");
   EXPECT_EQ(after_beam("[[anchor]]\nname = \"a\"\n"),
             "s.toml:17:3: anchor: is not supported by this version");
   EXPECT_EQ(in_cabinet("damping = 0.01\n"),
             "s.toml:16:1: cabinet.free.damping: is not supported by this version");
+}
+
+TEST(SceneErrors, floors_of_beams_and_of_planes_have_their_own_keys) {
+  EXPECT_EQ(after_beam("[floor]\nspacing = 1\n"),
+            "s.toml:18:1: floor.spacing: belongs to type = beams, but type is plane");
+  EXPECT_EQ(after_beam("[floor]\ntype = \"beams\"\n"),
+            "s.toml:17:1: floor.section: missing; type = \"beams\" needs it (a [[section]], of its members)");
 }
 
 TEST(SceneErrors, yield_and_fracture_have_their_ranges_and_need_each_other) {
@@ -88,7 +93,6 @@ TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
   };
   EXPECT_EQ(refused("[[shake]]\nfrequency = [1, 2]\ntype = \"sweep\"\n"), "s.toml:19:8");
   EXPECT_EQ(refused("[[shake]]\ntype = \"record\"\nfiles = []\n"), "s.toml:18:8");
-  EXPECT_EQ(refused("[floor]\ntype = \"beams\"\n"), "s.toml:18:8");
   EXPECT_EQ(in_cabinet("model = \"rigid\"\n"),
             "s.toml:16:9: cabinet.free.model: \"rigid\" is not supported by this version");
   EXPECT_EQ(in_cabinet("model = \"elastic\"\n"),
