@@ -121,8 +121,8 @@ std::string StepStatus::message(const Model& model) const {
       return "members would pass through each other unseen in the step " + when + ": " + where +
              "; try a smaller time_step";
     case Kind::energy_lost:
-      return "more than a tenth of the energy is unaccounted for after the step " + when + ": " + where +
-             "; try a smaller time_step";
+      return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
+             when + ": " + where + "; try a smaller time_step";
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::ok:
@@ -198,8 +198,8 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
   }
 }
 
-// Body and element with the greatest contact force of the newest step.
-void blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
+// Body and element with the greatest contact force of the newest step; false: nothing touches.
+bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
   double greatest = 0;
   const auto blame = [&](const BodySystem& system, double force, int node) {
     if (!(force > greatest)) return;
@@ -214,6 +214,7 @@ void blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
     for (const MemberTouch& touch : system->contacts.members.touches)
       blame(*system, touch.out.normal, system->node[system->member_pairs()[touch.pair].node[0]]);
   }
+  return greatest > 0;
 }
 
 // One step of size h from w.next, whose near elements are known, into w.next.
@@ -281,10 +282,10 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
-  } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy) {
+  } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy &&
+             blame_hardest_contact(w, status)) {
     status.kind = StepStatus::Kind::energy_lost;
     status.time = next.time;
-    blame_hardest_contact(w, status);
   }
   return status;
 }
