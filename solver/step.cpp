@@ -81,6 +81,7 @@ struct Workspace::Impl {
   std::vector<MemberForce> member_forces;
   std::vector<SectionForces> sections;
   State next;
+  int most_iterations = 0;  // of one system in the newest step
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
   int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;
@@ -246,11 +247,13 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
+  w.most_iterations = 0;
   for (auto& system : w.systems()) {
     status = is_explicit
                  ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
                  : advance_generalized_alpha(*system, parameters, next, t, h, halvings, w.scratch, exchanged);
     iterations += status.newton_iterations;
+    w.most_iterations = std::max(w.most_iterations, status.newton_iterations);
     rejected += status.rejected;
     if (!status.ok()) break;
     const BodyEnergy part =
@@ -338,12 +341,11 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
   int iterations = 0, rejected = 0;
   for (;;) {
     status = try_step(model, parameters, state, h, 0, w);
-    const int last_iterations = status.newton_iterations;
-    iterations += last_iterations;
+    iterations += status.newton_iterations;
     const double error = status.ok() && !is_explicit ? step_error(model, parameters, state, w.next, h) : 0;
     if (status.ok() && error <= 1) {
       if (h == left) w.next.time = state.time + left;
-      const double wanted = std::min(next_size(h, error, last_iterations), k_longest_step);
+      const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
       w.next.step_size = h;
       if (!is_explicit) change_step(w.next, std::min(wanted, look_ahead(model, parameters, w.next)));
       std::swap(state, w.next);

@@ -429,10 +429,10 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
     load_scene("no-such-scene");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "no-such-scene: no such file or built-in scene; built-in: breaking, cantilever, free-rocking, "
-        "paper-a, paper-b, portal-pushover, tumble, yielding");
+    EXPECT_STREQ(error.what(),
+                 "no-such-scene: no such file or built-in scene; built-in: beam-floor, breaking, cantilever, "
+                 "collide, dominoes, free-rocking, paper-a, paper-b, portal-pushover, stack, tumble, wedged, "
+                 "yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");
