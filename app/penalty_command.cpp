@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -65,30 +66,35 @@ ordered_json document(const study::PenaltyStudy& results, const study::Advice& a
           {"rows", rows_as_json(results)}};
 }
 
-std::string cell(const study::PenaltyRow& row, double value, const char* pattern) {
-  return row.computed ? fmt::format("{:>11}", fmt::format(fmt::runtime(pattern), value))
-                      : fmt::format("{:>11}", row.status.substr(0, 10));
+constexpr std::size_t k_column = 12;
+
+std::string cell(const std::string& text) {
+  return fmt::format("{:>{}}", text.size() < k_column ? text : "-", k_column);
+}
+
+std::string cell(const study::PenaltyRow& row) {
+  if (!row.computed) return cell(row.status);
+  if (row.kind == Case::depth) return cell(fmt::format("{:.2e}", *row.computed));
+  if (row.kind == Case::frequency) return cell(fmt::format("{:.4g}", *row.computed));
+  return cell(fmt::format("{:+.2f}", 100 * (*row.computed / *row.reference - 1)));
 }
 
 /// What alpha does to one group of bodies, a line an alpha.
 std::string alpha_table(const study::PenaltyStudy& results, int group) {
-  std::string text = fmt::format("{}\n{:>11}{:>11}{:>11}{:>11}{:>11}", results.groups[group].names,
-                                 "alpha, kgf", "depth/L", "bounce, Hz", "tipping, %", "fall, %");
-  for (const double ratio : study::k_pulse_ratios)
-    text += fmt::format("{:>11}", fmt::format("w/p={:g}, %", ratio));
-  text += fmt::format("{:>11}\n", "step, ms");
+  std::string text = results.groups[group].names + "\n";
+  for (const char* head : {"alpha, kgf", "depth/L", "bounce, Hz", "tipping, %", "fallback, %"})
+    text += cell(head);
+  for (const double ratio : study::k_pulse_ratios) text += cell(fmt::format("w/p={:g}, %", ratio));
+  text += cell("step, ms") + "\n";
   for (const double alpha : results.alphas) {
-    text += fmt::format("{:>11.6g}", alpha / k_standard_gravity);
+    text += cell(fmt::format("{:.7g}", alpha / k_standard_gravity));
     double step = results.time_step;
     for (const study::PenaltyRow& row : results.rows) {
       if (row.group != group || row.kind == Case::creep || row.coarse || row.law.alpha != alpha) continue;
       if (row.time_step > 0) step = row.time_step;
-      if (row.kind == Case::depth || row.kind == Case::frequency)
-        text += cell(row, row.computed.value_or(0), row.kind == Case::depth ? "{:.2e}" : "{:.4g}");
-      else
-        text += cell(row, row.computed ? 100 * (*row.computed / *row.reference - 1) : 0, "{:.2f}");
+      text += cell(row);
     }
-    text += (step > 0 ? fmt::format("{:>11.3g}", 1e3 * step) : fmt::format("{:>11}", "auto")) + "\n";
+    text += cell(step > 0 ? fmt::format("{:.3g}", 1e3 * step) : "auto") + "\n";
   }
   return text;
 }
@@ -106,18 +112,30 @@ std::string creep_table(const study::PenaltyStudy& results) {
 }
 
 std::string restitution_table(const study::PenaltyStudy& results) {
-  std::string text = fmt::format("{:<14}", "impact, m/s");
+  std::string speeds, lines;
   for (const ContactLawKind kind : study::k_laws) {
-    std::string line;
+    lines += fmt::format("  {:<12}", study::law_name(kind));
     for (const study::PenaltyRow& row : results.rows) {
       if (row.kind != Case::restitution || row.law.kind != kind) continue;
-      if (kind == study::k_laws[0]) text += fmt::format("{:>7g}", *row.at);
-      line += row.computed ? fmt::format("{:>7.3f}", *row.computed) : fmt::format("{:>7}", "-");
+      if (kind == study::k_laws[0]) speeds += fmt::format("{:>7g}", *row.at);
+      lines += row.computed ? fmt::format("{:>7.3f}", *row.computed) : fmt::format("{:>7}", "-");
     }
-    text += fmt::format("{}\n", kind == study::k_laws[0] ? "" : "");
-    text += fmt::format("{:<14}{}", "e, " + study::law_name(kind), line);
+    lines += "\n";
   }
-  return text + "\n";
+  return fmt::format("restitution at\n  {:<12}{}\n{}", "speed, m/s", speeds, lines);
+}
+
+/// Lines of up to 100 characters, the first behind a dash.
+std::string wrapped(const std::string& sentence) {
+  constexpr std::size_t k_line = 100;
+  std::string text, line = "-";
+  std::istringstream words(sentence);
+  for (std::string word; words >> word; line += " " + word) {
+    if (line.size() + 1 + word.size() <= k_line) continue;
+    text += line + "\n";
+    line = " ";
+  }
+  return text + line + "\n";
 }
 
 std::string advice_text(const study::Advice& advice) {
@@ -126,7 +144,7 @@ std::string advice_text(const study::Advice& advice) {
   if (advice.alpha && advice.time_step && !advice.resolved)
     text += fmt::format(" with time_step = {:.2g} ms", 1e3 * *advice.time_step);
   text += "\n";
-  for (const std::string& reason : advice.reasons) text += "  " + reason + "\n";
+  for (const std::string& reason : advice.reasons) text += wrapped(reason);
   return text;
 }
 

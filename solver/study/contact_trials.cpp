@@ -9,7 +9,7 @@ namespace {
 Trial failed(const StepStatus& status) {
   switch (status.kind) {
     case StepStatus::Kind::not_settled:
-      return {{}, "does not settle"};
+      return {{}, "not settled"};
     case StepStatus::Kind::step_too_long:
       return {{}, "step too long"};
     default:
@@ -108,11 +108,12 @@ Trial fall_back(const Setup& body, const Standing& theory) {
     before = lean;
     time = now;
   }
-  return run.status().ok() ? Trial{{}, "stays tilted"} : failed(run.status());
+  return run.status().ok() ? Trial{{}, "no return"} : failed(run.status());
 }
 
 Trial overturning_half_sine(const Setup& body, const Standing& theory, double ratio, double expected) {
-  constexpr double k_exact = 1e-3, k_least = 0.3, k_most = 1.3;  // of what is expected
+  constexpr double k_exact = 1e-3;
+  constexpr double k_tried[] = {0.96, 0.88, 0.75, 0.55, 0.3};  // of what is expected, downwards
   Setup setup = body;
   Shake pulse;
   pulse.kind = Shake::Kind::pulse;
@@ -137,9 +138,19 @@ Trial overturning_half_sine(const Setup& body, const Standing& theory, double ra
     if (!run.status().ok()) status = run.status();
     return false;
   };
-  double low = k_least * expected, high = k_most * expected;
-  if (falls(low)) return {{}, "falls at 0.3 of theory"};
-  if (status.ok() && !falls(high) && status.ok()) return {{}, "stands at 1.3 of theory"};
+  double low = expected, high = 1.04 * expected;
+  if (!falls(high)) {
+    low = high;
+    high = 1.3 * expected;
+    if (status.ok() && !falls(high) && status.ok()) return {{}, "stands at 1.3 of theory"};
+  } else {
+    for (const double share : k_tried) {
+      low = share * expected;
+      if (!status.ok() || !falls(low)) break;
+      high = low;
+    }
+    if (high == low) return {{}, "falls at 0.3 of theory"};
+  }
   while (status.ok() && high - low > k_exact * expected) {
     const double middle = (low + high) / 2;
     (falls(middle) ? high : low) = middle;

@@ -79,7 +79,8 @@ struct PenaltySettings {
   int jobs = 1;  ///< runs at a time
 };
 
-/// All runs, cheap ones first. The scene must be fit for it. go_on(done, of) as for_each_case (parallel.h).
+/// All runs, cheap ones and those that decide on alpha first. The scene must be fit for it. go_on(done, of)
+/// as for_each_case (parallel.h).
 PenaltyStudy study_penalty(const std::string& name, const std::string& title, const Setup& scene,
                            const PenaltySettings& settings,
                            const std::function<bool(int done, int of)>& go_on);

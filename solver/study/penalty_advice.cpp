@@ -32,7 +32,7 @@ std::string in_words(const PenaltyStudy& study, const PenaltyRow& row) {
   std::string what = row.kind == Case::depth       ? "depth at rest"
                      : row.kind == Case::tipping   ? "steady tipping"
                      : row.kind == Case::fall_back ? "fall-back time"
-                                                   : fmt::format("half-sine of w/p = {:g}", *row.at);
+                                                   : fmt::format("half-sine (w/p = {:g})", *row.at);
   const auto stands = [](const BodyGroup& group) { return group.obstacle.empty(); };
   if (std::count_if(study.groups.begin(), study.groups.end(), stands) > 1)
     what = study.groups[row.group].names + ": " + what;
@@ -152,11 +152,10 @@ Advice advise(const PenaltyStudy& study) {
   for (std::size_t k = 0; k < tried.size() && !advice.alpha; ++k)
     if (tried[k].good() && (k + 1 == tried.size() || tried[k + 1].good())) advice.alpha = tried[k].alpha;
   std::vector<std::string>& reasons = advice.reasons;
-  const bool complete = std::all_of(tried.begin(), tried.end(), [](const Verdict& v) { return v.complete; });
   if (advice.alpha) {
     reasons.push_back(fmt::format("It is the smallest tried that keeps every bound: {}.",
                                   fmt::join(verdict(study, *advice.alpha).kept, "; ")));
-  } else if (!complete) {
+  } else if (std::any_of(tried.begin(), tried.end(), [](const Verdict& v) { return v.undecided(); })) {
     reasons.push_back("Runs are missing that would decide it.");
   } else {
     reasons.push_back(fmt::format("No alpha from {} to {} keeps every bound; the last misses: {}.",
@@ -164,9 +163,16 @@ Advice advise(const PenaltyStudy& study) {
                                   fmt::join(tried.back().missed, "; ")));
   }
   reasons.push_back(bounds_in_words());
-  for (const BodyGroup& group : study.groups)
-    if (group.obstacle.empty() && group.theory.rigid_limit() <= study.law.friction)
-      reasons.push_back(steady_in_words(group));
+  for (const BodyGroup& group : study.groups) {
+    if (!group.obstacle.empty()) continue;
+    const double rigid = group.theory.rigid_limit();
+    reasons.push_back(
+        rigid <= study.law.friction
+            ? steady_in_words(group)
+            : fmt::format("{} slides before it tips, b/h = {:.3g} with friction {:g}: its depth at "
+                          "rest alone counts.",
+                          group.names, rigid, study.law.friction));
+  }
   if (advice.alpha) add_step(study, *advice.alpha, advice);
   reasons.push_back(judged(advice.of_scene, "The scene's alpha"));
   if (!same(study.law.alpha, ContactLaw().alpha))
@@ -184,7 +190,9 @@ ordered_json advice_as_json(const Advice& advice) {
 }
 
 std::string kgf_text(double alpha) {
-  return fmt::format("{:.6g} kgf", std::round(alpha / k_standard_gravity * 100) / 100);
+  const double kgf = alpha / k_standard_gravity;
+  const double digit = std::pow(10., std::floor(std::log10(kgf)) - 3);
+  return fmt::format("{:.7g} kgf", std::round(kgf / digit) * digit);
 }
 
 }  // namespace topple::study

@@ -17,6 +17,7 @@ struct Verdict {
   std::vector<std::string> kept;    ///< "cabinet: depth at rest 0.44 % of L"
   std::vector<std::string> missed;  ///< likewise
   bool good() const { return complete && missed.empty(); }
+  bool undecided() const { return !complete && missed.empty(); }
 };
 
 struct Advice {
@@ -34,7 +35,7 @@ Verdict verdict(const PenaltyStudy& study, double alpha);
 Advice advise(const PenaltyStudy& study);
 nlohmann::ordered_json advice_as_json(const Advice& advice);
 
-/// "50 kgf", "4.903e+05 N" as "50000 kgf".
+/// "50 kgf" of 490.3325 N; four digits.
 std::string kgf_text(double alpha);
 
 }  // namespace topple::study

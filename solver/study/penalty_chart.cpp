@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "solver/study/gnuplot.h"
 #include "solver/study/impact.h"
@@ -14,9 +15,9 @@ namespace {
 
 using Case = PenaltyRow::Case;
 
-constexpr int k_width = 1680, k_height = 1400;
+constexpr int k_width = 1680, k_height = 1440;
 constexpr Sheet k_sheet{k_width, k_height};
-constexpr int k_columns = 3, k_header = 210, k_left = 92, k_right = 30, k_gap = 104;
+constexpr int k_columns = 3, k_header = 250, k_left = 92, k_right = 30, k_gap = 104;
 constexpr int k_above = 64, k_below = 92;  // titles; tics with their label
 constexpr int k_most_groups = 4;           // drawn; the table has all
 
@@ -103,19 +104,14 @@ class Chart {
   }
 
   std::string header(const std::string& origin) const {
-    const std::string recommended =
-        advice_.alpha ? "recommended α = " + kgf_text(*advice_.alpha) : "no α can be recommended";
-    const std::string step =
-        study_.time_step > 0 ? fmt::format("time_step {:.3g} ms", 1e3 * study_.time_step) : "time_step auto";
-    std::string out =
-        k_sheet.label(bold("Penalty contact of " + plain(study_.scene) + ": " + recommended, 1.5), k_left,
-                      k_height - 34, "");
-    const std::string settings =
-        fmt::format("{}, law {}, α = {}, q = {:g}, friction {:g}, {}. Bodies stand alone on the floor",
-                    plain(study_.title), law_name(study_.law.kind), kgf_text(study_.law.alpha), study_.law.q,
-                    study_.law.friction, step);
-    out += k_sheet.label(settings, k_left, k_height - 76, k_grey);
-    out += k_sheet.label(origin, k_left, k_height - 102, std::string("noenhanced ") + k_grey);
+    std::string title = "Penalty contact of " + plain(study_.scene) + ": ";
+    title += advice_.alpha ? "recommended α = " + kgf_text(*advice_.alpha) : "no α to recommend";
+    if (advice_.alpha && advice_.time_step && !advice_.resolved)
+      title += fmt::format(", with {} = {:.2g} ms", plain("time_step"), 1e3 * *advice_.time_step);
+    std::string out = k_sheet.label(bold(title, 1.5), k_left, k_height - 34, "");
+    const std::string grey = std::string("noenhanced ") + k_grey;
+    out += k_sheet.label(study_.title + ". " + settings(), k_left, k_height - 76, grey);
+    out += k_sheet.label(origin + ". Bodies stand alone on the floor", k_left, k_height - 102, grey);
     double y = k_height - 134;
     for (const std::string& sentence : in_short())
       out += k_sheet.label(sentence, k_left, std::exchange(y, y - 26), "noenhanced");
@@ -123,26 +119,39 @@ class Chart {
            "unset border\nunset tics\nunset key\nset xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\n";
   }
 
+  std::string settings() const {
+    const ContactLaw& law = study_.law;
+    const std::string smoothing =
+        law.kind == ContactLawKind::coulomb
+            ? fmt::format("restitution {:g}, normal_speed {:g} m/s", law.restitution, law.normal_speed)
+            : fmt::format("slip_speed {:g} m/s", law.slip_speed);
+    return fmt::format("Law {}, α = {}, q = {:g}, friction {:g}, {}, time_step {}", law_name(law.kind),
+                       kgf_text(law.alpha), law.q, law.friction, smoothing,
+                       study_.time_step > 0 ? fmt::format("{:.3g} ms", 1e3 * study_.time_step) : "auto");
+  }
+
+  /// What the recommended alpha and the scene's do, two lines each at most.
   std::vector<std::string> in_short() const {
     std::vector<std::string> lines;
-    const auto list = [](const std::vector<std::string>& parts) {
-      std::string text;
-      for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
-      return text;
+    const auto add = [&lines](std::string line, const std::vector<std::string>& parts) {
+      constexpr std::size_t k_most = 172;
+      int begun = 1;
+      for (const std::string& part : parts) {
+        if (line.size() + part.size() > k_most) {
+          if (++begun > 2) break;
+          lines.push_back(std::exchange(line, "     "));
+        }
+        line += part + (&part == &parts.back() ? "" : "; ");
+      }
+      lines.push_back(begun > 2 ? line + "…" : line);
     };
-    if (advice_.alpha) {
-      std::string text = kgf_text(*advice_.alpha) + ": " + list(verdict(study_, *advice_.alpha).kept);
-      if (advice_.time_step && !advice_.resolved)
-        text += fmt::format("; takes time_step = {:.2g} ms", 1e3 * *advice_.time_step);
-      lines.push_back(text);
-    }
+    if (advice_.alpha) add(kgf_text(*advice_.alpha) + ": ", verdict(study_, *advice_.alpha).kept);
     const Verdict& scene = advice_.of_scene;
-    lines.push_back("Scene's " + kgf_text(scene.alpha) + ": " +
-                    (!scene.missed.empty() ? "not within bounds: " + list(scene.missed)
-                     : scene.complete      ? "within all bounds"
-                                           : "runs are missing"));
-    for (std::string& line : lines)
-      if (line.size() > 190) line = line.substr(0, line.rfind(';', 186)) + "; …";
+    const std::string begin = "The scene's " + kgf_text(scene.alpha) + ": ";
+    if (!scene.missed.empty())
+      add(begin + "not within bounds: ", scene.missed);
+    else
+      lines.push_back(begin + (scene.complete ? "within all bounds" : "runs are missing"));
     return lines;
   }
 
@@ -153,7 +162,8 @@ class Chart {
     const double left = k_left + (k % k_columns) * (width + k_gap);
     const double top = k_height - k_header - (k / k_columns) * height;
     return "unset label\nunset logscale\nunset arrow\nset border 3 lc rgb '#444444' lw 1\n"
-           "set tics out nomirror scale 0.7,0.4\nset xtics autofreq\nset ytics autofreq\nset mxtics default\n"
+           "set tics out nomirror scale 0.7,0.4\nset xtics nomirror autofreq\nset ytics nomirror "
+           "autofreq\nset mxtics default\n"
            "set mytics default\nset format x '%g'\nset format y '%g'\n"
            "set grid xtics ytics lc rgb '#d4d4d4' lw 0.8 dt 1\n"
            "set key Left reverse samplen 3 spacing 1.2 font ',11.5'\n" +
@@ -253,7 +263,7 @@ class Chart {
                           gnuplot_quoted(names + ": rigid, theory"), k, mark_style(static_cast<int>(k)),
                           gnuplot_quoted(names + ": settled"));
     }
-    return data + panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} on n contacts") +
+    return data + panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} where evenly loaded") +
            alpha_axis(0, 1) + level(k_depth_bound, "bound 1 %") + decades("y", least, most) +
            "set logscale y\nset format y '10^{%T}'\nset mytics 10\nset key top right\n"
            "set ylabel 'depth 1 − l / L' offset 1,0\nplot " +
@@ -285,7 +295,7 @@ class Chart {
       names += fmt::format("{}'{}' {}", law == 0 ? "" : ",", law_name(k_laws[law]), -static_cast<int>(law));
     return data +
            panel(2, "Creep at rest", fmt::format("greatest way of a node in {:g} s at rest", k_creep_time)) +
-           "set logscale x\nset format x '10^{%T}'\nset yrange [-2.6:0.9]\nset key top right\n"
+           "set logscale x\nset format x '10^{%T}'\nset yrange [-2.6:0.9]\nset key top left\n"
            "set mxtics 10\nset ylabel ''\n" +
            decades("x", 1e6 * k_least, 1e6 * most) + "set ytics (" + names + ")\n" + values +
            fmt::format(
@@ -334,7 +344,7 @@ class Chart {
            "set ylabel 'speed after / before' offset 1,0\n" +
            level(law.restitution, fmt::format("e = {:g} asked", law.restitution)) +
            fmt::format(
-               "set arrow from first {0},graph 0 to first {0},graph 1 nohead {1}\n"
+               "set arrow from first {0},graph 0 to first {0},graph 0.8 nohead {1}\n"
                "set label 'normal\\_speed ε_n' at first {0},graph 0.1 offset 0.5,0 font ',11'\n",
                law.normal_speed, k_bound_line) +
            "plot " + plot + "\n";
@@ -400,10 +410,10 @@ class Chart {
     }
     return data +
            panel(5, "Error against rigid contact",
-                 fmt::format("{}: b/h = {:.3g} = {:.4g} gal; below 0.01 % it is drawn there",
-                             plain(body.names), rigid, rigid * body.theory.gravity / k_gal)) +
-           alpha_axis(0.31, 1) + level(100 * k_theory_bound, "bound 2 %") +
-           "set logscale y\nset yrange [0.01:100]\nset format y '%g'\nset mytics 10\nset key bottom left\n"
+                 fmt::format("{}: b/h = {:.3g}, {:.4g} gal; 0.01 % stands for less", plain(body.names), rigid,
+                             rigid * body.theory.gravity / k_gal)) +
+           alpha_axis(0.27, 1) + level(100 * k_theory_bound, "bound 2 %") +
+           "set logscale y\nset yrange [0.0005:100]\nset format y '%g'\nset mytics 10\nset key bottom left\n"
            "set ylabel '|error|, %' offset 1,0\n" +
            plot + "\n";
   }

@@ -51,8 +51,12 @@ CaseMeaning meaning(Case kind) {
     case Case::force:
       return {"force", "Penalty force", "N", "l/L", "", ""};
     case Case::depth:
-      return {"depth", "Greatest depth 1 - l/L of the contacts at rest",    "1",
-              "",      "(W/(n alpha))^(1/q) on n contacts of a rigid body", "computed at most 0.01"};
+      return {"depth",
+              "Greatest depth 1 - l/L of the contacts at rest",
+              "1",
+              "",
+              "rigid body in balance; (W/(n alpha))^(1/q) on n contacts around its centre",
+              "computed at most 0.01"};
     case Case::creep:
       return {"creep", "Greatest way of a node in 10 s at rest", "m", "", "", "computed at most 1e-6"};
     case Case::restitution:
@@ -67,7 +71,7 @@ CaseMeaning meaning(Case kind) {
               "Vertical motion on the contacts about rest, without loss",
               "Hz",
               "",
-              "sqrt(k/m)/2 pi of a rigid body, k the sum of q (alpha/L) depth^(q-1)",
+              "sqrt(k/m)/2 pi of a rigid body that does not lean, k the sum of q (alpha/L) depth^(q-1)",
               ""};
     case Case::tipping:
       return {"tipping", "Greatest steady acceleration withstood, over g", "1",

@@ -1,5 +1,6 @@
 #include "solver/study/standing.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +14,6 @@ namespace {
 /// What the floor does when the body is `sunk` deeper than in the reference pose and leans by theta.
 struct Support {
   double force = 0, moment = 0, stiffness = 0;  ///< N, N m about the centre of gravity, N/m
-  double deepest = 0;                           ///< 1 - l/L
 };
 
 Support support_at(const Standing& body, const ContactLaw& law, double sunk, double theta) {
@@ -25,13 +25,13 @@ Support support_at(const Standing& body, const ContactLaw& law, double sunk, dou
     sum.force += force;
     sum.moment += force * contact.place;
     sum.stiffness += law.q * force / (depth * contact.L);
-    sum.deepest = std::max(sum.deepest, depth);
   }
   return sum;
 }
 
-/// The support that carries the weight at a lean: Newton's method, halving where it leaves its bounds.
-Support balanced(const Standing& body, const ContactLaw& law, double theta) {
+/// How far the body sinks at a lean until the floor carries its weight: Newton's method, halving where it
+/// leaves its bounds.
+double balanced_sunk(const Standing& body, const ContactLaw& law, double theta) {
   double low = std::numeric_limits<double>::infinity(), high = low;
   const double one = std::pow(body.weight() / law.alpha, 1 / law.q);
   for (const Standing::Contact& contact : body.contacts) {
@@ -40,16 +40,52 @@ Support balanced(const Standing& body, const ContactLaw& law, double theta) {
     high = std::min(high, touch + one * contact.L);  // this one alone would carry it
   }
   double sunk = high;
-  Support now = support_at(body, law, sunk, theta);
   for (int k = 0; k < 100 && high - low > 1e-15 * std::abs(high); ++k) {
+    const Support now = support_at(body, law, sunk, theta);
     (now.force < body.weight() ? low : high) = sunk;
-    const double next = sunk - (now.force - body.weight()) / now.stiffness;
-    const double from = sunk;
+    const double from = sunk, next = sunk - (now.force - body.weight()) / now.stiffness;
     sunk = next > low && next < high ? next : (low + high) / 2;
-    now = support_at(body, law, sunk, theta);
     if (std::abs(sunk - from) < 1e-16 * body.height) break;
   }
-  return now;
+  return sunk;
+}
+
+Support balanced(const Standing& body, const ContactLaw& law, double theta) {
+  return support_at(body, law, balanced_sunk(body, law, theta), theta);
+}
+
+/// Depth of one contact on a base that is sunk by rest[0] and leans by rest[1] and rest[2].
+double depth_of(const Standing::Contact& contact, const Vec3& rest) {
+  return (contact.sunk + rest.dot(Vec3(1, contact.place, contact.across))) / contact.L;
+}
+
+/// Sunk and leaning so that the contacts balance the weight: the least of the potential energy, by Newton's
+/// method with steps that are halved until they lower it.
+Vec3 plane_at_rest(const Standing& body, const ContactLaw& law) {
+  const auto energy = [&](const Vec3& rest) {
+    double sum = -body.weight() * rest[0];
+    for (const Standing::Contact& contact : body.contacts)
+      sum += penalty_energy(law, depth_of(contact, rest), contact.L);
+    return sum;
+  };
+  Vec3 rest(balanced_sunk(body, law, 0), 0, 0);
+  for (int k = 0; k < 100; ++k) {
+    Vec3 left(body.weight(), 0, 0);
+    Mat3 stiffness = Mat3::Zero();
+    for (const Standing::Contact& contact : body.contacts) {
+      const double depth = depth_of(contact, rest);
+      if (!(depth > 0)) continue;
+      const Vec3 arm(1, contact.place, contact.across);
+      const double force = penalty_force(law, depth);
+      left -= force * arm;
+      stiffness += law.q * force / (depth * contact.L) * arm * arm.transpose();
+    }
+    Vec3 way = stiffness.fullPivLu().solve(left);
+    while (energy(rest + way) > energy(rest) && way.norm() > 1e-14) way /= 2;
+    rest += way;
+    if (way.norm() < 1e-14) break;
+  }
+  return rest;
 }
 
 /// log of the number at which `passes` turns from false to true, by bisection between two logs.
@@ -119,13 +155,17 @@ Standing standing(const Model& model, const Parameters& parameters, int index) {
     const Vec3& place = model.node_position[contact.node];
     const double width = floor.width > 0 ? floor.width : contact.width;
     const double gap = floor.normal.dot(place - floor.point) - contact.width / 2;
-    out.contacts.push_back({out.direction.dot(place - centre), (contact.width + width) / 2, -gap});
+    out.contacts.push_back(
+        {out.direction.dot(place - centre), axis.dot(place - centre), (contact.width + width) / 2, -gap});
   }
   return out;
 }
 
 double rest_depth(const Standing& body, const ContactLaw& law) {
-  return balanced(body, law, 0).deepest;
+  const Vec3 rest = plane_at_rest(body, law);
+  double deepest = 0;
+  for (const Standing::Contact& contact : body.contacts) deepest = std::max(deepest, depth_of(contact, rest));
+  return deepest;
 }
 
 double bounce_frequency(const Standing& body, const ContactLaw& law) {

@@ -11,9 +11,9 @@ namespace topple::study {
 /// A rigid body on the contacts of its base, pushed towards its nearest edge.
 struct Standing {
   struct Contact {
-    double place;  ///< m, from the centre of gravity towards the edge
-    double L;      ///< m
-    double sunk;   ///< m, L - l in the reference pose
+    double place, across;  ///< m, from the centre of gravity towards the edge and along it
+    double L;              ///< m
+    double sunk;           ///< m, L - l in the reference pose
   };
   Vec3 direction;          ///< unit, horizontal, from the centre of gravity to the nearest edge
   Vec3 edge;               ///< m, the point of that edge
@@ -31,21 +31,24 @@ struct Standing {
 /// The body must stand freely (alone.h).
 Standing standing(const Model& model, const Parameters& parameters, int body);
 
-/// Depth 1 - l/L of the deepest contact at rest: (W/(n alpha))^(1/q) on n like contacts.
+/// Depth 1 - l/L of the deepest contact at rest. n like contacts evenly around the centre of gravity:
+///   (W/(n alpha))^(1/q)
+/// Others lean until they balance; that the centre of gravity goes with the lean is left out.
 double rest_depth(const Standing& body, const ContactLaw& law);
 
-/// Frequency of small vertical motion about rest, Hz: sqrt(k/m)/2 pi, k the sum of q (alpha/L) depth^(q-1).
+/// Frequency of small vertical motion about rest without leaning, Hz: sqrt(k/m)/2 pi, k the sum of
+/// q (alpha/L) depth^(q-1).
 double bounce_frequency(const Standing& body, const ContactLaw& law);
 
 /// Greatest steady acceleration that the body withstands, over g: the greatest x(theta)/h - theta of any lean
 /// theta, x the place of the floor's resultant. Rigid contact: b/h. Stiff contact, n_e contacts in the row of
 /// the edge and the next row s behind it:
-///   b/h - (L/s) (W/(n_e alpha))^(1/q)
+///   b/h - (L/s) (W/(n_e alpha))^(1/q)     q = 1; slightly more for q > 1
 /// 0: it cannot stand.
 double tipping_limit(const Standing& body, const ContactLaw& law);
 
 /// Smallest alpha, N, from which on the tipping limit is within the fraction `loss` of b/h. Stiff contact:
-///   (W/n_e) (L h/(s b loss))^q
+///   (W/n_e) (L h/(s b loss))^q            q = 1; slightly less for q > 1
 double alpha_for_tipping(const Standing& body, ContactLaw law, double loss);
 
 /// Greatest alpha, N, with which a period of the bounce takes `period` s or more; q alpha^(1/q) grows as
