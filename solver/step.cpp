@@ -81,7 +81,7 @@ struct Workspace::Impl {
   std::vector<MemberForce> member_forces;
   std::vector<SectionForces> sections;
   State next;
-  int most_iterations = 0;  // of one system in the newest step
+  int most_iterations = 0;               // of one system in the newest step
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
   int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;

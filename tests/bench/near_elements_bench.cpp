@@ -30,9 +30,9 @@ void near_elements_of(benchmark::State& state) {
     pairs = found.size();
   }
   state.counters["pairs"] = static_cast<double>(pairs);
-  state.counters["s/body"] = benchmark::Counter(static_cast<double>(state.range(0)),
-                                                benchmark::Counter::kIsIterationInvariantRate |
-                                                    benchmark::Counter::kInvert);
+  state.counters["s/body"] =
+      benchmark::Counter(static_cast<double>(state.range(0)),
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(near_elements_of)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
