@@ -29,6 +29,12 @@ ordered_json vector(const Vec3& v) {
   return {number(v.x()), number(v.y()), number(v.z())};
 }
 
+ordered_json list(const std::vector<double>& values, double unit) {
+  ordered_json out = ordered_json::array();
+  for (const double value : values) out.push_back(number(value / unit));
+  return out;
+}
+
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
           {"model", "frame"},
@@ -39,6 +45,8 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"first_impact_s", number(o.first_impact)},
           {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
           {"rebound_tilt_deg", o.first_impact ? number(o.rebound_tilt * k_degrees) : ordered_json(nullptr)},
+          {"impact_times_s", list(o.impact_times, 1)},
+          {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical * k_degrees)},
           {"peak_slide_m", number(o.peak_slide)},
