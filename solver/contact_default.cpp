@@ -6,7 +6,7 @@
 namespace topple {
 namespace {
 
-constexpr double k_early_uplift = 0.02, k_landing = 0.06, k_depth = 0.01;
+constexpr double k_early_uplift = 0.02, k_landing = 0.02, k_depth = 0.01;
 
 struct Edge {
   double distance;  // m, of the centre of gravity
