@@ -35,6 +35,12 @@ ordered_json list(const std::vector<double>& values, double unit) {
   return out;
 }
 
+ordered_json intervals(const std::vector<double>& times) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t k = 1; k < times.size(); ++k) out.push_back(number(times[k] - times[k - 1]));
+  return out;
+}
+
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
           {"model", "frame"},
@@ -46,6 +52,7 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
           {"rebound_tilt_deg", o.first_impact ? number(o.rebound_tilt * k_degrees) : ordered_json(nullptr)},
           {"impact_times_s", list(o.impact_times, 1)},
+          {"impact_intervals_s", intervals(o.impact_times)},
           {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical * k_degrees)},
