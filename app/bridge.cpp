@@ -20,6 +20,7 @@ constexpr std::uint8_t k_broken = 3;      // FrameRow::hinge
 constexpr double k_ring = 1.3;            // radius of a hinge's ring, of the section
 constexpr double k_least_section = 0.02;  // m, of a section without sides
 constexpr render::Float4 k_flowed_colour = {0.93f, 0.70f, 0.55f, 1};
+constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1};
 constexpr render::Float4 k_hinge_colour = {0.90f, 0.33f, 0.04f, 1};
 constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
 
@@ -215,6 +216,7 @@ void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& st
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
+    if (model.bodies[static_cast<std::size_t>(member.body)].ground) tube.colour = k_ground_colour;
     const auto begin = [&](float lead) {
       tube.first_station = static_cast<std::uint32_t>(stations.size());
       tube.lead = lead;

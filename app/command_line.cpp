@@ -24,7 +24,7 @@ namespace {
 
 // Subcommands of the contract that this version does not have yet.
 constexpr std::string_view k_later[] = {"compare", "report", "recover"};
-constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn", "penalty"};
+constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -235,15 +235,20 @@ class CommandLine {
   void add_study() {
     CLI::App& command = add_command("study", "a family of runs as table and charts",
                                     "study elements -o elements-study --jobs 1");
-    command.add_option("KIND", kind_, "elements: error of the three schemes against elements and CPU time")
+    command
+        .add_option("KIND", kind_,
+                    "elements: error of the three schemes against elements and CPU time; penalty: what the "
+                    "contact law of a scene does, and the alpha to take")
         ->required()
         ->type_name("");
-    command.add_option("SCENE", study_scene_, "none for elements, which has scenes of its own")
+    command
+        .add_option("SCENE", study_.scene,
+                    "path or built-in name; none for elements, which has scenes of its own")
         ->type_name("");
     add_path(command, "-o,--output", study_.folder, "DIR",
              "folder for KIND.csv, .json, .svg and .png (required)");
     command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
-    command.add_option("--jobs", jobs_, "solutions at a time, default 1, at which CPU times are undisturbed")
+    command.add_option("--jobs", jobs_, "runs at a time, default 1, at which CPU times are undisturbed")
         ->type_name("N")
         ->check(job_count, "", "count");
     command.add_flag("--quiet", study_.quiet, "no progress");
@@ -252,16 +257,20 @@ class CommandLine {
     command.callback([this] {
       check_study();
       study_.jobs = whole_number<int>(jobs_).value_or(study_.jobs);
-      action_ = [this] { return study_command(study_); };
+      action_ = [this] { return kind_ == "elements" ? elements_command(study_) : penalty_command(study_); };
     });
   }
 
   void check_study() const {
     if (std::find(std::begin(k_later_studies), std::end(k_later_studies), kind_) != std::end(k_later_studies))
       refuse("study " + kind_);
-    if (kind_ != "elements") throw BadInput("\"" + kind_ + "\" is not a study; known: elements");
-    if (!study_scene_.empty())
-      throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_scene_ + "\")");
+    const bool elements = kind_ == "elements";
+    if (!elements && kind_ != "penalty")
+      throw BadInput("\"" + kind_ + "\" is not a study; known: elements, penalty");
+    if (elements && !study_.scene.empty())
+      throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_.scene + "\")");
+    if (!elements && study_.scene.empty())
+      throw BadInput("study " + kind_ + ": SCENE is required (topple study --help)");
     if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");
   }
 
@@ -334,7 +343,7 @@ class CommandLine {
   ModesOptions modes_;
   VerifyOptions verify_;
   StudyOptions study_;
-  std::string kind_, study_scene_, jobs_;
+  std::string kind_, jobs_;
   std::string count_;
 };
 

@@ -74,13 +74,16 @@ struct VerifyOptions {
 int verify_command(const VerifyOptions& options);
 
 struct StudyOptions {
+  std::string scene;   ///< empty for studies that have scenes of their own
   std::string folder;  ///< created when missing
-  int jobs = 1;        ///< solutions at a time
+  int jobs = 1;        ///< runs at a time
   bool quick = false;  ///< within a time budget
   bool quiet = false;
 };
-/// The element comparison.
-int study_command(const StudyOptions& options);
+/// `topple study elements`: the element comparison.
+int elements_command(const StudyOptions& options);
+/// `topple study penalty`: penalty contact of a scene.
+int penalty_command(const StudyOptions& options);
 
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 

@@ -113,13 +113,22 @@ void push_tube(Mesh& mesh, const Section& section, const std::vector<Ring>& ring
   push_cap(mesh, section, rings.back(), false);
 }
 
+std::uint32_t packed(const Float4& colour) {
+  std::uint32_t rgba = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    rgba |= static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[i], 0.0f, 1.0f))) << (8 * i);
+  }
+  return rgba | 0xff000000u;
+}
+
 /// `stations` are the frame's or those of its ghosts.
 bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& stations,
                const std::vector<Section>& sections, const Tube& tube) {
   const std::size_t first = tube.first_station;
   const std::size_t count = tube.station_count;
   if (tube.profile >= sections.size() || sections[tube.profile].corners.empty() || count < 2 ||
-      first + count > stations.size() || !drawable(tube.lead) || !drawable(tube.trail)) {
+      first + count > stations.size() || !drawable(tube.lead) || !drawable(tube.trail) ||
+      !drawable(tube.colour)) {
     return false;
   }
   std::vector<Ring> rings;
@@ -135,7 +144,10 @@ bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& 
   }
   rings.front().centre -= tube.lead * rings.front().axis;
   rings.back().centre += tube.trail * rings.back().axis;
+  const std::size_t before = mesh.vertices.size();
   push_tube(mesh, sections[tube.profile], rings);
+  const std::uint32_t rgba = tube.colour[3] > 0 ? packed(tube.colour) : 0;
+  for (std::size_t i = before; i < mesh.vertices.size(); ++i) mesh.vertices[i].rgba = rgba;
   return true;
 }
 
@@ -160,14 +172,6 @@ Section grown(const Section& section, float by) {
     profile.outline.push_back({corner.x(), corner.y()});
   }
   return section_of(profile);
-}
-
-std::uint32_t packed(const Float4& colour) {
-  std::uint32_t rgba = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    rgba |= static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[i], 0.0f, 1.0f))) << (8 * i);
-  }
-  return rgba | 0xff000000u;
 }
 
 /// A frustum of a cone about the line from..to, closed at `from`.

@@ -35,6 +35,7 @@ struct Tube {
   std::uint32_t body = 0;
   float lead = 0;   ///< m, how far the section is drawn on before its first station: closes a corner
   float trail = 0;  ///< m, the same after its last station
+  Float4 colour = {0, 0, 0, 0};  ///< its own; alpha 0: by the value of its stations
 };
 
 /// A translucent sheet of a cabinet: a quadrilateral, corners in order.

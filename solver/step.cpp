@@ -81,6 +81,7 @@ struct Workspace::Impl {
   std::vector<MemberForce> member_forces;
   std::vector<SectionForces> sections;
   State next;
+  int most_iterations = 0;  // of one system in the newest step
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
   int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;
@@ -121,8 +122,8 @@ std::string StepStatus::message(const Model& model) const {
       return "members would pass through each other unseen in the step " + when + ": " + where +
              "; try a smaller time_step";
     case Kind::energy_lost:
-      return "more than a tenth of the energy is unaccounted for after the step " + when + ": " + where +
-             "; try a smaller time_step";
+      return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
+             when + ": " + where + "; try a smaller time_step";
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::ok:
@@ -198,8 +199,8 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
   }
 }
 
-// Body and element with the greatest contact force of the newest step.
-void blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
+// Body and element with the greatest contact force of the newest step; false: nothing touches.
+bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
   double greatest = 0;
   const auto blame = [&](const BodySystem& system, double force, int node) {
     if (!(force > greatest)) return;
@@ -214,6 +215,7 @@ void blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
     for (const MemberTouch& touch : system->contacts.members.touches)
       blame(*system, touch.out.normal, system->node[system->member_pairs()[touch.pair].node[0]]);
   }
+  return greatest > 0;
 }
 
 // One step of size h from w.next, whose near elements are known, into w.next.
@@ -245,11 +247,13 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
+  w.most_iterations = 0;
   for (auto& system : w.systems()) {
     status = is_explicit
                  ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
                  : advance_generalized_alpha(*system, parameters, next, t, h, halvings, w.scratch, exchanged);
     iterations += status.newton_iterations;
+    w.most_iterations = std::max(w.most_iterations, status.newton_iterations);
     rejected += status.rejected;
     if (!status.ok()) break;
     const BodyEnergy part =
@@ -281,10 +285,10 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
-  } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy) {
+  } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy &&
+             blame_hardest_contact(w, status)) {
     status.kind = StepStatus::Kind::energy_lost;
     status.time = next.time;
-    blame_hardest_contact(w, status);
   }
   return status;
 }
@@ -337,12 +341,11 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
   int iterations = 0, rejected = 0;
   for (;;) {
     status = try_step(model, parameters, state, h, 0, w);
-    const int last_iterations = status.newton_iterations;
-    iterations += last_iterations;
+    iterations += status.newton_iterations;
     const double error = status.ok() && !is_explicit ? step_error(model, parameters, state, w.next, h) : 0;
     if (status.ok() && error <= 1) {
       if (h == left) w.next.time = state.time + left;
-      const double wanted = std::min(next_size(h, error, last_iterations), k_longest_step);
+      const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
       w.next.step_size = h;
       if (!is_explicit) change_step(w.next, std::min(wanted, look_ahead(model, parameters, w.next)));
       std::swap(state, w.next);

@@ -87,8 +87,8 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
 /// Fills the workspace from a state that was stepped before, such as a checkpoint; leaves the state as it is.
 void resume(const Model& model, const State& state, Workspace& workspace);
 
-/// Part of the largest energy exchanged so far that no step may leave unexplained: more is not the motion of
-/// the model.
+/// Part of the largest energy exchanged so far that no step with contacts may leave unexplained: more is not
+/// the motion of the model.
 inline constexpr double k_lost_balance = 0.1;
 
 /// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at

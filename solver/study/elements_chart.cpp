@@ -10,8 +10,8 @@
 namespace topple::study {
 namespace {
 
-// Pixels; the origin is the lower left corner, as in gnuplot.
 constexpr int k_width = 1680, k_height = 1846;
+constexpr Sheet k_sheet{k_width, k_height};
 constexpr int k_columns = 4, k_header = 232;
 constexpr int k_left = 96, k_right = 24, k_gap = 78;     // beside and between panels
 constexpr int k_above = 66, k_below = 76, k_under = 20;  // titles, tics with their label, blocks
@@ -25,16 +25,6 @@ constexpr const char* k_guide = "lc rgb '#444444' lw 2 dt (2,5)";
 constexpr const char* k_meaning[] = {
     "ASI-Gauss: stresses at the Gauss points of two elements, hinges at ends",
     "ASI: stresses at midpoints, hinges at ends", "midpoint: stresses and hinges at midpoints"};
-
-std::string terminal(ChartFormat format) {
-  if (format == ChartFormat::svg)
-    return fmt::format(
-        "set terminal svg enhanced size {},{} font 'sans-serif,17' background '#ffffff' dashlength 1\n",
-        k_width, k_height);
-  return fmt::format(
-      "set terminal pngcairo enhanced size {},{} font 'DejaVu Sans,13' background '#ffffff' dashlength 1\n",
-      k_width, k_height);
-}
 
 double floored(double error) {
   return std::max(error, k_error_floor);
@@ -65,46 +55,27 @@ Decades decades(const std::vector<ElementsRow>& rows, double margin, Value value
   return around;
 }
 
-std::string at(double x, double y) {
-  return fmt::format("screen {:.5f},{:.5f}", x / k_width, y / k_height);
-}
-
-std::string label(const std::string& text, double x, double y, const std::string& how) {
-  return "set label " + gnuplot_quoted(text) + " at " + at(x, y) + " " + how + "\n";
-}
-
-/// In gnuplot's enhanced mode; `scale` over the size of other text.
-std::string bold(const std::string& text, double scale) {
-  return fmt::format("{{/:Bold*{} {}}}", scale, text);
-}
-
-/// Places the axes of the next plot.
-std::string place(double left, double right, double bottom, double top) {
-  return fmt::format(
-      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"
-      "set tmargin at screen {:.5f}\n",
-      left / k_width, right / k_width, bottom / k_height, top / k_height);
-}
-
 /// Title, origin and legend, as a plot without axes.
 std::string header(const std::string& origin) {
   const double top = k_height;
   const std::string grey = "noenhanced textcolor rgb '#444444'";
   std::string out =
-      label(bold("Error of three beam schemes against the number of elements and against CPU time", 1.5),
-            k_left, top - 34, "") +
-      label(origin, k_left, top - 76, grey) +
-      label(
+      k_sheet.label(
+          bold("Error of three beam schemes against the number of elements and against CPU time", 1.5),
+          k_left, top - 34, "") +
+      k_sheet.label(origin, k_left, top - 76, grey) +
+      k_sheet.label(
           "CPU time: of the solving thread for one solution (all load steps, or three modes), without "
           "reading "
           "the scene; mean of the fastest of repeated samples",
           k_left, top - 102, grey) +
-      label(fmt::format("Error: |computed − reference| / |reference|; below {:.0e} it is drawn there. "
-                        "Without hinges ASI and midpoint elements are the same",
-                        k_error_floor),
-            k_left, top - 128, grey);
+      k_sheet.label(
+          fmt::format("Error: |computed − reference| / |reference|; below {:.0e} it is drawn there. "
+                      "Without hinges ASI and midpoint elements are the same",
+                      k_error_floor),
+          k_left, top - 128, grey);
   out +=
-      place(k_left, k_width - k_right, top - 226, top - 146) +
+      k_sheet.place(k_left, k_width - k_right, top - 226, top - 146) +
       "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
       "set key at graph 0,1 left top vertical maxrows 2 Left reverse samplen 4 spacing 1.25 width 2\nplot ";
   for (std::size_t s = 0; s < std::size(k_schemes); ++s)
@@ -168,14 +139,14 @@ std::string column(const ElementsStudy& study, const Quantity& quantity, double 
   std::string source = quantity.source;
   if (quantity.uncertainty > 0) source += fmt::format(" ± {:.0e}", quantity.uncertainty);
   std::string out = data_blocks(rows) + y_axis(y);
-  out += label(bold(quantity.title, 1.08), left, top - 12, "");
-  out += label("{/*0.92 " + source + "}", left, top - 40, "textcolor rgb '#444444'");
-  out += place(left, right, upper - panel, upper);
+  out += k_sheet.label(bold(quantity.title, 1.08), left, top - 12, "");
+  out += k_sheet.label("{/*0.92 " + source + "}", left, top - 40, "textcolor rgb '#444444'");
+  out += k_sheet.place(left, right, upper - panel, upper);
   out += "set xrange [1.6:80]\nset format x '%g'\nset xtics nomirror (2,4,8,16,32,64)\nset mxtics 1\n";
   out += "set xlabel 'elements per member' offset 0,0.4\n";
   out += left > k_left ? "unset ylabel\n" : "set ylabel 'relative error' offset 1,0\n";
   out += "plot " + guide(rows, quantity.order) + curves(1) + "\nunset label\n";
-  out += place(left, right, lower - panel, lower);
+  out += k_sheet.place(left, right, lower - panel, lower);
   out += fmt::format("set xrange [1e{}:1e{}]\nset xtics nomirror 1e{},10,1e{}\nset mxtics 10\n", x.from, x.to,
                      x.from, x.to);
   out += "set xlabel 'CPU time, ms' offset 0,0.4\n";
@@ -194,7 +165,7 @@ std::string elements_chart(const ElementsStudy& study, const std::string& origin
   const double width = (k_width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
   const double block = (k_height - k_header) / static_cast<double>(std::max(1, blocks));
   const double panel = (block - k_above - 2 * k_below - k_under) / 2;
-  std::string script = terminal(format) + "set encoding utf8\nset multiplot\n" + header(origin);
+  std::string script = k_sheet.begin(format) + header(origin);
   for (std::size_t k = 0; k < charted.size(); ++k) {
     const double left = k_left + static_cast<double>(k % k_columns) * (width + k_gap);
     const double top = k_height - k_header - static_cast<double>(k / k_columns) * block;

@@ -3,11 +3,10 @@
 
 #include <string>
 
+#include "solver/study/chart.h"
 #include "solver/study/elements.h"
 
 namespace topple::study {
-
-enum class ChartFormat { png, svg };
 
 /// Errors below are rounding; they are drawn here, 0 too.
 inline constexpr double k_error_floor = 1e-15;

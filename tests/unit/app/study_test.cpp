@@ -1,8 +1,9 @@
-// topple study elements as a program: files, table, and what may go wrong with them.
+// topple study as a program: files, table, and what may go wrong with them.
 #include <algorithm>
 #include <sstream>
 
 #include "program.h"
+#include "scenes.h"
 
 namespace topple::app {
 namespace {
@@ -73,6 +74,59 @@ TEST_F(StudyTest, its_scenes_are_run_by_name_but_not_listed) {
   EXPECT_EQ(topple({"run", "elements/beam-collapse", "--quiet"}).code, 0);
   EXPECT_EQ(topple({"modes", "elements/cabinet-frame", "--set", "run.elements=midpoint"}).code, 0);
   EXPECT_EQ(topple({"scenes"}).out.find("elements/"), std::string::npos);
+}
+
+/// A cabinet that slides before it tips, so that no long run is needed.
+const std::string k_slippery = R"(topple = 1
+title = "A cabinet on ice"
+[contact]
+friction = 0.1
+[floor]
+width = "90 mm"
+)" + k_library + k_cabinet;
+
+TEST_F(StudyTest, penalty_gives_numbers_charts_and_its_advice) {
+  write_bytes("ice.toml", k_slippery);
+  const std::vector<std::string> call{"study",   "penalty", "ice.toml", "-o",
+                                      "new/out", "--jobs",  "2",        "--quiet"};
+  expect_one_line(call, 1, "charts need the Debian package gnuplot-nox; new/out/penalty.csv and",
+                  {.set = {{"PATH", "/none"}}});
+  EXPECT_EQ(files(), (std::vector<std::string>{"ice.toml", "new", "new/out", "new/out/penalty.csv",
+                                               "new/out/penalty.json"}));
+  const Ended ended = topple(call);
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.err, "");
+  EXPECT_TRUE(bytes_of("new/out/penalty.png").starts_with("\x89PNG"));
+  EXPECT_NE(bytes_of("new/out/penalty.svg").find("topple " TOPPLE_VERSION), std::string::npos);
+  std::istringstream lines(ended.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+  for (const char* part : {"alpha, kgf", "creep in 10 s", "over the bound", "restitution at",
+                           "recommended alpha: 500 kgf", "slides before it tips",
+                           "The scene's alpha, 50 kgf, "
+                           "cannot give the right verdict within 2 %: depth at rest 8.9 % of L."})
+    EXPECT_NE(ended.out.find(part), std::string::npos) << part;
+
+  const nlohmann::ordered_json json = json_of(bytes_of("new/out/penalty.json"));
+  EXPECT_EQ(json["topple"], TOPPLE_VERSION);
+  EXPECT_EQ(json["scene"], "ice");
+  EXPECT_EQ(json["run"], json["of"]);
+  EXPECT_EQ(json["settings"]["contact"]["law"], "coulomb");
+  EXPECT_NEAR(json["recommendation"]["alpha_N"].get<double>(), 4903.325, 1e-6);
+  EXPECT_EQ(json["recommendation"]["scene"]["keeps_bounds"], false);
+  EXPECT_EQ(json["cases"].size(), 8u);
+  EXPECT_EQ(json["bodies"][0]["contacts"], 9);
+  for (const auto& row : json["rows"]) EXPECT_EQ(row.size(), 13u);
+}
+
+TEST_F(StudyTest, penalty_refuses_scenes_in_which_nothing_stands_on_a_floor) {
+  const auto refused = [](const std::string& scene, const std::string& part) {
+    expect_one_line({"study", "penalty", scene, "-o", "out"}, 2, part);
+  };
+  refused("none.toml", "none.toml");
+  refused("tumble", "study penalty: tumble has no floor that is a horizontal plane");
+  refused("portal-pushover", "study penalty: portal-pushover is not dynamic");
+  refused("verify/restitution-printed", "has no gravity that points down");
+  EXPECT_EQ(files(), std::vector<std::string>{});
 }
 
 }  // namespace

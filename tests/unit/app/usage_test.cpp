@@ -78,16 +78,17 @@ TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
     expect_one_line({command}, 2, refusal);
     expect_one_line({command, "s.toml", "-o", "out"}, 2, refusal);
   }
-  for (const char* kind : {"precision", "stability", "overturn", "penalty"}) {
+  for (const char* kind : {"precision", "stability", "overturn"}) {
     const std::string refusal = std::string("study ") + kind + ": not supported by this version";
     expect_one_line({"study", kind}, 2, refusal);
     expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
   }
-  for (const char* option : {"--x", "--y", "--ensemble", "--spread"})
-    expect_one_line({"study", "elements", "-o", "out", option, "1"}, 2,
-                    std::string(option) + ": not supported by this version");
-  expect_one_line({"study", "elements", "-o", "out", "--resume"}, 2,
-                  "--resume: not supported by this version");
+  for (const char* kind : {"elements", "penalty"}) {
+    for (const char* option : {"--x", "--y", "--ensemble", "--spread"})
+      expect_one_line({"study", kind, "-o", "out", option, "1"}, 2,
+                      std::string(option) + ": not supported by this version");
+    expect_one_line({"study", kind, "-o", "out", "--resume"}, 2, "--resume: not supported by this version");
+  }
   expect_one_line({"run", "s.toml", "--estimate"}, 2, "--estimate: not supported by this version");
   expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
@@ -97,7 +98,10 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study"}, 2, "KIND is required");
   expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
-  expect_one_line({"study", "frob", "-o", "out"}, 2, "\"frob\" is not a study; known: elements");
+  expect_one_line({"study", "frob", "-o", "out"}, 2, "\"frob\" is not a study; known: elements, penalty");
+  expect_one_line({"study", "penalty", "-o", "out"}, 2,
+                  "study penalty: SCENE is required (topple study --help)");
+  expect_one_line({"study", "penalty", "paper-a"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "s.toml", "-o", "out"}, 2,
                   "study elements: has scenes of its own and takes none (found \"s.toml\")");
   expect_one_line({"study", "elements", "-o", "out", "--set", "run.elements=asi"}, 2, "not expected: ");

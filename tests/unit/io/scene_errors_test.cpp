@@ -51,6 +51,13 @@ TEST(SceneErrors, floors_of_beams_and_of_planes_have_their_own_keys) {
             "s.toml:17:1: floor.section: missing; type = \"beams\" needs it (a [[section]], of its members)");
 }
 
+TEST(SceneErrors, bodies_that_overlap_at_the_start_are_refused) {
+  std::string error = in_cabinet(
+      "\n[[cabinet]]\nname = \"other\"\nat = [0.1, 0.2]\nsection = \"post\"\nmaterial = \"steel\"\n");
+  EXPECT_NE(error.find("overlap at the start"), std::string::npos) << error;
+  EXPECT_NE(error.find("\"other\""), std::string::npos) << error;
+}
+
 TEST(SceneErrors, yield_and_fracture_have_their_ranges_and_need_each_other) {
   const auto with = [](const std::string& lines) {
     return error_of(replaced(k_scene, "poisson", lines + "poisson"));
@@ -429,10 +436,10 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
     load_scene("no-such-scene");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "no-such-scene: no such file or built-in scene; built-in: breaking, cantilever, free-rocking, "
-        "paper-a, paper-b, portal-pushover, tumble, yielding");
+    EXPECT_STREQ(error.what(),
+                 "no-such-scene: no such file or built-in scene; built-in: beam-floor, breaking, cantilever, "
+                 "collide, dominoes, free-rocking, paper-a, paper-b, portal-pushover, stack, tumble, wedged, "
+                 "yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

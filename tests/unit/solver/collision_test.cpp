@@ -1,5 +1,4 @@
 // Bodies that meet each other while they move.
-#include <Eigen/LU>
 #include <cmath>
 #include <cstdlib>
 
@@ -18,17 +17,15 @@ topple::Setup random_drop(int seed) {
   spec.name = "under";
   setup.starts.push_back(add_cabinet(setup.model, spec));
   spec.name = "falling";
+  const Quat turn = random_rotation(rng);
+  const double x = 0.3 * u(rng), y = 0.6 * u(rng);
+  spec.at = Vec3(x, y, 3.1 - spec.cg_height);
   setup.starts.push_back(add_cabinet(setup.model, spec));
   setup.model.planes.push_back(ground());
   BodyStart& start = setup.starts[1];
-  const Vec3 centre = setup.model.bodies[1].centre_of_gravity;
-  const Quat turn = random_rotation(rng);
-  const double x = 0.3 * u(rng), y = 0.6 * u(rng);
   const Eigen::AngleAxisd axis(turn);
   start.rotation = axis.angle() * axis.axis();
-  // the turn about this point takes the centre of gravity to (x, y, 3.1)
-  const Mat3 rest = Mat3::Identity() - turn.toRotationMatrix();
-  start.pivot = rest.fullPivLu().solve(Vec3(x, y, 3.1) - turn * centre);
+  start.pivot = setup.model.bodies[1].centre_of_gravity;
   start.velocity = Vec3(u(rng), u(rng), -2 + u(rng));
   start.angular_velocity = random_vector(rng, 3);
   setup.run.duration = 1.2;

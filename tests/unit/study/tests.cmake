@@ -1,6 +1,8 @@
 add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/standing_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/theory_test.cpp)
 target_link_libraries(study_test PRIVATE topple_study GTest::gtest_main)
 gtest_discover_tests(study_test)

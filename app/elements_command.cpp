@@ -1,30 +1,22 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/files.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/progress.h"
-#include "app/summary.h"
+#include "app/study_results.h"
 #include "solver/study/elements.h"
 #include "solver/study/elements_chart.h"
-#include "solver/study/gnuplot.h"
 #include "solver/study/measure.h"
-#include "solver/study/rows.h"
 
 namespace topple::app {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-// s of the 40 that --quick has; the rest is for the solutions that are under way then, and for the charts.
-constexpr double k_quick = 34;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -37,7 +29,7 @@ ordered_json document(const study::ElementsStudy& results, const StudyOptions& o
       {"study", "elements"},
       {"title", "Error of three beam schemes against the number of elements and against CPU time"},
       {"units", {{"error", "1, |computed - reference|/|reference|"}, {"cpu_s", "s"}, {"wall_s", "s"}}},
-      {"machine", {{"processor", study::processor_name()}, {"cores", study::core_count()}}},
+      {"machine", machine_json()},
       {"settings",
        {{"jobs", options.jobs},
         {"quick", options.quick},
@@ -73,39 +65,10 @@ std::string table(const study::ElementsStudy& results) {
   return text;
 }
 
-/// Creates the folder; throws BadInput unless the results can be put there.
-void require_place_for_results(const std::string& folder, const std::string& stem) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw BadInput(folder + ": cannot be created: " + error.message());
-  for (const char* extension : {".csv", ".json", ".svg", ".png"})
-    require_writable_file("--output", stem + extension, "");
-}
-
-/// Numbers first: they stand even where no chart can be drawn.
-void write_results(const study::ElementsStudy& results, const ordered_json& json, const std::string& stem) {
-  write_whole_file(stem + ".csv", study::csv_text(json["rows"]));
-  write_whole_file(stem + ".json", json_text(json, 2) + "\n");
-  const std::string origin =
-      fmt::format("topple {} on {}, {} cores; solutions at a time: {}", TOPPLE_VERSION,
-                  study::processor_name(), study::core_count(), json["settings"]["jobs"].get<int>());
-  const auto draw = [&](const char* extension, study::ChartFormat format) {
-    try {
-      write_whole_file(stem + extension, study::run_gnuplot(elements_chart(results, origin, format)));
-    } catch (const study::ChartError& error) {
-      throw std::runtime_error(
-          fmt::format("{0}{1}: {2}; {0}.csv and {0}.json are written", stem, extension, error.what()));
-    }
-  };
-  draw(".svg", study::ChartFormat::svg);
-  draw(".png", study::ChartFormat::png);
-}
-
 }  // namespace
 
-int study_command(const StudyOptions& options) {
-  const std::string stem = (fs::path(options.folder) / "elements").string();
-  require_place_for_results(options.folder, stem);
+int elements_command(const StudyOptions& options) {
+  const std::string stem = place_for_results(options.folder, "elements");
   defer_interrupts();
   const auto start = Clock::now();
   std::optional<Progress> progress;
@@ -120,7 +83,10 @@ int study_command(const StudyOptions& options) {
     return k_interrupted;
   }
   const double wall_s = seconds_since(start);
-  write_results(results, document(results, options, wall_s), stem);
+  const ordered_json json = document(results, options, wall_s);
+  const std::string origin = fmt::format("{}; solutions at a time: {}", origin_text(), options.jobs);
+  write_study(stem, json["rows"], json,
+              [&](study::ChartFormat format) { return elements_chart(results, origin, format); });
   const char* const covered = !options.quick                 ? ""
                               : results.solved == results.of ? ": --quick left nothing out"
                                                              : ": --quick left out the finest";

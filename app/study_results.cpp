@@ -1,0 +1,55 @@
+#include "app/study_results.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/files.h"
+#include "app/summary.h"
+#include "solver/study/gnuplot.h"
+#include "solver/study/measure.h"
+#include "solver/study/rows.h"
+
+namespace topple::app {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+std::string place_for_results(const std::string& folder, const std::string& kind) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw BadInput(folder + ": cannot be created: " + error.message());
+  std::string stem = (fs::path(folder) / kind).string();
+  for (const char* extension : {".csv", ".json", ".svg", ".png"})
+    require_writable_file("--output", stem + extension, "");
+  return stem;
+}
+
+std::string origin_text() {
+  return fmt::format("topple {} on {}, {} cores", TOPPLE_VERSION, study::processor_name(),
+                     study::core_count());
+}
+
+ordered_json machine_json() {
+  return {{"processor", study::processor_name()}, {"cores", study::core_count()}};
+}
+
+void write_study(const std::string& stem, const ordered_json& rows, const ordered_json& document,
+                 const std::function<std::string(study::ChartFormat)>& script) {
+  write_whole_file(stem + ".csv", study::csv_text(rows));
+  write_whole_file(stem + ".json", json_text(document, 2) + "\n");
+  const auto draw = [&](const char* extension, study::ChartFormat format) {
+    try {
+      write_whole_file(stem + extension, study::run_gnuplot(script(format)));
+    } catch (const study::ChartError& error) {
+      throw std::runtime_error(
+          fmt::format("{0}{1}: {2}; {0}.csv and {0}.json are written", stem, extension, error.what()));
+    }
+  };
+  draw(".svg", study::ChartFormat::svg);
+  draw(".png", study::ChartFormat::png);
+}
+
+}  // namespace topple::app

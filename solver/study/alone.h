@@ -1,0 +1,26 @@
+// A body of a scene by itself.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "solver/run.h"
+
+namespace topple::study {
+
+/// The horizontal plane that bodies stand on. None: the scene has no such floor.
+std::optional<Plane> floor_of(const Model& model);
+
+/// Why a body does not stand freely on the floor in its reference pose: "is held by supports". Empty: it
+/// does. The model must have a floor.
+std::string why_not_standing(const Model& model, int body);
+
+/// One body in its reference pose, to be settled, without the other bodies, without loads, shakes and probes.
+/// `walls`: with all planes, else with the floor alone, which must exist.
+Setup alone(const Setup& scene, int body, bool walls);
+
+/// Whether two bodies differ by nothing but their name and a shift: what holds of one alone on a floor holds
+/// of the other.
+bool alike(const Model& model, int a, int b);
+
+}  // namespace topple::study

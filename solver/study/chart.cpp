@@ -1,0 +1,42 @@
+#include "solver/study/chart.h"
+
+#include <fmt/format.h>
+
+#include "solver/study/gnuplot.h"
+
+namespace topple::study {
+
+std::string Sheet::begin(ChartFormat format) const {
+  const bool svg = format == ChartFormat::svg;
+  return fmt::format(
+      "set terminal {} enhanced size {},{} font '{}' background '#ffffff' dashlength 1\n"
+      "set encoding utf8\nset multiplot\n",
+      svg ? "svg" : "pngcairo", width, height, svg ? "sans-serif,17" : "DejaVu Sans,13");
+}
+
+std::string Sheet::label(const std::string& text, double x, double y, const std::string& how) const {
+  return fmt::format("set label {} at screen {:.5f},{:.5f} {}\n", gnuplot_quoted(text), x / width, y / height,
+                     how);
+}
+
+std::string Sheet::place(double left, double right, double bottom, double top) const {
+  return fmt::format(
+      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"
+      "set tmargin at screen {:.5f}\n",
+      left / width, right / width, bottom / height, top / height);
+}
+
+std::string bold(const std::string& text, double scale) {
+  return fmt::format("{{/:Bold*{} {}}}", scale, text);
+}
+
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (std::string("_^{}@&~\\").find(c) != std::string::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace topple::study

@@ -1,0 +1,67 @@
+// What theory says of a rigid body that stands on penalty contacts.
+#pragma once
+
+#include <vector>
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+
+namespace topple::study {
+
+/// A rigid body on the contacts of its base, pushed towards its nearest edge.
+struct Standing {
+  struct Contact {
+    double place, across;  ///< m, from the centre of gravity towards the edge and along it
+    double L;              ///< m
+    double sunk;           ///< m, L - l in the reference pose
+  };
+  Vec3 direction;          ///< unit, horizontal, from the centre of gravity to the nearest edge
+  Vec3 edge;               ///< m, the point of that edge
+  double mass, gravity;    ///< kg, m/s^2
+  double base, height;     ///< m, b and h: distance of the edge, height of the centre of gravity above it
+  double inertia_of_edge;  ///< kg m^2, about the edge
+  std::vector<Contact> contacts;
+
+  double weight() const { return mass * gravity; }  ///< N
+  double rigid_limit() const { return base / height; }
+  double critical() const;  ///< rad, atan(b/h)
+  double p() const;         ///< 1/s, sqrt(m g R/inertia_of_edge), R^2 = b^2 + h^2
+};
+
+/// The body must stand freely (alone.h).
+Standing standing(const Model& model, const Parameters& parameters, int body);
+
+/// Depth 1 - l/L of the deepest contact at rest. n like contacts evenly around the centre of gravity:
+///   (W/(n alpha))^(1/q)
+/// Others lean until they balance; that the centre of gravity goes with the lean is left out.
+double rest_depth(const Standing& body, const ContactLaw& law);
+
+/// Frequency of small vertical motion about rest without leaning, Hz: sqrt(k/m)/2 pi, k the sum of
+/// q (alpha/L) depth^(q-1).
+double bounce_frequency(const Standing& body, const ContactLaw& law);
+
+/// Greatest steady acceleration that the body withstands, over g: the greatest x(theta)/h - theta of any lean
+/// theta, x the place of the floor's resultant. Rigid contact: b/h. Stiff contact, n_e contacts in the row of
+/// the edge and the next row s behind it:
+///   b/h - (L/s) (W/(n_e alpha))^(1/q)     q = 1; slightly more for q > 1
+/// 0: it cannot stand.
+double tipping_limit(const Standing& body, const ContactLaw& law);
+
+/// Smallest alpha, N, from which on the tipping limit is within the fraction `loss` of b/h. Stiff contact:
+///   (W/n_e) (L h/(s b loss))^q            q = 1; slightly less for q > 1
+double alpha_for_tipping(const Standing& body, ContactLaw law, double loss);
+
+/// Greatest alpha, N, with which a period of the bounce takes `period` s or more; q alpha^(1/q) grows as
+/// 1/period^2.
+double alpha_for_period(const Standing& body, ContactLaw law, double period);
+
+/// Time from rest at half of the critical angle until a rigid body on rigid contact is upright, s:
+///   th'' = -p^2 sin(critical - th)
+double fall_back_time(const Standing& body);
+
+/// Least amplitude, over g, of a half-sine of circular frequency w = ratio p that overturns a rigid body on
+/// rigid contact before it falls back:
+///   th'' = p^2 (-sin(critical - th) + a/g cos(critical - th))
+double least_half_sine(const Standing& body, double ratio);
+
+}  // namespace topple::study

@@ -1,0 +1,106 @@
+#include "solver/proximity.h"
+
+#include <algorithm>
+
+#include "solver/islands.h"
+#include "unit/solver/fixtures.h"
+
+namespace topple::test {
+namespace {
+
+TEST(Proximity, nearest_points_of_two_lines_are_nearer_than_any_others) {
+  std::mt19937 rng(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 a0 = random_vector(rng), b0 = random_vector(rng);
+    Vec3 a1 = random_vector(rng), b1 = random_vector(rng);
+    if (trial % 4 == 0) b1 = b0 + 0.7 * (a1 - a0);  // parallel
+    const NearestPoints at = nearest_points(a0, a1, b0, b1);
+    EXPECT_LT((a0 + at.s * (a1 - a0) - b0 - at.t * (b1 - b0) - at.between).norm(), 1e-14);
+    double least = 1e300;
+    for (int i = 0; i <= 100; ++i)
+      for (int j = 0; j <= 100; ++j)
+        least = std::min(least, (a0 + i / 100. * (a1 - a0) - b0 - j / 100. * (b1 - b0)).norm());
+    EXPECT_LE(at.between.norm(), least + 1e-12) << trial;
+    // a hundredth of the lines' lengths away it is no nearer
+    EXPECT_GE(at.between.norm(), least - 0.01 * ((a1 - a0).norm() + (b1 - b0).norm())) << trial;
+  }
+}
+
+TEST(Proximity, grid_finds_the_pairs_that_comparing_all_finds) {
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<double> u(-1, 1);
+  Model model = steel_model();
+  for (int k = 0; k < 12; ++k) {
+    CabinetSpec spec = tall_cabinet();
+    spec.name = "cabinet-" + std::to_string(k);
+    spec.at = Vec3(1.5 * u(rng), 1.5 * u(rng), u(rng));
+    spec.yaw = 3 * u(rng);
+    add_cabinet(model, spec);
+  }
+  const double margin = 0.04;
+  std::vector<ElementPair> all;
+  const int count = static_cast<int>(model.elements.size());
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) {
+      if (model.members[model.elements[a].member].body == model.members[model.elements[b].member].body)
+        continue;
+      const int *m = model.elements[a].node, *n = model.elements[b].node;
+      const auto& x = model.node_position;
+      if (nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]).between.norm() <=
+          contact_length(model, {a, b}) + margin)
+        all.push_back({a, b});
+    }
+  EXPECT_GT(all.size(), 100u);
+  EXPECT_EQ(near_elements(model, model.node_position, margin), all);
+}
+
+TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
+  Model model = steel_model();
+  for (double x : {0., 5., 0.42, 10., 0.84}) {
+    CabinetSpec spec = tall_cabinet();
+    spec.name = "at-" + std::to_string(x);
+    spec.at.x() = x;
+    add_cabinet(model, spec);
+  }
+  GridSpec floor;
+  floor.name = "floor";
+  floor.from[0] = -1;
+  floor.to[0] = 11;
+  add_grid(model, floor);
+  Islands islands(model);
+  EXPECT_EQ(islands.systems().size(), 5u);
+  islands.arrange(near_elements(model, model.node_position, 0.02));
+  ASSERT_EQ(islands.systems().size(), 3u);  // the floor holds them all and is in none
+  EXPECT_EQ(islands.systems()[0]->bodies, (std::vector<int>{0, 2, 4}));
+  EXPECT_EQ(islands.systems()[1]->bodies, (std::vector<int>{1}));
+  EXPECT_EQ(islands.systems()[2]->bodies, (std::vector<int>{3}));
+  const BodySystem* const kept = islands.systems()[0];
+  islands.arrange(near_elements(model, model.node_position, 0.02));
+  EXPECT_EQ(islands.systems()[0], kept);
+}
+
+TEST(BeamFloor, carries_the_weight_of_what_stands_on_it_and_tells_which_side_lifts) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  setup.starts.push_back(add_cabinet(setup.model, tall_cabinet()));
+  GridSpec floor;
+  floor.name = "floor";
+  setup.starts.push_back(add_grid(setup.model, floor));
+  EXPECT_EQ(setup.model.furniture_total(), 1);
+  setup.run.duration = 0.6;
+  shake(setup, 3, 1);
+  topple::Run run(setup);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+  Vec3 carried = Vec3::Zero();
+  for (const MemberForce& f : run.member_contacts()) carried += f.force;
+  const double weight = setup.model.bodies[0].mass * k_g;
+  EXPECT_NEAR(carried.z(), weight, 1e-6 * weight);
+  EXPECT_LT(std::hypot(carried.x(), carried.y()), 1e-6 * weight);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  // 3 m/s^2 are beyond g tan a = 1.74: it rocks
+  EXPECT_TRUE(run.outcome().bodies()[0].first_uplift.has_value());
+  EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+}
+
+}  // namespace
+}  // namespace topple::test
