@@ -35,6 +35,7 @@ ordered_json describe(const io::Scene& scene) {
   const bool loads = is_static(setup);
   out["duration_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.run.duration);
   out["time_step_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.parameters.time_step);
+  out["contact_alpha_N"] = setup.parameters.contact.alpha;
   if (loads) out["load_steps"] = setup.run.statics.load_steps;
   out["nodes"] = setup.model.node_total();
   out["elements"] = setup.model.elements.size();

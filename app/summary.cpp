@@ -164,6 +164,9 @@ std::string dynamic_head(const ordered_json& s) {
                      s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
                      text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
+  out += fmt::format("contact: alpha {:.6g} kgf, q {:.6g}, friction {:.6g}\n",
+                     s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
+                     s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>());
   return out + energy_in_words(s["energy"]) + "\n";
 }
 
@@ -189,6 +192,11 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
+  out["contact"] = {{"alpha_N", number(p.contact.alpha)},
+                    {"q", number(p.contact.q)},
+                    {"friction", number(p.contact.friction)},
+                    {"restitution", number(p.contact.restitution)},
+                    {"normal_speed_m_s", number(p.contact.normal_speed)}};
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();
