@@ -15,7 +15,8 @@ double of(const Setup& setup) {
 
 TEST(ContactDefault, slender_block_sinks_by_what_its_landing_allows) {
   const topple::Setup setup = rocking_block(0, 1, 1e-3);
-  const double b = 0.19, h = setup.model.bodies[0].centre_of_gravity.z() - 0.015, depth = 0.02 * std::pow(b, 4) / std::pow(h, 3);
+  const double b = 0.19, h = setup.model.bodies[0].centre_of_gravity.z() - 0.015,
+               depth = 0.02 * std::pow(b, 4) / std::pow(h, 3);
   EXPECT_NEAR(of(setup), setup.model.bodies[0].mass * k_g / 2 * 0.03 / depth, 1e-9 * of(setup));
 }
 
