@@ -34,7 +34,9 @@ ordered_json describe(const io::Scene& scene) {
   out["analysis"] = k_analyses[static_cast<std::size_t>(setup.run.analysis)];
   const bool loads = is_static(setup);
   out["duration_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.run.duration);
-  out["time_step_s"] = loads ? ordered_json(nullptr) : ordered_json(setup.parameters.time_step);
+  const bool steps = !loads && !setup.parameters.adaptive;
+  out["time_step_s"] = steps ? ordered_json(setup.parameters.time_step) : ordered_json(nullptr);
+  out["contact_alpha_N"] = setup.parameters.contact.alpha;
   if (loads) out["load_steps"] = setup.run.statics.load_steps;
   out["nodes"] = setup.model.node_total();
   out["elements"] = setup.model.elements.size();
@@ -151,8 +153,10 @@ std::string table(const ordered_json& d) {
   std::string out = fmt::format("{} {}: {}\n", d["kind"].get<std::string>(), d["scene"].get<std::string>(),
                                 d["title"].get<std::string>());
   out += is_static(d) ? fmt::format("{} load steps", d["load_steps"].get<int>())
-                      : fmt::format("duration {:g} s, time step {:g} s", d["duration_s"].get<double>(),
-                                    d["time_step_s"].get<double>());
+                      : fmt::format("duration {:g} s, ", d["duration_s"].get<double>()) +
+                            (d["time_step_s"].is_null()
+                                 ? "adaptive step"
+                                 : fmt::format("time step {:g} s", d["time_step_s"].get<double>()));
   out += fmt::format("; {} nodes, {} elements, {} contact points\n", d["nodes"].get<int>(),
                      d["elements"].get<int>(), d["contact_points"].get<int>());
   for (const auto& b : d["bodies"]) {

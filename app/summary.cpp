@@ -29,6 +29,18 @@ ordered_json vector(const Vec3& v) {
   return {number(v.x()), number(v.y()), number(v.z())};
 }
 
+ordered_json list(const std::vector<double>& values, double unit) {
+  ordered_json out = ordered_json::array();
+  for (const double value : values) out.push_back(number(value / unit));
+  return out;
+}
+
+ordered_json intervals(const std::vector<double>& times) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t k = 1; k < times.size(); ++k) out.push_back(number(times[k] - times[k - 1]));
+  return out;
+}
+
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
           {"model", "frame"},
@@ -39,6 +51,9 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"first_impact_s", number(o.first_impact)},
           {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
           {"rebound_tilt_deg", o.first_impact ? number(o.rebound_tilt * k_degrees) : ordered_json(nullptr)},
+          {"impact_times_s", list(o.impact_times, 1)},
+          {"impact_intervals_s", intervals(o.impact_times)},
+          {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical * k_degrees)},
           {"peak_slide_m", number(o.peak_slide)},
@@ -149,6 +164,9 @@ std::string dynamic_head(const ordered_json& s) {
                      s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
                      text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
+  out += fmt::format("contact: alpha {:.6g} kgf, q {:.6g}, friction {:.6g}\n",
+                     s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
+                     s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>());
   return out + energy_in_words(s["energy"]) + "\n";
 }
 
@@ -174,6 +192,11 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
+  out["contact"] = {{"alpha_N", number(p.contact.alpha)},
+                    {"q", number(p.contact.q)},
+                    {"friction", number(p.contact.friction)},
+                    {"restitution", number(p.contact.restitution)},
+                    {"normal_speed_m_s", number(p.contact.normal_speed)}};
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();

@@ -75,6 +75,8 @@ struct FrameSpec {
   std::vector<PointMass> masses;
   double mass = 0;           ///< kg, 0: from the densities
   std::vector<Vec3> copies;  ///< translations; empty: one at the origin
+  double tilt = 0;  ///< rad, about the line along y through its lowest nodes, on the +x side of them;
+                    ///< negative: -x side
   Vec3 velocity = Vec3::Zero();
   Vec3 angular_velocity = Vec3::Zero();
 };

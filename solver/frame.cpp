@@ -7,6 +7,8 @@
 namespace topple {
 namespace {
 
+constexpr double k_level = 1e-6;  // of the height: nodes of one level
+
 void add_one(Model& model, const FrameSpec& spec, const std::string& name, const Vec3& shift) {
   BodyBuilder builder(model, name);
   for (std::size_t i = 0; i < spec.nodes.size(); ++i) {
@@ -62,6 +64,25 @@ void add_one(Model& model, const FrameSpec& spec, const std::string& name, const
   }
 }
 
+// Of the lowest nodes of the newest body the one farthest to the side of the tilt.
+Vec3 tilt_pivot(const Model& model, double tilt) {
+  const Body& body = model.bodies.back();
+  Vec3 pivot = model.node_position[body.first_node];
+  double highest = pivot.z();
+  const auto each = [&](auto&& use) {
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i) use(model.node_position[i]);
+  };
+  each([&](const Vec3& x) {
+    if (x.z() < pivot.z()) pivot = x;
+    highest = std::max(highest, x.z());
+  });
+  const double top_of_base = pivot.z() + k_level * (highest - pivot.z());
+  each([&](const Vec3& x) {
+    if (x.z() <= top_of_base && (x.x() - pivot.x()) * tilt > 0) pivot = x;
+  });
+  return pivot;
+}
+
 }  // namespace
 
 std::vector<BodyStart> add_frame(Model& model, const FrameSpec& spec) {
@@ -73,6 +94,10 @@ std::vector<BodyStart> add_frame(Model& model, const FrameSpec& spec) {
     BodyStart start;
     start.velocity = spec.velocity;
     start.angular_velocity = spec.angular_velocity;
+    if (spec.tilt != 0) {
+      start.pivot = tilt_pivot(model, spec.tilt);
+      start.rotation = Vec3(0, spec.tilt, 0);
+    }
     starts.push_back(start);
   }
   return starts;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "solver/hinges.h"
 #include "solver/rotation.h"
@@ -14,9 +15,13 @@ constexpr int k_most_iterations = 25;
 constexpr double k_convergence = 1e-11;
 // A factorisation is used again while each correction is below this part of the one before.
 constexpr double k_good_rate = 0.1;
-// From this iteration on corrections that shrink no faster than this are halved.
+// When corrections shrink no faster than this from some iteration on, those that follow go only as far as the
+// residual leads.
 constexpr int k_patience = 6;
 constexpr double k_cycling_rate = 0.7;
+constexpr double k_turned = 0.5;  // residual along the correction, over that before: may turn so far
+constexpr int k_most_looks = 40;
+constexpr double k_unguided = 0.5;  // share of a correction that the residual does not point along
 // A predicted pose that takes more than this many times the body's kinetic energy to get to is no start for
 // Newton.
 constexpr double k_reach = 2;
@@ -48,6 +53,7 @@ class ImplicitStep {
   void update_trial();
   void form_tangent();
   double correct(int& node);
+  double share_of_correction();
   void add_inertia_tangent();
   void fill_residual();
 
@@ -179,6 +185,38 @@ double ImplicitStep::correct(int& node) {
   return greatest;
 }
 
+// Newton jumps to and fro over a contact that opens or closes within the step: the normal damping, a steep
+// step in the speed of a light node between two plains, points from either plain beyond the other. Along a
+// correction the residual falls steadily; where it turns lies the place to go on from (Matthies & Strang
+// 1979). Takes the residual in `kept_residual`, the correction in `right_hand_side`, and leaves both.
+double ImplicitStep::share_of_correction() {
+  const auto along = [this](const std::vector<double>& residual) {
+    return std::inner_product(residual.begin(), residual.end(), w_.way.begin(), 0.);
+  };
+  w_.way = w_.right_hand_side;
+  w_.kept_travel = w_.travel;
+  w_.kept_turn = w_.turn;
+  const double first = along(w_.kept_residual);
+  if (!(first > 0)) return k_unguided;
+  double low = 0, high = 1, share = 1;
+  for (int look = 0; look < k_most_looks; ++look) {
+    for (std::size_t k = 0; k < w_.way.size(); ++k) w_.right_hand_side[k] = share * w_.way[k];
+    int node = 0;
+    correct(node);
+    update_trial();
+    s_.evaluate(p_, t_ + h_, w_.trial, state_.stick, w_.start.position);
+    fill_residual();
+    const double left = along(w_.right_hand_side);
+    w_.travel = w_.kept_travel;
+    w_.turn = w_.kept_turn;
+    if (std::abs(left) <= k_turned * first || (share == 1 && left > 0)) break;
+    (left > 0 ? low : high) = share;
+    share = (low + high) / 2;
+  }
+  w_.right_hand_side = w_.way;
+  return share;
+}
+
 Attempt ImplicitStep::solve_with_hinges() {
   predict();
   Attempt attempt = solve();
@@ -234,10 +272,12 @@ Attempt ImplicitStep::solve() {
       s_.evaluate(p_, t_ + h_, w_.trial, stick, w_.start.position);
     }
     fill_residual();
+    if (cycling) w_.kept_residual = w_.right_hand_side;
     s_.lu.solve(w_.right_hand_side.data());
-    if (cycling)
-      for (double& x : w_.right_hand_side) x *= 0.5;
-    const double size = correct(node);
+    const double share = cycling ? share_of_correction() : 1;
+    if (share < 1)
+      for (double& x : w_.right_hand_side) x *= share;
+    const double size = correct(node) / share;
     if (!std::isfinite(size)) return {Outcome::not_finite, iteration, node};
     if (size > 10 * s_.size) return {Outcome::diverged, iteration, node};
     const double rate = iteration > 1 ? size / last : 1;
@@ -245,8 +285,7 @@ Attempt ImplicitStep::solve() {
       update_trial();
       return {Outcome::converged, iteration, node};
     }
-    // Newton jumps to and fro over the edge between open and closed, stick and slip: half a step lands there
-    cycling = iteration >= k_patience && rate > k_cycling_rate;
+    cycling = cycling || (iteration >= k_patience && rate > k_cycling_rate);
     fresh = every_tangent_ || (rate > k_good_rate && iteration > 1);
     last = size;
   }

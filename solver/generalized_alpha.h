@@ -29,6 +29,8 @@ struct IntegratorScratch {
   std::vector<Vec3> travel, turn;  ///< unknowns: displacement, rotation vector (material) of the step
   std::vector<Vec3> acceleration, angular_acceleration, algorithmic, algorithmic_angular;
   std::vector<double> right_hand_side;
+  std::vector<double> kept_residual, way;  ///< of a correction that is cut short
+  std::vector<Vec3> kept_travel, kept_turn;
   Contacts contacts_start;
 };
 

@@ -192,6 +192,8 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     o.tilt = tilt(pose);
     o.peak_tilt = std::max(o.peak_tilt, o.tilt);
     if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
+    if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
+    o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
     o.slide = topple::slide(model, static_cast<int>(b), pose);
     o.peak_slide = std::max(o.peak_slide, o.slide);
     o.critical = critical_angle(model, static_cast<int>(b), pose);
@@ -223,6 +225,10 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
         o.lifted[side] = false;
         ++o.impacts;
         if (!o.first_impact) o.first_impact = state.time;
+        if (o.impact_times.size() < k_kept_impacts) {
+          o.impact_times.push_back(state.time);
+          o.peak_tilts.push_back(o.tilt);
+        }
         add(Event::Kind::impact, state.time, static_cast<double>(side));
       }
     }

@@ -18,6 +18,9 @@ namespace topple {
 inline constexpr double k_uplift = 1e-3;
 inline constexpr double k_closing = 1e-2;
 
+/// Impacts of a body of which time and the peak that follows are kept.
+inline constexpr std::size_t k_kept_impacts = 100;
+
 /// Pose of a body as a rigid one: mass-weighted best fit of its nodes (Kabsch/Horn).
 struct BodyPose {
   Vec3 centre;    ///< m, centre of gravity
@@ -61,8 +64,11 @@ struct BodyOutcome {
   std::optional<double> first_uplift;
   int impacts = 0;
   std::optional<double> first_impact;
-  double rebound_tilt = 0;  ///< greatest tilt since the first impact
-  double peak_stress = 0;   ///< Pa
+  double rebound_tilt = 0;           ///< greatest tilt since the first impact
+  std::vector<double> impact_times;  ///< of the first k_kept_impacts
+  std::vector<double>
+      peak_tilts;          ///< greatest tilt before the first of these, then after each up to the next
+  double peak_stress = 0;  ///< Pa
   /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
   std::optional<double> peak_yield_ratio;
   int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not

@@ -15,9 +15,9 @@ struct ContactLaw {
   double alpha = 50 * k_standard_gravity;  ///< N, penalty coefficient
   double q = 1;                            ///< penalty index
   double friction = 0.6;                   ///< mu
-  double restitution = 0.5;                ///< coulomb law
-  double normal_speed = 0.01;              ///< m/s, eps_n of the coulomb law
-  double slip_speed = 0.01;  ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
+  double restitution = 0;      ///< coulomb law; a body that rocks lands without bouncing (Housner)
+  double normal_speed = 0.01;  ///< m/s, eps_n of the coulomb law
+  double slip_speed = 0.01;    ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
 };
 
 /// The way from earlier values to those edited while it runs: what jumped would put energy in.

@@ -53,6 +53,7 @@ Scene parse_scene(std::string_view text, const std::string& origin,
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);
   read_bodies(entry, scene.setup);
+  choose_alpha(entry, scene.setup);
   read_probes(entry, scene.setup);
   read_control(entry, scene.setup);
   read_expectations(entry, scene);

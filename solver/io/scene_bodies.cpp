@@ -58,6 +58,11 @@ void check_start(const Entry& entry, const Setup& setup) {
   }
 }
 
+void check_tilt(const Entry& entry, const Setup& setup, double tilt) {
+  if (setup.run.settle && tilt != 0)
+    entry.fail("tilt", "a body that starts tilted cannot settle: write settle = false in [run]");
+}
+
 CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   CabinetSpec spec;
   spec.name = entry.name();
@@ -154,6 +159,7 @@ FrameSpec read_frame(const Entry& entry, const Library& library) {
   }
   if (entry.has("mass")) spec.mass = entry.number("mass");
   spec.copies = entry.vectors("copies");
+  spec.tilt = entry.number("tilt");
   spec.velocity = entry.vector("velocity");
   spec.angular_velocity = entry.vector("angular_velocity");
   return spec;
@@ -271,15 +277,14 @@ void read_bodies(const Entry& root, Setup& setup) {
   for (const Entry& entry : root.entries("cabinet")) {
     const CabinetSpec spec = read_cabinet(entry, library);
     check_start(entry, setup);
-    if (setup.run.settle && spec.tilt != 0) {
-      entry.fail("tilt", "a body that starts tilted cannot settle: write settle = false in [run]");
-    }
+    check_tilt(entry, setup, spec.tilt);
     build(entry, [&] { setup.starts.push_back(add_cabinet(model, spec)); });
     check_size(entry, model.elements.size());
   }
   for (const Entry& entry : root.entries("frame")) {
     const FrameSpec spec = read_frame(entry, library);
     check_start(entry, setup);
+    check_tilt(entry, setup, spec.tilt);
     check_size(entry, model, spec);
     const std::size_t first = model.bodies.size();
     build(entry, [&] {

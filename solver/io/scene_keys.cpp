@@ -62,6 +62,7 @@ void add_run(std::vector<Key>& keys) {
               "fixed step, or one that follows the motion (central-difference: 0.9 of its limit)")
       .or_word({"auto"})
       .absent(parameters.time_step)
+      .absent_means("1 ms; auto with a floor or wall when `contact.alpha` is left out")
       .only_in({"dynamic"});
   rows.number("tolerance", 1e-9, 0.1, "local error of the adaptive step over the travel of the body")
       .absent(parameters.tolerance)
@@ -135,7 +136,10 @@ void add_contact(std::vector<Key>& keys) {
   rows.word("law", {"coulomb", "paper", "printed"}, "contact_law.h").absent(law.kind).only_in({"dynamic"});
   rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
               "penalty coefficient of Eq. 2")
-      .absent(law.alpha);
+      .absent(law.alpha)
+      .absent_means(
+          "what lets every body stand, lift and land on its edges as a rigid one "
+          "(contact_default.h); 50 kgf when none stands on a floor");
   rows.number("q", 0.5, 4, "penalty index of Eq. 2").absent(law.q);
   rows.number("friction", 0, 1.5, "coefficient of friction").absent(law.friction);
   rows.later("friction_static", "coefficient of static friction");

@@ -71,6 +71,10 @@ void add_frame(std::vector<Key>& keys) {
       .absent_means("from the densities");
   rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
       .absent_means("one, where it is");
+  rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
+              "about the +x side of its lowest nodes, along y; negative: the -x side")
+      .absent(frame.tilt)
+      .only_in({"dynamic"});
   rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
       .absent(frame.velocity)
       .only_in({"dynamic"});

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact_default.h"
+#include "solver/io/scene_keys.h"
+
 namespace topple::io {
 namespace {
 
@@ -119,7 +122,11 @@ void read_run(const Entry& root, Setup& setup) {
   setup.parameters.spectral_radius = run.number("spectral_radius");
   setup.parameters.beta = run.number("beta");
   setup.parameters.gamma = run.number("gamma");
-  setup.parameters.adaptive = run.text("time_step") == "auto";
+  // a step that was not chosen for the contact follows it
+  setup.parameters.adaptive = run.has("time_step")
+                                  ? run.text("time_step") == "auto"
+                                  : !root.entry("contact").has("alpha") &&
+                                        (root.entry("floor").present() || !root.entries("wall").empty());
   if (!setup.parameters.adaptive) setup.parameters.time_step = run.number("time_step");
   setup.parameters.tolerance = run.number("tolerance");
   setup.run.analysis = run.choice_as<Analysis>("analysis");
@@ -165,6 +172,14 @@ void read_actions(const Entry& root, Setup& setup) {
   law.restitution = contact.number("restitution");
   law.normal_speed = contact.number("normal_speed");
   law.slip_speed = contact.number("slip_speed");
+}
+
+void choose_alpha(const Entry& root, Setup& setup) {
+  if (root.entry("contact").has("alpha") || setup.run.analysis == Analysis::modes) return;
+  ContactLaw& law = setup.parameters.contact;
+  const Key& key = *find_key("contact", "alpha");
+  if (const auto alpha = rigid_alpha(setup.model, law, setup.parameters.gravity))
+    law.alpha = std::clamp(*alpha, key.least, key.most);
 }
 
 bool is_beams(const Entry& entry) {

@@ -10,6 +10,7 @@
 
 #include "scene_samples.h"
 #include "solver/cabinet.h"
+#include "solver/contact_default.h"
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_entry.h"
@@ -133,6 +134,23 @@ TEST(Scene, time_step_is_a_time_or_auto_with_a_tolerance) {
       parse_scene(k_scene + "[run]\ntime_step = \"auto\"\ntolerance = 1e-4\n", "s.toml").setup.parameters;
   EXPECT_TRUE(automatic.adaptive);
   EXPECT_EQ(automatic.tolerance, 1e-4);
+}
+
+TEST(Scene, alpha_and_time_step_follow_the_bodies_when_alpha_is_left_out) {
+  const std::string floor = "[floor]\n";
+  const topple::Setup chosen = parse_scene(k_cabinet_scene + floor, "s.toml").setup;
+  const ContactLaw law;
+  EXPECT_EQ(chosen.parameters.contact.alpha,
+            rigid_alpha(chosen.model, law, chosen.parameters.gravity).value());
+  EXPECT_TRUE(chosen.parameters.adaptive);
+  const topple::Setup named =
+      parse_scene(k_cabinet_scene + floor + "[contact]\nalpha = \"50 kgf\"\n", "s.toml").setup;
+  EXPECT_EQ(named.parameters.contact.alpha, 50 * k_standard_gravity);
+  EXPECT_FALSE(named.parameters.adaptive);
+  EXPECT_EQ(named.parameters.time_step, Parameters{}.time_step);
+  const topple::Setup fixed = parse_scene(k_cabinet_scene + floor, "s.toml", {"run.time_step=0.002"}).setup;
+  EXPECT_FALSE(fixed.parameters.adaptive);
+  EXPECT_EQ(fixed.parameters.contact.alpha, chosen.parameters.contact.alpha);
 }
 
 TEST(Scene, displacement_control_names_a_node_of_a_frame_and_how_far_it_goes) {

@@ -74,6 +74,40 @@ inline CabinetSpec tall_cabinet() {
   return spec;
 }
 
+/// A rigid uniform block, 0.38 x 0.88 x 1.79 m, 40 kg, on the four corners of its base, which weigh nothing.
+inline Setup rocking_block(double tilt, double alpha, double h) {
+  Setup setup;
+  Material rigid = steel();
+  rigid.young = 1e13;
+  rigid.density = 1e-3;
+  setup.model.materials.push_back(rigid);
+  Section thick;
+  thick.shape = Section::Shape::custom;
+  thick.area = 0.1;
+  thick.iy = thick.iz = thick.j = 0.01;
+  thick.ky = thick.kz = 1;
+  thick.size_y = thick.size_z = thick.width = 0.03;
+  setup.model.sections.push_back(thick);
+  FrameSpec spec;
+  spec.name = "block";
+  const Vec3 half(0.19, 0.44, 0.895), centre(0, 0, 0.015 + half.z());
+  for (const double x : {-1, 1})
+    for (const double y : {-1, 1}) spec.nodes.emplace_back(centre + half.cwiseProduct(Vec3(x, y, -1)));
+  spec.nodes.push_back(centre);
+  for (int corner = 0; corner < 4; ++corner) spec.members.push_back({{corner, 4}, 0, 0});
+  const double mass = 40;
+  const Vec3 square = half.cwiseAbs2();
+  spec.masses.push_back({4, mass, mass / 3 * (Vec3::Constant(square.sum()) - square)});
+  spec.tilt = tilt;
+  setup.starts = add_frame(setup.model, spec);
+  setup.model.planes.push_back(ground(0));
+  setup.run.settle = tilt == 0;
+  setup.parameters.contact.alpha = alpha;
+  setup.parameters.contact.normal_speed = 1e-3;
+  setup.parameters.time_step = h;
+  return setup;
+}
+
 /// A cabinet on the floor; one that is tilted starts as it is, any other at rest.
 inline Setup shaken(double duration, double tilt = 0) {
   Setup setup;

@@ -115,6 +115,21 @@ TEST(Frame, frame_far_from_the_origin_is_the_one_at_the_origin_moved) {
   }
 }
 
+TEST(Frame, tilts_about_the_side_of_its_lowest_nodes_that_it_leans_to) {
+  for (const double tilt : {0.1, -0.1}) {
+    SCOPED_TRACE(tilt);
+    const topple::Setup setup = rocking_block(tilt, 1, 1e-3);
+    const State state = start_state(setup.model, setup.starts);
+    const double lowest = setup.model.node_position[0].z();
+    for (int corner = 0; corner < 4; ++corner) {
+      const Vec3 &from = setup.model.node_position[corner], &to = state.position[corner];
+      const bool edge = from.x() * tilt > 0;
+      EXPECT_NEAR(to.z() - lowest, edge ? 0 : 0.38 * std::sin(0.1), 1e-12) << corner;
+      EXPECT_LT(edge ? (to - from).norm() : 0, 1e-12) << corner;
+    }
+  }
+}
+
 TEST(Frame, asked_mass_is_met_with_added_masses_kept) {
   Model model = model_with(plain_section(1e-4, 1e-8, 1e-8, 1e-8, 1, 1));
   FrameSpec spec;

@@ -193,5 +193,18 @@ TEST(GeneralizedAlpha, node_without_mass_and_member_is_singular) {
   EXPECT_EQ(hash(state), before);
 }
 
+// The normal damping of a corner that weighs nothing is a step in its speed.
+TEST(GeneralizedAlpha, stiff_block_that_lands_on_weightless_corners_finds_every_step) {
+  for (const double alpha : {1e5, 1e6}) {
+    SCOPED_TRACE(alpha);
+    topple::Setup setup = rocking_block(0.1, alpha * k_g, 2.5e-4);
+    setup.run.duration = 0.8;
+    topple::Run run(setup);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok());
+    EXPECT_GE(run.outcome().bodies()[0].impacts, 1);
+    EXPECT_EQ(run.rejected_steps(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -228,6 +228,29 @@ TEST(Overturn, rocking_run_lifts_and_lands_on_alternate_sides) {
   EXPECT_NEAR(o.outcome.peak_tilt, 0.6 * k_edge_angle, 0.05 * k_edge_angle);
 }
 
+TEST(Overturn, impact_times_and_the_peaks_between_are_kept) {
+  topple::Setup setup = rocking_block(0.1, 5e4 * k_g, 2.5e-4);
+  setup.run.duration = 2.5;
+  topple::Run run(setup);
+  std::vector<double> times, peaks{0};
+  while (true) {
+    const BodyOutcome& o = run.outcome().bodies()[0];
+    if (o.impact_times.size() > times.size()) {
+      times.push_back(run.state().time);
+      peaks.push_back(0);
+    }
+    peaks.back() = std::max(peaks.back(), o.tilt);
+    if (run.over()) break;
+    ASSERT_TRUE(run.advance().ok());
+  }
+  const BodyOutcome& o = run.outcome().bodies()[0];
+  ASSERT_GE(times.size(), 3u);
+  EXPECT_EQ(o.impact_times, times);
+  EXPECT_EQ(o.peak_tilts, peaks);
+  EXPECT_NEAR(o.peak_tilts.front(), 0.1, 1e-12);
+  for (std::size_t k = 1; k + 1 < peaks.size(); ++k) EXPECT_LT(peaks[k], peaks[k - 1]);
+}
+
 TEST(Overturn, resting_cabinet_has_no_events) {
   const Standing s = standing();
   Simulation sim(s.model, {s.start}, {}, true);

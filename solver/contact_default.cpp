@@ -1,0 +1,67 @@
+#include "solver/contact_default.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topple {
+namespace {
+
+constexpr double k_early_uplift = 0.02, k_landing = 0.02, k_depth = 0.01;
+
+struct Edge {
+  double distance;  // m, of the centre of gravity
+  int points;       // contact points on it
+  double width;     // m, L of the first of them
+};
+
+Edge edge_of_base(const Model& model, const Body& body, const Plane& floor, std::size_t i) {
+  const std::vector<Vec3>& polygon = body.support_polygon;
+  const Vec3 along = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized();
+  const auto inside = [&](const Vec3& x) { return along.cross(x - polygon[i]).z(); };
+  Edge edge{inside(body.centre_of_gravity), 0, 0};
+  const double same_line = 1e-6 * std::abs(edge.distance);
+  for (const int p : body.base_points) {
+    const ContactPoint& point = model.contact_points[p];
+    if (std::abs(inside(model.node_position[point.node])) > same_line) continue;
+    if (edge.points++ == 0) edge.width = (point.width + (floor.width > 0 ? floor.width : point.width)) / 2;
+  }
+  return edge;
+}
+
+double of_edge(const Edge& edge, double weight, double height, double q) {
+  const double b = edge.distance, slope = b / height;
+  const double depth =
+      std::min(b * slope * std::min(2 * k_early_uplift, k_landing * slope * slope), k_depth * edge.width);
+  return weight / edge.points * std::pow(edge.width / depth, q);
+}
+
+bool is_supported(const Model& model, int body) {
+  return std::any_of(model.supports.begin(), model.supports.end(),
+                     [&](const Support& support) { return model.node_body[support.node] == body; });
+}
+
+}  // namespace
+
+std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  constexpr double k_upright = 0.7;  // of the normal of a floor
+  const auto floor = std::find_if(model.planes.begin(), model.planes.end(),
+                                  [](const Plane& plane) { return plane.normal.z() > k_upright; });
+  const bool of_beams =
+      std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.ground; });
+  if ((floor == model.planes.end() && !of_beams) || gravity.isZero(0)) return std::nullopt;
+  const Plane face = floor == model.planes.end() ? Plane{"", Vec3::Zero(), Vec3::UnitZ(), 0} : *floor;
+  std::optional<double> alpha;
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.support_polygon.empty() || is_supported(model, b)) continue;
+    const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
+    for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
+      const Edge edge = edge_of_base(model, body, face, i);
+      if (!(edge.distance > 0) || !(height > 0)) continue;
+      alpha = std::max(alpha.value_or(0), of_edge(edge, body.mass * gravity.norm(), height, law.q));
+    }
+  }
+  return alpha;
+}
+
+}  // namespace topple
