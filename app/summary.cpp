@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/words.h"
@@ -85,6 +86,17 @@ ordered_json time_step(const Run& run) {
   const Parameters& p = run.parameters();
   if (is_static(run.setup()) || (p.adaptive && run.state().step == 0)) return nullptr;
   return number(p.adaptive ? run.state().time / static_cast<double>(run.state().step) : p.time_step);
+}
+
+/// Relative speed, m/s, below which no fixed step is cut because members would pass each other unseen.
+ordered_json safe_closing_speed(const Run& run) {
+  const Model& model = run.setup().model;
+  const Parameters& p = run.parameters();
+  if (is_static(run.setup()) || p.adaptive || model.bodies.size() < 2) return nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e)
+    least = std::min(least, contact_length(model, {e, e}));
+  return number(least / 2 / p.time_step);
 }
 
 ordered_json load_steps(const Run& run) {
@@ -192,6 +204,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
+  out["safe_closing_speed_m_s"] = safe_closing_speed(run);
   out["contact"] = {{"alpha_N", number(p.contact.alpha)},
                     {"q", number(p.contact.q)},
                     {"friction", number(p.contact.friction)},

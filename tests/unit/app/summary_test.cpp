@@ -56,6 +56,16 @@ TEST_F(SummaryTest, what_does_not_exist_is_null) {
   EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
 }
 
+TEST_F(SummaryTest, bodies_that_may_meet_have_a_speed_up_to_which_no_step_is_cut) {
+  EXPECT_TRUE(summary(scene_, run_, "completed", 1)["safe_closing_speed_m_s"].is_null());
+  const io::Scene two = io::load_scene("paper-a");
+  topple::Run run(two.setup);
+  double thinnest = 1e300;
+  for (const Member& member : two.setup.model.members)
+    thinnest = std::min(thinnest, two.setup.model.sections[member.section].width);
+  EXPECT_DOUBLE_EQ(summary(two, run, "completed", 1)["safe_closing_speed_m_s"], thinnest / 2 / 1e-3);
+}
+
 TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
   const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
   EXPECT_NE(table.find("\nfree "), std::string::npos) << table;
