@@ -36,6 +36,9 @@ duration = "0.3 s"
 name = "table"
 frequency = "2 Hz"
 amplitude = "400 gal"
+[contact]
+alpha = "50 kgf"
+restitution = 0.5
 [floor]
 width = "90 mm"
 )" + k_library + k_cabinet +

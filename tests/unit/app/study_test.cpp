@@ -80,6 +80,7 @@ TEST_F(StudyTest, its_scenes_are_run_by_name_but_not_listed) {
 const std::string k_slippery = R"(topple = 1
 title = "A cabinet on ice"
 [contact]
+alpha = "50 kgf"
 friction = 0.1
 [floor]
 width = "90 mm"
