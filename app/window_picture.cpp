@@ -20,8 +20,12 @@ WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = 1.f / 60;
   viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view);
-  for (player_.update(0); player_.status().kind == LiveStatus::Kind::starting; player_.update(0))
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto waiting = [this] {
+    player_.update(0);
+    const LiveStatus::Kind kind = player_.status().kind;
+    return kind == LiveStatus::Kind::starting || kind == LiveStatus::Kind::reading;
+  };
+  while (waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 WindowPicture::~WindowPicture() {
