@@ -8,13 +8,7 @@
 #include "solver/excitation.h"
 
 namespace topple {
-namespace {
-
-int first_node(const Model& model, int body) {
-  return model.bodies[body].first_node;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double load_factor(const Load& load, double t) {
   const auto& h = load.history;
@@ -41,7 +35,7 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       bodies(std::move(which)),
       near(std::move(pairs)),
       index(bodies.front()),
-      first(first_node(whole, index)),
+      first(whole.bodies[index].first_node),
       count(0),
       size(0),
       mass(0),

@@ -138,8 +138,7 @@ TEST(MemberContact, tangent_is_the_derivative_of_the_force) {
           scale = std::max(scale, by_difference.block<3, 1>(3 * k, i).norm());
         }
       }
-      // The matrix is read through the solver: K times its columns' inverse is awkward, so that one column
-      // comes from the difference of two solutions' residuals; instead compare energies of K along u.
+      // BlockLu only solves: (K + c I) x = (difference + c I) u gives x = u where K is the difference.
       for (int probe = 0; probe < 5; ++probe) {
         BlockLu lu(4, edges);
         lu.set_zero();
