@@ -8,8 +8,6 @@
 #include "solver/excitation.h"
 
 namespace topple {
-namespace {}  // namespace
-
 double load_factor(const Load& load, double t) {
   const auto& h = load.history;
   if (h.empty()) return 1;
