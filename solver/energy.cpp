@@ -8,15 +8,13 @@
 
 namespace topple {
 
-namespace {
-
-// Work of the half of a contact's force that is taken at one end of the step. The stick spring gives back
-// what it holds; the rest of the tangential work is friction.
 void book_contact(const ContactOutput& out, const Vec3& normal, const Vec3& travel, double sign,
                   StepEnergy& energy) {
   energy.normal_damping -= 0.5 * (out.normal - out.conservative) * normal.dot(travel);
   energy.friction -= 0.5 * out.tangential.dot(travel) + sign * out.stick_energy;
 }
+
+namespace {
 
 // What a law that changes puts into springs that do not move.
 class LawChange {
@@ -29,12 +27,17 @@ class LawChange {
     energy_.input += 0.5 * stick_energy * growth;
     energy_.friction += 0.5 * stick_energy * growth;
   }
-  void book(const Contacts& contacts, const std::vector<MemberPair>& pairs, double growth) {
-    for (const TouchingPair& pair : contacts.planes)
+  void book(const std::vector<TouchingPair>& contacts, double growth) {
+    for (const TouchingPair& pair : contacts)
       book(1, pair.depth, pair.L, false, pair.out.stick_energy, growth);
+  }
+  void book(const Contacts& contacts, const std::vector<MemberPair>& pairs, double growth) {
+    book(contacts.planes, growth);
     for (const MemberTouch& touch : contacts.members.touches)
       book(touch.weight, touch.depth, pairs[touch.pair].L, true, touch.out.stick_energy, growth);
   }
+  double growth_at_start() const { return after_.alpha / before_.alpha - 1; }
+  double growth_at_end() const { return 1 - before_.alpha / after_.alpha; }
 
  private:
   const ContactLaw &before_, &after_;
@@ -43,6 +46,15 @@ class LawChange {
 };
 
 }  // namespace
+
+void book_law_change(const ContactLaw& before, const ContactLaw& after,
+                     const std::vector<TouchingPair>& contacts_start,
+                     const std::vector<TouchingPair>& contacts_end, StepEnergy& energy) {
+  if (before.alpha == after.alpha && before.q == after.q) return;
+  LawChange change(before, after, after.kind, energy);
+  change.book(contacts_start, change.growth_at_start());
+  change.book(contacts_end, change.growth_at_end());
+}
 
 void book_work(const BodySystem& s, const Parameters& parameters, double t, double h, const BodyMotion& start,
                const BodyMotion& end, const Contacts& contacts_start, const Contacts& contacts_end,
@@ -76,8 +88,8 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
   const ContactLaw law0 = contact_law(parameters, t), law1 = contact_law(parameters, t + h);
   if (law0.alpha == law1.alpha && law0.q == law1.q) return;
   LawChange change(law0, law1, parameters.contact.kind, energy);
-  change.book(contacts_start, s.member_pairs(), law1.alpha / law0.alpha - 1);
-  change.book(contacts_end, s.member_pairs(), 1 - law0.alpha / law1.alpha);
+  change.book(contacts_start, s.member_pairs(), change.growth_at_start());
+  change.book(contacts_end, s.member_pairs(), change.growth_at_end());
 }
 
 double EnergyLedger::balance_error() const {

@@ -51,6 +51,9 @@ struct Shake {
   Passage passage;                       ///< from it to `amplitude` along `direction`
 };
 
+/// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.
+enum class BodyModel { automatic, rigid, elastic, frame };
+
 enum class Integrator { central_difference, generalized_alpha, newmark };
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene_keys.h, one table for scene files,
@@ -60,6 +63,8 @@ struct Parameters {
   ContactLaw contact_before;  ///< until an edit
   Passage contact_passage;    ///< from it to `contact`
   std::vector<Shake> shakes;
+  std::vector<BodyModel> models;            ///< one per body; empty: all frame
+  bool want_stress = true;                  ///< what `automatic` goes by
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1
