@@ -12,15 +12,20 @@ struct StepEnergy {
   double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0, plastic = 0;
 };
 
-/// Work over `travel` of the half of a contact's force that is taken at the start (sign -1) or the end (1) of
-/// a step. The stick spring gives back what it holds; the rest of the tangential work is friction.
-void book_contact(const ContactOutput& out, const Vec3& normal, const Vec3& travel, double sign,
-                  StepEnergy& energy);
+/// What a contact law that changes over a step puts into springs that do not move: input. Call for every
+/// contact at both ends of the step.
+class LawChange {
+ public:
+  LawChange(const ContactLaw& before, const ContactLaw& after, StepEnergy& energy);
+  void book_start(double depth, double L, double stick_energy, double weight = 1, bool between_members = false);
+  void book_end(double depth, double L, double stick_energy, double weight = 1, bool between_members = false);
 
-/// What a law that changes over a step puts into the springs of plane contacts at its ends: input.
-void book_law_change(const ContactLaw& before, const ContactLaw& after,
-                     const std::vector<TouchingPair>& contacts_start,
-                     const std::vector<TouchingPair>& contacts_end, StepEnergy& energy);
+ private:
+  void book(double weight, double depth, double L, bool between_members, double stick_energy, double growth);
+
+  const ContactLaw &before_, &after_;
+  StepEnergy& energy_;
+};
 
 /// Work of gravity, floor, loads and contacts on a system over a step from t to t + h between two evaluations
 /// of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick springs are not booked:

@@ -18,6 +18,7 @@ struct ContactLaw {
   double restitution = 0;      ///< coulomb law; a body that rocks lands without bouncing (Housner)
   double normal_speed = 0.01;  ///< m/s, eps_n of the coulomb law
   double slip_speed = 0.01;    ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
+  bool operator==(const ContactLaw&) const = default;
 };
 
 /// The way from earlier values to those edited while it runs: what jumped would put energy in.

@@ -190,11 +190,34 @@ std::uint64_t hash(const State& state) {
   return sum;
 }
 
-bool is_finite(const State& state) {
-  bool finite = true;
-  each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
-  for (const MemberStick& stick : state.member_sticks) finite = finite && stick.stick.allFinite();
+bool is_finite(const State& state, bool nodes) {
+  double sum = state.energy.unexplained() + state.floor_displacement.sum() + state.floor_velocity.sum();
+  for (const BodyState& b : state.bodies)
+    sum += b.position.sum() + b.rotation.coeffs().sum() + b.velocity.sum() + b.angular_velocity.sum() +
+           b.amplitude.sum() + b.rate.sum() + b.force.sum() + b.moment.sum() + b.load.sum();
+  for (const MemberStick& stick : state.member_sticks) sum += stick.stick.sum();
+  bool finite = std::isfinite(sum);
+  if (nodes) each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
   return finite;
+}
+
+void copy(const State& from, State& to, bool nodes) {
+  if (nodes) {
+    to = from;
+    return;
+  }
+  to.time = from.time;
+  to.step = from.step;
+  to.bodies = from.bodies;
+  to.stick = from.stick;
+  to.member_sticks = from.member_sticks;
+  to.near = from.near;
+  to.near_slack = from.near_slack;
+  to.floor_displacement = from.floor_displacement;
+  to.floor_velocity = from.floor_velocity;
+  to.step_size = from.step_size;
+  to.load_factor = from.load_factor;
+  to.energy = from.energy;
 }
 
 }  // namespace topple

@@ -279,7 +279,7 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
 }
 
 // Body and element with the greatest contact force of the newest step; false: nothing touches.
-bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
+bool blame_hardest_contact(const Model& model, Workspace::Impl& w, StepStatus& status) {
   double greatest = 0;
   const auto blame = [&](const BodySystem& system, double force, int node) {
     if (!(force > greatest)) return;
@@ -290,12 +290,13 @@ bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
   };
   for (std::size_t b = 0; b < w.next.bodies.size(); ++b) {
     if (w.next.bodies[b].rung == Rung::frame) continue;
-    const ReducedBody& body = *w.reduced_bodies[b];
-    for (const TouchingPair& pair : body.contacts())
-      if (pair.out.normal > greatest) {
-        greatest = pair.out.normal;
-        status.body = body.index;
-        status.node = body.model.contact_points[pair.point].node;
+    w.contact_forces.clear();
+    w.reduced_bodies[b]->list_contacts(w.contact_forces);
+    for (const ContactForce& force : w.contact_forces)
+      if (force.normal > greatest) {
+        greatest = force.normal;
+        status.body = static_cast<int>(b);
+        status.node = model.contact_points[force.point].node;
         status.element = -1;
       }
   }
@@ -335,7 +336,7 @@ bool is_calm(const Model& model, const Parameters& parameters, const State& stat
     strain += section_energy(model.elements[e], w.sections[e]);
   }
   return !w.near[b] &&
-         strain < k_negligible * body.mass * parameters.gravity.norm() * w.reduced(model, b).reach &&
+         strain < k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
          yield_ratio(model, b, w.sections) < k_calm_yield;
 }
 
@@ -496,16 +497,21 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   e.strain = held.strain;
   e.contact = held.contact;
   e.largest = std::max({e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact});
-  if (!is_finite(next)) {
+  if (!is_finite(next, !w.systems().empty())) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
   } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy &&
-             blame_hardest_contact(w, status)) {
+             blame_hardest_contact(model, w, status)) {
     status.kind = StepStatus::Kind::energy_lost;
     status.time = next.time;
   }
   return status;
+}
+
+// Whether a step needs the per-node arrays: there are frames, or `w` has never seen this state.
+bool moves_nodes(const State& state, const Workspace::Impl& w) {
+  return !w.systems().empty() || w.next.position.size() != state.position.size();
 }
 
 // One step of size h into w.next.
@@ -515,7 +521,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   double travel = likely_travel(model, state, h);
   StepStatus status;
   for (int look = 0; look < k_most_looks; ++look) {
-    w.next = state;
+    copy(state, w.next, moves_nodes(state, w));
     look_around(model, w.next, travel);
     status = try_known(model, parameters, state, h, halvings, w);
     if (!status.ok() || model.bodies.size() < 2) return status;
@@ -615,8 +621,7 @@ const std::vector<ContactForce>& contact_forces(const Model& model, const Parame
     ReducedBody& body = w.reduced(model, b);
     body.find_contacts(now, state.bodies[b], state.stick);
     body.section_forces(state.bodies[b], w.sections);
-    for (const TouchingPair& pair : body.contacts())
-      w.contact_forces.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
+    body.list_contacts(w.contact_forces);
   }
   for (auto& system : w.systems()) {
     system->load(state, w.motion);
