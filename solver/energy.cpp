@@ -34,8 +34,7 @@ void LawChange::book_end(double depth, double L, double stick_energy, double wei
 void LawChange::book(double weight, double depth, double L, bool between_members, double stick_energy,
                      double growth) {
   const auto held = [&](const ContactLaw& law) { return penalty_energy(law, depth, L, between_members); };
-  if (after_.kind != ContactLawKind::printed)
-    energy_.input += 0.5 * weight * (held(after_) - held(before_));
+  if (after_.kind != ContactLawKind::printed) energy_.input += 0.5 * weight * (held(after_) - held(before_));
   energy_.input += 0.5 * stick_energy * growth;
   energy_.friction += 0.5 * stick_energy * growth;
 }
@@ -77,7 +76,8 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
   for (const TouchingPair& pair : contacts_end.planes)
     change.book_end(pair.depth, pair.L, pair.out.stick_energy);
   for (const MemberTouch& touch : contacts_start.members.touches)
-    change.book_start(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+    change.book_start(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight,
+                      true);
   for (const MemberTouch& touch : contacts_end.members.touches)
     change.book_end(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight, true);
 }

@@ -17,7 +17,8 @@ struct StepEnergy {
 class LawChange {
  public:
   LawChange(const ContactLaw& before, const ContactLaw& after, StepEnergy& energy);
-  void book_start(double depth, double L, double stick_energy, double weight = 1, bool between_members = false);
+  void book_start(double depth, double L, double stick_energy, double weight = 1,
+                  bool between_members = false);
   void book_end(double depth, double L, double stick_energy, double weight = 1, bool between_members = false);
 
  private:

@@ -60,6 +60,11 @@ inline Pack3 operator*(const Mat3& m, const Pack3& a) {
   return {m(0, 0) * a.x + m(0, 1) * a.y + m(0, 2) * a.z, m(1, 0) * a.x + m(1, 1) * a.y + m(1, 2) * a.z,
           m(2, 0) * a.x + m(2, 1) * a.y + m(2, 2) * a.z};
 }
+/// The sums of four packs.
+inline Pack sums(Pack a, Pack b, Pack c, Pack d) {
+  const Pack ab = __builtin_ia32_haddpd256(a, b), cd = __builtin_ia32_haddpd256(c, d);
+  return __builtin_shuffle(ab, cd, PackMask{0, 1, 6, 7}) + __builtin_shuffle(ab, cd, PackMask{2, 3, 4, 5});
+}
 inline Vec3 sum(const Pack3& a) {
   return {sum(a.x), sum(a.y), sum(a.z)};
 }

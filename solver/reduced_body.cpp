@@ -16,9 +16,10 @@ namespace {
 
 constexpr double k_stable_turn = 1.2;  // rad per part of a step, of the stiffest motion on contacts; limit 2
 constexpr double k_swing = 2.5;        // rad per part, of the highest mode
-constexpr double k_small_turn = 0.02;      // rad
+constexpr double k_small_turn = 0.02;  // rad
 constexpr double k_velocity_error = 1e-7;  // of the speed
 constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
+constexpr double k_bend = 0.05;            // of the reach: more than an elastic body deforms
 constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
 constexpr int k_most_iterations = 40;
 
@@ -31,6 +32,31 @@ Pack power(Pack depth, double q) {
   if (q == 2) return depth * depth;
   for (int i = 0; i < k_lanes; ++i) depth[i] = std::pow(depth[i], q);
   return depth;
+}
+
+// In place, of `fixed` unknowns or n. Damping makes the matrix more than M, so that nothing needs a pivot.
+template <int fixed, class Matrix>
+void factor(Matrix& a, int unknowns) {
+  const int n = fixed > 0 ? fixed : unknowns;
+  for (int k = 0; k < n; ++k) {
+    a[k][k] = 1 / a[k][k];
+    for (int i = k + 1; i < n; ++i) {
+      const double part = a[i][k] *= a[k][k];
+#pragma GCC unroll 6
+      for (int j = k + 1; j < n; ++j) a[i][j] -= part * a[k][j];
+    }
+  }
+}
+
+template <int fixed, class Matrix>
+void solve(const Matrix& a, double* x, int unknowns) {
+  const int n = fixed > 0 ? fixed : unknowns;
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= a[i][j] * x[j];
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = i + 1; j < n; ++j) x[i] -= a[i][j] * x[j];
+    x[i] *= a[i][i];
+  }
 }
 
 }  // namespace
@@ -54,12 +80,14 @@ ReducedBody::ReducedBody(const Model& model, int body)
     return model.node_position[model.contact_points[p].node] - b.centre_of_gravity;
   };
   // points that touch together stand together
-  std::stable_sort(order.begin(), order.end(), [&](int p, int q) { return place_of(p).z() < place_of(q).z(); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int p, int q) { return place_of(p).z() < place_of(q).z(); });
   const int modes = basis_ ? basis_->modes : 0;
   groups_.resize((order.size() + k_lanes - 1) / k_lanes);
   sides_.resize(model.planes.size() * groups_.size());
-  for (Side& side : sides_) side = {pack(-std::numeric_limits<double>::infinity()), pack(1), pack(1), pack(0)};
-  nearest_.assign(model.planes.size(), 0);
+  for (Side& side : sides_)
+    side = {pack(-std::numeric_limits<double>::infinity()), pack(1), pack(1), pack(0)};
+  widest_.assign(model.planes.size(), 0);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];
     group.place = pack3(Vec3::Zero());
@@ -70,6 +98,7 @@ ReducedBody::ReducedBody(const Model& model, int body)
       const ContactPoint& point = model.contact_points[p];
       group.point[lane] = p;
       group.place.set(lane, place_of(p));
+      box_.extend(place_of(p));
       for (int k = 0; k < modes; ++k)
         group.shape[k].set(lane, basis_->shape.block<3, 1>(6 * (point.node - b.first_node), k));
       for (std::size_t k = 0; k < model.planes.size(); ++k) {
@@ -78,14 +107,11 @@ ReducedBody::ReducedBody(const Model& model, int body)
         side.stick[lane] = k_stick_stiffness / side.L[lane];
         side.damping[lane] = 2 * k_stick_damping * std::sqrt(side.stick[lane] * contact_mass_);
         side.gap[lane] = point.width / 2;
-        nearest_[k] = std::max(nearest_[k], point.width / 2 + 1.1 * reach_);
+        widest_[k] = std::max(widest_[k], point.width / 2);
       }
     }
   }
-  touches_.reserve(sides_.size());
-  touches_start_.reserve(sides_.size());
   shapes_.reserve(sides_.size() * modes);
-  derivatives_.resize(sides_.size());
 }
 
 Pack3 ReducedBody::place(const BodyState& s, const Group& group) const {
@@ -94,26 +120,35 @@ Pack3 ReducedBody::place(const BodyState& s, const Group& group) const {
   return at;
 }
 
+// Height of the box over a plane's face along n, the normal in reference axes.
+double ReducedBody::clearance(const Vec3& n, double height) const {
+  return height + n.dot(box_.center()) - 0.5 * n.cwiseAbs().dot(box_.sizes());
+}
+
 void ReducedBody::find_touching(const BodyState& s, const Mat3& r) {
-  touches_.clear();
+  touches_.count = 0;
   shapes_.clear();
   const int m = modes(s);
+  const double bend = m > 0 ? k_bend * reach_ : 0;
   for (std::size_t k = 0; k < model_.planes.size(); ++k) {
     const Plane& plane = model_.planes[k];
     const double height = plane.normal.dot(s.position - plane.point);
-    if (height > nearest_[k]) continue;
-    const Pack3 n = pack3(r.transpose() * plane.normal);
+    const Vec3 normal = r.transpose() * plane.normal;
+    if (clearance(normal, height) > widest_[k] + bend) continue;
+    const Pack3 n = pack3(normal);
+    const Pack level = pack(height);
+    const Side* const sides = &sides_[k * groups_.size()];
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const Side& side = sides_[k * groups_.size() + g];
-      const Pack3 at = place(s, groups_[g]);
-      const Pack gap = dot(n, at) + height - side.gap;
+      Pack3 at = groups_[g].place;
+      for (int j = 0; j < m; ++j) at = at + s.amplitude[j] * groups_[g].shape[j];
+      const Pack gap = dot(n, at) + level - sides[g].gap;
       const PackMask touching = gap < 0;
       if (bits(touching) == 0) continue;
-      Touch& touch = touches_.emplace_back();
+      Touch& touch = touches_.add();
       touch.plane = static_cast<int>(k);
       touch.group = static_cast<int>(g);
       touch.touching = touching;
-      touch.depth = touching ? -gap / side.L : pack(0);
+      touch.depth = touching ? -gap / sides[g].L : pack(0);
       touch.arm = r * at;
       for (int j = 0; j < m; ++j) shapes_.push_back(r * groups_[g].shape[j]);
     }
@@ -187,8 +222,8 @@ void ReducedBody::respond(const ContactLaw& law, const Pack3& v, Touch& touch, D
     Mat3 by_position, by_velocity;
     const ContactOutput out =
         contact_force(law,
-                      {model_.planes[touch.plane].normal, touch.depth[lane], side(touch).L[lane], v.lane(lane),
-                       touch.stick.lane(lane), contact_mass_},
+                      {model_.planes[touch.plane].normal, touch.depth[lane], side(touch).L[lane],
+                       v.lane(lane), touch.stick.lane(lane), contact_mass_},
                       by_position, by_velocity);
     touch.conservative[lane] = out.conservative;
     touch.normal[lane] = out.normal;
@@ -225,64 +260,100 @@ void ReducedBody::sum_loads(const Vec3& field, BodyState& s) const {
   for (int k = 0; k < m; ++k) s.load[k] = sum(load[k]);
 }
 
-// Of M - (h/2) sum J^T (df/dv) J, in place. Damping makes it more than M, so that nothing needs a pivot.
-template <int fixed>
-void ReducedBody::factor(const Mat3& inertia, double h, int m) {
-  const int n = fixed > 0 ? fixed : 6 + m;
-  Pack total[k_unknowns][k_unknowns];
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) total[i][j] = pack(0);
-  Pack3 column[k_unknowns];
+// M - (h/2) sum J^T (df/dv) J of the rigid motions.
+void ReducedBody::fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) const {
+  // blocks: force and moment by V and omega, of packs (three and a spare) per column
+  Pack upper[6][4], lower[6][4];
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 4; ++i) upper[j][i] = lower[j][i] = pack(0);
   for (std::size_t c = 0; c < touches_.size(); ++c) {
-    const Derivative& d = derivatives_[c];
+    const Derivative& d = w.derivatives[c];
     const Pack3& arm = touches_[c].arm;
-    const Pack zero = pack(0), one = pack(1);
-    column[0] = {one, zero, zero};
-    column[1] = {zero, one, zero};
-    column[2] = {zero, zero, one};
-    column[3] = {zero, -arm.z, arm.y};
-    column[4] = {arm.z, zero, -arm.x};
-    column[5] = {-arm.y, arm.x, zero};
-    for (int k = 0; k < m; ++k) column[6 + k] = shapes_[c * m + k];
-    for (int j = 0; j < n; ++j) {
-      const Pack3& x = column[j];
-      const Pack3 f{d[0][0] * x.x + d[0][1] * x.y + d[0][2] * x.z, d[1][0] * x.x + d[1][1] * x.y + d[1][2] * x.z,
-                    d[2][0] * x.x + d[2][1] * x.y + d[2][2] * x.z};
-      for (int i = 0; i < n; ++i) total[i][j] += dot(column[i], f);
+    const auto add = [&](int j, const Pack3& f) {
+      upper[j][0] += f.x;
+      upper[j][1] += f.y;
+      upper[j][2] += f.z;
+      const Pack3 moment = cross(arm, f);
+      lower[j][0] += moment.x;
+      lower[j][1] += moment.y;
+      lower[j][2] += moment.z;
+    };
+    const Pack3 x{d[0][0], d[1][0], d[2][0]}, y{d[0][1], d[1][1], d[2][1]}, z{d[0][2], d[1][2], d[2][2]};
+    add(0, x);
+    add(1, y);
+    add(2, z);
+    add(3, arm.y * z - arm.z * y);
+    add(4, arm.z * x - arm.x * z);
+    add(5, arm.x * y - arm.y * x);
+  }
+  for (int j = 0; j < 6; ++j) {
+    const Pack up = -h / 2 * sums(upper[j][0], upper[j][1], upper[j][2], upper[j][3]);
+    const Pack down = -h / 2 * sums(lower[j][0], lower[j][1], lower[j][2], lower[j][3]);
+    for (int i = 0; i < 3; ++i) {
+      w.matrix[i][j] = up[i];
+      w.matrix[3 + i][j] = down[i];
     }
   }
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) matrix_[i][j] = -h / 2 * sum(total[i][j]);
   for (int i = 0; i < 3; ++i) {
-    matrix_[i][i] += mass_;
-    for (int j = 0; j < 3; ++j) matrix_[3 + i][3 + j] += inertia(i, j);
-  }
-  for (int k = 6; k < n; ++k) matrix_[k][k] += 1;
-  for (int k = 0; k < n; ++k) {
-    matrix_[k][k] = 1 / matrix_[k][k];
-    for (int i = k + 1; i < n; ++i) {
-      const double part = matrix_[i][k] *= matrix_[k][k];
-      for (int j = k + 1; j < n; ++j) matrix_[i][j] -= part * matrix_[k][j];
-    }
+    w.matrix[i][i] += mass_;
+    for (int j = 0; j < 3; ++j) w.matrix[3 + i][3 + j] += inertia(i, j);
   }
 }
 
-template <int fixed>
-void ReducedBody::solve(int m) {
-  const int n = fixed > 0 ? fixed : 6 + m;
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < i; ++j) side_[i] -= matrix_[i][j] * side_[j];
-  for (int i = n - 1; i >= 0; --i) {
-    for (int j = i + 1; j < n; ++j) side_[i] -= matrix_[i][j] * side_[j];
-    side_[i] *= matrix_[i][i];
+// The rows and columns of the modes.
+void ReducedBody::fill_modes(double h, int m, ReducedScratch& w) const {
+  Pack left[k_modes][6], top[6][k_modes], corner[k_modes][k_modes];
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) left[k][i] = top[i][k] = pack(0);
+    for (int j = 0; j < m; ++j) corner[k][j] = pack(0);
+  }
+  for (std::size_t c = 0; c < touches_.size(); ++c) {
+    const Derivative& d = w.derivatives[c];
+    const Pack3& arm = touches_[c].arm;
+    const Pack3* const shape = &shapes_[c * m];
+    for (int k = 0; k < m; ++k) {
+      const Pack3& v = shape[k];
+      const Pack3 f{d[0][0] * v.x + d[0][1] * v.y + d[0][2] * v.z,
+                    d[1][0] * v.x + d[1][1] * v.y + d[1][2] * v.z,
+                    d[2][0] * v.x + d[2][1] * v.y + d[2][2] * v.z};
+      const Pack3 moment = cross(arm, f);
+      top[0][k] += f.x;
+      top[1][k] += f.y;
+      top[2][k] += f.z;
+      top[3][k] += moment.x;
+      top[4][k] += moment.y;
+      top[5][k] += moment.z;
+      for (int j = 0; j < m; ++j) corner[j][k] += dot(shape[j], f);
+      // the transpose's product: forces of the rigid columns on this mode
+      const Pack3 b{d[0][0] * v.x + d[1][0] * v.y + d[2][0] * v.z,
+                    d[0][1] * v.x + d[1][1] * v.y + d[2][1] * v.z,
+                    d[0][2] * v.x + d[1][2] * v.y + d[2][2] * v.z};
+      const Pack3 turned = cross(arm, b);
+      left[k][0] += b.x;
+      left[k][1] += b.y;
+      left[k][2] += b.z;
+      left[k][3] += turned.x;
+      left[k][4] += turned.y;
+      left[k][5] += turned.z;
+    }
+  }
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) {
+      w.matrix[i][6 + k] = -h / 2 * sum(top[i][k]);
+      w.matrix[6 + k][i] = -h / 2 * sum(left[k][i]);
+    }
+    for (int j = 0; j < m; ++j) w.matrix[6 + k][6 + j] = -h / 2 * sum(corner[k][j]);
+    w.matrix[6 + k][6 + k] += 1;
   }
 }
 
 // The velocity u after half a step of what acts at its end, and the contact forces there. `free`: without
 // contacts. Newton.
 void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free,
-                                 Velocity& u, const BodyState& s) {
+                                 Velocity& u, const BodyState& s, ReducedScratch& w) {
   const int m = modes(s);
+  double* const side = w.side;
+  if (w.derivatives.size() < touches_.size()) w.derivatives.resize(touches_.size());
   bool fresh = true;
   double last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
@@ -292,9 +363,9 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
     for (std::size_t c = 0; c < touches_.size(); ++c) {
       Touch& touch = touches_[c];
       if (fresh)
-        respond<true>(law, velocity_at(c, u, m), touch, derivatives_[c]);
+        respond<true>(law, velocity_at(c, u, m), touch, w.derivatives[c]);
       else
-        respond<false>(law, velocity_at(c, u, m), touch, derivatives_[c]);
+        respond<false>(law, velocity_at(c, u, m), touch, w.derivatives[c]);
       const Pack3 f = touch.normal * pack3(model_.planes[touch.plane].normal) + touch.tangential;
       force = force + f;
       moment = moment + cross(touch.arm, f);
@@ -303,27 +374,26 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
     const Vec3 push = mass_ * (u.linear - free.linear) - h / 2 * sum(force),
                spin = inertia * (u.angular - free.angular) - h / 2 * sum(moment);
     for (int i = 0; i < 3; ++i) {
-      side_[i] = push[i];
-      side_[3 + i] = spin[i];
+      side[i] = push[i];
+      side[3 + i] = spin[i];
     }
-    for (int k = 0; k < m; ++k) side_[6 + k] = u.rate[k] - free.rate[k] - h / 2 * sum(load[k]);
-    if (m == 0) {
-      if (fresh) factor<6>(inertia, h, 0);
-      solve<6>(0);
-    } else {
-      if (fresh) factor<0>(inertia, h, m);
-      solve<0>(m);
+    for (int k = 0; k < m; ++k) side[6 + k] = u.rate[k] - free.rate[k] - h / 2 * sum(load[k]);
+    if (fresh) {
+      fill_rigid(inertia, h, w);
+      if (m > 0) fill_modes(h, m, w);
+      m > 0 ? factor<0>(w.matrix, 6 + m) : factor<6>(w.matrix, 6);
     }
+    m > 0 ? solve<0>(w.matrix, side, 6 + m) : solve<6>(w.matrix, side, 6);
     double size = 0, speed = k_slow;
     for (int i = 0; i < 3; ++i) {
-      u.linear[i] -= side_[i];
-      u.angular[i] -= side_[3 + i];
-      size += std::abs(side_[i]) + reach_ * std::abs(side_[3 + i]);
+      u.linear[i] -= side[i];
+      u.angular[i] -= side[3 + i];
+      size += std::abs(side[i]) + reach_ * std::abs(side[3 + i]);
       speed += std::abs(u.linear[i]) + reach_ * std::abs(u.angular[i]);
     }
     for (int k = 0; k < m; ++k) {
-      u.rate[k] -= side_[6 + k];
-      size += std::abs(side_[6 + k]) / std::sqrt(mass_);
+      u.rate[k] -= side[6 + k];
+      size += std::abs(side[6 + k]) / std::sqrt(mass_);
     }
     // what is left after the correction: its rate, or its square over that of the smoothing
     const double rate = fresh ? std::min(1., size / law.normal_speed) : size / last;
@@ -334,7 +404,7 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
 }
 
 template <class F>
-void ReducedBody::each_touching(const std::vector<Touch>& touches, F f) const {
+void ReducedBody::each_touching(const Touches& touches, F f) const {
   for (const Touch& touch : touches)
     for (int lane = 0; lane < k_lanes; ++lane)
       if (touch.touching[lane])
@@ -342,18 +412,21 @@ void ReducedBody::each_touching(const std::vector<Touch>& touches, F f) const {
           groups_[touch.group].point[lane] * model_.planes.size() + touch.plane);
 }
 
-void ReducedBody::drift(double h, BodyState& s) {
+// Returns the turn, a rotation vector in material axes.
+Vec3 ReducedBody::drift(double h, BodyState& s) {
   s.position += h * s.velocity;
-  // Lie midpoint: the velocity of the middle of the step from the angular momentum, which stays
+  // The angular momentum stays. Lie midpoint for the turn: from the velocity in the middle of the step.
   const Vec3 momentum = inertia_ * s.angular_velocity;
-  Vec3 middle = s.angular_velocity;
-  const int passes = h * middle.norm() < k_small_turn ? 2 : 4;
-  for (int pass = 0; pass < passes; ++pass)
-    middle = inverse_inertia_ * (exp_quaternion(h / 2 * middle).conjugate() * momentum);
-  const Quat turn = exp_quaternion(h * middle);
-  s.rotation = (s.rotation * turn).normalized();
+  Vec3 middle = s.angular_velocity + h / 2 * (inverse_inertia_ * momentum.cross(s.angular_velocity));
+  if (h * middle.norm() > k_small_turn)
+    for (int pass = 0; pass < 4; ++pass)
+      middle = inverse_inertia_ * (exp_quaternion(h / 2 * middle).conjugate() * momentum);
+  const Vec3 spin = h * middle;
+  const Quat turn = exp_quaternion(spin);
+  s.rotation = s.rotation * turn;
+  s.rotation.coeffs() *= 1.5 - 0.5 * s.rotation.squaredNorm();
   s.angular_velocity = inverse_inertia_ * (turn.conjugate() * momentum);
-  if (s.rung != Rung::elastic) return;
+  if (s.rung != Rung::elastic) return spin;
   if (swing_step_ != h) {
     swing_step_ = h;
     for (int k = 0; k < k_modes; ++k) {
@@ -366,22 +439,24 @@ void ReducedBody::drift(double h, BodyState& s) {
   const Amplitudes q = s.amplitude;
   s.amplitude = cosine_ * q + sine_ * s.rate;
   s.rate = cosine_ * s.rate + back_ * q;
+  return spin;
 }
 
 // With the contacts' springs and stick springs as stiff as they get, in all directions.
 double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   const int m = modes(s), n = 6 + m;
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (touches_.empty()) return swing;
+  if (touches_.count == 0) return swing;
   std::uint64_t touching = 14695981039346656037ull;
   for (const Touch& touch : touches_) {
-    std::uint64_t bits = static_cast<std::uint64_t>(touch.plane) << 32 | static_cast<std::uint64_t>(touch.group) << 8;
+    std::uint64_t bits =
+        static_cast<std::uint64_t>(touch.plane) << 32 | static_cast<std::uint64_t>(touch.group) << 8;
     for (int lane = 0; lane < k_lanes; ++lane) bits |= touch.touching[lane] ? 1ull << lane : 0;
     touching = (touching ^ bits) * 1099511628211ull;
   }
   for (const Known& known : known_)
-    if (known.touching == touching && known.alpha == law.alpha && known.q == law.q && known.kind == law.kind &&
-        known.rung == s.rung)
+    if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
+        known.kind == law.kind && known.rung == s.rung)
       return known.step;
   const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
   const double stick = law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0;
@@ -423,16 +498,17 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
 // Forces of the touches at the velocity of `s`.
 void ReducedBody::respond_at(const ContactLaw& law, const BodyState& s) {
   const Velocity u{s.velocity, s.rotation * s.angular_velocity, s.rate};
+  Derivative none;
   for (std::size_t c = 0; c < touches_.size(); ++c)
-    respond<false>(law, velocity_at(c, u, modes(s)), touches_[c], derivatives_[c]);
+    respond<false>(law, velocity_at(c, u, modes(s)), touches_[c], none);
   found_at_ = s;
   found_law_ = law;
 }
 
 bool ReducedBody::known(const Instant& now, const BodyState& s) const {
-  return found_at_ && found_law_ == now.law && found_at_->rung == s.rung && found_at_->position == s.position &&
-         found_at_->rotation.coeffs() == s.rotation.coeffs() && found_at_->velocity == s.velocity &&
-         found_at_->angular_velocity == s.angular_velocity &&
+  return found_at_ && found_law_ == now.law && found_at_->rung == s.rung &&
+         found_at_->position == s.position && found_at_->rotation.coeffs() == s.rotation.coeffs() &&
+         found_at_->velocity == s.velocity && found_at_->angular_velocity == s.angular_velocity &&
          (s.rung == Rung::rigid ||
           ((found_at_->amplitude == s.amplitude).all() && (found_at_->rate == s.rate).all()));
 }
@@ -455,80 +531,84 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
 }
 
 void ReducedBody::advance_part(const Parameters& parameters, const Instant& start, const Instant& end,
-                               double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked) {
-  std::swap(touches_, touches_start_);
+                               double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
+                               ReducedScratch& w) {
+  std::swap(touches_, w.touches_start);
   const BodyState before = s;
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (s.rotation.conjugate() * s.moment));
-  s.rate += h / 2 * s.load;
-  drift(h, s);
+  const bool bends = s.rung == Rung::elastic;
+  if (bends) s.rate += h / 2 * s.load;
+  const Vec3 spin = drift(h, s);
 
   const Mat3 r0 = before.rotation.toRotationMatrix(), r = s.rotation.toRotationMatrix();
   const Vec3 shift = s.position - before.position, field = parameters.gravity - end.floor;
   find_touching(s, r);
   for (Touch& touch : touches_) {
     read_stick(stick, touch);
-    touch.stick = touch.stick + pack3(shift) + (touch.arm - r0 * place(before, groups_[touch.group]));
+    touch.travel = pack3(shift) + (touch.arm - r0 * place(before, groups_[touch.group]));
+    touch.stick = touch.stick + touch.travel;
   }
   const Velocity drifted{s.velocity, s.rotation * s.angular_velocity, s.rate};
-  if (!touches_.empty()) {
+  if (!touches_.count == 0) {
     const Mat3 inertia = r * inertia_ * r.transpose();
     Velocity u = drifted;
     u.linear += h / 2 / mass_ * before.force;
     u.angular += r * (inverse_inertia_ * (r.transpose() * (h / 2 * before.moment)));
-    u.rate += h / 2 * before.load;
-    solve_velocity(end.law, inertia, h, {drifted.linear + h / 2 * field, drifted.angular, drifted.rate}, u, s);
+    if (bends) u.rate += h / 2 * before.load;
+    solve_velocity(end.law, inertia, h, {drifted.linear + h / 2 * field, drifted.angular, drifted.rate}, u, s,
+                   w);
   }
   sum_loads(field, s);
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (r.transpose() * s.moment));
-  s.rate += h / 2 * s.load;
+  if (bends) s.rate += h / 2 * s.load;
 
   // As book_work, and what the method itself takes out, from its own kinematics.
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
   booked.input -= mass_ * 0.5 * (start.floor + end.floor).dot(shift);
   Pack damped = pack(0), rubbed = damped;
   const auto book = [&](const Touch& touch, const Pack3& travel, double sign) {
-    damped -= 0.5 * (touch.normal - touch.conservative) * dot(pack3(model_.planes[touch.plane].normal), travel);
+    damped -=
+        0.5 * (touch.normal - touch.conservative) * dot(pack3(model_.planes[touch.plane].normal), travel);
     rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
-  for (const Touch& touch : touches_start_)
+  for (const Touch& touch : w.touches_start)
     book(touch, pack3(shift) + (r * place(s, groups_[touch.group]) - touch.arm), -1);
-  for (const Touch& touch : touches_)
-    book(touch, pack3(shift) + (touch.arm - r0 * place(before, groups_[touch.group])), 1);
+  for (const Touch& touch : touches_) book(touch, touch.travel, 1);
   booked.normal_damping += sum(damped);
   booked.friction += sum(rubbed);
-  const Vec3 spin = before.rotation * log_quaternion(before.rotation.conjugate() * s.rotation);
   booked.numerical += 0.5 * (before.force + s.force).dot(shift) -
                       0.5 * mass_ * (s.velocity + before.velocity).dot(s.velocity - before.velocity) +
-                      0.5 * (before.moment + s.moment).dot(spin) -
+                      0.5 * (before.moment + s.moment).dot(r0 * spin) -
                       0.5 * (s.angular_velocity + before.angular_velocity)
                                 .dot(inertia_ * (s.angular_velocity - before.angular_velocity));
-  if (s.rung == Rung::elastic)
+  if (bends)
     booked.numerical +=
         (0.5 * (before.load + s.load) * (s.amplitude - before.amplitude) -
          0.5 * (s.rate.square() - before.rate.square()) -
          0.5 * basis_->frequency.square() * (s.amplitude.square() - before.amplitude.square()))
             .sum();
-  book_law_change(start.law, end.law, booked);
+  book_law_change(start.law, end.law, w.touches_start, booked);
 
-  each_touching(touches_start_,
-                [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
+  each_touching(w.touches_start, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
   keep_sticks(end.law, stick);
 }
 
 // Stores the stick springs after slipping.
 void ReducedBody::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
   for (Touch& touch : touches_) touch.stick = held_stick(law, touch);
-  each_touching(touches_,
-                [&](const Touch& touch, int lane, int, std::size_t at) { stick[at] = touch.stick.lane(lane); });
+  each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t at) {
+    stick[at] = touch.stick.lane(lane);
+  });
 }
 
 // What a law that changes puts into springs.
-void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& after, StepEnergy& booked) const {
+void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
+                                  StepEnergy& booked) const {
   if (before.alpha == after.alpha && before.q == after.q) return;
   LawChange change(before, after, booked);
-  each_touching(touches_start_, [&](const Touch& touch, int lane, int, std::size_t) {
+  each_touching(at_start, [&](const Touch& touch, int lane, int, std::size_t) {
     change.book_start(touch.depth[lane], side(touch).L[lane], touch.stick_energy[lane]);
   });
   each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t) {
@@ -536,20 +616,23 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
   });
 }
 
-BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, double h, BodyState& s,
-                                std::span<Vec3> stick, StepEnergy& booked) {
+BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
+                                double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
+                                ReducedScratch& w) {
   Instant from = start;
   double left = h;
-  while (left > 0) {
+  for (;;) {
     const double parts = std::ceil(left / stable_part(from.law, s) - 1e-9);
-    const double size = parts > 1 ? left / parts : left;
-    left = parts > 1 ? left - size : 0;
-    const Instant to(parameters, left > 0 ? from.time + size : start.time + h);
-    advance_part(parameters, from, to, size, s, stick, booked);
+    if (!(parts > 1)) break;
+    const Instant to(parameters, from.time + left / parts);
+    advance_part(parameters, from, to, left / parts, s, stick, booked, w);
     respond_at(to.law, s);
+    left -= left / parts;
     from = to;
   }
-  return energy(from.law, s);
+  advance_part(parameters, from, end, left, s, stick, booked, w);
+  respond_at(end.law, s);
+  return energy(end.law, s);
 }
 
 void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {
@@ -608,13 +691,13 @@ double ReducedBody::rotation_bound(const BodyState& s) const {
   return basis_->mode_rotation.dot(s.amplitude.head(basis_->modes).abs().matrix());
 }
 
-// Newton with K + M/sigma^2, sigma growing, on the normal forces of Eq. 2 with stick springs, as settle.h does
-// for frames.
+// Newton with K + M/sigma^2, sigma growing, on the normal forces of Eq. 2 with stick springs, as settle.h
+// does for frames.
 bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick) {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
   constexpr int k_rounds = 400;
-  constexpr double k_first = 1e-3, k_last = 1e3;            // s, sigma
+  constexpr double k_first = 1e-3, k_last = 1e3;           // s, sigma
   constexpr double k_balanced = 1e-10, k_furthest = 0.25;  // of the weight, of the reach
   Parameters still = parameters;
   still.shakes.clear();
@@ -646,9 +729,9 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t at) {
       Mat3 by_position, by_velocity;
       const Vec3& normal = model_.planes[touch.plane].normal;
-      const ContactOutput out =
-          contact_force(now.law, {normal, touch.depth[lane], side(touch).L[lane], Vec3::Zero(), stick[at], contact_mass_},
-                        by_position, by_velocity);
+      const ContactOutput out = contact_force(
+          now.law, {normal, touch.depth[lane], side(touch).L[lane], Vec3::Zero(), stick[at], contact_mass_},
+          by_position, by_velocity);
       const Vec3 arm = touch.arm.lane(lane);
       Matrix j(3, n);
       j.leftCols<3>().setIdentity();
@@ -673,14 +756,15 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     const double size = x.head<3>().norm() + reach_ * x.segment<3>(3).norm();
     if (!((s.position - origin).norm() + size < k_furthest * reach_)) return false;
     // stick springs travel along
-    std::swap(touches_, touches_start_);
+    std::vector<std::size_t> before_touching;
+    each_touching(touches_, [&](const Touch&, int, int, std::size_t at) { before_touching.push_back(at); });
     find_touching(s, s.rotation.toRotationMatrix());
     for (Touch& touch : touches_) {
       read_stick(stick, touch);
       touch.stick = touch.stick + pack3(s.position - before.position) +
                     (touch.arm - before.rotation.toRotationMatrix() * place(before, groups_[touch.group]));
     }
-    each_touching(touches_start_, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
+    for (const std::size_t at : before_touching) stick[at].setZero();
     respond_at(now.law, s);
     keep_sticks(now.law, stick);
     found_at_.reset();
@@ -696,8 +780,11 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) {
   for (std::size_t k = 0; k < model_.planes.size(); ++k) {
     const Plane& plane = model_.planes[k];
     const double fall = -plane.normal.dot(s.velocity), height = plane.normal.dot(s.position - plane.point);
-    if (height - nearest_[k] > (std::max(0., fall) + reach_ * omega.norm()) * k_longest_step) continue;
-    const Pack3 n = pack3(r.transpose() * plane.normal), turn = pack3(r.transpose() * plane.normal.cross(omega));
+    const Vec3 normal = r.transpose() * plane.normal;
+    if (clearance(normal, height) - widest_[k] >
+        (std::max(0., fall) + reach_ * omega.norm()) * k_longest_step)
+      continue;
+    const Pack3 n = pack3(normal), turn = pack3(r.transpose() * plane.normal.cross(omega));
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const Side& side = sides_[k * groups_.size() + g];
       const Pack gap = dot(n, groups_[g].place) + height - side.gap;
@@ -707,7 +794,8 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) {
         if (gap[lane] < 0)
           stiffness += penalty_stiffness(law, -gap[lane] / side.L[lane], side.L[lane]);
         else if (closing[lane] * k_longest_step > gap[lane])
-          limit = std::min(limit, std::max(gap[lane] / closing[lane], side.L[lane] / (k_closing_part * closing[lane])));
+          limit = std::min(
+              limit, std::max(gap[lane] / closing[lane], side.L[lane] / (k_closing_part * closing[lane])));
       }
     }
   }

@@ -32,7 +32,9 @@ struct Instant {
   Instant(const Parameters& parameters, double t);
 };
 
-/// Constants and scratch of one body.
+struct ReducedScratch;
+
+/// Constants of one body, and its contacts.
 class ReducedBody {
  public:
   ReducedBody(const Model& model, int body);
@@ -42,10 +44,10 @@ class ReducedBody {
   /// The same, and all that acts on the body into `s`.
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
-  /// Advances `s` and `stick` by h from `start`, whose contacts were found last, in parts that are stable.
-  /// `energy` is added to; returns what the body holds then.
-  BodyEnergy advance(const Parameters& parameters, const Instant& start, double h, BodyState& s,
-                     std::span<Vec3> stick, StepEnergy& energy);
+  /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later, in parts that
+  /// are stable. `energy` is added to; returns what the body holds then.
+  BodyEnergy advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                     BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& scratch);
   /// Rest under gravity on planes; false: none was found, or it tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// As look_ahead of step_control.h.
@@ -53,8 +55,8 @@ class ReducedBody {
 
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
-  /// Section forces of the body's elements at `s` under the contacts found last, into those of the model; zero
-  /// on the rung rigid.
+  /// Section forces of the body's elements at `s` under the contacts found last, into those of the model;
+  /// zero on the rung rigid.
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
   /// Adds the displacements and rotations of all nodes that the contacts found last add to the modes'.
   void add_residual(const BodyState& s, State& state) const;
@@ -64,10 +66,11 @@ class ReducedBody {
   double rotation_bound(const BodyState& s) const;
 
  private:
+  friend struct ReducedScratch;
   static constexpr int k_unknowns = 6 + k_modes;
   /// Contact points, four by four; those that fill up the last group never touch.
   struct Group {
-    Pack3 place;  // m, from the centre of gravity, reference axes
+    Pack3 place;                     // m, from the centre of gravity, reference axes
     std::array<int, k_lanes> point;  // index into the model, -1: none
     std::vector<Pack3> shape;        // per mode
   };
@@ -83,11 +86,28 @@ class ReducedBody {
     int plane, group;
     PackMask touching;
     Pack depth;
-    Pack3 arm;    // m, from the centre of gravity
-    Pack3 stick;  // m, travel since sticking began
+    Pack3 arm;     // m, from the centre of gravity
+    Pack3 stick;   // m, travel since sticking began
+    Pack3 travel;  // m, in the part of a step that led here
     Pack conservative, normal;
     Pack3 tangential;
     Pack stick_energy;
+  };
+  /// A list that keeps what it ever had room for.
+  struct Touches {
+    std::vector<Touch> all;
+    std::size_t count = 0;
+    Touch& add() {
+      if (count == all.size()) all.emplace_back();
+      return all[count++];
+    }
+    std::size_t size() const { return count; }
+    Touch& operator[](std::size_t c) { return all[c]; }
+    const Touch& operator[](std::size_t c) const { return all[c]; }
+    Touch* begin() { return all.data(); }
+    Touch* end() { return all.data() + count; }
+    const Touch* begin() const { return all.data(); }
+    const Touch* end() const { return all.data() + count; }
   };
   struct Velocity {
     Vec3 linear, angular;  // floor's axes
@@ -97,35 +117,36 @@ class ReducedBody {
 
   int modes(const BodyState& s) const { return s.rung == Rung::elastic ? basis_->modes : 0; }
   Pack3 place(const BodyState& s, const Group& group) const;
+  double clearance(const Vec3& n, double height) const;
   void find_touching(const BodyState& s, const Mat3& r);
   void read_stick(std::span<const Vec3> stick, Touch& touch) const;
   Pack3 velocity_at(std::size_t touch, const Velocity& u, int modes) const;
   template <bool with_derivative>
   void respond(const ContactLaw& law, const Pack3& velocity, Touch& touch, Derivative& derivative) const;
   template <bool with_derivative>
-  void respond_coulomb(const ContactLaw& law, const Pack3& velocity, Touch& touch, Derivative& derivative) const;
+  void respond_coulomb(const ContactLaw& law, const Pack3& velocity, Touch& touch,
+                       Derivative& derivative) const;
   Pack3 held_stick(const ContactLaw& law, const Touch& touch) const;
   const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
   void respond_at(const ContactLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
   void sum_loads(const Vec3& field, BodyState& s) const;
   void solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free, Velocity& u,
-                      const BodyState& s);
-  template <int fixed>
-  void factor(const Mat3& inertia, double h, int modes);
-  template <int fixed>
-  void solve(int modes);
+                      const BodyState& s, ReducedScratch& w);
+  void fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) const;
+  void fill_modes(double h, int modes, ReducedScratch& w) const;
   void advance_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                    BodyState& s, std::span<Vec3> stick, StepEnergy& energy);
-  void drift(double h, BodyState& s);
+                    BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
+  Vec3 drift(double h, BodyState& s);
   double stable_part(const ContactLaw& law, const BodyState& s);
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
-  void book_law_change(const ContactLaw& before, const ContactLaw& after, StepEnergy& energy) const;
+  void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
+                       StepEnergy& energy) const;
   void keep_sticks(const ContactLaw& law, std::span<Vec3> stick);
   template <class F>
   void each_force(const BodyState& s, F f) const;
   template <class F>
-  void each_touching(const std::vector<Touch>& touches, F f) const;
+  void each_touching(const Touches& touches, F f) const;
 
   const Model& model_;
   const int body_;
@@ -134,18 +155,16 @@ class ReducedBody {
   std::shared_ptr<const ElasticBasis> basis_;
   double contact_mass_;
   std::vector<Group> groups_;
-  std::vector<Side> sides_;      // per plane, then group
-  std::vector<double> nearest_;  // per plane: m, of the centre of gravity, from which no point touches
-  std::vector<Touch> touches_, touches_start_;
+  std::vector<Side> sides_;     // per plane, then group
+  Eigen::AlignedBox3d box_;     // m, of the contact points, from the centre of gravity, reference axes
+  std::vector<double> widest_;  // m, per plane: greatest gap of centre lines on its face
+  Touches touches_;
   // The state at which `touches_` is.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;
   std::vector<Pack3> shapes_;  // per touch and mode, floor's axes
-  // Newton: M - (h/2) sum J^T (df/dv) J and its factors, a right side, and the derivatives of all touches.
-  double matrix_[k_unknowns][k_unknowns + 2], side_[k_unknowns];
-  std::vector<Derivative> derivatives_;
   Eigen::VectorXd section_;
-  // Swing of a mode over a step of this size: cosine, sine over frequency, frequency times sine.
+  // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine.
   double swing_step_ = 0;
   Amplitudes cosine_, sine_, back_;
   // Stable steps by what touches.
@@ -158,6 +177,14 @@ class ReducedBody {
   };
   std::array<Known, 8> known_{};
   int next_known_ = 0;
+};
+
+/// Scratch of a step, for one body after the other.
+struct ReducedScratch {
+  ReducedBody::Touches touches_start;
+  std::vector<ReducedBody::Derivative> derivatives;  // per touch
+  // Newton: M - (h/2) sum J^T (df/dv) J and its factors, and a right side. Rows of whole packs.
+  double matrix[ReducedBody::k_unknowns][ReducedBody::k_unknowns + 2], side[ReducedBody::k_unknowns];
 };
 
 }  // namespace topple

@@ -85,8 +85,8 @@ std::uint64_t hash(const State& state);
 /// No NaN, no infinity anywhere; without `nodes` in all but the per-node arrays.
 bool is_finite(const State& state, bool nodes = true);
 
-/// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have their
-/// sizes.
+/// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have
+/// their sizes.
 void copy(const State& from, State& to, bool nodes);
 
 }  // namespace topple

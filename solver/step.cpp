@@ -65,7 +65,8 @@ struct Workspace::Impl {
 
   Islands islands;
   std::vector<std::unique_ptr<ReducedBody>>
-      reduced_bodies;            // per body, once it was on another rung than frame
+      reduced_bodies;  // per body, once it was on another rung than frame
+  ReducedScratch reduced_scratch;
   std::vector<RungChoice> base;  // per body, for the parameters below
   std::vector<BodyModel> base_models;
   bool base_stress = false;
@@ -335,8 +336,7 @@ bool is_calm(const Model& model, const Parameters& parameters, const State& stat
       return false;
     strain += section_energy(model.elements[e], w.sections[e]);
   }
-  return !w.near[b] &&
-         strain < k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
+  return !w.near[b] && strain < k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
          yield_ratio(model, b, w.sections) < k_calm_yield;
 }
 
@@ -429,7 +429,7 @@ void change_rungs(const Model& model, const Parameters& parameters, const Instan
 StepStatus try_known(const Model& model, const Parameters& parameters, const State& state, double h,
                      int halvings, Workspace::Impl& w) {
   const double t = state.time;
-  const Instant start(parameters, t);
+  const Instant start(parameters, t), end(parameters, t + h);
   change_rungs(model, parameters, start, w.next, w);
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
@@ -467,7 +467,8 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     if (next.bodies[b].rung != Rung::frame)
-      hold(w.reduced(model, b).advance(parameters, start, h, next.bodies[b], next.stick, exchanged));
+      hold(w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, exchanged,
+                                       w.reduced_scratch));
   for (auto& system : w.systems()) {
     status = is_explicit
                  ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
@@ -484,8 +485,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
 
   next.step = state.step + 1;
   next.time = t + h;
-  advance_floor(next.floor_displacement, next.floor_velocity, floor_acceleration(parameters.shakes, t),
-                floor_acceleration(parameters.shakes, t + h), h);
+  advance_floor(next.floor_displacement, next.floor_velocity, start.floor, end.floor, h);
   EnergyLedger& e = next.energy;
   e.input += exchanged.input;
   e.gravity += exchanged.gravity;
@@ -518,7 +518,7 @@ bool moves_nodes(const State& state, const Workspace::Impl& w) {
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w) {
   constexpr int k_most_looks = 4;
-  double travel = likely_travel(model, state, h);
+  double travel = model.bodies.size() > 1 ? likely_travel(model, state, h) : 0;
   StepStatus status;
   for (int look = 0; look < k_most_looks; ++look) {
     copy(state, w.next, moves_nodes(state, w));

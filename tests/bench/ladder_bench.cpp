@@ -45,7 +45,8 @@ void steps(benchmark::State& state, Rung rung) {
   const Setup setup = beside_wall(rung, count);
   Workspace workspace(setup.model);
   State start = start_state(setup.model, setup.starts);
-  if (!settle(setup.model, setup.parameters, start, workspace).ok()) return state.SkipWithError("not settled");
+  if (!settle(setup.model, setup.parameters, start, workspace).ok())
+    return state.SkipWithError("not settled");
   prepare(setup.model, setup.parameters, start, workspace);
   State now = start;
   std::int64_t taken = 0;
@@ -63,7 +64,12 @@ void steps(benchmark::State& state, Rung rung) {
   state.counters["ms/s"] = benchmark::Counter(
       k_step * 1e-3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK_CAPTURE(steps, rigid, Rung::rigid)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(steps, rigid, Rung::rigid)
+    ->Arg(1)
+    ->Arg(10)
+    ->Arg(100)
+    ->Arg(1000)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(steps, elastic, Rung::elastic)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
