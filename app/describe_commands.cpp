@@ -80,17 +80,13 @@ bool is_static(const ordered_json& description) {
 /// The ledger at one instant, named as in the summary.
 ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
   const std::vector<double>& e = row.energy;
-  return {{"input_J", e[0]},
-          {"kinetic_J", e[1]},
-          {"strain_J", e[2]},
-          {"gravity_J", e[3]},
-          {"contact_J", e[4]},
-          {"dissipated_J", e[5] + e[6] + e[7] + e[8]},
-          {"friction_J", e[5]},
-          {"normal_damping_J", e[6]},
-          {"numerical_J", e[7]},
-          {"plastic_J", e[8]},
-          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[9])}};
+  return {
+      {"input_J", e[0]},        {"kinetic_J", e[1]},
+      {"strain_J", e[2]},       {"gravity_J", e[3]},
+      {"contact_J", e[4]},      {"dissipated_J", e[5] + e[6] + e[7] + e[8]},
+      {"friction_J", e[5]},     {"normal_damping_J", e[6]},
+      {"numerical_J", e[7]},    {"plastic_J", e[8]},
+      {"model_switch_J", e[9]}, {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[10])}};
 }
 
 ordered_json describe(const io::Recording& recording) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/words.h"
+#include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
@@ -42,9 +43,18 @@ ordered_json intervals(const std::vector<double>& times) {
   return out;
 }
 
+ordered_json changes(const BodyOutcome& o) {
+  ordered_json out = ordered_json::array();
+  for (const RungChange& change : o.rung_changes)
+    out.push_back(
+        {{"time_s", number(change.time)}, {"model", name(change.rung)}, {"reason", name(change.reason)}});
+  return out;
+}
+
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
-          {"model", "frame"},
+          {"model", name(o.rung.value_or(Rung::frame))},
+          {"model_changes", changes(o)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
           {"first_uplift_s", number(o.first_uplift)},
@@ -61,7 +71,7 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"final_slide_m", number(o.slide)},
           {"final_velocity_m_s", vector(momentum.velocity)},
           {"final_angular_momentum_kg_m2_s", vector(momentum.angular_momentum)},
-          {"peak_stress_Pa", number(o.peak_stress)},
+          {"peak_stress_Pa", o.always_rigid ? ordered_json(nullptr) : number(o.peak_stress)},
           {"peak_yield_ratio", number(o.peak_yield_ratio)},
           {"hinges", o.hinges},
           {"fractures", o.fractures},
@@ -226,6 +236,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"normal_damping_J", number(e.normal_damping)},
       {"numerical_J", number(e.numerical)},
       {"plastic_J", number(e.plastic)},
+      {"model_switch_J", number(e.model_switch)},
       {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
                   {"final_velocity_m_s", vector(state.floor_velocity)}};
@@ -278,6 +289,11 @@ std::string summary_table(const ordered_json& s) {
         b["peak_stress_Pa"].is_null() ? "-"
                                       : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
   }
+  for (const auto& b : s["bodies"])
+    for (const auto& change : b["model_changes"])
+      out += fmt::format("{}: {} from {} s ({})\n", b["name"].get<std::string>(),
+                         change["model"].get<std::string>(), text(change["time_s"], "{:.3f}"),
+                         change["reason"].get<std::string>());
   for (const auto& p : s["probes"]) {
     const auto& d = p["final"]["displacement_m"];
     out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),

@@ -9,6 +9,7 @@
 #include "app/words.h"
 #include "render/overlay.h"
 #include "solver/io/edit_text.h"
+#include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
@@ -170,10 +171,15 @@ std::string event_text(const Player& player, const io::RecordedEvent& event) {
                      : event.event.kind == Event::Kind::impact   ? "strikes the floor"
                      : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
                      : event.event.kind == Event::Kind::fracture ? "breaks a member"
+                     : event.event.kind == Event::Kind::model    ? "is computed as"
                                                                  : "passes its critical angle";
+  const std::string model_of =
+      event.event.kind == Event::Kind::model
+          ? fmt::format(" {} ({})", name(static_cast<Rung>(event.event.value)), name(event.event.reason))
+          : "";
   const Model& model = player.scene().setup.model;
-  return fmt::format("{}: {} {}", when(player, event.step, event.time),
-                     model.bodies[static_cast<std::size_t>(event.event.body)].name, what);
+  return fmt::format("{}: {} {}{}", when(player, event.step, event.time),
+                     model.bodies[static_cast<std::size_t>(event.event.body)].name, what, model_of);
 }
 
 std::string edit_text(const Player& player, const LoggedEdit& edit) {

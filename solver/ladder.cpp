@@ -18,6 +18,32 @@ bool only_frame(const Model& model, int body) {
 
 }  // namespace
 
+const char* name(Rung rung) {
+  return rung == Rung::rigid ? "rigid" : rung == Rung::elastic ? "elastic" : "frame";
+}
+
+const char* name(RungReason reason) {
+  switch (reason) {
+    case RungReason::asked:
+      return "asked for";
+    case RungReason::motion:
+      return "only motion is wanted";
+    case RungReason::stress:
+      return "stresses are wanted";
+    case RungReason::contact_frequency:
+      return "contacts are nearly as stiff as the body";
+    case RungReason::yield:
+      return "a section is near yield";
+    case RungReason::deformation:
+      return "deformations are no longer small";
+    case RungReason::near:
+      return "another body is near";
+    case RungReason::calm:
+      return "calm again";
+  }
+  return "";
+}
+
 RungChoice base_rung(const Model& model, const Parameters& parameters, int body) {
   const BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
   const ElasticBasis* const basis = model.bodies[body].elastic.get();

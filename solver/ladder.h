@@ -28,6 +28,11 @@ inline constexpr double k_calm_yield = 0.45;
 inline constexpr double k_calm_for = 0.2;  ///< s
 inline constexpr double k_negligible = 1e-4;
 
+/// "rigid", "elastic", "frame".
+const char* name(Rung rung);
+/// A few words: "a section is near yield".
+const char* name(RungReason reason);
+
 /// The rung on which a body begins, and to which it comes back.
 struct RungChoice {
   Rung rung;

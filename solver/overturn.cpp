@@ -127,6 +127,14 @@ double slide(const Model& model, int index, const BodyPose& pose) {
 
 Outcome::Outcome(const Model& model)
     : formed_(model.elements.size(), 0), furniture_(model.furniture_total()) {
+  for (const Section& section : model.sections) {
+    const auto of = [&](const Vec3& normal, const Vec3& moment) {
+      return equivalent_stress(section, {normal, moment});
+    };
+    const Vec3 zero = Vec3::Zero();
+    unit_stress_.emplace_back(of(Vec3::UnitX(), zero), of(zero, Vec3::UnitX()), of(zero, Vec3::UnitY()),
+                              of(zero, Vec3::UnitZ()));
+  }
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
@@ -189,6 +197,20 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     BodyOutcome& o = bodies_[b];
     const Body& body = model.bodies[b];
     if (body.ground) continue;
+    const BodyState& body_state = state.bodies[b];
+    o.always_rigid = o.always_rigid && body_state.rung == Rung::rigid;
+    const bool automatic = !parameters.models.empty() && parameters.models[b] == BodyModel::automatic;
+    if (o.rung != body_state.rung && (o.rung || automatic)) {
+      events.push_back({.kind = Event::Kind::model,
+                        .step = state.step,
+                        .time = state.time,
+                        .body = static_cast<int>(b),
+                        .value = static_cast<double>(body_state.rung),
+                        .reason = body_state.reason});
+      if (o.rung_changes.size() < k_kept_impacts)
+        o.rung_changes.push_back({state.time, body_state.rung, body_state.reason});
+    }
+    o.rung = body_state.rung;
     const BodyPose pose = body_pose(model, state, static_cast<int>(b));
     const double before = o.tilt - o.critical, time_before = o.time;
     o.time = state.time;
@@ -202,7 +224,8 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     o.critical = critical_angle(model, static_cast<int>(b), pose);
     const double beyond = o.tilt - o.critical;
     const auto add = [&](Event::Kind kind, double time, double value) {
-      events.push_back({kind, state.step, time, static_cast<int>(b), value});
+      events.push_back(
+          {.kind = kind, .step = state.step, .time = time, .body = static_cast<int>(b), .value = value});
     };
     if (beyond > 0 && !o.beyond_since) {
       const bool crossed = state.step > 0 && before < 0;
@@ -245,12 +268,17 @@ void Outcome::observe_sections(const Model& model, const State& state,
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
     const Member& member = model.members[element.member];
+    if (state.bodies[member.body].rung == Rung::rigid) continue;
     BodyOutcome& o = bodies_[member.body];
-    const Section& section = model.sections[member.section];
+    const Eigen::Vector4d& stress = unit_stress_[member.section];
+    double greatest = 0;
     const bool yields = std::isfinite(element.capacity[0]);
     for (int end = 0; end < 2; ++end) {
       const SectionForces forces = forces_along(sections[e], element.length, element.s, 2 * end - 1);
-      o.peak_stress = std::max(o.peak_stress, equivalent_stress(section, forces));
+      const double normal = std::abs(forces.normal.x()) * stress[0] +
+                            std::abs(forces.moment.y()) * stress[2] + std::abs(forces.moment.z()) * stress[3];
+      const double shear = forces.moment.x() * stress[1];
+      greatest = std::max(greatest, normal * normal + shear * shear);
       if (!yields) continue;
       const double f = yield_function(element, forces);
       o.peak_yield_ratio = std::max(o.peak_yield_ratio.value_or(0), std::sqrt(f + 1));
@@ -259,13 +287,18 @@ void Outcome::observe_sections(const Model& model, const State& state,
           std::find(crowded_.begin(), crowded_.end(), element.member) == crowded_.end())
         crowded_.push_back(element.member);
     }
+    if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
     const auto bit = static_cast<std::uint8_t>(1u << static_cast<unsigned>(now.hinge));
     if (now.hinge == Hinge::none || (formed_[e] & bit) != 0) continue;
     formed_[e] |= bit;
     const bool broke = now.hinge == Hinge::broken;
     ++(broke ? o.fractures : o.hinges);
-    events.push_back({broke ? Event::Kind::fracture : Event::Kind::hinge, state.step, state.time, member.body,
-                      static_cast<double>(now.hinge), static_cast<int>(e)});
+    events.push_back({.kind = broke ? Event::Kind::fracture : Event::Kind::hinge,
+                      .step = state.step,
+                      .time = state.time,
+                      .body = member.body,
+                      .value = static_cast<double>(now.hinge),
+                      .element = static_cast<int>(e)});
   }
 }
 

@@ -46,13 +46,21 @@ double critical_angle(const Model& model, int body, const BodyPose& pose);
 double slide(const Model& model, int body, const BodyPose& pose);
 
 struct Event {
-  enum class Kind { uplift, impact, overturn, hinge, fracture };
+  enum class Kind { uplift, impact, overturn, hinge, fracture, model };
   Kind kind;
   std::int64_t step;
   double time;  ///< s
   int body;
-  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge, as a number
+  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge; model: Rung
   int element = -1;  ///< hinge, fracture: index into Model::elements
+  RungReason reason = RungReason::asked;  ///< model: why the body changed, or began there
+};
+
+/// A body began on a rung, or came there.
+struct RungChange {
+  double time;  ///< s
+  Rung rung;
+  RungReason reason;
 };
 
 /// What happened to one body so far. Times in s, angles in rad, lengths in m.
@@ -67,8 +75,9 @@ struct BodyOutcome {
   double rebound_tilt = 0;           ///< greatest tilt since the first impact
   std::vector<double> impact_times;  ///< of the first k_kept_impacts
   std::vector<double>
-      peak_tilts;          ///< greatest tilt before the first of these, then after each up to the next
-  double peak_stress = 0;  ///< Pa
+      peak_tilts;            ///< greatest tilt before the first of these, then after each up to the next
+  double peak_stress = 0;    ///< Pa, while it was not rigid
+  bool always_rigid = true;  ///< nothing is known of its stresses
   /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
   std::optional<double> peak_yield_ratio;
   int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not
@@ -76,8 +85,11 @@ struct BodyOutcome {
   double peak_penetration = 0;          ///< greatest 1 - l/L at planes
   double peak_pinch = 0;                ///< likewise between members, where 1 would be one through the other
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
-  std::vector<bool> lifted;             ///< per side of the support polygon
-  double time = 0;                      ///< of this observation
+  std::optional<Rung> rung;             ///< at this observation
+  std::vector<RungChange> rung_changes;  ///< of a body that is `automatic`, the first one included; at most
+                                         ///< k_kept_impacts
+  std::vector<bool> lifted;              ///< per side of the support polygon
+  double time = 0;                       ///< of this observation
 };
 
 /// Follows a run step by step.
@@ -101,8 +113,9 @@ class Outcome {
                         std::vector<Event>& events);
 
   std::vector<BodyOutcome> bodies_;
-  std::vector<std::uint8_t> formed_;  ///< per element, bit 1 << Hinge: seen with it
-  int furniture_;                     ///< bodies
+  std::vector<std::uint8_t> formed_;          ///< per element, bit 1 << Hinge: seen with it
+  int furniture_;                             ///< bodies
+  std::vector<Eigen::Vector4d> unit_stress_;  ///< per section: Pa by N, Mx, My and Mz of one
   std::vector<int> crowded_;
   std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
   std::vector<double> total_force_;                     ///< per body, N

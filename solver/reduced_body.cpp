@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "solver/excitation.h"
 #include "solver/rotation.h"
@@ -19,6 +20,7 @@ constexpr double k_swing = 2.5;        // rad per part, of the highest mode
 constexpr double k_small_turn = 0.02;  // rad
 constexpr double k_velocity_error = 1e-7;  // of the speed
 constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
+constexpr double k_same_line = 1e-6;       // m
 constexpr double k_bend = 0.05;            // of the reach: more than an elastic body deforms
 constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
 constexpr int k_most_iterations = 40;
@@ -79,9 +81,14 @@ ReducedBody::ReducedBody(const Model& model, int body)
   const auto place_of = [&](int p) -> Vec3 {
     return model.node_position[model.contact_points[p].node] - b.centre_of_gravity;
   };
-  // points that touch together stand together
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int p, int q) { return place_of(p).z() < place_of(q).z(); });
+  // Points that touch together stand together: a face's, then an edge's.
+  std::sort(order.begin(), order.end(), [&](int p, int q) {
+    const auto key = [&](int point) {
+      const Vec3 at = (place_of(point) / k_same_line).array().round();
+      return std::tuple(at.z(), at.x(), at.y(), point);
+    };
+    return key(p) < key(q);
+  });
   const int modes = basis_ ? basis_->modes : 0;
   groups_.resize((order.size() + k_lanes - 1) / k_lanes);
   sides_.resize(model.planes.size() * groups_.size());
@@ -240,7 +247,9 @@ Pack3 ReducedBody::held_stick(const ContactLaw& law, const Touch& touch) const {
   const Pack3 stick = touch.stick - dot(normal, touch.stick) * normal;
   const Pack limit = law.friction * touch.normal / (law.alpha * side(touch).stick);
   const Pack size2 = dot(stick, stick);
-  const Pack scale = size2 <= limit * limit ? pack(1) : limit / square_root(size2);
+  const PackMask sticks = size2 <= limit * limit;
+  if (bits(sticks | ~touch.touching) == k_all_lanes) return (touch.touching ? pack(1) : pack(0)) * stick;
+  const Pack scale = sticks ? pack(1) : limit / square_root(size2);
   return (touch.touching ? scale : pack(0)) * stick;
 }
 

@@ -167,7 +167,7 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
   CsvFile energy(base / "energy.csv",
                  "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,"
-                 "numerical_J,plastic_J,balance_error");
+                 "numerical_J,plastic_J,model_switch_J,balance_error");
   for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
     const FrameRow row = recording.frame(i);
     expect_same_model(model, row);

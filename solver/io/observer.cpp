@@ -122,8 +122,8 @@ FrameRow frame_row(const Run& run) {
   fill_contacts(run, row);
   fill_bodies(run, row);
   const EnergyLedger& e = state.energy;
-  row.energy = {e.input,    e.kinetic,        e.strain,    e.gravity, e.contact,
-                e.friction, e.normal_damping, e.numerical, e.plastic, e.balance_error()};
+  row.energy = {e.input,          e.kinetic,   e.strain,  e.gravity,      e.contact,        e.friction,
+                e.normal_damping, e.numerical, e.plastic, e.model_switch, e.balance_error()};
   row.load_factor = state.load_factor;
   const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
   for (int k = 0; k < 3; ++k) {

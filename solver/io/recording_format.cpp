@@ -31,6 +31,7 @@ Handle event_kind() {
   insert("overturn", Event::Kind::overturn);
   insert("hinge", Event::Kind::hinge);
   insert("fracture", Event::Kind::fracture);
+  insert("model", Event::Kind::model);
   return type;
 }
 
@@ -126,9 +127,10 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"energy",
         f64,
-        {10},
-        "J,J,J,J,J,J,J,J,J,1",
-        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,balance_error"},
+        {11},
+        "J,J,J,J,J,J,J,J,J,J,1",
+        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,balance_"
+        "error"},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
        {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},
@@ -158,7 +160,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.hinge.resize(shape.elements);
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
-  row.energy.resize(10);
+  row.energy.resize(11);
   row.body.resize(11 * shape.bodies);
   row.rung.resize(shape.bodies);
   return row;

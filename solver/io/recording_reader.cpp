@@ -362,7 +362,8 @@ std::vector<RecordedEvent> Recording::events() const {
                       .time = record.time,
                       .body = record.body,
                       .value = record.value[0],
-                      .element = record.element};
+                      .element = record.element,
+                      .reason = static_cast<RungReason>(record.value[1])};
     events.push_back({.branch = record.branch, .step = record.step, .time = record.time, .event = event});
   }
   return events;

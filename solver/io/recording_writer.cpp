@@ -220,6 +220,7 @@ void RecordingWriter::append(const RecordedEvent& event) {
                      .body = event.event.body,
                      .element = event.event.element};
   record.value[0] = event.event.value;
+  record.value[1] = static_cast<double>(event.event.reason);
   pending_events_.push_back(sealed(record));
 }
 
