@@ -38,7 +38,8 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       size(0),
       mass(0),
       lu(0, {}),
-      yields(false) {
+      yields(false),
+      beams_(model, {}) {
   add_nodes();
   std::vector<std::pair<int, int>> couplings;
   for (const int b : bodies) {
@@ -59,6 +60,8 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       for (int j = 0; j < i; ++j) couplings.emplace_back(ends[i], ends[j]);
   }
   lu = BlockLu(count, couplings);
+  beams_ = BeamPacks(model, own_elements);
+  node_force_.resize(count);
   elements.resize(own_elements.size());
   if (yields) {
     joints.resize(count);
@@ -123,16 +126,26 @@ int BodySystem::local(int global) const {
   return held == node.end() ? -1 : static_cast<int>(held - node.begin());
 }
 
-void BodySystem::add_applied(const Parameters& parameters, double t) {
+void BodySystem::start_forces(const Parameters& parameters, double t) {
   const Vec3 field = parameters.gravity - floor_acceleration(parameters.shakes, t);
   for (int i = 0; i < count; ++i) {
-    force[i] = model.node_mass[node[i]] * field;
-    moment[i].setZero();
+    const Vec3 weight = model.node_mass[node[i]] * field;
+    node_force_[i] = {{weight.x(), weight.y(), weight.z(), 0}, {}};
   }
   for (const auto& [load, i] : loads) {
     const double factor = loads_grow && load->history.empty() ? t : load_factor(*load, t);
-    force[i] += factor * load->force;
-    moment[i] += factor * load->moment;
+    for (int k = 0; k < 3; ++k) {
+      node_force_[i].force[k] += factor * load->force[k];
+      node_force_[i].moment[k] += factor * load->moment[k];
+    }
+  }
+  if (yields) beams_.remember(elements);
+}
+
+void BodySystem::take_forces() {
+  for (int i = 0; i < count; ++i) {
+    force[i] = Eigen::Map<const Vec3>(node_force_[i].force);
+    moment[i] = Eigen::Map<const Vec3>(node_force_[i].moment);
   }
 }
 
@@ -192,25 +205,17 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
 
 void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                           std::span<const Vec3> stick_start, std::span<const Vec3> start) {
-  add_applied(parameters, t);
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    const BeamGradient g = beam_gradient(
-        element, elements[k],
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]));
-    force[i] -= g.force1;
-    moment[i] -= g.moment1;
-    force[j] -= g.force2;
-    moment[j] -= g.moment2;
-  }
+  start_forces(parameters, t);
+  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_);
+  take_forces();
   add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
 }
 
 void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                        double velocity_factor) {
-  add_applied(parameters, t);
+  start_forces(parameters, t);
+  take_forces();
   Mat12 tangent;
   BeamGradient g;
   for (std::size_t k = 0; k < own_elements.size(); ++k) {
@@ -233,18 +238,11 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,
-                              std::vector<SectionForces>& sections) const {
+                              std::vector<SectionForces>& sections) {
+  if (yields) beams_.remember(elements);
   BodyEnergy sum;
   sum.kinetic = kinetic_energy(motion);
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    const BeamEnds ends =
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
-    const BeamStrain elastic = elastic_strain(elements[k], beam_strain(element, element.s, ends));
-    sections[e] = section_forces(element, elastic);
-    sum.strain += beam_energy(element, elastic);
-  }
+  sum.strain = beams_.energy(motion.position, motion.rotation, sections);
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
     if (law.kind != ContactLawKind::printed) sum.contact += penalty_energy(law, pair.depth, pair.L);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/beam_pack.h"
 #include "solver/block_lu.h"
 #include "solver/contact_law.h"
 #include "solver/member_contact.h"
@@ -73,7 +74,7 @@ class BodySystem {
                      std::span<const Vec3> start, Contacts& found) const;
   /// Also fills this system's part of `sections`, one per element of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
-                    std::vector<SectionForces>& sections) const;
+                    std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
@@ -92,11 +93,6 @@ class BodySystem {
   /// Element at a node, for messages.
   int element_at(int node) const;
 
-  /// An element between two nodes of the system.
-  struct OwnElement {
-    int element;  ///< index into Model::elements
-    int i, j;
-  };
   struct OwnLoad {
     const Load* load;
     int node;
@@ -125,13 +121,16 @@ class BodySystem {
  private:
   void add_nodes();
   MemberPair member_pair(const ElementPair& pair) const;
-  void add_applied(const Parameters& parameters, double t);
+  void start_forces(const Parameters& parameters, double t);
+  void take_forces();
   template <bool with_tangent>
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
 
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `near`
+  BeamPacks beams_;
+  std::vector<NodeForce> node_force_;  // applied less those of the beams
 };
 
 }  // namespace topple

@@ -1,0 +1,53 @@
+// Forces of all elements of a system, four at a time.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "solver/beam_kernel.h"
+#include "solver/block_lu.h"
+#include "solver/model.h"
+#include "solver/section_forces.h"
+
+namespace topple {
+
+/// An element between two nodes of a system.
+struct OwnElement {
+  int element;  ///< index into Model::elements
+  int i, j;
+};
+
+/// Force and moment on a node, N and N m, padded to vectors of four.
+struct NodeForce {
+  double force[4], moment[4];
+};
+
+/// The elements of a system in their order; what fills the last pack has no stiffness.
+class BeamPacks {
+ public:
+  BeamPacks(const Model& model, std::span<const OwnElement> own);
+
+  /// Copies hinges and offsets, one per element.
+  void remember(std::span<const ElementState> elements);
+  /// Subtracts the gradient of the energy (BeamGradient) from `forces`, one per node of the system, in the
+  /// order of the elements.
+  void subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
+                         std::span<const Quat> rotation, std::span<NodeForce> forces) const;
+  /// Elastic energy, J; also fills the elements' part of `sections`, one per element of the model.
+  double energy(std::span<const Vec3> position, std::span<const Quat> rotation,
+                std::vector<SectionForces>& sections) const;
+
+ private:
+  struct Pack {
+    PackBeam<Four> beam;
+    std::array<int, 4> i, j;     ///< nodes, numbered within the system
+    std::array<int, 4> element;  ///< index into Model::elements; -1: none
+    bool hinged;                 ///< some of them
+  };
+
+  const Model* model_;
+  std::vector<Pack> packs_;
+};
+
+}  // namespace topple
