@@ -36,32 +36,37 @@ struct PackAngle {
   P g;             ///< T(psi)^-1 = I - [psi]/2 + g [psi]^2
 };
 
+/// Derivatives of left1, left2 and g of PackAngle by x.
+template <class P>
+struct PackAngleSlope {
+  P left1, left2, g;
+};
+
 /// Rotation vector over the vector part of a quaternion.
 template <class P>
-P log_factor(const PackQuaternion<P>& q) {
+[[gnu::always_inline]] inline P log_factor(const PackQuaternion<P>& q) {
   const P r = P(1) / q.w;
-  const P x = dot(q.v, q.v) * r * r;
   return (r + r) *
-         (P(1) + x * (P(-1. / 3) +
-                      x * (P(1. / 5) +
-                           x * (P(-1. / 7) +
-                                x * (P(1. / 9) + x * (P(-1. / 11) + x * (P(1. / 13) - x * P(1. / 15))))))));
+         polynomial(dot(q.v, q.v) * r * r, 1, -1. / 3, 1. / 5, -1. / 7, 1. / 9, -1. / 11, 1. / 13, -1. / 15);
 }
 
 template <class P>
-PackAngle<P> small_angle(P x, P t) {
-  const P y = t * t * x, z = y * P(0.25);
-  return {
-      x,
-      P(1) + z * (P(-0.5) + z * (P(1. / 24) + z * (P(-1. / 720) + z * P(1. / 40320)))),
-      P(0.5) * t * (P(1) + z * (P(-1. / 6) + z * (P(1. / 120) + z * (P(-1. / 5040) + z * P(1. / 362880))))),
-      t * (P(0.5) +
-           y * (P(-1. / 24) +
-                y * (P(1. / 720) + y * (P(-1. / 40320) + y * (P(1. / 3628800) - y * P(1. / 479001600)))))),
-      t * t *
-          (P(1. / 6) +
-           y * (P(-1. / 120) + y * (P(1. / 5040) + y * (P(-1. / 362880) + y * P(1. / 39916800))))),
-      P(1. / 12) + x * (P(1. / 720) + x * (P(1. / 30240) + x * (P(1. / 1209600) + x * P(1. / 47900160))))};
+[[gnu::always_inline]] inline PackAngle<P> small_angle(P x, P t) {
+  const P tt = t * t, y = tt * x, z = y * P(0.25);
+  return {x,
+          polynomial(z, 1, -1. / 2, 1. / 24, -1. / 720, 1. / 40320),
+          P(0.5) * t * polynomial(z, 1, -1. / 6, 1. / 120, -1. / 5040, 1. / 362880),
+          t * polynomial(y, 1. / 2, -1. / 24, 1. / 720, -1. / 40320, 1. / 3628800, -1. / 479001600),
+          tt * polynomial(y, 1. / 6, -1. / 120, 1. / 5040, -1. / 362880, 1. / 39916800),
+          polynomial(x, 1. / 12, 1. / 720, 1. / 30240, 1. / 1209600, 1. / 47900160)};
+}
+
+template <class P>
+[[gnu::always_inline]] inline PackAngleSlope<P> small_angle_slope(P x, P t) {
+  const P tt = t * t, y = tt * x;
+  return {tt * t * polynomial(y, -1. / 24, 1. / 360, -1. / 13440, 1. / 907200, -1. / 95800320),
+          tt * tt * polynomial(y, -1. / 120, 1. / 2520, -1. / 120960, 1. / 9979200),
+          polynomial(x, 1. / 720, 1. / 15120, 1. / 403200, 1. / 11975040)};
 }
 
 /// log_factor and small_angle lane by lane, for any angle below pi.
@@ -90,6 +95,31 @@ inline PackAngle<Four> any_angle(Four x, Four t) {
   return out;
 }
 
+inline PackAngleSlope<Four> any_angle_slope(Four x, Four t) {
+  PackAngleSlope<Four> out = small_angle_slope(x, t);
+  for (int k = 0; k < 4; ++k) {
+    if (x[k] < k_small_angle) continue;
+    const double tt = t[k] * t[k];
+    const ExpCoefficients f(tt * x[k]);
+    out.left1.set(k, tt * t[k] * f.df1);
+    out.left2.set(k, tt * tt * f.df2);
+    out.g.set(k, InverseJacobianCoefficient(x[k]).dg);
+  }
+  return out;
+}
+
+inline PackQuaternion<Four> exponential(const PackVector<Four>& psi) {
+  const Four x = dot(psi, psi);
+  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
+  return {angle.sine * psi, angle.cosine};
+}
+
+inline PackMatrix<Four> inverse_left_jacobian(const PackVector<Four>& psi) {
+  const Four x = dot(psi, psi);
+  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
+  return polynomial_of(psi, double_cross(psi), Four(1), Four(-0.5), angle.g);
+}
+
 /// Strains of a pack and what forces need beside them.
 template <class P>
 struct PackStrain {
@@ -102,7 +132,7 @@ struct PackStrain {
 };
 
 template <class P>
-PackStrain<P> pack_strain(const PackBeam<P>& beam, const PackEnds<P>& ends) {
+[[gnu::always_inline]] inline PackStrain<P> pack_strain(const PackBeam<P>& beam, const PackEnds<P>& ends) {
   PackStrain<P> s;
   PackQuaternion<P> turn = conjugate(ends.q1) * ends.q2;
   const P one = with_sign_of(P(1), turn.w);
@@ -133,7 +163,8 @@ struct PackSection {
 };
 
 template <class P>
-PackSection<P> elastic_section(const PackBeam<P>& beam, const PackStrain<P>& s) {
+[[gnu::always_inline]] inline PackSection<P> elastic_section(const PackBeam<P>& beam,
+                                                             const PackStrain<P>& s) {
   return {times(beam.normal_stiffness, s.gamma - beam.offset_gamma),
           times(beam.bending_stiffness, s.kappa - beam.offset_kappa)};
 }
@@ -147,8 +178,8 @@ struct PackGradient {
 /// With p = n x d in the integration point's axes and T(t psi)^T r1^T = T(t psi) rs^T:
 ///   q = t T(t psi) p,  moment2 = r1 T(psi)^-T (q + m0),  moment1 = rs p - moment2
 template <class P>
-PackGradient<P> pack_gradient(const PackBeam<P>& beam, const PackStrain<P>& s,
-                              const PackSection<P>& section) {
+[[gnu::always_inline]] inline PackGradient<P> pack_gradient(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                                            const PackSection<P>& section) {
   const PackVector<P> p = cross(section.normal, s.d);
   const PackVector<P> p1 = cross(s.psi, p), p2 = cross(s.psi, p1);
   const PackVector<P> v = beam.t * (p + s.angle.left1 * p1 + s.angle.left2 * p2) + section.moment;
@@ -162,10 +193,68 @@ PackGradient<P> pack_gradient(const PackBeam<P>& beam, const PackStrain<P>& s,
 
 /// J
 template <class P>
-P pack_energy(const PackBeam<P>& beam, const PackStrain<P>& s, const PackSection<P>& section) {
+[[gnu::always_inline]] inline P pack_energy(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                            const PackSection<P>& section) {
   return P(0.5) * beam.length *
          (dot(section.normal, s.gamma - beam.offset_gamma) +
           dot(section.moment, s.kappa - beam.offset_kappa));
+}
+
+/// Blocks of the tangent by (x1, spin1, x2, spin2). Rows of the first node's force are the second's with the
+/// other sign, and so are columns by x1 those by x2.
+template <class P>
+struct PackTangent {
+  PackMatrix<P> force_x2, force_spin1, force_spin2;  ///< of force2
+  PackMatrix<P> moment1_x2, moment1_spin1, moment1_spin2;
+  PackMatrix<P> moment2_x2, moment2_spin1, moment2_spin2;
+};
+
+/// Of sections that do not flow. All in world axes, where [psi] and what is made of it need no rotation:
+///   b = t T(t psi) T(psi)^-1 = t (I + b1 [psi] + b2 [psi]^2)
+template <class P>
+[[gnu::always_inline]] inline PackTangent<P> pack_tangent(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                                          const PackSection<P>& section,
+                                                          const PackGradient<P>& gradient,
+                                                          const PackAngleSlope<P>& slope) {
+  const P half(0.5), x = s.angle.x, t = beam.t, l1 = s.angle.left1, l2 = s.angle.left2, g = s.angle.g;
+  const PackMatrix<P> r1 = rotation_matrix(s.e1);
+  const PackVector<P> psi = r1 * s.psi, d = s.rs * s.d, n = gradient.force2, p = cross(n, d);
+
+  const PackMatrix<P> square = double_cross(psi);
+  const P b1 = t * (l1 - half - x * (l1 * g - half * l2)), b2 = t * (l2 - half * l1 + g - x * (l2 * g));
+  const PackMatrix<P> b = polynomial_of(psi, square, t, b1, b2);
+  const PackMatrix<P> inverse = polynomial_of(psi, square, P(1), -half, g);
+
+  const PackMatrix<P> cs = spread(s.rs, beam.inverse_length * beam.normal_stiffness);
+  const PackMatrix<P> n_spin = times_skew(cs, d) - skew(n);
+  const PackMatrix<P> p_spin = -skew_times(d, n_spin);
+
+  // what turns with psi: q = t T(t psi)^T p and T(psi)^-T (q + m0)
+  const PackVector<P> p1 = cross(psi, p), p2 = cross(psi, p1);
+  const PackVector<P> q = t * (p - l1 * p1 + l2 * p2), v = q + r1 * section.moment;
+  const PackVector<P> v2 = cross(psi, cross(psi, v));
+  const P two(2);
+  const PackMatrix<P> dq = t * (l1 * skew(p) + l2 * derivative_of_double_cross(psi, p) +
+                                outer(two * (slope.left2 * p2 - slope.left1 * p1), psi));
+  const PackMatrix<P> dv =
+      g * derivative_of_double_cross(psi, v) - half * skew(v) + outer(two * slope.g * v2, psi);
+  const PackMatrix<P> inverse_transposed = transposed(inverse);
+  const PackMatrix<P> bending = spread(r1, beam.inverse_length * beam.bending_stiffness);
+  const PackMatrix<P> h = (dv + inverse_transposed * (dq + bending)) * inverse;
+
+  PackTangent<P> k;
+  k.force_x2 = cs;
+  k.force_spin2 = n_spin * b;
+  k.force_spin1 = n_spin - k.force_spin2;
+  k.moment2_x2 = transposed(k.force_spin2);
+  k.moment1_x2 = transposed(n_spin) - k.moment2_x2;
+  const PackMatrix<P> bt = transposed(b), bt_p_spin = bt * p_spin, bt_p_spin_b = bt_p_spin * b;
+  k.moment2_spin1 = bt_p_spin - bt_p_spin_b + times_skew(bt, p) - skew(gradient.moment2) - h;
+  k.moment2_spin2 = bt_p_spin_b + h;
+  const PackMatrix<P> p_spin_b = p_spin * b;
+  k.moment1_spin1 = p_spin - p_spin_b - k.moment2_spin1;
+  k.moment1_spin2 = p_spin_b - k.moment2_spin2;
+  return k;
 }
 
 }  // namespace topple

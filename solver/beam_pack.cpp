@@ -5,46 +5,10 @@
 namespace topple {
 namespace {
 
-// Of four nodes.
-PackVector<Four> gather(const Vec3* x, const std::array<int, 4>& node) {
-  const auto two = [x](int a, int b) {
-    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(x[a].data())), _mm_loadu_pd(x[b].data()),
-                                1);
-  };
-  const __m256d ac = two(node[0], node[2]), bd = two(node[1], node[3]);
-  return {Four::Vector(_mm256_unpacklo_pd(ac, bd)), Four::Vector(_mm256_unpackhi_pd(ac, bd)),
-          Four::Vector{x[node[0]].z(), x[node[1]].z(), x[node[2]].z(), x[node[3]].z()}};
-}
-
-PackQuaternion<Four> gather(const Quat* q, const std::array<int, 4>& node) {
-  PackQuaternion<Four> out{
-      {load(q[node[0]].coeffs().data()), load(q[node[1]].coeffs().data()), load(q[node[2]].coeffs().data())},
-      load(q[node[3]].coeffs().data())};
-  transpose(out.v.x, out.v.y, out.v.z, out.w);
-  return out;
-}
-
-PackEnds<Four> gather(std::span<const Vec3> position, std::span<const Quat> rotation,
-                      const std::array<int, 4>& i, const std::array<int, 4>& j) {
+PackEnds<Four> ends_of(std::span<const Vec3> position, std::span<const Quat> rotation,
+                       const std::array<int, 4>& i, const std::array<int, 4>& j) {
   return {gather(position.data(), i), gather(position.data(), j), gather(rotation.data(), i),
           gather(rotation.data(), j)};
-}
-
-// Four vectors, one per lane; the last number of each is 0.
-std::array<Four, 4> lanes(const PackVector<Four>& v) {
-  std::array<Four, 4> rows{v.x, v.y, v.z, Four(0)};
-  transpose(rows[0], rows[1], rows[2], rows[3]);
-  return rows;
-}
-
-Vec3 lane(const PackVector<Four>& v, int k) {
-  return {v.x[k], v.y[k], v.z[k]};
-}
-
-void set_lane(PackVector<Four>& v, int k, const Vec3& value) {
-  v.x.set(k, value.x());
-  v.y.set(k, value.y());
-  v.z.set(k, value.z());
 }
 
 void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& bending) {
@@ -52,9 +16,21 @@ void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& 
   set_lane(beam.bending_stiffness, k, bending);
 }
 
+void subtract(const PackGradient<Four>& g, const std::array<int, 4>& i, const std::array<int, 4>& j,
+              std::span<NodeForce> forces) {
+  const std::array<Four, 4> force2 = lanes(g.force2), moment1 = lanes(g.moment1), moment2 = lanes(g.moment2);
+  for (int k = 0; k < 4; ++k) {
+    NodeForce &first = forces[i[k]], &second = forces[j[k]];
+    store(first.force, load(first.force) + force2[k]);
+    store(first.moment, load(first.moment) - moment1[k]);
+    store(second.force, load(second.force) - force2[k]);
+    store(second.moment, load(second.moment) - moment2[k]);
+  }
+}
+
 }  // namespace
 
-BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own)
+BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const BlockLu& lu)
     : model_(&model), packs_((own.size() + 3) / 4) {
   for (std::size_t n = 0; n < 4 * packs_.size(); ++n) {
     Pack& pack = packs_[n / 4];
@@ -64,13 +40,17 @@ BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own)
     const Element& element = model.elements[from.element];
     pack.i[k] = from.i;
     pack.j[k] = from.j;
+    pack.block[0][k] = lu.index(from.i, from.i);
+    pack.block[1][k] = lu.index(from.i, from.j);
+    pack.block[2][k] = lu.index(from.j, from.i);
+    pack.block[3][k] = lu.index(from.j, from.j);
     pack.element[k] = real ? from.element : -1;
     pack.hinged = false;
     PackBeam<Four>& beam = pack.beam;
     const Quat triad(element.triad);
     set_lane(beam.triad.v, k, triad.vec());
     beam.triad.w.set(k, triad.w());
-    for (int row = 0; row < 3; ++row) set_lane(beam.triad_matrix.row[row], k, element.triad.row(row));
+    set_lane(beam.triad_matrix, k, element.triad);
     beam.length.set(k, element.length);
     beam.inverse_length.set(k, 1 / element.length);
     beam.t.set(k, (1 + element.s) / 2);
@@ -97,30 +77,85 @@ void BeamPacks::remember(std::span<const ElementState> elements) {
   }
 }
 
+PackSection<Four> BeamPacks::sections_of(std::span<const ElementState> elements, std::size_t n,
+                                         const PackStrain<Four>& strain) const {
+  const Pack& pack = packs_[n];
+  PackSection<Four> section = elastic_section(pack.beam, strain);
+  for (int k = 0; pack.hinged && k < 4 && pack.element[k] >= 0; ++k) {
+    const SectionForces forces = respond(model_->elements[pack.element[k]], elements[4 * n + k],
+                                         {lane(strain.gamma, k), lane(strain.kappa, k)})
+                                     .forces;
+    set_lane(section.normal, k, forces.normal);
+    set_lane(section.moment, k, forces.moment);
+  }
+  return section;
+}
+
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
-                                  std::span<const Quat> rotation, std::span<NodeForce> forces) const {
+                                  std::span<const Quat> rotation, std::span<NodeForce> forces) {
+  Four total(0);
+  for (std::size_t n = 0; n < packs_.size(); ++n) {
+    Pack& pack = packs_[n];
+    const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
+    pack.section = sections_of(elements, n, strain);
+    total = total + pack_energy(pack.beam, strain, pack.section);
+    subtract(pack_gradient(pack.beam, strain, pack.section), pack.i, pack.j, forces);
+  }
+  latest_energy_ = sum(total);
+}
+
+void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
+                                  std::span<const Quat> rotation, std::span<NodeForce> forces, BlockLu& lu) {
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     const Pack& pack = packs_[n];
-    const PackStrain<Four> strain = pack_strain(pack.beam, gather(position, rotation, pack.i, pack.j));
-    PackSection<Four> section = elastic_section(pack.beam, strain);
-    if (pack.hinged)
-      for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-        const SectionForces forces_at = respond(model_->elements[pack.element[k]], elements[4 * n + k],
-                                                {lane(strain.gamma, k), lane(strain.kappa, k)})
-                                            .forces;
-        set_lane(section.normal, k, forces_at.normal);
-        set_lane(section.moment, k, forces_at.moment);
-      }
-    const PackGradient<Four> g = pack_gradient(pack.beam, strain, section);
-    const std::array<Four, 4> force2 = lanes(g.force2), moment1 = lanes(g.moment1),
-                              moment2 = lanes(g.moment2);
-    for (int k = 0; k < 4; ++k) {
-      NodeForce &first = forces[pack.i[k]], &second = forces[pack.j[k]];
-      store(first.force, load(first.force) + force2[k]);
-      store(first.moment, load(first.moment) - moment1[k]);
-      store(second.force, load(second.force) - force2[k]);
-      store(second.moment, load(second.moment) - moment2[k]);
+    const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
+    const PackSection<Four> section = sections_of(elements, n, strain);
+    const PackGradient<Four> gradient = pack_gradient(pack.beam, strain, section);
+    subtract(gradient, pack.i, pack.j, forces);
+    if (pack.hinged) {
+      add_hinged_tangent(elements, position, rotation, n, lu);
+      continue;
     }
+    const PackAngleSlope<Four> slope = any_above(strain.angle.x, k_small_angle)
+                                           ? any_angle_slope(strain.angle.x, pack.beam.t)
+                                           : small_angle_slope(strain.angle.x, pack.beam.t);
+    const PackTangent<Four> t = pack_tangent(pack.beam, strain, section, gradient, slope);
+    lu.add(pack.block[0], t.force_x2, -t.force_spin1, -t.moment1_x2, t.moment1_spin1);
+    lu.add(pack.block[1], -t.force_x2, -t.force_spin2, t.moment1_x2, t.moment1_spin2);
+    lu.add(pack.block[2], -t.force_x2, t.force_spin1, -t.moment2_x2, t.moment2_spin1);
+    lu.add(pack.block[3], t.force_x2, t.force_spin2, t.moment2_x2, t.moment2_spin2);
+  }
+}
+
+void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, std::span<const Vec3> position,
+                                   std::span<const Quat> rotation, std::size_t n, BlockLu& lu) const {
+  const Pack& pack = packs_[n];
+  for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
+    const Element& element = model_->elements[pack.element[k]];
+    const int i = pack.i[k], j = pack.j[k];
+    BeamGradient gradient;
+    Mat12 tangent;
+    beam_tangent(element, elements[4 * n + k],
+                 beam_ends(element, position[i], rotation[i], position[j], rotation[j]), gradient, tangent);
+    lu.add(i, i, tangent.block<6, 6>(0, 0));
+    lu.add(i, j, tangent.block<6, 6>(0, 6));
+    lu.add(j, i, tangent.block<6, 6>(6, 0));
+    lu.add(j, j, tangent.block<6, 6>(6, 6));
+  }
+}
+
+double BeamPacks::latest_energy(std::vector<SectionForces>& sections) const {
+  for (const Pack& pack : packs_) store_sections(pack, pack.section, sections);
+  return latest_energy_;
+}
+
+void BeamPacks::store_sections(const Pack& pack, const PackSection<Four>& section,
+                               std::vector<SectionForces>& sections) {
+  const std::array<Four, 4> normal = lanes(section.normal), moment = lanes(section.moment);
+  for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
+    SectionForces& out = sections[pack.element[k]];
+    store_three(out.normal.data(), normal[k]);
+    store_three(out.moment.data(), moment[k]);
   }
 }
 
@@ -128,15 +163,10 @@ double BeamPacks::energy(std::span<const Vec3> position, std::span<const Quat> r
                          std::vector<SectionForces>& sections) const {
   Four total(0);
   for (const Pack& pack : packs_) {
-    const PackStrain<Four> strain = pack_strain(pack.beam, gather(position, rotation, pack.i, pack.j));
+    const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
     const PackSection<Four> section = elastic_section(pack.beam, strain);
     total = total + pack_energy(pack.beam, strain, section);
-    const std::array<Four, 4> normal = lanes(section.normal), moment = lanes(section.moment);
-    for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-      SectionForces& out = sections[pack.element[k]];
-      store(out.normal.data(), normal[k]);
-      out.moment = {moment[k][0], moment[k][1], moment[k][2]};
-    }
+    store_sections(pack, section, sections);
   }
   return sum(total);
 }

@@ -1,5 +1,6 @@
 #include "solver/body_system.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -39,7 +40,7 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       mass(0),
       lu(0, {}),
       yields(false),
-      beams_(model, {}) {
+      beams_(model, {}, lu) {
   add_nodes();
   std::vector<std::pair<int, int>> couplings;
   for (const int b : bodies) {
@@ -60,7 +61,8 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       for (int j = 0; j < i; ++j) couplings.emplace_back(ends[i], ends[j]);
   }
   lu = BlockLu(count, couplings);
-  beams_ = BeamPacks(model, own_elements);
+  add_packs();
+  beams_ = BeamPacks(model, own_elements, lu);
   node_force_.resize(count);
   elements.resize(own_elements.size());
   if (yields) {
@@ -93,6 +95,47 @@ void BodySystem::add_nodes() {
   fixed.assign(count, 0u);
   for (const Support& support : model.supports)
     if (const int i = local(support.node); i >= 0) fixed[i] |= support.fixed;
+}
+
+void BodySystem::add_packs() {
+  for (int i = 0; i < count; i += 4) {
+    NodePack pack;
+    for (int k = 0; k < 4; ++k) {
+      const bool real = i + k < count;
+      const int own = std::min(i + k, count - 1), g = node[own];
+      pack.node[k] = own;
+      pack.global[k] = g;
+      pack.diagonal[k] = lu.index(own, own);
+      pack.real.set(k, real);
+      pack.mass.set(k, real ? model.node_mass[g] : 0);
+      pack.inverse_mass.set(k, 1 / model.node_mass[g]);
+      set_lane(pack.inertia, k, real ? model.node_inertia[g] : Mat3::Zero());
+      set_lane(pack.inverse_inertia, k, model.node_inertia[g].inverse());
+    }
+    node_packs.push_back(pack);
+  }
+  int before = 0;
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const Body& body = model.bodies[bodies[b]];
+    const int end = body.first_contact_point + body.contact_point_count;
+    for (int p = body.first_contact_point; p < end; p += 4) {
+      PointPack pack{{}, p, std::min(4, end - p), b, static_cast<int>(reaches_.size())};
+      for (int k = 0; k < 4; ++k)
+        pack.node[k] = before + model.contact_points[std::min(p + k, end - 1)].node - body.first_node;
+      for (const Plane& plane : model.planes) {
+        PlaneReach reach;
+        for (int k = 0; k < 4; ++k) {
+          const double own = model.contact_points[std::min(p + k, end - 1)].width;
+          const double width = plane.width > 0 ? plane.width : own, L = (own + width) / 2;
+          reach.place.set(k, plane.normal.dot(plane.point) + L - width / 2);
+          reach.L.set(k, L);
+        }
+        reaches_.push_back(reach);
+      }
+      point_packs_.push_back(pack);
+    }
+    before += body.node_count;
+  }
 }
 
 MemberPair BodySystem::member_pair(const ElementPair& pair) const {
@@ -140,6 +183,7 @@ void BodySystem::start_forces(const Parameters& parameters, double t) {
     }
   }
   if (yields) beams_.remember(elements);
+  ends_here = false;
 }
 
 void BodySystem::take_forces() {
@@ -157,30 +201,34 @@ ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotio
           contact_mass_[pair.own_body],    false};
 }
 
+void BodySystem::find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const {
+  found.clear();
+  const int planes = static_cast<int>(model.planes.size());
+  const ContactOutput open{Vec3::Zero(), 0, 0, Vec3::Zero(), Vec3::Zero(), 0};
+  for (const PointPack& pack : point_packs_) {
+    const PackVector<Four> x = gather(motion.position.data(), pack.node);
+    const auto travel = [&](int k) {  // into plane k, m
+      const Vec3& n = model.planes[k].normal;
+      return reaches_[pack.reach + k].place - (x.x * Four(n.x()) + x.y * Four(n.y()) + x.z * Four(n.z()));
+    };
+    int touching = 0;  // bits
+    for (int k = 0; k < planes; ++k) touching |= lanes_above(travel(k), 0);
+    if (touching == 0) continue;
+    for (int lane = 0; lane < pack.count; ++lane)
+      for (int k = 0; (touching >> lane & 1) && k < planes; ++k) {
+        const double L = reaches_[pack.reach + k].L[lane], depth = travel(k)[lane] / L;
+        if (depth > 0)
+          found.push_back({pack.first + lane, k, pack.node[lane], pack.own_body, depth, L, open});
+      }
+  }
+}
+
 void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
                                std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                Contacts& found) const {
-  found.planes.clear();
-  int before = 0;
-  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
-    const Body& body = model.bodies[bodies[b]];
-    for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
-      const ContactPoint& point = model.contact_points[p];
-      const int i = before + point.node - body.first_node;
-      for (int k = 0; k < static_cast<int>(model.planes.size()); ++k) {
-        const Plane& plane = model.planes[k];
-        const double width = plane.width > 0 ? plane.width : point.width;
-        const double L = (point.width + width) / 2;
-        const double l = plane.normal.dot(motion.position[i] - plane.point) + width / 2;
-        const double depth = 1 - l / L;
-        if (!(depth > 0)) continue;
-        TouchingPair pair{p, k, i, b, depth, L, {}};
-        pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
-        found.planes.push_back(pair);
-      }
-    }
-    before += body.node_count;
-  }
+  find_plane_contacts(motion, found.planes);
+  for (TouchingPair& pair : found.planes)
+    pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
   find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 
@@ -205,44 +253,35 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
 
 void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                           std::span<const Vec3> stick_start, std::span<const Vec3> start) {
+  evaluate_free(parameters, t, motion);
+  add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
+}
+
+void BodySystem::evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion) {
   start_forces(parameters, t);
   beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_);
   take_forces();
-  add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
 }
 
 void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                        double velocity_factor) {
   start_forces(parameters, t);
+  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_, lu);
   take_forces();
-  Mat12 tangent;
-  BeamGradient g;
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    beam_tangent(
-        element, elements[k],
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]), g,
-        tangent);
-    force[i] -= g.force1;
-    moment[i] -= g.moment1;
-    force[j] -= g.force2;
-    moment[j] -= g.moment2;
-    lu.add(i, i, tangent.block<6, 6>(0, 0));
-    lu.add(i, j, tangent.block<6, 6>(0, 6));
-    lu.add(j, i, tangent.block<6, 6>(6, 0));
-    lu.add(j, j, tangent.block<6, 6>(6, 6));
-  }
   add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,
                               std::vector<SectionForces>& sections) {
-  if (yields) beams_.remember(elements);
   BodyEnergy sum;
   sum.kinetic = kinetic_energy(motion);
-  sum.strain = beams_.energy(motion.position, motion.rotation, sections);
+  if (ends_here && !yields) {
+    sum.strain = beams_.latest_energy(sections);
+  } else {
+    if (yields) beams_.remember(elements);
+    sum.strain = beams_.energy(motion.position, motion.rotation, sections);
+  }
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
     if (law.kind != ContactLawKind::printed) sum.contact += penalty_energy(law, pair.depth, pair.L);
@@ -253,13 +292,13 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
 }
 
 double BodySystem::kinetic_energy(const BodyMotion& motion) const {
-  double sum = 0;
-  for (int i = 0; i < count; ++i) {
-    const Vec3& w = motion.angular_velocity[i];
-    sum += 0.5 * model.node_mass[node[i]] * motion.velocity[i].squaredNorm() +
-           0.5 * w.dot(model.node_inertia[node[i]] * w);
+  Four total(0);
+  for (const NodePack& pack : node_packs) {
+    const PackVector<Four> v = gather(motion.velocity.data(), pack.node),
+                           w = gather(motion.angular_velocity.data(), pack.node);
+    total = total + pack.mass * dot(v, v) + dot(w, pack.inertia * w);
   }
-  return sum;
+  return sum(total) / 2;
 }
 
 void BodySystem::load(const State& state, BodyMotion& motion) const {
@@ -273,7 +312,8 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
 }
 
 void BodySystem::load_memory(const State& state) {
-  for (std::size_t k = 0; k < own_elements.size(); ++k) elements[k] = state.elements[own_elements[k].element];
+  for (std::size_t k = 0; yields && k < own_elements.size(); ++k)
+    elements[k] = state.elements[own_elements[k].element];
   load_sticks(state);
 }
 

@@ -41,6 +41,17 @@ struct BodyMotion {
   void resize(int nodes);
 };
 
+/// Four nodes of a system that are worked on together; what fills the last pack repeats its last node.
+struct NodePack {
+  std::array<int, 4> node;                    ///< numbered within the system
+  std::array<int, 4> global;                  ///< index into the model
+  std::array<int, 4> diagonal;                ///< numbers of blocks in the sparse matrix
+  Four real;                                  ///< 1; of what fills 0
+  Four mass;                                  ///< kg; of what fills 0
+  Four inverse_mass;                          ///< 1/kg
+  PackMatrix<Four> inertia, inverse_inertia;  ///< as Model::node_inertia; the former of what fills 0
+};
+
 /// Energies of a system that depend on where it is, J.
 struct BodyEnergy {
   double kinetic = 0, strain = 0, contact = 0;
@@ -64,11 +75,15 @@ class BodySystem {
   /// `moment` and `contacts`.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
-  /// The same with the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
+  /// Without contacts: fills `force` and `moment`.
+  void evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion);
+  /// With the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
   /// `lu`.
   void evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start,
                              double velocity_factor);
+  /// Where points touch planes, without forces.
+  void find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const;
   /// Contacts alone, into `found`.
   void find_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                      std::span<const Vec3> start, Contacts& found) const;
@@ -101,9 +116,10 @@ class BodySystem {
   const Model& model;
   const std::vector<int> bodies;
   const std::vector<ElementPair> near;
-  const int index, first;           ///< of the first body: its number, its first node
-  std::vector<int> node;            ///< per node of the system, index into the model
-  int count;                        ///< nodes
+  const int index, first;  ///< of the first body: its number, its first node
+  std::vector<int> node;   ///< per node of the system, index into the model
+  int count;               ///< nodes
+  std::vector<NodePack> node_packs;
   double size;                      ///< m, greatest distance of a node from its body's centre of gravity
   double mass;                      ///< kg, of the bodies
   std::vector<unsigned> fixed;      ///< per node, bits as in Support
@@ -114,12 +130,14 @@ class BodySystem {
   std::vector<OwnElement> own_elements;
   std::vector<ElementState> elements;  ///< per own element; elastic until loaded
   std::vector<OwnLoad> loads;
-  bool yields;  ///< some element can
+  bool yields;             ///< some element can
+  bool ends_here = false;  ///< the latest evaluation is that of the motion with which the step ends
   /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
   void add_nodes();
+  void add_packs();
   MemberPair member_pair(const ElementPair& pair) const;
   void start_forces(const Parameters& parameters, double t);
   void take_forces();
@@ -127,6 +145,19 @@ class BodySystem {
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
 
+  // Contact points of one body.
+  struct PointPack {
+    std::array<int, 4> node;  // numbered within the system
+    int first, count;         // of Model::contact_points
+    int own_body;
+    int reach;  // of `reaches_`, one per plane from here on
+  };
+  // Where four points begin to touch a plane, m along its normal, and L.
+  struct PlaneReach {
+    Four place, L;
+  };
+  std::vector<PointPack> point_packs_;
+  std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `near`
   BeamPacks beams_;

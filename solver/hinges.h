@@ -26,6 +26,11 @@ inline constexpr int k_most_redos = 60;      ///< of one step
 struct HingeStep {
   std::vector<bool> formed;  ///< per element of the system; once per step
   int redos = 0;
+
+  void clear() {
+    formed.clear();
+    redos = 0;
+  }
 };
 
 /// Looks at a converged solution `trial` of a step and changes system.elements. True: the step must be solved

@@ -297,7 +297,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w) {
   constexpr int k_most_looks = 4;
-  double travel = likely_travel(state, h);
+  double travel = model.bodies.size() < 2 ? 0 : likely_travel(state, h);
   StepStatus status;
   for (int look = 0; look < k_most_looks; ++look) {
     w.next = state;
