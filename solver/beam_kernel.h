@@ -148,7 +148,7 @@ template <class P>
     s.angle = small_angle(x, beam.t);
   }
   s.e1 = ends.q1 * beam.triad;
-  s.rs = rotation_matrix(s.e1 * PackQuaternion<P>{s.angle.sine * s.psi, s.angle.cosine});
+  s.rs = rotation_matrix(normalized(s.e1 * PackQuaternion<P>{s.angle.sine * s.psi, s.angle.cosine}));
   s.d = transposed_times(s.rs, ends.x2 - ends.x1);
   s.gamma = {(s.d.x - beam.length) * beam.inverse_length, s.d.y * beam.inverse_length,
              s.d.z * beam.inverse_length};

@@ -5,8 +5,10 @@
 namespace topple {
 namespace {
 
-PackEnds<Four> ends_of(std::span<const Vec3> position, std::span<const Quat> rotation,
-                       const std::array<int, 4>& i, const std::array<int, 4>& j) {
+[[gnu::always_inline]] inline PackEnds<Four> ends_of(std::span<const Vec3> position,
+                                                     std::span<const Quat> rotation,
+                                                     const std::array<int, 4>& i,
+                                                     const std::array<int, 4>& j) {
   return {gather(position.data(), i), gather(position.data(), j), gather(rotation.data(), i),
           gather(rotation.data(), j)};
 }
@@ -16,8 +18,8 @@ void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& 
   set_lane(beam.bending_stiffness, k, bending);
 }
 
-void subtract(const PackGradient<Four>& g, const std::array<int, 4>& i, const std::array<int, 4>& j,
-              std::span<NodeForce> forces) {
+[[gnu::always_inline]] inline void subtract(const PackGradient<Four>& g, const std::array<int, 4>& i,
+                                            const std::array<int, 4>& j, std::span<NodeForce> forces) {
   const std::array<Four, 4> force2 = lanes(g.force2), moment1 = lanes(g.moment1), moment2 = lanes(g.moment2);
   for (int k = 0; k < 4; ++k) {
     NodeForce &first = forces[i[k]], &second = forces[j[k]];
@@ -31,7 +33,7 @@ void subtract(const PackGradient<Four>& g, const std::array<int, 4>& i, const st
 }  // namespace
 
 BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const BlockLu& lu)
-    : model_(&model), packs_((own.size() + 3) / 4) {
+    : model_(&model), packs_((own.size() + 3) / 4), strains_(packs_.size()) {
   for (std::size_t n = 0; n < 4 * packs_.size(); ++n) {
     Pack& pack = packs_[n / 4];
     const int k = n % 4;
@@ -93,10 +95,13 @@ PackSection<Four> BeamPacks::sections_of(std::span<const ElementState> elements,
 
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
                                   std::span<const Quat> rotation, std::span<NodeForce> forces) {
+  // in two passes: the way through one pack is long, and the processor looks no further than one ahead
+  for (std::size_t n = 0; n < packs_.size(); ++n)
+    strains_[n] = pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j));
   Four total(0);
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];
-    const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
+    const PackStrain<Four>& strain = strains_[n];
     pack.section = sections_of(elements, n, strain);
     total = total + pack_energy(pack.beam, strain, pack.section);
     subtract(pack_gradient(pack.beam, strain, pack.section), pack.i, pack.j, forces);

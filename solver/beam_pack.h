@@ -62,6 +62,7 @@ class BeamPacks {
 
   const Model* model_;
   std::vector<Pack> packs_;
+  std::vector<PackStrain<Four>> strains_;  // scratch
   double latest_energy_ = 0;
 };
 

@@ -204,6 +204,7 @@ ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotio
 void BodySystem::find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const {
   found.clear();
   const int planes = static_cast<int>(model.planes.size());
+  found.reserve(4 * point_packs_.size() * planes);
   const ContactOutput open{Vec3::Zero(), 0, 0, Vec3::Zero(), Vec3::Zero(), 0};
   for (const PointPack& pack : point_packs_) {
     const PackVector<Four> x = gather(motion.position.data(), pack.node);

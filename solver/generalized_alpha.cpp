@@ -34,6 +34,11 @@ struct Attempt {
   int node;  // where the last correction was greatest, of the model
 };
 
+// As one array.
+Eigen::Map<Eigen::ArrayXd> numbers(std::vector<Vec3>& vectors) {
+  return {vectors.front().data(), static_cast<Eigen::Index>(3 * vectors.size())};
+}
+
 class ImplicitStep {
  public:
   ImplicitStep(BodySystem& system, const Parameters& parameters, State& state, double t, double h,
@@ -68,12 +73,6 @@ class ImplicitStep {
   bool every_tangent_ = false;
 };
 
-using Numbers = Eigen::Map<Eigen::ArrayXd>;
-
-Numbers numbers(std::vector<Vec3>& vectors) {
-  return {vectors.front().data(), static_cast<Eigen::Index>(3 * vectors.size())};
-}
-
 void ImplicitStep::predict() {
   const int n = s_.count;
   s_.load(state_, w_.start);
@@ -84,6 +83,8 @@ void ImplicitStep::predict() {
                       &w_.algorithmic_angular0, &w_.coasting, &w_.coasting_turn})
     array->resize(n);
   w_.right_hand_side.resize(6 * n);
+  for (auto* array : {&w_.kept_residual, &w_.way}) array->reserve(6 * n);
+  for (auto* array : {&w_.kept_travel, &w_.kept_turn}) array->reserve(n);
   for (int i = 0; i < n; ++i) {
     const int g = s_.node[i];
     w_.balance0[i] = state_.acceleration[g];
