@@ -112,7 +112,7 @@ void LiveRun::Worker::obey(const Command& command) {
 void LiveRun::Worker::change(const Edit& edit) {
   status_.message.clear();
   status_.element = -1;
-  const LoggedEdit logged{status_.branch, run_->state().step, run_->state().time, edit};
+  const LoggedEdit logged{status_.branch, run_->step(), run_->time(), edit};
   run_->edit(edit);
   history_.edits.push_back(logged);
   if (recorder_) recorder_->post(logged);
@@ -147,7 +147,7 @@ void LiveRun::Worker::step_once() {
 void LiveRun::Worker::run_some() {
   const auto due = [this] {
     return pace_wall_ +
-           std::chrono::duration_cast<Clock::duration>(Seconds((run_->state().time - pace_time_) / speed_));
+           std::chrono::duration_cast<Clock::duration>(Seconds((run_->time() - pace_time_) / speed_));
   };
   const Clock::time_point report_at = Clock::now() + k_report_interval;
   for (Clock::time_point at = Clock::now(); going_ && !pending_ && !stop_ && at < report_at && due() <= at;
@@ -156,9 +156,9 @@ void LiveRun::Worker::run_some() {
   const Clock::time_point now = Clock::now();
   if (Seconds(now - due()).count() > k_most_lag) pace();
   if (const double window = Seconds(now - rate_wall_).count(); window > k_rate_window) {
-    status_.achieved = (run_->state().time - rate_time_) / window;
+    status_.achieved = (run_->time() - rate_time_) / window;
     rate_wall_ = now;
-    rate_time_ = run_->state().time;
+    rate_time_ = run_->time();
   }
   report_head();
   if (!going_) return;

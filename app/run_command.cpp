@@ -27,7 +27,7 @@ void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Prog
       recorder->write(observer.observe(run));
       recorder->flush_if_due();
     }
-    progress.update(run.state().time);
+    progress.update(run.time());
   }
   if (recorder) recorder->write(observer.last(run));
 }

@@ -9,85 +9,98 @@ namespace {
 
 constexpr int k_stride = 8;
 
-using Four = double __attribute__((vector_size(32)));  // GNU vectors: the same operations in every build type
+// Six rows of a column, and two of padding that stay zero.
+struct SixColumn {
+  Four low, high;
+};
 
-inline Four load(const double* from) {
-  Four v;
-  __builtin_memcpy(&v, from, sizeof v);
-  return v;
+inline SixColumn load_column(const double* from) {
+  return {load(from), load(from + 4)};
 }
 
-inline void store(double* to, Four v) {
-  __builtin_memcpy(to, &v, sizeof v);
+inline void store_column(double* to, const SixColumn& column) {
+  store(to, column.low);
+  store(to + 4, column.high);
 }
 
-// Row r of the product a b, in two vectors; padding columns stay zero.
-inline void row_product(const double* a_row, const double* b, Four& low, Four& high) {
-  low = a_row[0] * load(b);
-  high = a_row[0] * load(b + 4);
-  for (int k = 1; k < 6; ++k) {
-    low += a_row[k] * load(b + k_stride * k);
-    high += a_row[k] * load(b + k_stride * k + 4);
-  }
+inline SixColumn less_product(const SixColumn& c, const SixColumn& a, double b) {
+  return {less_product(c.low, a.low, b), less_product(c.high, a.high, b)};
 }
 
 // c -= a b
 inline void subtract_product(double* __restrict c, const double* __restrict a, const double* __restrict b) {
-  for (int r = 0; r < 6; ++r, c += k_stride, a += k_stride) {
-    Four low, high;
-    row_product(a, b, low, high);
-    store(c, load(c) - low);
-    store(c + 4, load(c + 4) - high);
+  SixColumn left[6];
+  for (int k = 0; k < 6; ++k) left[k] = load_column(a + k_stride * k);
+  for (int j = 0; j < 6; ++j, c += k_stride, b += k_stride) {
+    SixColumn column = load_column(c);
+#pragma GCC unroll 6
+    for (int k = 0; k < 6; ++k) column = less_product(column, left[k], b[k]);
+    store_column(c, column);
   }
 }
 
-// c = a b
-inline void multiply(double* __restrict c, const double* __restrict a, const double* __restrict b) {
-  for (int r = 0; r < 6; ++r, c += k_stride, a += k_stride) {
-    Four low, high;
-    row_product(a, b, low, high);
-    store(c, low);
-    store(c + 4, high);
+// b = a b
+inline void multiply_onto(double* __restrict b, const double* __restrict a) {
+  SixColumn left[6];
+  for (int k = 0; k < 6; ++k) left[k] = load_column(a + k_stride * k);
+  for (int j = 0; j < 6; ++j, b += k_stride) {
+    SixColumn column{Four(b[0]) * left[0].low, Four(b[0]) * left[0].high};
+#pragma GCC unroll 6
+    for (int k = 1; k < 6; ++k)
+      column = {mul_add(left[k].low, b[k], column.low), mul_add(left[k].high, b[k], column.high)};
+    store_column(b, column);
   }
 }
 
-// Gauss-Jordan with row pivoting; false when singular.
+// Gauss-Jordan in place with a pivot from each column; false when singular. Single numbers change as parts of
+// whole columns: a load waits for a narrower store.
 bool invert(double* block) {
-  double inverse[6 * k_stride] = {};
-  for (int i = 0; i < 6; ++i) inverse[k_stride * i + i] = 1;
+  static constexpr double k_unit[6][k_stride] = {{1},          {0, 1},          {0, 0, 1},
+                                                 {0, 0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
+  int pivots[6];
   for (int k = 0; k < 6; ++k) {
+    double* const own = block + k_stride * k;
     int pivot = k;
     for (int i = k + 1; i < 6; ++i)
       if (std::abs(block[k_stride * i + k]) > std::abs(block[k_stride * pivot + k])) pivot = i;
+    pivots[k] = pivot;
     const double value = block[k_stride * pivot + k];
     if (!(std::abs(value) > 1e-300)) return false;
-    if (pivot != k)
-      for (int j = 0; j < k_stride; ++j) {
-        std::swap(block[k_stride * k + j], block[k_stride * pivot + j]);
-        std::swap(inverse[k_stride * k + j], inverse[k_stride * pivot + j]);
-      }
+    SixColumn column = load_column(block + k_stride * pivot);
+    if (pivot != k) store_column(block + k_stride * pivot, load_column(own));
     const double reciprocal = 1 / value;
-    const auto scaled = [&](double* row) {
-      const Four low = reciprocal * load(row), high = reciprocal * load(row + 4);
-      store(row, low);
-      store(row + 4, high);
-      return std::pair(low, high);
-    };
-    const auto [left_low, left_high] = scaled(block + k_stride * k);
-    const auto [right_low, right_high] = scaled(inverse + k_stride * k);
+    const SixColumn unit = load_column(k_unit[k]);
+    column = less_product(column, unit, value);
+    column = {reciprocal * (column.low + unit.low), reciprocal * (column.high + unit.high)};
     for (int i = 0; i < 6; ++i) {
       if (i == k) continue;
-      const double f = block[k_stride * i + k];
-      double* const left = block + k_stride * i;
-      double* const right = inverse + k_stride * i;
-      store(left, load(left) - f * left_low);
-      store(left + 4, load(left + 4) - f * left_high);
-      store(right, load(right) - f * right_low);
-      store(right + 4, load(right + 4) - f * right_high);
+      double* const other = block + k_stride * i;
+      const double factor = other[k];
+      store_column(other, less_product(less_product(load_column(other), unit, factor), column, factor));
     }
+    store_column(own, column);
   }
-  std::copy(inverse, inverse + 6 * k_stride, block);
+  for (int k = 5; k >= 0; --k)
+    if (pivots[k] != k)
+      for (int column = 0; column < 6; ++column)
+        std::swap(block[k_stride * column + k], block[k_stride * column + pivots[k]]);
   return true;
+}
+
+// y += sign a x
+template <int sign>
+inline void add_times(double* __restrict y, const double* __restrict a, const double* __restrict x) {
+  Four low(0), high(0), low2(0), high2(0);
+  for (int k = 0; k < 6; k += 2) {
+    low = mul_add(load(a + k_stride * k), x[k], low);
+    high = mul_add(load(a + k_stride * k + 4), x[k], high);
+    low2 = mul_add(load(a + k_stride * (k + 1)), x[k + 1], low2);
+    high2 = mul_add(load(a + k_stride * (k + 1) + 4), x[k + 1], high2);
+  }
+  const Four sum_low = low + low2, sum_high = high + high2;
+  store(y, sign > 0 ? load(y) + sum_low : load(y) - sum_low);
+  y[4] = sign > 0 ? y[4] + sum_high[0] : y[4] - sum_high[0];
+  y[5] = sign > 0 ? y[5] + sum_high[1] : y[5] - sum_high[1];
 }
 
 // Negative pivots of elimination in order, which Sylvester's law makes those of the eigenvalues.
@@ -160,22 +173,37 @@ void BlockLu::set_zero() {
   std::fill(values_.begin(), values_.end(), 0.);
 }
 
+void BlockLu::add(const std::array<int, 4>& number, const PackMatrix<Four>& a, const PackMatrix<Four>& b,
+                  const PackMatrix<Four>& c, const PackMatrix<Four>& d) {
+  const auto add_column = [&](int column, const PackVector<Four>& above, const PackVector<Four>& below) {
+    Four low[4] = {above.x, above.y, above.z, below.x}, high[4] = {below.y, below.z, Four(0), Four(0)};
+    transpose(low[0], low[1], low[2], low[3]);
+    transpose(high[0], high[1], high[2], high[3]);
+    for (int k = 0; k < 4; ++k) {
+      double* const to = values_.data() + k_block * number[k] + k_stride * column;
+      store(to, load(to) + low[k]);
+      store(to + 4, load(to + 4) + high[k]);
+    }
+  };
+  const PackMatrix<Four> at = transposed(a), bt = transposed(b), ct = transposed(c), dt = transposed(d);
+  for (int column = 0; column < 3; ++column) {
+    add_column(column, at.row[column], ct.row[column]);
+    add_column(3 + column, bt.row[column], dt.row[column]);
+  }
+}
+
 void BlockLu::fix(int i, int k) {
   const int place = place_[i];
-  const auto clear_row = [&](int number) {
-    double* row = values_.data() + k_block * number + k_stride * k;
-    std::fill(row, row + k_stride, 0.);
-  };
   for (int j = 0; j < nodes_; ++j) {
     const int number = lookup_[static_cast<std::size_t>(place) * nodes_ + j];
-    if (number >= 0) clear_row(number);
+    if (number < 0) continue;
+    for (int column = 0; column < 6; ++column) values_[k_block * number + k_stride * column + k] = 0;
   }
   values_[k_block * place + k_stride * k + k] = 1;  // diagonal blocks come first, in order
 }
 
 int BlockLu::factor(bool count) {
   double* const v = values_.data();
-  double scaled[k_block];
   negative_ = 0;
   for (int k = 0; k < nodes_; ++k) {
     double* const diagonal = v + k_block * k;
@@ -183,12 +211,11 @@ int BlockLu::factor(bool count) {
     if (!invert(diagonal)) return node_at_[k];
     const Column& column = columns_[k];
     const std::size_t n = column.rows.size();
-    for (std::size_t a = 0; a < n; ++a) {
-      double* const lower = v + k_block * column.lower[a];
-      multiply(scaled, lower, diagonal);
-      std::copy(scaled, scaled + k_block, lower);
-      for (std::size_t b = 0; b < n; ++b)
-        subtract_product(v + k_block * column.update[a * n + b], lower, v + k_block * column.upper[b]);
+    for (std::size_t b = 0; b < n; ++b) {
+      double* const upper = v + k_block * column.upper[b];
+      multiply_onto(upper, diagonal);
+      for (std::size_t a = 0; a < n; ++a)
+        subtract_product(v + k_block * column.update[a * n + b], v + k_block * column.lower[a], upper);
     }
   }
   return -1;
@@ -196,27 +223,20 @@ int BlockLu::factor(bool count) {
 
 void BlockLu::solve(double* b) const {
   const double* const v = values_.data();
-  const auto subtract = [](double* y, const double* block, const double* x) {
-    for (int r = 0; r < 6; ++r) {
-      double sum = 0;
-      for (int c = 0; c < 6; ++c) sum += block[k_stride * r + c] * x[c];
-      y[r] -= sum;
-    }
-  };
   for (int k = 0; k < nodes_; ++k) {
     const Column& column = columns_[k];
+    double* const x = b + 6 * node_at_[k];
+    double y[6] = {};
+    add_times<1>(y, v + k_block * k, x);
+    std::copy(y, y + 6, x);
     for (std::size_t a = 0; a < column.rows.size(); ++a)
-      subtract(b + 6 * node_at_[column.rows[a]], v + k_block * column.lower[a], b + 6 * node_at_[k]);
+      add_times<-1>(b + 6 * node_at_[column.rows[a]], v + k_block * column.lower[a], x);
   }
   for (int k = nodes_ - 1; k >= 0; --k) {
     const Column& column = columns_[k];
     double* const x = b + 6 * node_at_[k];
     for (std::size_t a = 0; a < column.rows.size(); ++a)
-      subtract(x, v + k_block * column.upper[a], b + 6 * node_at_[column.rows[a]]);
-    double y[6] = {};
-    for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c) y[r] += v[k_block * k + k_stride * r + c] * x[c];
-    std::copy(y, y + 6, x);
+      add_times<-1>(x, v + k_block * column.upper[a], b + 6 * node_at_[column.rows[a]]);
   }
 }
 

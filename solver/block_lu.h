@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/pack.h"
 #include "solver/types.h"
 
 namespace topple {
@@ -22,8 +23,13 @@ class BlockLu {
   void add(int i, int j, const Block& block) {
     double* out = values_.data() + k_block * index(i, j);
     for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c) out[k_stride * r + c] += block(r, c);
+      for (int c = 0; c < 6; ++c) out[k_stride * c + r] += block(r, c);
   }
+  /// Adds [a b; c d] of each lane to the block of that number.
+  void add(const std::array<int, 4>& number, const PackMatrix<Four>& a, const PackMatrix<Four>& b,
+           const PackMatrix<Four>& c, const PackMatrix<Four>& d);
+  /// Number of block (i, j), which must be on the diagonal or an edge.
+  int index(int i, int j) const;
   /// Makes x[6 i + k] = b[6 i + k]: row and diagonal of a fixed direction.
   void fix(int i, int k);
   /// Node at fault when a diagonal block is singular, else -1. `count`: also finds negative().
@@ -34,9 +40,8 @@ class BlockLu {
   void solve(double* b) const;
 
  private:
-  static constexpr int k_stride = 8;  ///< columns per row: two 32-byte vectors
+  static constexpr int k_stride = 8;  ///< rows per column, with padding: two 32-byte vectors
   static constexpr int k_block = 6 * k_stride;
-  int index(int i, int j) const;
 
   struct Column {
     std::vector<int> rows;    ///< eliminated later and coupled, permuted numbers, ascending

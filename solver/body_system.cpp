@@ -1,7 +1,9 @@
 #include "solver/body_system.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 #include "solver/beam.h"
@@ -26,6 +28,23 @@ void BodyMotion::resize(int nodes) {
   angular_velocity.resize(nodes);
 }
 
+namespace {
+
+// Those of pairs in `near` become those in `sticks`.
+void replace_sticks(const std::vector<ElementPair>& near, const std::vector<MemberStick>& sticks,
+                    std::vector<MemberStick>& all) {
+  const auto own = [&](const MemberStick& stick) {
+    return std::binary_search(near.begin(), near.end(), stick.elements);
+  };
+  std::erase_if(all, own);
+  std::copy_if(sticks.begin(), sticks.end(), std::back_inserter(all), own);
+  std::sort(all.begin(), all.end(), [](const MemberStick& a, const MemberStick& b) {
+    return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
+  });
+}
+
+}  // namespace
+
 BodySystem::BodySystem(const Model& whole, int body) : BodySystem(whole, std::vector<int>{body}, {}) {}
 
 BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<ElementPair> pairs)
@@ -38,7 +57,8 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       size(0),
       mass(0),
       lu(0, {}),
-      yields(false) {
+      yields(false),
+      beams_(model, {}, lu) {
   add_nodes();
   std::vector<std::pair<int, int>> couplings;
   for (const int b : bodies) {
@@ -59,6 +79,9 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       for (int j = 0; j < i; ++j) couplings.emplace_back(ends[i], ends[j]);
   }
   lu = BlockLu(count, couplings);
+  add_packs();
+  beams_ = BeamPacks(model, own_elements, lu);
+  node_force_.resize(count);
   elements.resize(own_elements.size());
   if (yields) {
     joints.resize(count);
@@ -92,6 +115,47 @@ void BodySystem::add_nodes() {
     if (const int i = local(support.node); i >= 0) fixed[i] |= support.fixed;
 }
 
+void BodySystem::add_packs() {
+  for (int i = 0; i < count; i += 4) {
+    NodePack pack;
+    for (int k = 0; k < 4; ++k) {
+      const bool real = i + k < count;
+      const int own = std::min(i + k, count - 1), g = node[own];
+      pack.node[k] = own;
+      pack.global[k] = g;
+      pack.diagonal[k] = lu.index(own, own);
+      pack.real.set(k, real);
+      pack.mass.set(k, real ? model.node_mass[g] : 0);
+      pack.inverse_mass.set(k, 1 / model.node_mass[g]);
+      set_lane(pack.inertia, k, real ? model.node_inertia[g] : Mat3::Zero());
+      set_lane(pack.inverse_inertia, k, model.node_inertia[g].inverse());
+    }
+    node_packs.push_back(pack);
+  }
+  int before = 0;
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const Body& body = model.bodies[bodies[b]];
+    const int end = body.first_contact_point + body.contact_point_count;
+    for (int p = body.first_contact_point; p < end; p += 4) {
+      PointPack pack{{}, p, std::min(4, end - p), b, static_cast<int>(reaches_.size())};
+      for (int k = 0; k < 4; ++k)
+        pack.node[k] = before + model.contact_points[std::min(p + k, end - 1)].node - body.first_node;
+      for (const Plane& plane : model.planes) {
+        PlaneReach reach;
+        for (int k = 0; k < 4; ++k) {
+          const double own = model.contact_points[std::min(p + k, end - 1)].width;
+          const double width = plane.width > 0 ? plane.width : own, L = (own + width) / 2;
+          reach.place.set(k, plane.normal.dot(plane.point) + L - width / 2);
+          reach.L.set(k, L);
+        }
+        reaches_.push_back(reach);
+      }
+      point_packs_.push_back(pack);
+    }
+    before += body.node_count;
+  }
+}
+
 MemberPair BodySystem::member_pair(const ElementPair& pair) const {
   MemberPair out;
   out.elements = pair;
@@ -123,16 +187,27 @@ int BodySystem::local(int global) const {
   return held == node.end() ? -1 : static_cast<int>(held - node.begin());
 }
 
-void BodySystem::add_applied(const Parameters& parameters, double t) {
+void BodySystem::start_forces(const Parameters& parameters, double t) {
   const Vec3 field = parameters.gravity - floor_acceleration(parameters.shakes, t);
   for (int i = 0; i < count; ++i) {
-    force[i] = model.node_mass[node[i]] * field;
-    moment[i].setZero();
+    const Vec3 weight = model.node_mass[node[i]] * field;
+    node_force_[i] = {{weight.x(), weight.y(), weight.z(), 0}, {}};
   }
   for (const auto& [load, i] : loads) {
     const double factor = loads_grow && load->history.empty() ? t : load_factor(*load, t);
-    force[i] += factor * load->force;
-    moment[i] += factor * load->moment;
+    for (int k = 0; k < 3; ++k) {
+      node_force_[i].force[k] += factor * load->force[k];
+      node_force_[i].moment[k] += factor * load->moment[k];
+    }
+  }
+  if (yields) beams_.remember(elements);
+  ends_here = false;
+}
+
+void BodySystem::take_forces() {
+  for (int i = 0; i < count; ++i) {
+    force[i] = Eigen::Map<const Vec3>(node_force_[i].force);
+    moment[i] = Eigen::Map<const Vec3>(node_force_[i].moment);
   }
 }
 
@@ -144,30 +219,35 @@ ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotio
           contact_mass_[pair.own_body],    false};
 }
 
+void BodySystem::find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const {
+  found.clear();
+  const int planes = static_cast<int>(model.planes.size());
+  found.reserve(4 * point_packs_.size() * planes);
+  const ContactOutput open{Vec3::Zero(), 0, 0, Vec3::Zero(), Vec3::Zero(), 0};
+  for (const PointPack& pack : point_packs_) {
+    const PackVector<Four> x = gather(motion.position.data(), pack.node);
+    const auto travel = [&](int k) {  // into plane k, m
+      const Vec3& n = model.planes[k].normal;
+      return reaches_[pack.reach + k].place - (x.x * Four(n.x()) + x.y * Four(n.y()) + x.z * Four(n.z()));
+    };
+    int touching = 0;  // bits
+    for (int k = 0; k < planes; ++k) touching |= lanes_above(travel(k), 0);
+    if (touching == 0) continue;
+    for (int lane = 0; lane < pack.count; ++lane)
+      for (int k = 0; (touching >> lane & 1) && k < planes; ++k) {
+        const double L = reaches_[pack.reach + k].L[lane], depth = travel(k)[lane] / L;
+        if (depth > 0)
+          found.push_back({pack.first + lane, k, pack.node[lane], pack.own_body, depth, L, open});
+      }
+  }
+}
+
 void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
                                std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                Contacts& found) const {
-  found.planes.clear();
-  int before = 0;
-  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
-    const Body& body = model.bodies[bodies[b]];
-    for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
-      const ContactPoint& point = model.contact_points[p];
-      const int i = before + point.node - body.first_node;
-      for (int k = 0; k < static_cast<int>(model.planes.size()); ++k) {
-        const Plane& plane = model.planes[k];
-        const double width = plane.width > 0 ? plane.width : point.width;
-        const double L = (point.width + width) / 2;
-        const double l = plane.normal.dot(motion.position[i] - plane.point) + width / 2;
-        const double depth = 1 - l / L;
-        if (!(depth > 0)) continue;
-        TouchingPair pair{p, k, i, b, depth, L, {}};
-        pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
-        found.planes.push_back(pair);
-      }
-    }
-    before += body.node_count;
-  }
+  find_plane_contacts(motion, found.planes);
+  for (TouchingPair& pair : found.planes)
+    pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
   find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 
@@ -192,58 +272,34 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
 
 void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                           std::span<const Vec3> stick_start, std::span<const Vec3> start) {
-  add_applied(parameters, t);
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    const BeamGradient g = beam_gradient(
-        element, elements[k],
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]));
-    force[i] -= g.force1;
-    moment[i] -= g.moment1;
-    force[j] -= g.force2;
-    moment[j] -= g.moment2;
-  }
+  evaluate_free(parameters, t, motion);
   add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
+}
+
+void BodySystem::evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion) {
+  start_forces(parameters, t);
+  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_);
+  take_forces();
 }
 
 void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                        double velocity_factor) {
-  add_applied(parameters, t);
-  Mat12 tangent;
-  BeamGradient g;
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    beam_tangent(
-        element, elements[k],
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]), g,
-        tangent);
-    force[i] -= g.force1;
-    moment[i] -= g.moment1;
-    force[j] -= g.force2;
-    moment[j] -= g.moment2;
-    lu.add(i, i, tangent.block<6, 6>(0, 0));
-    lu.add(i, j, tangent.block<6, 6>(0, 6));
-    lu.add(j, i, tangent.block<6, 6>(6, 0));
-    lu.add(j, j, tangent.block<6, 6>(6, 6));
-  }
+  start_forces(parameters, t);
+  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_, lu);
+  take_forces();
   add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,
-                              std::vector<SectionForces>& sections) const {
+                              std::vector<SectionForces>& sections) {
   BodyEnergy sum;
   sum.kinetic = kinetic_energy(motion);
-  for (std::size_t k = 0; k < own_elements.size(); ++k) {
-    const auto [e, i, j] = own_elements[k];
-    const Element& element = model.elements[e];
-    const BeamEnds ends =
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
-    const BeamStrain elastic = elastic_strain(elements[k], beam_strain(element, element.s, ends));
-    sections[e] = section_forces(element, elastic);
-    sum.strain += beam_energy(element, elastic);
+  if (ends_here && !yields) {
+    sum.strain = beams_.latest_energy(sections);
+  } else {
+    if (yields) beams_.remember(elements);
+    sum.strain = beams_.energy(motion.position, motion.rotation, sections);
   }
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
@@ -255,13 +311,13 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
 }
 
 double BodySystem::kinetic_energy(const BodyMotion& motion) const {
-  double sum = 0;
-  for (int i = 0; i < count; ++i) {
-    const Vec3& w = motion.angular_velocity[i];
-    sum += 0.5 * model.node_mass[node[i]] * motion.velocity[i].squaredNorm() +
-           0.5 * w.dot(model.node_inertia[node[i]] * w);
+  Four total(0);
+  for (const NodePack& pack : node_packs) {
+    const PackVector<Four> v = gather(motion.velocity.data(), pack.node),
+                           w = gather(motion.angular_velocity.data(), pack.node);
+    total = total + pack.mass * dot(v, v) + dot(w, pack.inertia * w);
   }
-  return sum;
+  return sum(total) / 2;
 }
 
 void BodySystem::load(const State& state, BodyMotion& motion) const {
@@ -275,22 +331,34 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
 }
 
 void BodySystem::load_memory(const State& state) {
-  for (std::size_t k = 0; k < own_elements.size(); ++k) elements[k] = state.elements[own_elements[k].element];
+  for (std::size_t k = 0; yields && k < own_elements.size(); ++k)
+    elements[k] = state.elements[own_elements[k].element];
   load_sticks(state);
 }
 
 void BodySystem::load_sticks(const State& state) {
-  auto stick = state.member_sticks.begin();
+  const std::vector<MemberStick>& sticks = keeps_sticks_ ? own_sticks_ : state.member_sticks;
+  auto stick = sticks.begin();
   for (MemberPair& pair : member_pairs_) {
     for (int k = 0; k < 4; ++k) pair.start[k] = state.position[node[pair.node[k]]];
     pair.stick.fill(Vec3::Zero());
-    while (stick != state.member_sticks.end() && stick->elements < pair.elements) ++stick;
-    for (; stick != state.member_sticks.end() && stick->elements == pair.elements; ++stick)
+    while (stick != sticks.end() && stick->elements < pair.elements) ++stick;
+    for (; stick != sticks.end() && stick->elements == pair.elements; ++stick)
       pair.stick[stick->place] = stick->stick;
   }
 }
 
-void BodySystem::store_stick(const Contacts& now, State& state) const {
+void BodySystem::take_sticks(const State& state) {
+  own_sticks_ = state.member_sticks;
+  keeps_sticks_ = true;
+}
+
+void BodySystem::give_sticks(State& state) {
+  keeps_sticks_ = false;
+  replace_sticks(near, own_sticks_, state.member_sticks);
+}
+
+void BodySystem::store_stick(const Contacts& now, State& state) {
   const std::size_t planes = model.planes.size();
   for (const int b : bodies) {
     const Body& body = model.bodies[b];
@@ -298,16 +366,12 @@ void BodySystem::store_stick(const Contacts& now, State& state) const {
                 Vec3::Zero());
   }
   for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
+  if (near.empty()) return;
 
-  std::erase_if(state.member_sticks, [&](const MemberStick& stick) {
-    return std::binary_search(near.begin(), near.end(), stick.elements);
-  });
+  std::vector<MemberStick> sticks;
   for (const MemberTouch& touch : now.members.touches)
-    state.member_sticks.push_back({near[touch.pair], touch.place, touch.out.stick});
-  std::sort(state.member_sticks.begin(), state.member_sticks.end(),
-            [](const MemberStick& a, const MemberStick& b) {
-              return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
-            });
+    sticks.push_back({near[touch.pair], touch.place, touch.out.stick});
+  replace_sticks(near, sticks, keeps_sticks_ ? own_sticks_ : state.member_sticks);
 }
 
 int BodySystem::element_at(int global) const {

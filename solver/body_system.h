@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/beam_pack.h"
 #include "solver/block_lu.h"
 #include "solver/contact_law.h"
 #include "solver/member_contact.h"
@@ -40,6 +41,17 @@ struct BodyMotion {
   void resize(int nodes);
 };
 
+/// Four nodes of a system that are worked on together; what fills the last pack repeats its last node.
+struct NodePack {
+  std::array<int, 4> node;                    ///< numbered within the system
+  std::array<int, 4> global;                  ///< index into the model
+  std::array<int, 4> diagonal;                ///< numbers of blocks in the sparse matrix
+  Four real;                                  ///< 1; of what fills 0
+  Four mass;                                  ///< kg; of what fills 0
+  Four inverse_mass;                          ///< 1/kg
+  PackMatrix<Four> inertia, inverse_inertia;  ///< as Model::node_inertia; the former of what fills 0
+};
+
 /// Energies of a system that depend on where it is, J.
 struct BodyEnergy {
   double kinetic = 0, strain = 0, contact = 0;
@@ -63,17 +75,21 @@ class BodySystem {
   /// `moment` and `contacts`.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
-  /// The same with the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
+  /// Without contacts: fills `force` and `moment`.
+  void evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion);
+  /// With the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
   /// `lu`.
   void evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start,
                              double velocity_factor);
+  /// Where points touch planes, without forces.
+  void find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const;
   /// Contacts alone, into `found`.
   void find_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                      std::span<const Vec3> start, Contacts& found) const;
   /// Also fills this system's part of `sections`, one per element of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
-                    std::vector<SectionForces>& sections) const;
+                    std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
@@ -81,8 +97,12 @@ class BodySystem {
   void load_memory(const State& state);
   /// What touching members remember, alone.
   void load_sticks(const State& state);
+  /// Keeps the sticks of touching members to itself until give_sticks, so that a step changes no part of the
+  /// state that another system has a part in.
+  void take_sticks(const State& state);
+  void give_sticks(State& state);
   /// Writes stick springs of `contacts`; open contacts forget theirs.
-  void store_stick(const Contacts& contacts, State& state) const;
+  void store_stick(const Contacts& contacts, State& state);
   /// Of a touching pair at `motion`.
   ContactInput plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start) const;
@@ -92,11 +112,6 @@ class BodySystem {
   /// Element at a node, for messages.
   int element_at(int node) const;
 
-  /// An element between two nodes of the system.
-  struct OwnElement {
-    int element;  ///< index into Model::elements
-    int i, j;
-  };
   struct OwnLoad {
     const Load* load;
     int node;
@@ -105,9 +120,10 @@ class BodySystem {
   const Model& model;
   const std::vector<int> bodies;
   const std::vector<ElementPair> near;
-  const int index, first;           ///< of the first body: its number, its first node
-  std::vector<int> node;            ///< per node of the system, index into the model
-  int count;                        ///< nodes
+  const int index, first;  ///< of the first body: its number, its first node
+  std::vector<int> node;   ///< per node of the system, index into the model
+  int count;               ///< nodes
+  std::vector<NodePack> node_packs;
   double size;                      ///< m, greatest distance of a node from its body's centre of gravity
   double mass;                      ///< kg, of the bodies
   std::vector<unsigned> fixed;      ///< per node, bits as in Support
@@ -118,20 +134,40 @@ class BodySystem {
   std::vector<OwnElement> own_elements;
   std::vector<ElementState> elements;  ///< per own element; elastic until loaded
   std::vector<OwnLoad> loads;
-  bool yields;  ///< some element can
+  bool yields;             ///< some element can
+  bool ends_here = false;  ///< the latest evaluation is that of the motion with which the step ends
   /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
   void add_nodes();
+  void add_packs();
   MemberPair member_pair(const ElementPair& pair) const;
-  void add_applied(const Parameters& parameters, double t);
+  void start_forces(const Parameters& parameters, double t);
+  void take_forces();
   template <bool with_tangent>
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
 
+  // Contact points of one body.
+  struct PointPack {
+    std::array<int, 4> node;  // numbered within the system
+    int first, count;         // of Model::contact_points
+    int own_body;
+    int reach;  // of `reaches_`, one per plane from here on
+  };
+  // Where four points begin to touch a plane, m along its normal, and L.
+  struct PlaneReach {
+    Four place, L;
+  };
+  std::vector<PointPack> point_packs_;
+  std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `near`
+  std::vector<MemberStick> own_sticks_;
+  bool keeps_sticks_ = false;
+  BeamPacks beams_;
+  std::vector<NodeForce> node_force_;  // applied less those of the beams
 };
 
 }  // namespace topple

@@ -110,83 +110,128 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
   }
 }
 
+// Contacts between members enter `force` at the half-step velocity, then at the new one.
+void add_member_contacts(BodySystem& s, const ContactLaw& law, double h, IntegratorScratch& w) {
+  find_member_contacts(law, s.member_pairs(), w.trial.position, w.trial.velocity, w.start.position,
+                       s.contacts.members);
+  add_forces(s.contacts.members, s.member_pairs(), s.force);
+  solve_member_contacts(s, law, h, w.trial.velocity);
+}
+
+// Forces of planes, solved at each touching node for its new velocity.
+void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Vec3> stick, double h,
+                        const IntegratorScratch& w) {
+  std::vector<TouchingPair>& touching = s.contacts.planes;
+  for (std::size_t k = 0; k < touching.size();) {
+    const int i = touching[k].node;
+    const Vec3& half = w.trial.velocity[i];
+    std::size_t end = k;
+    ContactInput inputs[8];
+    for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end)
+      inputs[end - k] = s.plane_contact(touching[end], w.trial, stick, w.start.position);
+    const double mass = s.model.node_mass[s.node[i]], impedance = 2 * mass / h;
+    if (end - k == 1 && law.kind == ContactLawKind::coulomb && s.fixed[i] == 0) {
+      touching[k].out = coulomb_contact(law, inputs[0], impedance, half + s.force[i] / impedance);
+      s.force[i] = impedance * (inputs[0].velocity - half);
+    } else {
+      const std::span<TouchingPair> own(touching.data() + k, end - k);
+      const Vec3 v = solve_velocity(s, law, i, mass, h, half, s.force[i], own, {inputs, own.size()});
+      s.force[i] = impedance * (v - half);
+    }
+    k = end;
+  }
+}
+
+// Velocities to the middle of the step, then positions and rotations to its end.
+void half_step(const BodySystem& s, const State& state, double h, IntegratorScratch& w) {
+  w.trial.resize(s.count);
+  const Four step(h), half(h / 2);
+  for (const NodePack& pack : s.node_packs) {
+    const auto& from = pack.global;
+    const PackVector<Four> v =
+        gather(state.velocity.data(), from) + half * gather(state.acceleration.data(), from);
+    const PackVector<Four> omega =
+        gather(state.angular_velocity.data(), from) + half * gather(state.angular_acceleration.data(), from);
+    scatter(v, w.trial.velocity.data(), pack.node);
+    scatter(omega, w.trial.angular_velocity.data(), pack.node);
+    scatter(gather(state.position.data(), from) + step * v, w.trial.position.data(), pack.node);
+    scatter(normalized(gather(state.rotation.data(), from) * exponential(step * omega)),
+            w.trial.rotation.data(), pack.node);
+  }
+}
+
+// New accelerations and velocities from `force` and `moment`, and the new motion into `state`; false when it
+// is not finite.
+bool take_accelerations(const BodySystem& s, double h, BodyMotion& trial, State& state) {
+  const Four half(h / 2);
+  PackVector<Four> odd{0, 0, 0};
+  for (const NodePack& pack : s.node_packs) {
+    const PackQuaternion<Four> q = gather(trial.rotation.data(), pack.node);
+    const PackVector<Four> acceleration = pack.inverse_mass * gather(s.force.data(), pack.node);
+    const PackVector<Four> velocity = gather(trial.velocity.data(), pack.node) + half * acceleration;
+    const PackVector<Four> moment = rotate(conjugate(q), gather(s.moment.data(), pack.node));
+    const PackVector<Four> middle = gather(trial.angular_velocity.data(), pack.node);
+    PackVector<Four> omega = middle, angular{0, 0, 0};
+    for (int pass = 0; pass < 3; ++pass) {  // the gyroscopic moment at the new velocity: a strong contraction
+      angular = pack.inverse_inertia * (moment - cross(omega, pack.inertia * omega));
+      omega = middle + half * angular;
+    }
+    scatter(velocity, trial.velocity.data(), pack.node);
+    scatter(omega, trial.angular_velocity.data(), pack.node);
+    const auto& to = pack.global;
+    scatter(velocity, state.velocity.data(), to);
+    scatter(omega, state.angular_velocity.data(), to);
+    for (auto* array : {&state.acceleration, &state.algorithmic_acceleration})
+      scatter(acceleration, array->data(), to);
+    for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
+      scatter(angular, array->data(), to);
+    const PackVector<Four> all = acceleration + angular;
+    odd = odd + (all - all);
+  }
+  for (int i = 0; i < s.count; ++i) {
+    state.position[s.node[i]] = trial.position[i];
+    state.rotation[s.node[i]] = trial.rotation[i];
+  }
+  return !any_above(dot(odd, odd), 0);
+}
+
+// First node of the model whose motion is not finite.
+int first_lost(const BodySystem& s, const State& state) {
+  for (const int g : s.node)
+    if (!std::isfinite(state.acceleration[g].sum() + state.angular_acceleration[g].sum())) return g;
+  return s.node.front();
+}
+
 }  // namespace
 
 StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State& state, double t, double h,
                                       IntegratorScratch& w, StepEnergy& energy) {
-  const int n = s.count;
   s.load(state, w.start);
   s.load_memory(state);
-  w.trial.resize(n);
-  w.travel.resize(n);
   const std::span<const Vec3> stick(state.stick);
+  const ContactLaw law = contact_law(p, t + h);
   s.find_contacts(contact_law(p, t), w.start, stick, w.start.position, w.contacts_start);
-  for (int i = 0; i < n; ++i) {
-    const int g = s.node[i];
-    w.trial.velocity[i] = w.start.velocity[i] + h / 2 * state.acceleration[g];
-    w.trial.angular_velocity[i] = w.start.angular_velocity[i] + h / 2 * state.angular_acceleration[g];
-    w.trial.position[i] = w.start.position[i] + h * w.trial.velocity[i];
-    w.trial.rotation[i] = w.start.rotation[i] * exp_quaternion(h * w.trial.angular_velocity[i]);
-    w.trial.rotation[i].normalize();
-  }
-  HingeStep hinges;
-  do s.evaluate(p, t + h, w.trial, stick, w.start.position);
-  while (update_hinges(s, w.trial, hinges));
-
-  // Contacts enter `force` at the half-step velocity; at touching nodes they are solved for at the new one.
-  solve_member_contacts(s, contact_law(p, t + h), h, w.trial.velocity);
-  std::vector<TouchingPair>& touching = s.contacts.planes;
-  for (std::size_t k = 0; k < touching.size();) {
-    const int i = touching[k].node;
-    std::size_t end = k;
-    Vec3 rest = s.force[i];
-    ContactInput inputs[8];
-    for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end) {
-      rest -= touching[end].out.force;
-      inputs[end - k] = s.plane_contact(touching[end], w.trial, stick, w.start.position);
-    }
-    const std::span<TouchingPair> own(touching.data() + k, end - k);
-    const double mass = s.model.node_mass[s.node[i]];
-    const Vec3 v = solve_velocity(s, contact_law(p, t + h), i, mass, h, w.trial.velocity[i], rest, own,
-                                  {inputs, own.size()});
-    s.force[i] = 2 * mass / h * (v - w.trial.velocity[i]);
-    k = end;
-  }
-
-  int lost = -1;  // first node whose motion is not finite
-  for (int i = 0; i < n; ++i) {
-    const int g = s.node[i];
-    const Mat3& j = s.model.node_inertia[g];
-    clear_fixed(s, i, s.force[i], s.moment[i]);
-    const Vec3 acceleration = s.force[i] / s.model.node_mass[g];
-    const Vec3 moment = w.trial.rotation[i].conjugate() * s.moment[i];
-    const Vec3 half = w.trial.angular_velocity[i];
-    const Mat3 inverse = j.inverse();
-    Vec3 omega = half, angular = Vec3::Zero();
-    for (int pass = 0; pass < 3; ++pass) {  // the gyroscopic moment at the new velocity: a strong contraction
-      angular = inverse * (moment - omega.cross(j * omega));
-      omega = half + h / 2 * angular;
-    }
-    w.trial.velocity[i] += h / 2 * acceleration;
-    w.trial.angular_velocity[i] = omega;
-    state.position[g] = w.trial.position[i];
-    state.rotation[g] = w.trial.rotation[i];
-    state.velocity[g] = w.trial.velocity[i];
-    state.angular_velocity[g] = omega;
-    state.acceleration[g] = state.algorithmic_acceleration[g] = acceleration;
-    state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] = angular;
-    if (lost < 0 && !std::isfinite(acceleration.sum() + angular.sum() + w.trial.position[i].sum())) lost = g;
-  }
+  half_step(s, state, h, w);
+  w.hinges.clear();
+  do s.evaluate_free(p, t + h, w.trial);
+  while (update_hinges(s, w.trial, w.hinges));
+  s.ends_here = true;
+  s.find_plane_contacts(w.trial, s.contacts.planes);
+  if (!s.near.empty()) add_member_contacts(s, law, h, w);
+  add_plane_contacts(s, law, stick, h, w);
+  for (int i = 0; i < s.count; ++i)
+    if (s.fixed[i]) clear_fixed(s, i, s.force[i], s.moment[i]);
+  const bool finite = take_accelerations(s, h, w.trial, state);
   book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.contacts, energy);
   energy.plastic += commit_hinges(s, w.start, w.trial, state);
   s.store_stick(s.contacts, state);
   StepStatus status;
   status.time = t + h;
   status.body = s.index;
-  if (lost >= 0) {
+  if (!finite) {
     status.kind = StepStatus::Kind::not_finite;
-    status.node = lost;
-    status.element = s.element_at(lost);
+    status.node = first_lost(s, state);
+    status.element = s.element_at(status.node);
   }
   return status;
 }

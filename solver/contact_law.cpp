@@ -56,6 +56,24 @@ void add_drag(const ContactLaw& law, const ContactInput& in, double p, double dp
       law.friction * p / speed * (Mat3::Identity() - direction * direction.transpose());
 }
 
+// The stick spring and its damping, N/m and N s/m.
+struct Stick {
+  double k, c;
+  Stick(const ContactLaw& law, const ContactInput& in)
+      : k(k_stick_stiffness * law.alpha / in.L), c(2 * k_stick_damping * std::sqrt(k * in.mass)) {}
+};
+
+Vec3 across(const Vec3& n, const Vec3& v) {
+  return v - n.dot(v) * n;
+}
+
+// What is left of the spring's travel when its force is capped.
+void take_stick(double k, const Vec3& stick, double limit, ContactOutput& out) {
+  const double spring = k * stick.norm();
+  out.stick = spring <= limit ? stick : Vec3(limit / spring * stick);
+  out.stick_energy = 0.5 * k * out.stick.squaredNorm();
+}
+
 void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
              Derivatives derivatives) {
   const Vec3& n = in.normal;
@@ -63,23 +81,20 @@ void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp,
   const double m = normal_loss(law.restitution);
   const double root = std::sqrt(vn * vn + law.normal_speed * law.normal_speed);
   const double factor = 1 - m * vn / root;
-  const double dfactor = -m * law.normal_speed * law.normal_speed / (root * root * root);
   out.conservative = p;
   out.normal = p * factor;
 
-  const double k = k_stick_stiffness * law.alpha / in.L;
-  const double c = 2 * k_stick_damping * std::sqrt(k * in.mass);
-  const Mat3 tangent_plane = Mat3::Identity() - n * n.transpose();
-  const Vec3 stick = tangent_plane * in.stick;
-  const Vec3 trial = k * stick + c * (tangent_plane * in.velocity);
+  const auto [k, c] = Stick(law, in);
+  const Vec3 stick = across(n, in.stick);
+  const Vec3 trial = k * stick + c * (in.velocity - vn * n);
   const double size = trial.norm(), limit = law.friction * out.normal;
   const bool slips = !(size <= limit);  // a NaN must not pass for sticking
   out.tangential = slips ? Vec3(-limit / size * trial) : Vec3(-trial);
-  const double spring = k * stick.norm();
-  out.stick = spring <= limit ? stick : Vec3(limit / spring * stick);
-  out.stick_energy = 0.5 * k * out.stick.squaredNorm();
+  take_stick(k, stick, limit, out);
   if (!derivatives.by_position) return;
 
+  const double dfactor = -m * law.normal_speed * law.normal_speed / (root * root * root);
+  const Mat3 tangent_plane = Mat3::Identity() - n * n.transpose();
   *derivatives.by_position = dp * factor * n * n.transpose();
   *derivatives.by_velocity = p * dfactor * n * n.transpose();
   if (!slips) {
@@ -88,9 +103,9 @@ void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp,
     return;
   }
   const Vec3 direction = trial / size;
-  const Mat3 across = limit / size * (tangent_plane - direction * direction.transpose());
-  *derivatives.by_position -= law.friction * dp * factor * direction * n.transpose() + k * across;
-  *derivatives.by_velocity -= law.friction * p * dfactor * direction * n.transpose() + c * across;
+  const Mat3 turning = limit / size * (tangent_plane - direction * direction.transpose());
+  *derivatives.by_position -= law.friction * dp * factor * direction * n.transpose() + k * turning;
+  *derivatives.by_velocity -= law.friction * p * dfactor * direction * n.transpose() + c * turning;
 }
 
 ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivatives derivatives) {
@@ -98,8 +113,8 @@ ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivative
   out.tangential.setZero();
   out.stick.setZero();
   const Vec3& n = in.normal;
-  const double p = penalty_force(law, in.depth, in.between_members),
-               dp = -penalty_stiffness(law, in.depth, in.L, in.between_members);
+  const double p = penalty_force(law, in.depth, in.between_members);
+  const double dp = derivatives.by_position ? -penalty_stiffness(law, in.depth, in.L, in.between_members) : 0;
   if (law.kind == ContactLawKind::coulomb) {
     coulomb(law, in, p, dp, out, derivatives);
   } else if (law.kind == ContactLawKind::paper) {
@@ -172,6 +187,34 @@ ContactOutput contact_force(const ContactLaw& law, const ContactInput& input) {
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input, Mat3& by_position,
                             Mat3& by_velocity) {
   return evaluate(law, input, {&by_position, &by_velocity});
+}
+
+ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& in, double impedance, const Vec3& free) {
+  const Vec3& n = in.normal;
+  ContactOutput out;
+  const double p = out.conservative = penalty_force(law, in.depth, in.between_members);
+  const double loss = p * normal_loss(law.restitution), eps2 = law.normal_speed * law.normal_speed;
+  const double free_n = n.dot(free);
+  double vn = n.dot(in.velocity);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const double inverse = 1 / std::sqrt(vn * vn + eps2), direction = vn * inverse;
+    const double step = (impedance * (vn - free_n) - p + loss * direction) /
+                        (impedance + loss * eps2 * inverse * inverse * inverse);
+    vn -= step;
+    if (!(std::abs(step) > 1e-12 * (1 + std::abs(vn)))) break;
+  }
+  out.normal = std::max(impedance * (vn - free_n), 0.);  // rounding may be more than is left of it
+
+  // sticking and slipping forces alike lie along k stick + c free
+  const auto [k, c] = Stick(law, in);
+  const Vec3 stick = across(n, in.stick), free_t = free - free_n * n, pull = k * stick + c * free_t;
+  const double size = pull.norm(), limit = law.friction * out.normal;
+  const bool sticks = size * impedance <= limit * (impedance + c);
+  out.tangential = -(sticks ? impedance / (impedance + c) : limit / size) * pull;
+  take_stick(k, stick, limit, out);
+  out.force = out.normal * n + out.tangential;
+  in.velocity = free_t + out.tangential / impedance + vn * n;
+  return out;
 }
 
 }  // namespace topple

@@ -63,4 +63,9 @@ ContactOutput contact_force(const ContactLaw& law, const ContactInput& input);
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input, Mat3& by_position,
                             Mat3& by_velocity);
 
+/// Contact of the coulomb law at the velocity v that it leaves a point which moves at `free` without it:
+///   impedance (v - free) = force,  impedance in kg/s.
+/// `input.velocity` is where the search begins, and then v.
+ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& input, double impedance, const Vec3& free);
+
 }  // namespace topple

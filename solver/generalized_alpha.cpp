@@ -34,6 +34,11 @@ struct Attempt {
   int node;  // where the last correction was greatest, of the model
 };
 
+// As one array.
+Eigen::Map<Eigen::ArrayXd> numbers(std::vector<Vec3>& vectors) {
+  return {vectors.front().data(), static_cast<Eigen::Index>(3 * vectors.size())};
+}
+
 class ImplicitStep {
  public:
   ImplicitStep(BodySystem& system, const Parameters& parameters, State& state, double t, double h,
@@ -47,7 +52,7 @@ class ImplicitStep {
 
  private:
   void predict();
-  void hold_supports(int i, Vec3& shift, Vec3& spin) const;
+  void hold_supports(int i, Eigen::Ref<Vec3> shift, Eigen::Ref<Vec3> spin) const;
   bool beyond_reach() const;
   void start_from_pose();
   void update_trial();
@@ -55,6 +60,7 @@ class ImplicitStep {
   double correct(int& node);
   double share_of_correction();
   void add_inertia_tangent();
+  PackVector<Four> momentum_rate(const NodePack& pack, const PackVector<Four>& omega) const;
   void fill_residual();
 
   BodySystem& s_;
@@ -73,13 +79,27 @@ void ImplicitStep::predict() {
   s_.load_memory(state_);
   w_.trial.resize(n);
   for (auto* array : {&w_.travel, &w_.turn, &w_.acceleration, &w_.angular_acceleration, &w_.algorithmic,
-                      &w_.algorithmic_angular})
+                      &w_.algorithmic_angular, &w_.balance0, &w_.angular_balance0, &w_.algorithmic0,
+                      &w_.algorithmic_angular0, &w_.coasting, &w_.coasting_turn})
     array->resize(n);
   w_.right_hand_side.resize(6 * n);
+  for (auto* array : {&w_.kept_residual, &w_.way}) array->reserve(6 * n);
+  for (auto* array : {&w_.kept_travel, &w_.kept_turn}) array->reserve(n);
   for (int i = 0; i < n; ++i) {
     const int g = s_.node[i];
-    w_.travel[i] = h_ * (state_.velocity[g] + h_ / 2 * state_.algorithmic_acceleration[g]);
-    w_.turn[i] = h_ * (state_.angular_velocity[g] + h_ / 2 * state_.algorithmic_angular_acceleration[g]);
+    w_.balance0[i] = state_.acceleration[g];
+    w_.angular_balance0[i] = state_.angular_acceleration[g];
+    w_.algorithmic0[i] = state_.algorithmic_acceleration[g];
+    w_.algorithmic_angular0[i] = state_.algorithmic_angular_acceleration[g];
+  }
+  const auto begin = [&](std::vector<Vec3>& v0, std::vector<Vec3>& a0, std::vector<Vec3>& step,
+                         std::vector<Vec3>& coasting) {
+    numbers(step) = h_ * (numbers(v0) + h_ / 2 * numbers(a0));
+    numbers(coasting) = h_ * (numbers(v0) + h_ * (0.5 - c_.beta) * numbers(a0));
+  };
+  begin(w_.start.velocity, w_.algorithmic0, w_.travel, w_.coasting);
+  begin(w_.start.angular_velocity, w_.algorithmic_angular0, w_.turn, w_.coasting_turn);
+  for (int i = 0; i < n; ++i) {
     if (s_.fixed[i] == 0) continue;
     Vec3 spin = w_.start.rotation[i] * w_.turn[i];
     hold_supports(i, w_.travel[i], spin);
@@ -89,7 +109,7 @@ void ImplicitStep::predict() {
 }
 
 // No stiffness brings back what rounding moves a support.
-void ImplicitStep::hold_supports(int i, Vec3& shift, Vec3& spin) const {
+void ImplicitStep::hold_supports(int i, Eigen::Ref<Vec3> shift, Eigen::Ref<Vec3> spin) const {
   for (int k = 0; k < 3; ++k) {
     if (s_.fixed[i] >> k & 1) shift[k] = 0;
     if (s_.fixed[i] >> (3 + k) & 1) spin[k] = 0;
@@ -101,10 +121,14 @@ void ImplicitStep::hold_supports(int i, Vec3& shift, Vec3& spin) const {
 // indefinite there: Newton goes astray, or finds them folded. The forces of the predicted pose over the way
 // to it bound the rise of a convex potential.
 bool ImplicitStep::beyond_reach() const {
-  double rise = 0;
-  for (int i = 0; i < s_.count; ++i)
-    rise -= s_.force[i].dot(w_.travel[i]) + s_.moment[i].dot(w_.start.rotation[i] * w_.turn[i]);
-  return rise > k_reach * s_.kinetic_energy(w_.start);
+  Four rise(0);
+  for (const NodePack& pack : s_.node_packs) {
+    const PackVector<Four> spin =
+        rotate(gather(w_.start.rotation.data(), pack.node), gather(w_.turn.data(), pack.node));
+    rise = rise - pack.real * (dot(gather(s_.force.data(), pack.node), gather(w_.travel.data(), pack.node)) +
+                               dot(gather(s_.moment.data(), pack.node), spin));
+  }
+  return sum(rise) > k_reach * s_.kinetic_energy(w_.start);
 }
 
 // The tangent of the pose in which the step starts leads along what is stiff there.
@@ -115,74 +139,95 @@ void ImplicitStep::start_from_pose() {
 }
 
 void ImplicitStep::update_trial() {
-  const double beta = c_.beta, gamma = c_.gamma, am = c_.alpha_m, af = c_.alpha_f;
-  for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.node[i];
-    const auto advance = [&](const Vec3& step, const Vec3& v0, const Vec3& a0, const Vec3& balance0, Vec3& v1,
-                             Vec3& a1, Vec3& balance1) {
-      a1 = (step - h_ * v0 - h_ * h_ * (0.5 - beta) * a0) / (beta * h_ * h_);
-      v1 = v0 + h_ * ((1 - gamma) * a0 + gamma * a1);
-      balance1 = ((1 - am) * a1 + am * a0 - af * balance0) / (1 - af);
-    };
-    advance(w_.travel[i], state_.velocity[g], state_.algorithmic_acceleration[g], state_.acceleration[g],
-            w_.trial.velocity[i], w_.algorithmic[i], w_.acceleration[i]);
-    advance(w_.turn[i], state_.angular_velocity[g], state_.algorithmic_angular_acceleration[g],
-            state_.angular_acceleration[g], w_.trial.angular_velocity[i], w_.algorithmic_angular[i],
-            w_.angular_acceleration[i]);
-    w_.trial.position[i] = w_.start.position[i] + w_.travel[i];
-    w_.trial.rotation[i] = w_.start.rotation[i] * exp_quaternion(w_.turn[i]);
-    w_.trial.rotation[i].normalize();
-  }
+  const double gamma = c_.gamma, am = c_.alpha_m, af = c_.alpha_f;
+  const auto advance = [&](std::vector<Vec3>& step, std::vector<Vec3>& coasting, std::vector<Vec3>& v0,
+                           std::vector<Vec3>& a0, std::vector<Vec3>& balance0, std::vector<Vec3>& v1,
+                           std::vector<Vec3>& a1, std::vector<Vec3>& balance1) {
+    numbers(a1) = (numbers(step) - numbers(coasting)) / (c_.beta * h_ * h_);
+    numbers(v1) = numbers(v0) + h_ * ((1 - gamma) * numbers(a0) + gamma * numbers(a1));
+    numbers(balance1) = ((1 - am) * numbers(a1) + am * numbers(a0) - af * numbers(balance0)) / (1 - af);
+  };
+  advance(w_.travel, w_.coasting, w_.start.velocity, w_.algorithmic0, w_.balance0, w_.trial.velocity,
+          w_.algorithmic, w_.acceleration);
+  advance(w_.turn, w_.coasting_turn, w_.start.angular_velocity, w_.algorithmic_angular0, w_.angular_balance0,
+          w_.trial.angular_velocity, w_.algorithmic_angular, w_.angular_acceleration);
+  numbers(w_.trial.position) = numbers(w_.start.position) + numbers(w_.travel);
+  for (const NodePack& pack : s_.node_packs)
+    scatter(normalized(gather(w_.start.rotation.data(), pack.node) *
+                       exponential(gather(w_.turn.data(), pack.node))),
+            w_.trial.rotation.data(), pack.node);
+}
+
+// Rate of the angular momentum in material axes.
+PackVector<Four> ImplicitStep::momentum_rate(const NodePack& pack, const PackVector<Four>& omega) const {
+  return pack.inertia * gather(w_.angular_acceleration.data(), pack.node) +
+         cross(omega, pack.inertia * omega);
 }
 
 void ImplicitStep::add_inertia_tangent() {
   const double ca = (1 - c_.alpha_m) / ((1 - c_.alpha_f) * c_.beta * h_ * h_), cv = c_.gamma / (c_.beta * h_);
-  for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.node[i];
-    const Mat3& j = s_.model.node_inertia[g];
-    const Vec3& omega = w_.trial.angular_velocity[i];
-    const Mat3 r0 = w_.start.rotation[i].toRotationMatrix(), r1 = w_.trial.rotation[i].toRotationMatrix();
-    const Vec3 momentum = j * omega;
-    const Vec3 rate = r1 * (j * w_.angular_acceleration[i] + omega.cross(momentum));
-    const Mat3 by_turn = ca * j + cv * (skew(omega) * j - skew(momentum));
-    Mat6 block = Mat6::Zero();
-    block.diagonal().head<3>().setConstant(ca * s_.model.node_mass[g]);
-    block.bottomRightCorner<3, 3>() =
-        r1 * by_turn * inverse_left_jacobian(w_.turn[i]) * r0.transpose() - skew(rate);
-    s_.lu.add(i, i, block);
+  const PackMatrix<Four> zero = diagonal(PackVector<Four>{0, 0, 0});
+  for (const NodePack& pack : s_.node_packs) {
+    const PackVector<Four> omega = gather(w_.trial.angular_velocity.data(), pack.node);
+    const PackVector<Four> turn = gather(w_.turn.data(), pack.node);
+    const PackMatrix<Four> r0 = rotation_matrix(gather(w_.start.rotation.data(), pack.node)),
+                           r1 = rotation_matrix(gather(w_.trial.rotation.data(), pack.node));
+    const PackVector<Four> rate = r1 * momentum_rate(pack, omega);
+    const PackMatrix<Four> by_turn =
+        Four(ca) * pack.inertia + Four(cv) * (skew_times(omega, pack.inertia) - skew(pack.inertia * omega));
+    const Four mass = Four(ca) * pack.mass;
+    s_.lu.add(pack.diagonal, diagonal(PackVector<Four>{mass, mass, mass}), zero, zero,
+              r1 * (by_turn * (inverse_left_jacobian(turn) * transposed(r0))) - skew(rate));
   }
 }
 
 void ImplicitStep::fill_residual() {
-  for (int i = 0; i < s_.count; ++i) {
-    const int g = s_.node[i];
-    const Mat3& j = s_.model.node_inertia[g];
-    const Vec3& omega = w_.trial.angular_velocity[i];
-    const Vec3 force = s_.force[i] - s_.model.node_mass[g] * w_.acceleration[i];
-    const Vec3 rate = j * w_.angular_acceleration[i] + omega.cross(j * omega);
-    const Vec3 moment = s_.moment[i] - w_.trial.rotation[i] * rate;
-    for (int k = 0; k < 3; ++k) {
-      w_.right_hand_side[6 * i + k] = s_.fixed[i] >> k & 1 ? 0 : force[k];
-      w_.right_hand_side[6 * i + 3 + k] = s_.fixed[i] >> (3 + k) & 1 ? 0 : moment[k];
+  for (const NodePack& pack : s_.node_packs) {
+    const PackVector<Four> omega = gather(w_.trial.angular_velocity.data(), pack.node);
+    const PackVector<Four> force =
+        gather(s_.force.data(), pack.node) - pack.mass * gather(w_.acceleration.data(), pack.node);
+    const PackVector<Four> moment =
+        gather(s_.moment.data(), pack.node) -
+        rotate(gather(w_.trial.rotation.data(), pack.node), momentum_rate(pack, omega));
+    const std::array<Four, 4> forces = lanes(force), moments = lanes(moment);
+    for (int k = 0; k < 4 && pack.real[k] > 0; ++k) {
+      store_three(&w_.right_hand_side[6 * pack.node[k]], forces[k]);
+      store_three(&w_.right_hand_side[6 * pack.node[k] + 3], moments[k]);
     }
   }
+  for (int i = 0; i < s_.count; ++i)
+    for (int k = 0; s_.fixed[i] != 0 && k < 6; ++k)
+      if (s_.fixed[i] >> k & 1) w_.right_hand_side[6 * i + k] = 0;
 }
 
 // Applies the solution; returns its greatest length, rotations times the body's size.
 double ImplicitStep::correct(int& node) {
-  double greatest = 0;
-  for (int i = 0; i < s_.count; ++i) {
-    Vec3 shift(&w_.right_hand_side[6 * i]), spin(&w_.right_hand_side[6 * i + 3]);
-    hold_supports(i, shift, spin);
-    w_.travel[i] += shift;
-    w_.turn[i] += inverse_left_jacobian(w_.turn[i]) * (w_.start.rotation[i].conjugate() * spin);
-    const double length = std::max(shift.norm(), s_.size * spin.norm());
-    if (!(length <= greatest)) {
+  double greatest = 0;  // squared
+  for (int i = 0; i < s_.count; ++i)
+    if (s_.fixed[i] != 0)
+      hold_supports(i, Eigen::Map<Vec3>(&w_.right_hand_side[6 * i]),
+                    Eigen::Map<Vec3>(&w_.right_hand_side[6 * i + 3]));
+  const Four size2(s_.size * s_.size);
+  for (const NodePack& pack : s_.node_packs) {
+    const double* const x = w_.right_hand_side.data();
+    PackVector<Four> shift, spin;
+    for (int k = 0; k < 4; ++k) {
+      set_lane(shift, k, Vec3(x + 6 * pack.node[k]));
+      set_lane(spin, k, Vec3(x + 6 * pack.node[k] + 3));
+    }
+    const PackVector<Four> turn = gather(w_.turn.data(), pack.node);
+    const PackQuaternion<Four> back = conjugate(gather(w_.start.rotation.data(), pack.node));
+    scatter(gather(w_.travel.data(), pack.node) + shift, w_.travel.data(), pack.node);
+    scatter(turn + inverse_left_jacobian(turn) * rotate(back, spin), w_.turn.data(), pack.node);
+    const Four shift2 = dot(shift, shift), spin2 = size2 * dot(spin, spin);
+    for (int k = 0; k < 4; ++k) {
+      const double length = shift2[k] > spin2[k] ? shift2[k] : spin2[k];
+      if (length <= greatest || std::isnan(greatest)) continue;
       greatest = length;
-      node = s_.node[i];
+      node = s_.node[pack.node[k]];
     }
   }
-  return greatest;
+  return std::sqrt(greatest);
 }
 
 // Newton jumps to and fro over a contact that opens or closes within the step: the normal damping, a steep
@@ -220,8 +265,8 @@ double ImplicitStep::share_of_correction() {
 Attempt ImplicitStep::solve_with_hinges() {
   predict();
   Attempt attempt = solve();
-  HingeStep hinges;
-  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, hinges)) {
+  w_.hinges.clear();
+  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, w_.hinges)) {
     const int before = attempt.iterations;
     attempt = solve();
     attempt.iterations += before;
@@ -237,6 +282,7 @@ Attempt ImplicitStep::solve_with_hinges() {
 }
 
 void ImplicitStep::form_tangent() {
+  const InPhase phase(w_.profile, Phase::tangent);
   s_.lu.set_zero();
   s_.evaluate_with_tangent(p_, t_ + h_, w_.trial, state_.stick, w_.start.position, c_.gamma / (c_.beta * h_));
   add_inertia_tangent();
@@ -261,7 +307,10 @@ Attempt ImplicitStep::solve() {
         form_tangent();
       }
       predicted_ = false;
-      const int singular = s_.lu.factor();
+      const int singular = [&] {
+        const InPhase phase(w_.profile, Phase::factor);
+        return s_.lu.factor();
+      }();
       if (singular >= 0) {
         fill_residual();
         const double* const left = &w_.right_hand_side[6 * singular];
@@ -273,7 +322,10 @@ Attempt ImplicitStep::solve() {
     }
     fill_residual();
     if (cycling) w_.kept_residual = w_.right_hand_side;
-    s_.lu.solve(w_.right_hand_side.data());
+    {
+      const InPhase phase(w_.profile, Phase::solve);
+      s_.lu.solve(w_.right_hand_side.data());
+    }
     const double share = cycling ? share_of_correction() : 1;
     if (share < 1)
       for (double& x : w_.right_hand_side) x *= share;
@@ -300,21 +352,26 @@ void ImplicitStep::accept(StepEnergy& energy) {
   energy.plastic += commit_hinges(s_, w_.start, w_.trial, state_);
   // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
   // takes out.
+  const Four half(0.5);
+  Four taken(0);
+  for (const NodePack& pack : s_.node_packs) {
+    const auto at = [&](const std::vector<Vec3>& array) { return gather(array.data(), pack.node); };
+    const PackVector<Four> v0 = at(w_.start.velocity), v1 = at(w_.trial.velocity);
+    const PackVector<Four> w0 = at(w_.start.angular_velocity), w1 = at(w_.trial.angular_velocity);
+    const PackVector<Four> rate0 = pack.inertia * at(w_.angular_balance0) + cross(w0, pack.inertia * w0);
+    taken =
+        taken +
+        half *
+            (pack.mass * (dot(at(w_.balance0) + at(w_.acceleration), at(w_.travel)) - dot(v1 + v0, v1 - v0)) +
+             dot(rate0 + momentum_rate(pack, w1), at(w_.turn)) - dot(w1 + w0, pack.inertia * (w1 - w0)));
+  }
+  energy.numerical += sum(taken);
   for (int i = 0; i < s_.count; ++i) {
     const int g = s_.node[i];
-    const Mat3& j = s_.model.node_inertia[g];
-    const double m = s_.model.node_mass[g];
-    const Vec3 &v0 = w_.start.velocity[i], &v1 = w_.trial.velocity[i];
-    const Vec3 &w0 = w_.start.angular_velocity[i], &w1 = w_.trial.angular_velocity[i];
-    const Vec3 rate0 = j * state_.angular_acceleration[g] + w0.cross(j * w0);
-    const Vec3 rate1 = j * w_.angular_acceleration[i] + w1.cross(j * w1);
-    energy.numerical += 0.5 * m * (state_.acceleration[g] + w_.acceleration[i]).dot(w_.travel[i]) -
-                        0.5 * m * (v1 + v0).dot(v1 - v0) + 0.5 * (rate0 + rate1).dot(w_.turn[i]) -
-                        0.5 * (w1 + w0).dot(j * (w1 - w0));
     state_.position[g] = w_.trial.position[i];
     state_.rotation[g] = w_.trial.rotation[i];
-    state_.velocity[g] = v1;
-    state_.angular_velocity[g] = w1;
+    state_.velocity[g] = w_.trial.velocity[i];
+    state_.angular_velocity[g] = w_.trial.angular_velocity[i];
     state_.acceleration[g] = w_.acceleration[i];
     state_.angular_acceleration[g] = w_.angular_acceleration[i];
     state_.algorithmic_acceleration[g] = w_.algorithmic[i];

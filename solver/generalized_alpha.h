@@ -5,6 +5,7 @@
 
 #include "solver/body_system.h"
 #include "solver/energy.h"
+#include "solver/hinges.h"
 #include "solver/step.h"
 
 namespace topple {
@@ -28,10 +29,14 @@ struct IntegratorScratch {
   BodyMotion start, trial;
   std::vector<Vec3> travel, turn;  ///< unknowns: displacement, rotation vector (material) of the step
   std::vector<Vec3> acceleration, angular_acceleration, algorithmic, algorithmic_angular;
-  std::vector<double> right_hand_side;
+  /// Where the step starts: accelerations, and the travel and turn that leave the algorithmic ones zero.
+  std::vector<Vec3> balance0, angular_balance0, algorithmic0, algorithmic_angular0, coasting, coasting_turn;
+  std::vector<double> right_hand_side;     ///< six per node
   std::vector<double> kept_residual, way;  ///< of a correction that is cut short
   std::vector<Vec3> kept_travel, kept_turn;
   Contacts contacts_start;
+  Profile* profile = nullptr;
+  HingeStep hinges;
 };
 
 /// Advances the bodies of `system` in `state` by h from time t with the balance of forces taken at the end of

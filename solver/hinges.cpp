@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "solver/beam.h"
 #include "solver/plasticity.h"
@@ -32,11 +33,6 @@ Hinge hinge_at(int end) {
   return end == 0 ? Hinge::first : Hinge::second;
 }
 
-struct Candidate {
-  long long f;  // in units of k_same
-  int element, end;
-};
-
 class Update {
  public:
   Update(BodySystem& system, const BodyMotion& trial, HingeStep& step)
@@ -60,7 +56,7 @@ class Update {
     s_.elements[k].hinge = hinge;
     step_.formed[k] = true;
   }
-  std::vector<Candidate> candidates() const;
+  void find_candidates() const;
 
   BodySystem& s_;
   const Model& model_;
@@ -94,8 +90,11 @@ bool Update::break_sections() {
   return any;
 }
 
-std::vector<Candidate> Update::candidates() const {
-  std::vector<Candidate> found;
+// Greatest first, symmetric ones in the order of the elements.
+void Update::find_candidates() const {
+  std::vector<HingeStep::Candidate>& found = step_.candidates;
+  found.clear();
+  found.reserve(2 * count());
   const bool middle = model_.scheme == Scheme::midpoint;
   for (int k = 0; k < count(); ++k) {
     if (!yields(element(k)) || s_.elements[k].hinge != Hinge::none || step_.formed[k]) continue;
@@ -105,16 +104,19 @@ std::vector<Candidate> Update::candidates() const {
       if (f > k_yielding) found.push_back({std::llround(std::min(f, 1e9) / k_same), k, end});
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.f > b.f; });
-  return found;
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return std::tie(b.f, a.element, a.end) < std::tie(a.f, b.element, b.end);
+  });
 }
 
 bool Update::form() {
   const bool middle = model_.scheme == Scheme::midpoint;
   double greatest = 0;
-  std::vector<int> nodes;  // where hinges formed just now: what happens beside them shows when solved again
-  for (const auto& [f, k, end] : candidates()) {
+  std::vector<int>& nodes = step_.nodes;  // where hinges formed just now: what happens beside them shows when
+  nodes.clear();                          // solved again
+  nodes.reserve(2 * count());
+  find_candidates();
+  for (const auto& [f, k, end] : step_.candidates) {
     if (static_cast<double>(f) < k_together * greatest) break;
     if (s_.elements[k].hinge != Hinge::none) continue;
     const int node = element(k).node[end];

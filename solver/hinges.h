@@ -24,8 +24,20 @@ inline constexpr int k_most_redos = 60;      ///< of one step
 
 /// What the solutions of one step changed so far.
 struct HingeStep {
+  /// An end of an element that is loaded beyond yield, f in units in which symmetric sections are equal.
+  struct Candidate {
+    long long f;
+    int element, end;
+  };
   std::vector<bool> formed;  ///< per element of the system; once per step
   int redos = 0;
+  std::vector<Candidate> candidates;  ///< scratch, as `nodes`
+  std::vector<int> nodes;
+
+  void clear() {
+    formed.clear();
+    redos = 0;
+  }
 };
 
 /// Looks at a converged solution `trial` of a step and changes system.elements. True: the step must be solved

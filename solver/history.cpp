@@ -39,13 +39,13 @@ Parameters parameters_at(const Setup& setup, const History& history, std::int32_
 
 bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t step) {
   const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
-  auto next = std::find_if(edits.begin(), edits.end(),
-                           [&](const LoggedEdit& e) { return e.step > run.state().step; });
-  while (run.state().step < step) {
-    const std::int64_t before = run.state().step;
+  auto next =
+      std::find_if(edits.begin(), edits.end(), [&](const LoggedEdit& e) { return e.step > run.step(); });
+  while (run.step() < step) {
+    const std::int64_t before = run.step();
     // a load step that fails counts when it got a part of its way
-    if (!run.advance().ok() && run.state().step == before) return false;
-    for (; next != edits.end() && next->step == run.state().step; ++next) run.edit(next->edit);
+    if (!run.advance().ok() && run.step() == before) return false;
+    for (; next != edits.end() && next->step == run.step(); ++next) run.edit(next->edit);
   }
   return true;
 }

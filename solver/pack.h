@@ -1,72 +1,327 @@
-// Four doubles at once. GNU vectors: the same operations in every build type.
+// Four doubles that are worked on together, and vectors, matrices and rotations of such packs.
 #pragma once
 
-#include "solver/types.h"
+#include <array>
+
+#include "solver/types.h"  // Eigen brings the intrinsics
 
 namespace topple {
 
-using Pack = double __attribute__((vector_size(32)));
-using PackMask = long long __attribute__((vector_size(32)));
-inline constexpr int k_lanes = 4;
+/// GNU vectors: the same operations in every build type.
+struct Four {
+  using Vector = double __attribute__((vector_size(32)));
+  using Mask = long long __attribute__((vector_size(32)));  ///< per lane all bits or none
+  Vector v;
 
-inline Pack pack(double x) {
-  return Pack{x, x, x, x};
-}
-inline double sum(Pack p) {
-  return (p[0] + p[1]) + (p[2] + p[3]);
-}
-inline Pack square_root(Pack p) {
-  return __builtin_ia32_sqrtpd256(p);
-}
-/// Bit i: lane i is set.
-inline unsigned bits(PackMask m) {
-  return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<Pack>(m)));
-}
-inline constexpr unsigned k_all_lanes = (1u << k_lanes) - 1;
+  Four() = default;
+  Four(Vector of) : v(of) {}
+  Four(double all) : v{all, all, all, all} {}
+  double operator[](int lane) const { return v[lane]; }
+  void set(int lane, double value) { v[lane] = value; }
 
-/// Four vectors.
-struct Pack3 {
-  Pack x, y, z;
-  Vec3 lane(int i) const { return {x[i], y[i], z[i]}; }
-  void set(int i, const Vec3& v) {
-    x[i] = v.x();
-    y[i] = v.y();
-    z[i] = v.z();
+  [[gnu::always_inline]] friend Four operator+(Four a, Four b) { return a.v + b.v; }
+  [[gnu::always_inline]] friend Four operator-(Four a, Four b) { return a.v - b.v; }
+  [[gnu::always_inline]] friend Four operator*(Four a, Four b) { return a.v * b.v; }
+  [[gnu::always_inline]] friend Four operator/(Four a, Four b) { return a.v / b.v; }
+  [[gnu::always_inline]] friend Four operator-(Four a) { return -a.v; }
+  [[gnu::always_inline]] Four& operator+=(Four b) { return v += b.v, *this; }
+  [[gnu::always_inline]] Four& operator-=(Four b) { return v -= b.v, *this; }
+  [[gnu::always_inline]] friend Four sqrt(Four a) { return Vector(_mm256_sqrt_pd(a.v)); }
+  [[gnu::always_inline]] friend Four operator|(Four a, Four b) { return Vector(_mm256_or_pd(a.v, b.v)); }
+  /// a b + c, rounded once.
+  [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
+    return Vector(_mm256_fmadd_pd(a.v, b.v, c.v));
+  }
+  /// c - a b, rounded once.
+  [[gnu::always_inline]] friend Four less_product(Four c, Four a, Four b) {
+    return Vector(_mm256_fnmadd_pd(a.v, b.v, c.v));
+  }
+  [[gnu::always_inline]] friend Mask operator<(Four a, Four b) { return a.v < b.v; }
+  [[gnu::always_inline]] friend Mask operator<=(Four a, Four b) { return a.v <= b.v; }
+  /// a where the mask is set, else b.
+  [[gnu::always_inline]] friend Four choose(Mask mask, Four a, Four b) {
+    return Vector(_mm256_blendv_pd(b.v, a.v, reinterpret_cast<__m256d>(mask)));
+  }
+  /// Bit k: lane k of a is above b, or is not a number.
+  [[gnu::always_inline]] friend int lanes_above(Four a, double b) {
+    return _mm256_movemask_pd(_mm256_cmp_pd(a.v, Four(b).v, _CMP_NLE_UQ));
+  }
+  /// Some lane of a is above b, or is not a number.
+  [[gnu::always_inline]] friend bool any_above(Four a, double b) { return lanes_above(a, b) != 0; }
+  /// a with the sign that b has.
+  [[gnu::always_inline]] friend Four with_sign_of(Four a, Four b) {
+    const __m256d sign = _mm256_set1_pd(-0.);
+    return Vector(_mm256_or_pd(_mm256_andnot_pd(sign, a.v), _mm256_and_pd(sign, b.v)));
   }
 };
 
-inline Pack3 pack3(const Vec3& v) {
-  return {pack(v.x()), pack(v.y()), pack(v.z())};
+/// Bit k: lane k is set.
+[[gnu::always_inline]] inline unsigned bits(Four::Mask mask) {
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
 }
-inline Pack3 operator+(const Pack3& a, const Pack3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
+inline constexpr unsigned k_all_lanes = 15;
+
+[[gnu::always_inline]] inline Four load(const double* from) {
+  return Four::Vector(_mm256_loadu_pd(from));
 }
-inline Pack3 operator-(const Pack3& a, const Pack3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
+[[gnu::always_inline]] inline void store(double* to, Four value) {
+  _mm256_storeu_pd(to, value.v);
 }
-inline Pack3 operator*(Pack s, const Pack3& a) {
-  return {s * a.x, s * a.y, s * a.z};
+/// In the order of the lanes.
+[[gnu::always_inline]] inline double sum(Four a) {
+  return a[0] + a[1] + a[2] + a[3];
 }
-inline Pack3 operator*(double s, const Pack3& a) {
-  return pack(s) * a;
+/// Rows become columns.
+[[gnu::always_inline]] inline void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const __m256d ab0 = _mm256_unpacklo_pd(a.v, b.v), ab1 = _mm256_unpackhi_pd(a.v, b.v);
+  const __m256d cd0 = _mm256_unpacklo_pd(c.v, d.v), cd1 = _mm256_unpackhi_pd(c.v, d.v);
+  a = Four::Vector(_mm256_permute2f128_pd(ab0, cd0, 0x20));
+  b = Four::Vector(_mm256_permute2f128_pd(ab1, cd1, 0x20));
+  c = Four::Vector(_mm256_permute2f128_pd(ab0, cd0, 0x31));
+  d = Four::Vector(_mm256_permute2f128_pd(ab1, cd1, 0x31));
 }
-inline Pack dot(const Pack3& a, const Pack3& b) {
+
+template <class P>
+struct PackVector {
+  P x, y, z;
+
+  [[gnu::always_inline]] friend PackVector operator+(const PackVector& a, const PackVector& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  [[gnu::always_inline]] friend PackVector operator-(const PackVector& a, const PackVector& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  [[gnu::always_inline]] friend PackVector operator-(const PackVector& a) { return {-a.x, -a.y, -a.z}; }
+  [[gnu::always_inline]] friend PackVector operator*(P f, const PackVector& a) {
+    return {f * a.x, f * a.y, f * a.z};
+  }
+};
+
+template <class P>
+[[gnu::always_inline]] inline P dot(const PackVector<P>& a, const PackVector<P>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Pack3 cross(const Pack3& a, const Pack3& b) {
+template <class P>
+[[gnu::always_inline]] inline PackVector<P> cross(const PackVector<P>& a, const PackVector<P>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline Pack3 operator*(const Mat3& m, const Pack3& a) {
-  return {m(0, 0) * a.x + m(0, 1) * a.y + m(0, 2) * a.z, m(1, 0) * a.x + m(1, 1) * a.y + m(1, 2) * a.z,
-          m(2, 0) * a.x + m(2, 1) * a.y + m(2, 2) * a.z};
+template <class P>
+[[gnu::always_inline]] inline PackVector<P> times(const PackVector<P>& a, const PackVector<P>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
-/// The sums of four packs.
-inline Pack sums(Pack a, Pack b, Pack c, Pack d) {
-  const Pack ab = __builtin_ia32_haddpd256(a, b), cd = __builtin_ia32_haddpd256(c, d);
-  return __builtin_shuffle(ab, cd, PackMask{0, 1, 6, 7}) + __builtin_shuffle(ab, cd, PackMask{2, 3, 4, 5});
+
+/// Rows.
+template <class P>
+struct PackMatrix {
+  PackVector<P> row[3];
+
+  [[gnu::always_inline]] friend PackMatrix operator+(const PackMatrix& a, const PackMatrix& b) {
+    return {{a.row[0] + b.row[0], a.row[1] + b.row[1], a.row[2] + b.row[2]}};
+  }
+  [[gnu::always_inline]] friend PackMatrix operator-(const PackMatrix& a, const PackMatrix& b) {
+    return {{a.row[0] - b.row[0], a.row[1] - b.row[1], a.row[2] - b.row[2]}};
+  }
+  [[gnu::always_inline]] friend PackMatrix operator-(const PackMatrix& a) {
+    return {{-a.row[0], -a.row[1], -a.row[2]}};
+  }
+  [[gnu::always_inline]] friend PackVector<P> operator*(const PackMatrix& a, const PackVector<P>& v) {
+    return {dot(a.row[0], v), dot(a.row[1], v), dot(a.row[2], v)};
+  }
+  [[gnu::always_inline]] friend PackMatrix operator*(const PackMatrix& a, const PackMatrix& b) {
+    const auto row = [&](const PackVector<P>& r) { return r.x * b.row[0] + r.y * b.row[1] + r.z * b.row[2]; };
+    return {{row(a.row[0]), row(a.row[1]), row(a.row[2])}};
+  }
+};
+
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> transposed(const PackMatrix<P>& a) {
+  return {{{a.row[0].x, a.row[1].x, a.row[2].x},
+           {a.row[0].y, a.row[1].y, a.row[2].y},
+           {a.row[0].z, a.row[1].z, a.row[2].z}}};
 }
-inline Vec3 sum(const Pack3& a) {
-  return {sum(a.x), sum(a.y), sum(a.z)};
+/// a^T v
+template <class P>
+[[gnu::always_inline]] inline PackVector<P> transposed_times(const PackMatrix<P>& a, const PackVector<P>& v) {
+  return v.x * a.row[0] + v.y * a.row[1] + v.z * a.row[2];
+}
+
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> operator*(P f, const PackMatrix<P>& a) {
+  return {{f * a.row[0], f * a.row[1], f * a.row[2]}};
+}
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> diagonal(const PackVector<P>& d) {
+  const P o(0);
+  return {{{d.x, o, o}, {o, d.y, o}, {o, o, d.z}}};
+}
+/// [v]
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> skew(const PackVector<P>& v) {
+  const P o(0);
+  return {{{o, -v.z, v.y}, {v.z, o, -v.x}, {-v.y, v.x, o}}};
+}
+/// a [v]
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> times_skew(const PackMatrix<P>& a, const PackVector<P>& v) {
+  return {{cross(a.row[0], v), cross(a.row[1], v), cross(a.row[2], v)}};
+}
+/// [v] a
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> skew_times(const PackVector<P>& v, const PackMatrix<P>& a) {
+  return {
+      {v.y * a.row[2] - v.z * a.row[1], v.z * a.row[0] - v.x * a.row[2], v.x * a.row[1] - v.y * a.row[0]}};
+}
+/// a b^T
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> outer(const PackVector<P>& a, const PackVector<P>& b) {
+  return {{a.x * b, a.y * b, a.z * b}};
+}
+/// r diag(d) r^T
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> spread(const PackMatrix<P>& r, const PackVector<P>& d) {
+  const PackVector<P> x = times(d, r.row[0]), y = times(d, r.row[1]), z = times(d, r.row[2]);
+  const P xy = dot(x, r.row[1]), xz = dot(x, r.row[2]), yz = dot(y, r.row[2]);
+  return {{{dot(x, r.row[0]), xy, xz}, {xy, dot(y, r.row[1]), yz}, {xz, yz, dot(z, r.row[2])}}};
+}
+/// [v]^2
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> double_cross(const PackVector<P>& v) {
+  const P xx = v.x * v.x, yy = v.y * v.y, zz = v.z * v.z;
+  const P xy = v.x * v.y, xz = v.x * v.z, yz = v.y * v.z;
+  return {{{-(yy + zz), xy, xz}, {xy, -(xx + zz), yz}, {xz, yz, -(xx + yy)}}};
+}
+/// a I + b [v] + c [v]^2
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> polynomial_of(const PackVector<P>& v, const PackMatrix<P>& square,
+                                                          P a, P b, P c) {
+  return diagonal(PackVector<P>{a, a, a}) + b * skew(v) + c * square;
+}
+/// d/dv of [v]^2 w with w held
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> derivative_of_double_cross(const PackVector<P>& v,
+                                                                       const PackVector<P>& w) {
+  const P along = dot(v, w);
+  return diagonal(PackVector<P>{along, along, along}) + outer(v, w) - P(2) * outer(w, v);
+}
+
+/// A rotation: w + x i + y j + z k, of length 1.
+template <class P>
+struct PackQuaternion {
+  PackVector<P> v;
+  P w;
+
+  [[gnu::always_inline]] friend PackQuaternion operator*(const PackQuaternion& a, const PackQuaternion& b) {
+    return {a.w * b.v + b.w * a.v + cross(a.v, b.v), a.w * b.w - dot(a.v, b.v)};
+  }
+};
+
+template <class P>
+[[gnu::always_inline]] inline PackQuaternion<P> conjugate(const PackQuaternion<P>& q) {
+  return {-q.v, q.w};
+}
+/// Of one that rounding moved off length 1.
+template <class P>
+[[gnu::always_inline]] inline PackQuaternion<P> normalized(const PackQuaternion<P>& q) {
+  const P inverse = P(1.5) - P(0.5) * (dot(q.v, q.v) + q.w * q.w);
+  return {inverse * q.v, inverse * q.w};
+}
+template <class P>
+[[gnu::always_inline]] inline PackVector<P> rotate(const PackQuaternion<P>& q, const PackVector<P>& a) {
+  const PackVector<P> once = cross(q.v, a), twice = once + once;
+  return a + q.w * twice + cross(q.v, twice);
+}
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> rotation_matrix(const PackQuaternion<P>& q) {
+  const PackVector<P> two = q.v + q.v, wv = q.w * two;
+  const P xx = q.v.x * two.x, yy = q.v.y * two.y, zz = q.v.z * two.z;
+  const P xy = q.v.x * two.y, yz = q.v.y * two.z, xz = q.v.z * two.x;
+  const P one(1);
+  return {{{one - (yy + zz), xy - wv.z, xz + wv.y},
+           {xy + wv.z, one - (xx + zz), yz - wv.x},
+           {xz - wv.y, yz + wv.x, one - (xx + yy)}}};
+}
+
+/// Polynomial in x, the lowest coefficient first.
+template <class P, class... Rest>
+[[gnu::always_inline]] inline P polynomial(P x, double first, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0)
+    return P(first);
+  else
+    return mul_add(x, polynomial(x, rest...), P(first));
+}
+
+/// Of four nodes.
+[[gnu::always_inline]] inline PackVector<Four> gather(const Vec3* x, const std::array<int, 4>& node) {
+  const auto two = [x](int a, int b) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(x[a].data())), _mm_loadu_pd(x[b].data()),
+                                1);
+  };
+  const __m256d ac = two(node[0], node[2]), bd = two(node[1], node[3]);
+  return {Four::Vector(_mm256_unpacklo_pd(ac, bd)), Four::Vector(_mm256_unpackhi_pd(ac, bd)),
+          Four::Vector{x[node[0]].z(), x[node[1]].z(), x[node[2]].z(), x[node[3]].z()}};
+}
+
+[[gnu::always_inline]] inline PackQuaternion<Four> gather(const Quat* q, const std::array<int, 4>& node) {
+  PackQuaternion<Four> out{
+      {load(q[node[0]].coeffs().data()), load(q[node[1]].coeffs().data()), load(q[node[2]].coeffs().data())},
+      load(q[node[3]].coeffs().data())};
+  transpose(out.v.x, out.v.y, out.v.z, out.w);
+  return out;
+}
+
+/// Four vectors, one per lane; the last number of each is 0.
+[[gnu::always_inline]] inline std::array<Four, 4> lanes(const PackVector<Four>& v) {
+  std::array<Four, 4> rows{v.x, v.y, v.z, Four(0)};
+  transpose(rows[0], rows[1], rows[2], rows[3]);
+  return rows;
+}
+
+[[gnu::always_inline]] inline void store_three(double* to, Four lane) {
+  _mm_storeu_pd(to, _mm256_castpd256_pd128(lane.v));
+  _mm_store_sd(to + 2, _mm256_extractf128_pd(lane.v, 1));
+}
+
+[[gnu::always_inline]] inline void scatter(const PackVector<Four>& v, Vec3* x,
+                                           const std::array<int, 4>& node) {
+  const std::array<Four, 4> rows = lanes(v);
+  for (int k = 0; k < 4; ++k) store_three(x[node[k]].data(), rows[k]);
+}
+
+[[gnu::always_inline]] inline void scatter(PackQuaternion<Four> q, Quat* x, const std::array<int, 4>& node) {
+  transpose(q.v.x, q.v.y, q.v.z, q.w);
+  store(x[node[0]].coeffs().data(), q.v.x);
+  store(x[node[1]].coeffs().data(), q.v.y);
+  store(x[node[2]].coeffs().data(), q.v.z);
+  store(x[node[3]].coeffs().data(), q.w);
+}
+
+/// The same in all lanes.
+[[gnu::always_inline]] inline PackVector<Four> in_all_lanes(const Vec3& v) {
+  return {Four(v.x()), Four(v.y()), Four(v.z())};
+}
+[[gnu::always_inline]] inline PackVector<Four> operator*(const Mat3& m, const PackVector<Four>& a) {
+  const auto row = [&](int i) { return Four(m(i, 0)) * a.x + Four(m(i, 1)) * a.y + Four(m(i, 2)) * a.z; };
+  return {row(0), row(1), row(2)};
+}
+/// Over the lanes.
+[[gnu::always_inline]] inline Vec3 sum(const PackVector<Four>& v) {
+  const std::array<Four, 4> rows = lanes(v);
+  const Four total = (rows[0] + rows[1]) + (rows[2] + rows[3]);
+  return {total[0], total[1], total[2]};
+}
+
+[[gnu::always_inline]] inline Vec3 lane(const PackVector<Four>& v, int k) {
+  return {v.x[k], v.y[k], v.z[k]};
+}
+
+[[gnu::always_inline]] inline void set_lane(PackVector<Four>& v, int k, const Vec3& value) {
+  v.x.set(k, value.x());
+  v.y.set(k, value.y());
+  v.z.set(k, value.z());
+}
+
+[[gnu::always_inline]] inline void set_lane(PackMatrix<Four>& m, int k, const Mat3& value) {
+  for (int row = 0; row < 3; ++row) set_lane(m.row[row], k, value.row(row));
 }
 
 }  // namespace topple

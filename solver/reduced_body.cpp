@@ -29,10 +29,10 @@ double mean_width(const ContactPoint& point, const Plane& plane) {
   return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
 }
 
-Pack power(Pack depth, double q) {
+Four power(Four depth, double q) {
   if (q == 1) return depth;
   if (q == 2) return depth * depth;
-  for (int i = 0; i < k_lanes; ++i) depth[i] = std::pow(depth[i], q);
+  for (int i = 0; i < 4; ++i) depth.set(i, std::pow(depth[i], q));
   return depth;
 }
 
@@ -90,30 +90,30 @@ ReducedBody::ReducedBody(const Model& model, int body)
     return key(p) < key(q);
   });
   const int modes = basis_ ? basis_->modes : 0;
-  groups_.resize((order.size() + k_lanes - 1) / k_lanes);
+  groups_.resize((order.size() + 4 - 1) / 4);
   sides_.resize(model.planes.size() * groups_.size());
   for (Side& side : sides_)
-    side = {pack(-std::numeric_limits<double>::infinity()), pack(1), pack(1), pack(0)};
+    side = {Four(-std::numeric_limits<double>::infinity()), Four(1), Four(1), Four(0)};
   widest_.assign(model.planes.size(), 0);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];
-    group.place = pack3(Vec3::Zero());
+    group.place = in_all_lanes(Vec3::Zero());
     group.point.fill(-1);
-    group.shape.assign(modes, pack3(Vec3::Zero()));
-    for (int lane = 0; lane < k_lanes && g * k_lanes + lane < order.size(); ++lane) {
-      const int p = order[g * k_lanes + lane];
+    group.shape.assign(modes, in_all_lanes(Vec3::Zero()));
+    for (int which = 0; which < 4 && g * 4 + which < order.size(); ++which) {
+      const int p = order[g * 4 + which];
       const ContactPoint& point = model.contact_points[p];
-      group.point[lane] = p;
-      group.place.set(lane, place_of(p));
+      group.point[which] = p;
+      set_lane(group.place, which, place_of(p));
       box_.extend(place_of(p));
       for (int k = 0; k < modes; ++k)
-        group.shape[k].set(lane, basis_->shape.block<3, 1>(6 * (point.node - b.first_node), k));
+        set_lane(group.shape[k], which, basis_->shape.block<3, 1>(6 * (point.node - b.first_node), k));
       for (std::size_t k = 0; k < model.planes.size(); ++k) {
         Side& side = sides_[k * groups_.size() + g];
-        side.L[lane] = mean_width(point, model.planes[k]);
-        side.stick[lane] = k_stick_stiffness / side.L[lane];
-        side.damping[lane] = 2 * k_stick_damping * std::sqrt(side.stick[lane] * contact_mass_);
-        side.gap[lane] = point.width / 2;
+        side.L.set(which, mean_width(point, model.planes[k]));
+        side.stick.set(which, k_stick_stiffness / side.L[which]);
+        side.damping.set(which, 2 * k_stick_damping * std::sqrt(side.stick[which] * contact_mass_));
+        side.gap.set(which, point.width / 2);
         widest_[k] = std::max(widest_[k], point.width / 2);
       }
     }
@@ -121,8 +121,8 @@ ReducedBody::ReducedBody(const Model& model, int body)
   shapes_.reserve(sides_.size() * modes);
 }
 
-Pack3 ReducedBody::place(const BodyState& s, const Group& group) const {
-  Pack3 at = group.place;
+ReducedBody::Points ReducedBody::place(const BodyState& s, const Group& group) const {
+  Points at = group.place;
   for (int k = 0; k < modes(s); ++k) at = at + s.amplitude[k] * group.shape[k];
   return at;
 }
@@ -142,20 +142,20 @@ void ReducedBody::find_touching(const BodyState& s, const Mat3& r) {
     const double height = plane.normal.dot(s.position - plane.point);
     const Vec3 normal = r.transpose() * plane.normal;
     if (clearance(normal, height) > widest_[k] + bend) continue;
-    const Pack3 n = pack3(normal);
-    const Pack level = pack(height);
+    const Points n = in_all_lanes(normal);
+    const Four level = Four(height);
     const Side* const sides = &sides_[k * groups_.size()];
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      Pack3 at = groups_[g].place;
+      Points at = groups_[g].place;
       for (int j = 0; j < m; ++j) at = at + s.amplitude[j] * groups_[g].shape[j];
-      const Pack gap = dot(n, at) + level - sides[g].gap;
-      const PackMask touching = gap < 0;
+      const Four gap = dot(n, at) + level - sides[g].gap;
+      const Four::Mask touching = gap < 0;
       if (bits(touching) == 0) continue;
       Touch& touch = touches_.add();
       touch.plane = static_cast<int>(k);
       touch.group = static_cast<int>(g);
       touch.touching = touching;
-      touch.depth = touching ? -gap / sides[g].L : pack(0);
+      touch.depth = choose(touching, -gap / sides[g].L, Four(0));
       touch.arm = r * at;
       for (int j = 0; j < m; ++j) shapes_.push_back(r * groups_[g].shape[j]);
     }
@@ -163,53 +163,54 @@ void ReducedBody::find_touching(const BodyState& s, const Mat3& r) {
 }
 
 void ReducedBody::read_stick(std::span<const Vec3> stick, Touch& touch) const {
-  touch.stick = pack3(Vec3::Zero());
-  for (int lane = 0; lane < k_lanes; ++lane)
-    if (touch.touching[lane])
-      touch.stick.set(lane, stick[groups_[touch.group].point[lane] * model_.planes.size() + touch.plane]);
+  touch.stick = in_all_lanes(Vec3::Zero());
+  for (int which = 0; which < 4; ++which)
+    if (touch.touching[which])
+      set_lane(touch.stick, which,
+               stick[groups_[touch.group].point[which] * model_.planes.size() + touch.plane]);
 }
 
-Pack3 ReducedBody::velocity_at(std::size_t touch, const Velocity& u, int m) const {
-  Pack3 v = pack3(u.linear) + cross(pack3(u.angular), touches_[touch].arm);
+ReducedBody::Points ReducedBody::velocity_at(std::size_t touch, const Velocity& u, int m) const {
+  Points v = in_all_lanes(u.linear) + cross(in_all_lanes(u.angular), touches_[touch].arm);
   for (int k = 0; k < m; ++k) v = v + u.rate[k] * shapes_[touch * m + k];
   return v;
 }
 
 // As contact_force, four by four, without position derivatives.
 template <bool with_derivative>
-void ReducedBody::respond_coulomb(const ContactLaw& law, const Pack3& v, Touch& touch,
+void ReducedBody::respond_coulomb(const ContactLaw& law, const Points& v, Touch& touch,
                                   Derivative& derivative) const {
   const Side& here = side(touch);
-  const Pack zero = pack(0);
-  const Pack3 normal = pack3(model_.planes[touch.plane].normal);
-  const Pack vn = dot(normal, v);
+  const Four zero = Four(0);
+  const Points normal = in_all_lanes(model_.planes[touch.plane].normal);
+  const Four vn = dot(normal, v);
   const double loss = normal_loss(law.restitution), eps = law.normal_speed;
-  const Pack inverse = 1 / square_root(vn * vn + eps * eps);
-  const Pack spring = law.alpha * power(touch.depth, law.q);
-  touch.conservative = touch.touching ? spring : zero;
+  const Four inverse = 1 / sqrt(vn * vn + eps * eps);
+  const Four spring = law.alpha * power(touch.depth, law.q);
+  touch.conservative = choose(touch.touching, spring, zero);
   touch.normal = touch.conservative * (1 - loss * vn * inverse);
 
-  const Pack k = law.alpha * here.stick, c = std::sqrt(law.alpha) * here.damping;
-  const Pack3 stick = touch.stick - dot(normal, touch.stick) * normal;
-  const Pack3 trial = k * stick + c * (v - vn * normal);
-  const Pack limit = law.friction * touch.normal, size2 = dot(trial, trial);
-  const PackMask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
-  Pack scale = pack(1), inverse_size = zero;
+  const Four k = law.alpha * here.stick, c = std::sqrt(law.alpha) * here.damping;
+  const Points stick = touch.stick - dot(normal, touch.stick) * normal;
+  const Points trial = k * stick + c * (v - vn * normal);
+  const Four limit = law.friction * touch.normal, size2 = dot(trial, trial);
+  const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
+  Four scale = Four(1), inverse_size = zero;
   if (bits(sticks | ~touch.touching) != k_all_lanes) {
-    inverse_size = 1 / square_root(size2);
-    scale = sticks ? scale : limit * inverse_size;
-    inverse_size = sticks ? zero : inverse_size;
+    inverse_size = 1 / sqrt(size2);
+    scale = choose(sticks, scale, limit * inverse_size);
+    inverse_size = choose(sticks, zero, inverse_size);
   }
-  scale = touch.touching ? scale : zero;
+  scale = choose(touch.touching, scale, zero);
   touch.tangential = -scale * trial;
-  const Pack spring2 = k * k * dot(stick, stick);
-  touch.stick_energy = 0.5 / k * (spring2 <= limit * limit ? spring2 : limit * limit);
-  touch.stick_energy = touch.touching ? touch.stick_energy : zero;
+  const Four spring2 = k * k * dot(stick, stick);
+  touch.stick_energy = 0.5 / k * choose(spring2 <= limit * limit, spring2, limit * limit);
+  touch.stick_energy = choose(touch.touching, touch.stick_energy, zero);
   if constexpr (with_derivative) {
-    const Pack slope = -loss * eps * eps * touch.conservative * inverse * inverse * inverse;
-    const Pack across = c * scale, drag = law.friction * slope;
-    const Pack3 along = inverse_size * trial;
-    const Pack n[3] = {normal.x, normal.y, normal.z}, d[3] = {along.x, along.y, along.z};
+    const Four slope = -loss * eps * eps * touch.conservative * inverse * inverse * inverse;
+    const Four across = c * scale, drag = law.friction * slope;
+    const Points along = inverse_size * trial;
+    const Four n[3] = {normal.x, normal.y, normal.z}, d[3] = {along.x, along.y, along.z};
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j)
         derivative[i][j] = (slope + across) * n[i] * n[j] + d[i] * (across * d[j] - drag * n[j]);
@@ -219,47 +220,48 @@ void ReducedBody::respond_coulomb(const ContactLaw& law, const Pack3& v, Touch& 
 }
 
 template <bool with_derivative>
-void ReducedBody::respond(const ContactLaw& law, const Pack3& v, Touch& touch, Derivative& derivative) const {
+void ReducedBody::respond(const ContactLaw& law, const Points& v, Touch& touch,
+                          Derivative& derivative) const {
   if (law.kind == ContactLawKind::coulomb) return respond_coulomb<with_derivative>(law, v, touch, derivative);
-  touch.conservative = touch.normal = touch.stick_energy = pack(0);
-  touch.tangential = pack3(Vec3::Zero());
-  for (auto& row : derivative) row.fill(pack(0));
-  for (int lane = 0; lane < k_lanes; ++lane) {
-    if (!touch.touching[lane]) continue;
+  touch.conservative = touch.normal = touch.stick_energy = Four(0);
+  touch.tangential = in_all_lanes(Vec3::Zero());
+  for (auto& row : derivative) row.fill(Four(0));
+  for (int which = 0; which < 4; ++which) {
+    if (!touch.touching[which]) continue;
     Mat3 by_position, by_velocity;
     const ContactOutput out =
         contact_force(law,
-                      {model_.planes[touch.plane].normal, touch.depth[lane], side(touch).L[lane],
-                       v.lane(lane), touch.stick.lane(lane), contact_mass_},
+                      {model_.planes[touch.plane].normal, touch.depth[which], side(touch).L[which],
+                       lane(v, which), lane(touch.stick, which), contact_mass_},
                       by_position, by_velocity);
-    touch.conservative[lane] = out.conservative;
-    touch.normal[lane] = out.normal;
-    touch.tangential.set(lane, out.tangential);
+    touch.conservative.set(which, out.conservative);
+    touch.normal.set(which, out.normal);
+    set_lane(touch.tangential, which, out.tangential);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) derivative[i][j][lane] = by_velocity(i, j);
+      for (int j = 0; j < 3; ++j) derivative[i][j].set(which, by_velocity(i, j));
   }
 }
 
 // Travel of the stick springs after slipping, m.
-Pack3 ReducedBody::held_stick(const ContactLaw& law, const Touch& touch) const {
-  if (law.kind != ContactLawKind::coulomb) return pack3(Vec3::Zero());
-  const Pack3 normal = pack3(model_.planes[touch.plane].normal);
-  const Pack3 stick = touch.stick - dot(normal, touch.stick) * normal;
-  const Pack limit = law.friction * touch.normal / (law.alpha * side(touch).stick);
-  const Pack size2 = dot(stick, stick);
-  const PackMask sticks = size2 <= limit * limit;
-  if (bits(sticks | ~touch.touching) == k_all_lanes) return (touch.touching ? pack(1) : pack(0)) * stick;
-  const Pack scale = sticks ? pack(1) : limit / square_root(size2);
-  return (touch.touching ? scale : pack(0)) * stick;
+ReducedBody::Points ReducedBody::held_stick(const ContactLaw& law, const Touch& touch) const {
+  if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
+  const Points normal = in_all_lanes(model_.planes[touch.plane].normal);
+  const Points stick = touch.stick - dot(normal, touch.stick) * normal;
+  const Four limit = law.friction * touch.normal / (law.alpha * side(touch).stick);
+  const Four size2 = dot(stick, stick);
+  const Four::Mask sticks = size2 <= limit * limit;
+  if (bits(sticks | ~touch.touching) == k_all_lanes) return choose(touch.touching, Four(1), Four(0)) * stick;
+  const Four scale = choose(sticks, Four(1), limit / sqrt(size2));
+  return choose(touch.touching, scale, Four(0)) * stick;
 }
 
 void ReducedBody::sum_loads(const Vec3& field, BodyState& s) const {
-  Pack3 force = pack3(Vec3::Zero()), moment = force;
+  Points force = in_all_lanes(Vec3::Zero()), moment = force;
   const int m = modes(s);
-  std::array<Pack, k_modes> load{};
+  std::array<Four, k_modes> load{};
   for (std::size_t c = 0; c < touches_.size(); ++c) {
     const Touch& touch = touches_[c];
-    const Pack3 f = touch.normal * pack3(model_.planes[touch.plane].normal) + touch.tangential;
+    const Points f = touch.normal * in_all_lanes(model_.planes[touch.plane].normal) + touch.tangential;
     force = force + f;
     moment = moment + cross(touch.arm, f);
     for (int k = 0; k < m; ++k) load[k] += dot(shapes_[c * m + k], f);
@@ -271,23 +273,17 @@ void ReducedBody::sum_loads(const Vec3& field, BodyState& s) const {
 
 // M - (h/2) sum J^T (df/dv) J of the rigid motions.
 void ReducedBody::fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) const {
-  // blocks: force and moment by V and omega, of packs (three and a spare) per column
-  Pack upper[6][4], lower[6][4];
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 4; ++i) upper[j][i] = lower[j][i] = pack(0);
+  // force and moment by V and omega, per column
+  Points upper[6], lower[6];
+  for (int j = 0; j < 6; ++j) upper[j] = lower[j] = in_all_lanes(Vec3::Zero());
   for (std::size_t c = 0; c < touches_.size(); ++c) {
     const Derivative& d = w.derivatives[c];
-    const Pack3& arm = touches_[c].arm;
-    const auto add = [&](int j, const Pack3& f) {
-      upper[j][0] += f.x;
-      upper[j][1] += f.y;
-      upper[j][2] += f.z;
-      const Pack3 moment = cross(arm, f);
-      lower[j][0] += moment.x;
-      lower[j][1] += moment.y;
-      lower[j][2] += moment.z;
+    const Points& arm = touches_[c].arm;
+    const auto add = [&](int j, const Points& f) {
+      upper[j] = upper[j] + f;
+      lower[j] = lower[j] + cross(arm, f);
     };
-    const Pack3 x{d[0][0], d[1][0], d[2][0]}, y{d[0][1], d[1][1], d[2][1]}, z{d[0][2], d[1][2], d[2][2]};
+    const Points x{d[0][0], d[1][0], d[2][0]}, y{d[0][1], d[1][1], d[2][1]}, z{d[0][2], d[1][2], d[2][2]};
     add(0, x);
     add(1, y);
     add(2, z);
@@ -296,8 +292,7 @@ void ReducedBody::fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) c
     add(5, arm.x * y - arm.y * x);
   }
   for (int j = 0; j < 6; ++j) {
-    const Pack up = -h / 2 * sums(upper[j][0], upper[j][1], upper[j][2], upper[j][3]);
-    const Pack down = -h / 2 * sums(lower[j][0], lower[j][1], lower[j][2], lower[j][3]);
+    const Vec3 up = -h / 2 * sum(upper[j]), down = -h / 2 * sum(lower[j]);
     for (int i = 0; i < 3; ++i) {
       w.matrix[i][j] = up[i];
       w.matrix[3 + i][j] = down[i];
@@ -311,21 +306,21 @@ void ReducedBody::fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) c
 
 // The rows and columns of the modes.
 void ReducedBody::fill_modes(double h, int m, ReducedScratch& w) const {
-  Pack left[k_modes][6], top[6][k_modes], corner[k_modes][k_modes];
+  Four left[k_modes][6], top[6][k_modes], corner[k_modes][k_modes];
   for (int k = 0; k < m; ++k) {
-    for (int i = 0; i < 6; ++i) left[k][i] = top[i][k] = pack(0);
-    for (int j = 0; j < m; ++j) corner[k][j] = pack(0);
+    for (int i = 0; i < 6; ++i) left[k][i] = top[i][k] = Four(0);
+    for (int j = 0; j < m; ++j) corner[k][j] = Four(0);
   }
   for (std::size_t c = 0; c < touches_.size(); ++c) {
     const Derivative& d = w.derivatives[c];
-    const Pack3& arm = touches_[c].arm;
-    const Pack3* const shape = &shapes_[c * m];
+    const Points& arm = touches_[c].arm;
+    const Points* const shape = &shapes_[c * m];
     for (int k = 0; k < m; ++k) {
-      const Pack3& v = shape[k];
-      const Pack3 f{d[0][0] * v.x + d[0][1] * v.y + d[0][2] * v.z,
-                    d[1][0] * v.x + d[1][1] * v.y + d[1][2] * v.z,
-                    d[2][0] * v.x + d[2][1] * v.y + d[2][2] * v.z};
-      const Pack3 moment = cross(arm, f);
+      const Points& v = shape[k];
+      const Points f{d[0][0] * v.x + d[0][1] * v.y + d[0][2] * v.z,
+                     d[1][0] * v.x + d[1][1] * v.y + d[1][2] * v.z,
+                     d[2][0] * v.x + d[2][1] * v.y + d[2][2] * v.z};
+      const Points moment = cross(arm, f);
       top[0][k] += f.x;
       top[1][k] += f.y;
       top[2][k] += f.z;
@@ -334,10 +329,10 @@ void ReducedBody::fill_modes(double h, int m, ReducedScratch& w) const {
       top[5][k] += moment.z;
       for (int j = 0; j < m; ++j) corner[j][k] += dot(shape[j], f);
       // the transpose's product: forces of the rigid columns on this mode
-      const Pack3 b{d[0][0] * v.x + d[1][0] * v.y + d[2][0] * v.z,
-                    d[0][1] * v.x + d[1][1] * v.y + d[2][1] * v.z,
-                    d[0][2] * v.x + d[1][2] * v.y + d[2][2] * v.z};
-      const Pack3 turned = cross(arm, b);
+      const Points b{d[0][0] * v.x + d[1][0] * v.y + d[2][0] * v.z,
+                     d[0][1] * v.x + d[1][1] * v.y + d[2][1] * v.z,
+                     d[0][2] * v.x + d[1][2] * v.y + d[2][2] * v.z};
+      const Points turned = cross(arm, b);
       left[k][0] += b.x;
       left[k][1] += b.y;
       left[k][2] += b.z;
@@ -366,16 +361,16 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
   bool fresh = true;
   double last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
-    Pack3 force = pack3(Vec3::Zero()), moment = force;
-    std::array<Pack, k_modes> load;
-    for (int k = 0; k < m; ++k) load[k] = pack(0);
+    Points force = in_all_lanes(Vec3::Zero()), moment = force;
+    std::array<Four, k_modes> load;
+    for (int k = 0; k < m; ++k) load[k] = Four(0);
     for (std::size_t c = 0; c < touches_.size(); ++c) {
       Touch& touch = touches_[c];
       if (fresh)
         respond<true>(law, velocity_at(c, u, m), touch, w.derivatives[c]);
       else
         respond<false>(law, velocity_at(c, u, m), touch, w.derivatives[c]);
-      const Pack3 f = touch.normal * pack3(model_.planes[touch.plane].normal) + touch.tangential;
+      const Points f = touch.normal * in_all_lanes(model_.planes[touch.plane].normal) + touch.tangential;
       force = force + f;
       moment = moment + cross(touch.arm, f);
       for (int k = 0; k < m; ++k) load[k] += dot(shapes_[c * m + k], f);
@@ -415,10 +410,10 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
 template <class F>
 void ReducedBody::each_touching(const Touches& touches, F f) const {
   for (const Touch& touch : touches)
-    for (int lane = 0; lane < k_lanes; ++lane)
-      if (touch.touching[lane])
-        f(touch, lane, groups_[touch.group].point[lane],
-          groups_[touch.group].point[lane] * model_.planes.size() + touch.plane);
+    for (int which = 0; which < 4; ++which)
+      if (touch.touching[which])
+        f(touch, which, groups_[touch.group].point[which],
+          groups_[touch.group].point[which] * model_.planes.size() + touch.plane);
 }
 
 // Returns the turn, a rotation vector in material axes.
@@ -460,7 +455,7 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   for (const Touch& touch : touches_) {
     std::uint64_t bits =
         static_cast<std::uint64_t>(touch.plane) << 32 | static_cast<std::uint64_t>(touch.group) << 8;
-    for (int lane = 0; lane < k_lanes; ++lane) bits |= touch.touching[lane] ? 1ull << lane : 0;
+    for (int which = 0; which < 4; ++which) bits |= touch.touching[which] ? 1ull << which : 0;
     touching = (touching ^ bits) * 1099511628211ull;
   }
   for (const Known& known : known_)
@@ -471,13 +466,13 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   const double stick = law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0;
   const Mat3 root = inertia_.llt().matrixL().solve(Mat3::Identity()).transpose();
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
-  each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t) {
+  each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t) {
     const Group& group = groups_[touch.group];
     Eigen::MatrixXd j(3, n);
     j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
-    j.middleCols<3>(3) = -skew(group.place.lane(lane)) * root;
-    for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = group.shape[k].lane(lane);
-    stiffness += law.alpha / side(touch).L[lane] * std::max(slope, stick) * j.transpose() * j;
+    j.middleCols<3>(3) = -skew(lane(group.place, which)) * root;
+    for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = lane(group.shape[k], which);
+    stiffness += law.alpha / side(touch).L[which] * std::max(slope, stick) * j.transpose() * j;
   });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, Eigen::EigenvaluesOnly);
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
@@ -494,7 +489,7 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
     out.kinetic += 0.5 * s.rate.square().sum();
     out.strain = 0.5 * (basis_->frequency * s.amplitude).square().sum();
   }
-  Pack held = pack(0);
+  Four held = Four(0);
   for (const Touch& touch : touches_) {
     held += touch.stick_energy;
     if (law.kind != ContactLawKind::printed)
@@ -555,7 +550,7 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
   find_touching(s, r);
   for (Touch& touch : touches_) {
     read_stick(stick, touch);
-    touch.travel = pack3(shift) + (touch.arm - r0 * place(before, groups_[touch.group]));
+    touch.travel = in_all_lanes(shift) + (touch.arm - r0 * place(before, groups_[touch.group]));
     touch.stick = touch.stick + touch.travel;
   }
   const Velocity drifted{s.velocity, s.rotation * s.angular_velocity, s.rate};
@@ -576,14 +571,14 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
   // As book_work, and what the method itself takes out, from its own kinematics.
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
   booked.input -= mass_ * 0.5 * (start.floor + end.floor).dot(shift);
-  Pack damped = pack(0), rubbed = damped;
-  const auto book = [&](const Touch& touch, const Pack3& travel, double sign) {
-    damped -=
-        0.5 * (touch.normal - touch.conservative) * dot(pack3(model_.planes[touch.plane].normal), travel);
+  Four damped = Four(0), rubbed = damped;
+  const auto book = [&](const Touch& touch, const Points& travel, double sign) {
+    damped -= 0.5 * (touch.normal - touch.conservative) *
+              dot(in_all_lanes(model_.planes[touch.plane].normal), travel);
     rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
   for (const Touch& touch : w.touches_start)
-    book(touch, pack3(shift) + (r * place(s, groups_[touch.group]) - touch.arm), -1);
+    book(touch, in_all_lanes(shift) + (r * place(s, groups_[touch.group]) - touch.arm), -1);
   for (const Touch& touch : touches_) book(touch, touch.travel, 1);
   booked.normal_damping += sum(damped);
   booked.friction += sum(rubbed);
@@ -607,8 +602,8 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
 // Stores the stick springs after slipping.
 void ReducedBody::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
   for (Touch& touch : touches_) touch.stick = held_stick(law, touch);
-  each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t at) {
-    stick[at] = touch.stick.lane(lane);
+  each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t at) {
+    stick[at] = lane(touch.stick, which);
   });
 }
 
@@ -617,11 +612,11 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
                                   StepEnergy& booked) const {
   if (before.alpha == after.alpha && before.q == after.q) return;
   LawChange change(before, after, booked);
-  each_touching(at_start, [&](const Touch& touch, int lane, int, std::size_t) {
-    change.book_start(touch.depth[lane], side(touch).L[lane], touch.stick_energy[lane]);
+  each_touching(at_start, [&](const Touch& touch, int which, int, std::size_t) {
+    change.book_start(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
   });
-  each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t) {
-    change.book_end(touch.depth[lane], side(touch).L[lane], touch.stick_energy[lane]);
+  each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t) {
+    change.book_end(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
   });
 }
 
@@ -645,9 +640,10 @@ BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& sta
 }
 
 void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {
-  each_touching(touches_, [&](const Touch& touch, int lane, int point, std::size_t) {
-    forces.push_back({point, touch.plane, touch.depth[lane], touch.normal[lane],
-                      touch.normal[lane] * model_.planes[touch.plane].normal + touch.tangential.lane(lane)});
+  each_touching(touches_, [&](const Touch& touch, int which, int point, std::size_t) {
+    forces.push_back(
+        {point, touch.plane, touch.depth[which], touch.normal[which],
+         touch.normal[which] * model_.planes[touch.plane].normal + lane(touch.tangential, which)});
   });
 }
 
@@ -655,9 +651,9 @@ void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {
 template <class F>
 void ReducedBody::each_force(const BodyState& s, F f) const {
   const Mat3 back = s.rotation.conjugate().toRotationMatrix();
-  each_touching(touches_, [&](const Touch& touch, int lane, int point, std::size_t) {
+  each_touching(touches_, [&](const Touch& touch, int which, int point, std::size_t) {
     f(model_.contact_points[point].node - model_.bodies[body_].first_node,
-      Vec3(back * (touch.normal[lane] * model_.planes[touch.plane].normal + touch.tangential.lane(lane))));
+      Vec3(back * (touch.normal[which] * model_.planes[touch.plane].normal + lane(touch.tangential, which))));
   });
 }
 
@@ -735,17 +731,17 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
       inertia.bottomRightCorner(m, m).setIdentity();
       stiffness.bottomRightCorner(m, m).diagonal() = basis_->frequency.head(m).square();
     }
-    each_touching(touches_, [&](const Touch& touch, int lane, int, std::size_t at) {
+    each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t at) {
       Mat3 by_position, by_velocity;
       const Vec3& normal = model_.planes[touch.plane].normal;
       const ContactOutput out = contact_force(
-          now.law, {normal, touch.depth[lane], side(touch).L[lane], Vec3::Zero(), stick[at], contact_mass_},
+          now.law, {normal, touch.depth[which], side(touch).L[which], Vec3::Zero(), stick[at], contact_mass_},
           by_position, by_velocity);
-      const Vec3 arm = touch.arm.lane(lane);
+      const Vec3 arm = lane(touch.arm, which);
       Matrix j(3, n);
       j.leftCols<3>().setIdentity();
       j.middleCols<3>(3) = -skew(arm);
-      for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = r * groups_[touch.group].shape[k].lane(lane);
+      for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = r * lane(groups_[touch.group].shape[k], which);
       stiffness -= j.transpose() * by_position * j;
       stiffness.block<3, 3>(3, 3) -= skew(out.force) * skew(arm);  // the arm turns with the body
     });
@@ -770,7 +766,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     find_touching(s, s.rotation.toRotationMatrix());
     for (Touch& touch : touches_) {
       read_stick(stick, touch);
-      touch.stick = touch.stick + pack3(s.position - before.position) +
+      touch.stick = touch.stick + in_all_lanes(s.position - before.position) +
                     (touch.arm - before.rotation.toRotationMatrix() * place(before, groups_[touch.group]));
     }
     for (const std::size_t at : before_touching) stick[at].setZero();
@@ -793,18 +789,18 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) {
     if (clearance(normal, height) - widest_[k] >
         (std::max(0., fall) + reach_ * omega.norm()) * k_longest_step)
       continue;
-    const Pack3 n = pack3(normal), turn = pack3(r.transpose() * plane.normal.cross(omega));
+    const Points n = in_all_lanes(normal), turn = in_all_lanes(r.transpose() * plane.normal.cross(omega));
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const Side& side = sides_[k * groups_.size() + g];
-      const Pack gap = dot(n, groups_[g].place) + height - side.gap;
-      const Pack closing = fall - dot(turn, groups_[g].place);
-      for (int lane = 0; lane < k_lanes; ++lane) {
-        if (groups_[g].point[lane] < 0) continue;
-        if (gap[lane] < 0)
-          stiffness += penalty_stiffness(law, -gap[lane] / side.L[lane], side.L[lane]);
-        else if (closing[lane] * k_longest_step > gap[lane])
-          limit = std::min(
-              limit, std::max(gap[lane] / closing[lane], side.L[lane] / (k_closing_part * closing[lane])));
+      const Four gap = dot(n, groups_[g].place) + height - side.gap;
+      const Four closing = fall - dot(turn, groups_[g].place);
+      for (int which = 0; which < 4; ++which) {
+        if (groups_[g].point[which] < 0) continue;
+        if (gap[which] < 0)
+          stiffness += penalty_stiffness(law, -gap[which] / side.L[which], side.L[which]);
+        else if (closing[which] * k_longest_step > gap[which])
+          limit = std::min(limit, std::max(gap[which] / closing[which],
+                                           side.L[which] / (k_closing_part * closing[which])));
       }
     }
   }

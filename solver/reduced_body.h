@@ -67,31 +67,32 @@ class ReducedBody {
 
  private:
   friend struct ReducedScratch;
+  using Points = PackVector<Four>;
   static constexpr int k_unknowns = 6 + k_modes;
   /// Contact points, four by four; those that fill up the last group never touch.
   struct Group {
-    Pack3 place;                     // m, from the centre of gravity, reference axes
-    std::array<int, k_lanes> point;  // index into the model, -1: none
-    std::vector<Pack3> shape;        // per mode
+    Points place;               // m, from the centre of gravity, reference axes
+    std::array<int, 4> point;   // index into the model, -1: none
+    std::vector<Points> shape;  // per mode
   };
   /// Of a group and a plane.
   struct Side {
-    Pack gap;      // m, of the centre line on the face
-    Pack L;        // m
-    Pack stick;    // 1/m, stiffness of the stick spring over alpha
-    Pack damping;  // its damping over sqrt(alpha)
+    Four gap;      // m, of the centre line on the face
+    Four L;        // m
+    Four stick;    // 1/m, stiffness of the stick spring over alpha
+    Four damping;  // its damping over sqrt(alpha)
   };
   /// A group of which some points touch a plane. Vectors in the floor's axes.
   struct Touch {
     int plane, group;
-    PackMask touching;
-    Pack depth;
-    Pack3 arm;     // m, from the centre of gravity
-    Pack3 stick;   // m, travel since sticking began
-    Pack3 travel;  // m, in the part of a step that led here
-    Pack conservative, normal;
-    Pack3 tangential;
-    Pack stick_energy;
+    Four::Mask touching;
+    Four depth;
+    Points arm;     // m, from the centre of gravity
+    Points stick;   // m, travel since sticking began
+    Points travel;  // m, in the part of a step that led here
+    Four conservative, normal;
+    Points tangential;
+    Four stick_energy;
   };
   /// A list that keeps what it ever had room for.
   struct Touches {
@@ -113,20 +114,20 @@ class ReducedBody {
     Vec3 linear, angular;  // floor's axes
     Amplitudes rate;
   };
-  using Derivative = std::array<std::array<Pack, 3>, 3>;  // of the force by the velocity
+  using Derivative = std::array<std::array<Four, 3>, 3>;  // of the force by the velocity
 
   int modes(const BodyState& s) const { return s.rung == Rung::elastic ? basis_->modes : 0; }
-  Pack3 place(const BodyState& s, const Group& group) const;
+  Points place(const BodyState& s, const Group& group) const;
   double clearance(const Vec3& n, double height) const;
   void find_touching(const BodyState& s, const Mat3& r);
   void read_stick(std::span<const Vec3> stick, Touch& touch) const;
-  Pack3 velocity_at(std::size_t touch, const Velocity& u, int modes) const;
+  Points velocity_at(std::size_t touch, const Velocity& u, int modes) const;
   template <bool with_derivative>
-  void respond(const ContactLaw& law, const Pack3& velocity, Touch& touch, Derivative& derivative) const;
+  void respond(const ContactLaw& law, const Points& velocity, Touch& touch, Derivative& derivative) const;
   template <bool with_derivative>
-  void respond_coulomb(const ContactLaw& law, const Pack3& velocity, Touch& touch,
+  void respond_coulomb(const ContactLaw& law, const Points& velocity, Touch& touch,
                        Derivative& derivative) const;
-  Pack3 held_stick(const ContactLaw& law, const Touch& touch) const;
+  Points held_stick(const ContactLaw& law, const Touch& touch) const;
   const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
   void respond_at(const ContactLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
@@ -162,7 +163,7 @@ class ReducedBody {
   // The state at which `touches_` is.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;
-  std::vector<Pack3> shapes_;  // per touch and mode, floor's axes
+  std::vector<Points> shapes_;  // per touch and mode, floor's axes
   Eigen::VectorXd section_;
   // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine.
   double swing_step_ = 0;

@@ -67,7 +67,7 @@ StepStatus Run::advance() {
     return status_;
   }
   placed_ = false;
-  status_ = step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
+  status_ = topple::step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (status_.ok()) observe();
@@ -106,6 +106,7 @@ void Run::see_forces() {
 }
 
 void Run::observe() {
+  const InPhase phase(&workspace_.profile(), Phase::observe);
   const Model& model = setup_->model;
   const State& state = now_.state;
   see_forces();

@@ -72,6 +72,10 @@ class Run {
   Run(const Setup& setup, State state, Parameters parameters);
   Run(const Setup& setup, RunPoint point);
 
+  /// As of Workspace.
+  void share(ParallelFor parallel) { workspace_.share(std::move(parallel)); }
+  Profile& profile() { return workspace_.profile(); }
+
   /// One accepted step, of time or of the loads. Must not be called when over().
   StepStatus advance();
   /// Changes a parameter from the present state on; after it a step that failed may be tried again.
@@ -84,6 +88,8 @@ class Run {
   const RunPoint& point() const;
   /// With all nodes placed.
   const State& state() const { return point().state; }
+  double time() const { return now_.state.time; }  ///< s
+  std::int64_t step() const { return now_.state.step; }
   const Parameters& parameters() const { return now_.parameters; }
   const StepStatus& status() const { return status_; }
   const Outcome& outcome() const { return now_.outcome; }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "solver/pack.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -190,15 +191,43 @@ std::uint64_t hash(const State& state) {
   return sum;
 }
 
-bool is_finite(const State& state, bool nodes) {
-  double sum = state.energy.unexplained() + state.floor_displacement.sum() + state.floor_velocity.sum();
-  for (const BodyState& b : state.bodies)
-    sum += b.position.sum() + b.rotation.coeffs().sum() + b.velocity.sum() + b.angular_velocity.sum() +
-           b.amplitude.sum() + b.rate.sum() + b.force.sum() + b.moment.sum() + b.load.sum();
-  for (const MemberStick& stick : state.member_sticks) sum += stick.stick.sum();
-  bool finite = std::isfinite(sum);
-  if (nodes) each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
-  return finite;
+bool is_finite(const State& s, bool nodes) {
+  Four odd(0);  // x - x is 0 or not a number
+  double odd_one = 0;
+  const auto look = [&](const double* x, std::size_t count) {
+    std::size_t k = 0;
+    for (; k + 4 <= count; k += 4) odd = odd | (load(x + k) - load(x + k));
+    for (; k < count; ++k) odd_one += x[k] - x[k];
+  };
+  if (nodes) {
+    for (const auto* array :
+         {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
+          &s.algorithmic_acceleration, &s.algorithmic_angular_acceleration})
+      if (!array->empty()) look(array->front().data(), 3 * array->size());
+    for (const Quat& q : s.rotation) look(q.coeffs().data(), 4);
+    static_assert(sizeof(ElementState) == 7 * sizeof(double));
+    for (const ElementState& e : s.elements) {
+      const auto* const bytes = reinterpret_cast<const double*>(&e);  // load() may alias
+      look(bytes, 4);
+      look(bytes + 3, 4);
+    }
+  }
+  for (const BodyState& b : s.bodies) {
+    for (const auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
+      look(v->data(), 3);
+    look(b.rotation.coeffs().data(), 4);
+    if (b.rung == Rung::elastic)
+      for (const auto* v : {&b.amplitude, &b.rate, &b.load}) look(v->data(), k_modes);
+  }
+  if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
+  for (const MemberStick& stick : s.member_sticks) look(stick.stick.data(), 3);
+  const EnergyLedger& e = s.energy;
+  for (const double x :
+       {s.time, s.floor_displacement.sum(), s.floor_velocity.sum(), s.step_size, s.load_factor, s.near_slack,
+        e.input, e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.normal_damping, e.numerical,
+        e.plastic, e.model_switch, e.start_total, e.largest})
+    odd_one += x - x;
+  return !any_above(odd, 0) && odd_one == 0;
 }
 
 void copy(const State& from, State& to, bool nodes) {

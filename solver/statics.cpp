@@ -222,7 +222,7 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
   EnergyLedger& energy = state.energy;
   energy.strain = energy.contact = 0;
   for (auto& system : systems_) {
-    const BodySystem& s = *system;
+    BodySystem& s = *system;
     const BodyMotion &start = start_[s.index], &trial = trial_[s.index];
     for (const auto& own : s.loads) {
       const Load* const load = own.load;

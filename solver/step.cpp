@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <tuple>
 
@@ -52,6 +53,23 @@ void balance_accelerations(BodySystem& s, const Parameters& parameters, State& s
 
 }  // namespace
 
+namespace {
+
+// What became of a system, or of some bodies that are not frames, in a step.
+struct PartOfStep {
+  StepEnergy exchanged;
+  BodyEnergy held;
+  StepStatus status;
+};
+
+void add(const BodyEnergy& part, BodyEnergy& sum) {
+  sum.kinetic += part.kinetic;
+  sum.strain += part.strain;
+  sum.contact += part.contact;
+}
+
+}  // namespace
+
 struct Workspace::Impl {
   explicit Impl(const Model& model)
       : islands(model),
@@ -65,15 +83,19 @@ struct Workspace::Impl {
 
   Islands islands;
   std::vector<std::unique_ptr<ReducedBody>>
-      reduced_bodies;  // per body, once it was on another rung than frame
-  ReducedScratch reduced_scratch;
-  std::vector<RungChoice> base;  // per body, for the parameters below
+      reduced_bodies;                              // per body, once it was on another rung than frame
+  std::vector<ReducedScratch> reduced_scratch{1};  // per worker
+  std::vector<RungChoice> base;                    // per body, for the parameters below
   std::vector<BodyModel> base_models;
   bool base_stress = false;
   double base_alpha = 0, base_q = 0;
-  std::vector<bool> near;        // per body: another is
-  std::vector<bool> new_frames;  // per body: since the last step
-  IntegratorScratch scratch;
+  std::vector<bool> near;                       // per body: another is
+  std::vector<bool> new_frames;                 // per body: since the last step
+  std::vector<IntegratorScratch> scratches{1};  // per worker
+  ParallelFor parallel;
+  Profile profile;
+  std::vector<int> moving;  // bodies that are not frames
+  std::vector<PartOfStep> parts;
   BodyMotion motion;
   Contacts contacts;
   std::vector<ContactForce> contact_forces;
@@ -90,6 +112,16 @@ Workspace::Workspace(const Model& model) : impl_(std::make_unique<Impl>(model)) 
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+void Workspace::share(ParallelFor parallel) {
+  impl_->scratches.resize(parallel.workers);
+  impl_->reduced_scratch.resize(parallel.workers);
+  impl_->parallel = std::move(parallel);
+}
+
+Profile& Workspace::profile() {
+  return impl_->profile;
+}
 
 std::string StepStatus::message(const Model& model) const {
   if (ok()) return "ok";
@@ -214,7 +246,7 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
     }
   }
   for (auto& system : w.systems()) {
-    status = settle_system(*system, parameters, state, w.scratch);
+    status = settle_system(*system, parameters, state, w.scratches[0]);
     if (!status.ok()) return status;
   }
   return status;
@@ -254,6 +286,7 @@ constexpr double k_most_growth = 2;     // from step to step
 constexpr double k_most_shrinking = 5;  // of a step that is tried again
 constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
+constexpr int k_bodies_per_task = 16;    // that are not frames: some microseconds
 constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
 
 // With the stiffer of the two laws of a passage.
@@ -430,7 +463,10 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
                      int halvings, Workspace::Impl& w) {
   const double t = state.time;
   const Instant start(parameters, t), end(parameters, t + h);
-  change_rungs(model, parameters, start, w.next, w);
+  {
+    const InPhase phase(&w.profile, Phase::ladder);
+    change_rungs(model, parameters, start, w.next, w);
+  }
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
   if (is_explicit) {
@@ -457,27 +493,70 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     for (auto& system : w.systems()) balance_accelerations(*system, parameters, next, w.motion);
   }
 
+  w.moving.clear();
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (next.bodies[b].rung != Rung::frame) w.moving.push_back(b);
+  const int bodies = static_cast<int>(w.moving.size()),
+            chunks = (bodies + k_bodies_per_task - 1) / k_bodies_per_task,
+            systems = static_cast<int>(w.systems().size());
+  w.parts.assign(chunks + systems, {});
+  const auto move_bodies = [&](int chunk, int worker) {
+    PartOfStep& part = w.parts[chunk];
+    for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
+      const int b = w.moving[k];
+      add(w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
+                                      w.reduced_scratch[worker]),
+          part.held);
+    }
+  };
+  const auto move_system = [&](int s, int worker) {
+    BodySystem& system = *w.systems()[s];
+    PartOfStep& part = w.parts[chunks + s];
+    IntegratorScratch& scratch = w.scratches[worker];
+    scratch.profile = &w.profile;
+    {
+      const InPhase phase(scratch.profile, Phase::forces);
+      part.status =
+          is_explicit
+              ? advance_central_difference(system, parameters, next, t, h, scratch, part.exchanged)
+              : advance_generalized_alpha(system, parameters, next, t, h, halvings, scratch, part.exchanged);
+    }
+    if (!part.status.ok()) return;
+    const InPhase phase(scratch.profile, Phase::energy);
+    add(system.energy(end.law, scratch.trial, system.contacts, w.sections), part.held);
+  };
+  const auto move = [&](int task, int worker) {
+    if (task < chunks) {
+      const InPhase phase(&w.profile, Phase::reduced);
+      move_bodies(task, worker);
+    } else {
+      move_system(task - chunks, worker);
+    }
+  };
+  if (w.parallel.run && chunks + systems > 1 && !w.profile.clock) {
+    for (BodySystem* system : w.systems()) system->take_sticks(next);
+    w.parallel.run(chunks + systems, std::ref(move));
+    for (BodySystem* system : w.systems()) system->give_sticks(next);
+  } else {
+    for (int task = 0; task < chunks + systems; ++task) move(task, 0);
+  }
   BodyEnergy held;
   int iterations = 0, rejected = 0;
   w.most_iterations = 0;
-  const auto hold = [&held](const BodyEnergy& part) {
-    held.kinetic += part.kinetic;
-    held.strain += part.strain;
-    held.contact += part.contact;
-  };
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    if (next.bodies[b].rung != Rung::frame)
-      hold(w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, exchanged,
-                                       w.reduced_scratch));
-  for (auto& system : w.systems()) {
-    status = is_explicit
-                 ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
-                 : advance_generalized_alpha(*system, parameters, next, t, h, halvings, w.scratch, exchanged);
-    iterations += status.newton_iterations;
-    w.most_iterations = std::max(w.most_iterations, status.newton_iterations);
-    rejected += status.rejected;
-    if (!status.ok()) break;
-    hold(system->energy(contact_law(parameters, t + h), w.scratch.trial, system->contacts, w.sections));
+  status = {};
+  for (const PartOfStep& part : w.parts) {
+    iterations += part.status.newton_iterations;
+    w.most_iterations = std::max(w.most_iterations, part.status.newton_iterations);
+    rejected += part.status.rejected;
+    if (!status.ok()) continue;
+    status = part.status;
+    add(part.held, held);
+    exchanged.input += part.exchanged.input;
+    exchanged.gravity += part.exchanged.gravity;
+    exchanged.friction += part.exchanged.friction;
+    exchanged.normal_damping += part.exchanged.normal_damping;
+    exchanged.numerical += part.exchanged.numerical;
+    exchanged.plastic += part.exchanged.plastic;
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;
@@ -521,8 +600,11 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   double travel = model.bodies.size() > 1 ? likely_travel(model, state, h) : 0;
   StepStatus status;
   for (int look = 0; look < k_most_looks; ++look) {
-    copy(state, w.next, moves_nodes(state, w));
-    look_around(model, w.next, travel);
+    {
+      const InPhase phase(&w.profile, Phase::search);
+      copy(state, w.next, moves_nodes(state, w));
+      look_around(model, w.next, travel);
+    }
     status = try_known(model, parameters, state, h, halvings, w);
     if (!status.ok() || model.bodies.size() < 2) return status;
     travel = greatest_travel(model, state, w.next);

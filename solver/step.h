@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "solver/model.h"
+#include "solver/parallel_for.h"
 #include "solver/parameters.h"
+#include "solver/profile.h"
 #include "solver/section_forces.h"
 #include "solver/state.h"
 
@@ -67,6 +69,10 @@ class Workspace {
   ~Workspace();
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
+  /// Islands are stepped by the workers of `parallel`; results are the same bit for bit.
+  void share(ParallelFor parallel);
+  /// Off until it gets a clock; then steps take one thread.
+  Profile& profile();
   struct Impl;
   Impl& impl() { return *impl_; }
 

@@ -136,7 +136,7 @@ FrameRow frame_row(const Run& run) {
 void Observer::add_frame(const Run& run, Observation& out) {
   out.frame = frame_row(run);
   out.frame->branch = branch_;
-  last_frame_ = run.state().step;
+  last_frame_ = run.step();
 }
 
 void Observer::add_checkpoint(const Run& run, Observation& out) {
@@ -157,7 +157,7 @@ void Observer::add_events(const Run& run, Observation& out) {
 }
 
 Observation Observer::observe(const Run& run) {
-  const double time = run.state().time;
+  const double time = run.time();
   Observation out;
   add_events(run, out);
   if (due(next_checkpoint_, time, k_checkpoint_rate)) add_checkpoint(run, out);
@@ -167,7 +167,7 @@ Observation Observer::observe(const Run& run) {
 }
 
 Observation Observer::last(const Run& run) {
-  const std::int64_t step = run.state().step;
+  const std::int64_t step = run.step();
   Observation out;
   add_events(run, out);
   if (last_checkpoint_ != step) add_checkpoint(run, out);

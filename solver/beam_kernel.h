@@ -1,0 +1,260 @@
+// The element of beam.h for a pack of elements at once: P is Four, or another type with its operations.
+#pragma once
+
+#include "solver/pack.h"
+#include "solver/rotation.h"
+
+namespace topple {
+
+/// Below this |psi|^2 the series of PackAngle hold to rounding.
+inline constexpr double k_small_angle = 0.04;
+
+/// What stays of an element. A broken one has no stiffness.
+template <class P>
+struct PackBeam {
+  PackQuaternion<P> triad;                   ///< local to world axes
+  PackMatrix<P> triad_matrix;                ///< the same
+  P length, inverse_length;                  ///< m, 1/m
+  P t;                                       ///< (1+s)/2
+  PackVector<P> normal_stiffness;            ///< EA, kGAy, kGAz, N
+  PackVector<P> bending_stiffness;           ///< GJ, EIy, EIz, N m^2
+  PackVector<P> offset_gamma, offset_kappa;  ///< strain at which the section forces vanish
+};
+
+template <class P>
+struct PackEnds {
+  PackVector<P> x1, x2;      ///< m
+  PackQuaternion<P> q1, q2;  ///< rotations of the nodes
+};
+
+/// Functions of the angle between the ends, x = |psi|^2.
+template <class P>
+struct PackAngle {
+  P x;
+  P cosine, sine;  ///< exp(t psi) = cosine + sine psi, as a quaternion
+  P left1, left2;  ///< T(t psi) = I + left1 [psi] + left2 [psi]^2
+  P g;             ///< T(psi)^-1 = I - [psi]/2 + g [psi]^2
+};
+
+/// Derivatives of left1, left2 and g of PackAngle by x.
+template <class P>
+struct PackAngleSlope {
+  P left1, left2, g;
+};
+
+/// Rotation vector over the vector part of a quaternion.
+template <class P>
+[[gnu::always_inline]] inline P log_factor(const PackQuaternion<P>& q) {
+  const P r = P(1) / q.w;
+  return (r + r) *
+         polynomial(dot(q.v, q.v) * r * r, 1, -1. / 3, 1. / 5, -1. / 7, 1. / 9, -1. / 11, 1. / 13, -1. / 15);
+}
+
+template <class P>
+[[gnu::always_inline]] inline PackAngle<P> small_angle(P x, P t) {
+  const P tt = t * t, y = tt * x, z = y * P(0.25);
+  return {x,
+          polynomial(z, 1, -1. / 2, 1. / 24, -1. / 720, 1. / 40320),
+          P(0.5) * t * polynomial(z, 1, -1. / 6, 1. / 120, -1. / 5040, 1. / 362880),
+          t * polynomial(y, 1. / 2, -1. / 24, 1. / 720, -1. / 40320, 1. / 3628800, -1. / 479001600),
+          tt * polynomial(y, 1. / 6, -1. / 120, 1. / 5040, -1. / 362880, 1. / 39916800),
+          polynomial(x, 1. / 12, 1. / 720, 1. / 30240, 1. / 1209600, 1. / 47900160)};
+}
+
+template <class P>
+[[gnu::always_inline]] inline PackAngleSlope<P> small_angle_slope(P x, P t) {
+  const P tt = t * t, y = tt * x;
+  return {tt * t * polynomial(y, -1. / 24, 1. / 360, -1. / 13440, 1. / 907200, -1. / 95800320),
+          tt * tt * polynomial(y, -1. / 120, 1. / 2520, -1. / 120960, 1. / 9979200),
+          polynomial(x, 1. / 720, 1. / 15120, 1. / 403200, 1. / 11975040)};
+}
+
+/// log_factor and small_angle lane by lane, for any angle below pi.
+inline Four any_log_factor(const PackQuaternion<Four>& q) {
+  Four factor;
+  for (int k = 0; k < 4; ++k) {
+    const double s = std::sqrt(q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k]);
+    factor.set(k,
+               s < 1e-3 ? 2 / q.w[k] * (1 - s * s / (3 * q.w[k] * q.w[k])) : 2 * std::atan2(s, q.w[k]) / s);
+  }
+  return factor;
+}
+
+inline PackAngle<Four> any_angle(Four x, Four t) {
+  PackAngle<Four> out = small_angle(x, t);
+  for (int k = 0; k < 4; ++k) {
+    if (x[k] < k_small_angle) continue;
+    const double half = t[k] * std::sqrt(x[k]) / 2;
+    const ExpCoefficients f(t[k] * t[k] * x[k]);
+    out.cosine.set(k, std::cos(half));
+    out.sine.set(k, half > 0 ? t[k] / 2 * (std::sin(half) / half) : 0);
+    out.left1.set(k, t[k] * f.f1);
+    out.left2.set(k, t[k] * t[k] * f.f2);
+    out.g.set(k, InverseJacobianCoefficient(x[k]).g);
+  }
+  return out;
+}
+
+inline PackAngleSlope<Four> any_angle_slope(Four x, Four t) {
+  PackAngleSlope<Four> out = small_angle_slope(x, t);
+  for (int k = 0; k < 4; ++k) {
+    if (x[k] < k_small_angle) continue;
+    const double tt = t[k] * t[k];
+    const ExpCoefficients f(tt * x[k]);
+    out.left1.set(k, tt * t[k] * f.df1);
+    out.left2.set(k, tt * tt * f.df2);
+    out.g.set(k, InverseJacobianCoefficient(x[k]).dg);
+  }
+  return out;
+}
+
+inline PackQuaternion<Four> exponential(const PackVector<Four>& psi) {
+  const Four x = dot(psi, psi);
+  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
+  return {angle.sine * psi, angle.cosine};
+}
+
+inline PackMatrix<Four> inverse_left_jacobian(const PackVector<Four>& psi) {
+  const Four x = dot(psi, psi);
+  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
+  return polynomial_of(psi, double_cross(psi), Four(1), Four(-0.5), angle.g);
+}
+
+/// Strains of a pack and what forces need beside them.
+template <class P>
+struct PackStrain {
+  PackAngle<P> angle;
+  PackVector<P> psi;     ///< first end's axes
+  PackQuaternion<P> e1;  ///< axes of the first end
+  PackMatrix<P> rs;      ///< axes of the integration point
+  PackVector<P> d;       ///< rs^T (x2 - x1), m
+  PackVector<P> gamma, kappa;
+};
+
+template <class P>
+[[gnu::always_inline]] inline PackStrain<P> pack_strain(const PackBeam<P>& beam, const PackEnds<P>& ends) {
+  PackStrain<P> s;
+  PackQuaternion<P> turn = conjugate(ends.q1) * ends.q2;
+  const P one = with_sign_of(P(1), turn.w);
+  turn = {one * turn.v, one * turn.w};
+  const PackVector<P> along = transposed_times(beam.triad_matrix, turn.v);
+  s.psi = log_factor(turn) * along;
+  P x = dot(s.psi, s.psi);
+  if (any_above(x, k_small_angle)) [[unlikely]] {
+    s.psi = any_log_factor(turn) * along;
+    x = dot(s.psi, s.psi);
+    s.angle = any_angle(x, beam.t);
+  } else {
+    s.angle = small_angle(x, beam.t);
+  }
+  s.e1 = ends.q1 * beam.triad;
+  s.rs = rotation_matrix(normalized(s.e1 * PackQuaternion<P>{s.angle.sine * s.psi, s.angle.cosine}));
+  s.d = transposed_times(s.rs, ends.x2 - ends.x1);
+  s.gamma = {(s.d.x - beam.length) * beam.inverse_length, s.d.y * beam.inverse_length,
+             s.d.z * beam.inverse_length};
+  s.kappa = beam.inverse_length * s.psi;
+  return s;
+}
+
+/// Section forces at the stress point.
+template <class P>
+struct PackSection {
+  PackVector<P> normal, moment;
+};
+
+template <class P>
+[[gnu::always_inline]] inline PackSection<P> elastic_section(const PackBeam<P>& beam,
+                                                             const PackStrain<P>& s) {
+  return {times(beam.normal_stiffness, s.gamma - beam.offset_gamma),
+          times(beam.bending_stiffness, s.kappa - beam.offset_kappa)};
+}
+
+/// BeamGradient: the second node's, and the first node's moment; the forces are opposite.
+template <class P>
+struct PackGradient {
+  PackVector<P> force2, moment1, moment2;
+};
+
+/// With p = n x d in the integration point's axes and T(t psi)^T r1^T = T(t psi) rs^T:
+///   q = t T(t psi) p,  moment2 = r1 T(psi)^-T (q + m0),  moment1 = rs p - moment2
+template <class P>
+[[gnu::always_inline]] inline PackGradient<P> pack_gradient(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                                            const PackSection<P>& section) {
+  const PackVector<P> p = cross(section.normal, s.d);
+  const PackVector<P> p1 = cross(s.psi, p), p2 = cross(s.psi, p1);
+  const PackVector<P> v = beam.t * (p + s.angle.left1 * p1 + s.angle.left2 * p2) + section.moment;
+  const PackVector<P> v1 = cross(s.psi, v), v2 = cross(s.psi, v1);
+  PackGradient<P> g;
+  g.force2 = s.rs * section.normal;
+  g.moment2 = rotate(s.e1, v + P(0.5) * v1 + s.angle.g * v2);
+  g.moment1 = s.rs * p - g.moment2;
+  return g;
+}
+
+/// J
+template <class P>
+[[gnu::always_inline]] inline P pack_energy(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                            const PackSection<P>& section) {
+  return P(0.5) * beam.length *
+         (dot(section.normal, s.gamma - beam.offset_gamma) +
+          dot(section.moment, s.kappa - beam.offset_kappa));
+}
+
+/// Blocks of the tangent by (x1, spin1, x2, spin2). Rows of the first node's force are the second's with the
+/// other sign, and so are columns by x1 those by x2.
+template <class P>
+struct PackTangent {
+  PackMatrix<P> force_x2, force_spin1, force_spin2;  ///< of force2
+  PackMatrix<P> moment1_x2, moment1_spin1, moment1_spin2;
+  PackMatrix<P> moment2_x2, moment2_spin1, moment2_spin2;
+};
+
+/// Of sections that do not flow. All in world axes, where [psi] and what is made of it need no rotation:
+///   b = t T(t psi) T(psi)^-1 = t (I + b1 [psi] + b2 [psi]^2)
+template <class P>
+[[gnu::always_inline]] inline PackTangent<P> pack_tangent(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                                          const PackSection<P>& section,
+                                                          const PackGradient<P>& gradient,
+                                                          const PackAngleSlope<P>& slope) {
+  const P half(0.5), x = s.angle.x, t = beam.t, l1 = s.angle.left1, l2 = s.angle.left2, g = s.angle.g;
+  const PackMatrix<P> r1 = rotation_matrix(s.e1);
+  const PackVector<P> psi = r1 * s.psi, d = s.rs * s.d, n = gradient.force2, p = cross(n, d);
+
+  const PackMatrix<P> square = double_cross(psi);
+  const P b1 = t * (l1 - half - x * (l1 * g - half * l2)), b2 = t * (l2 - half * l1 + g - x * (l2 * g));
+  const PackMatrix<P> b = polynomial_of(psi, square, t, b1, b2);
+  const PackMatrix<P> inverse = polynomial_of(psi, square, P(1), -half, g);
+
+  const PackMatrix<P> cs = spread(s.rs, beam.inverse_length * beam.normal_stiffness);
+  const PackMatrix<P> n_spin = times_skew(cs, d) - skew(n);
+  const PackMatrix<P> p_spin = -skew_times(d, n_spin);
+
+  // what turns with psi: q = t T(t psi)^T p and T(psi)^-T (q + m0)
+  const PackVector<P> p1 = cross(psi, p), p2 = cross(psi, p1);
+  const PackVector<P> q = t * (p - l1 * p1 + l2 * p2), v = q + r1 * section.moment;
+  const PackVector<P> v2 = cross(psi, cross(psi, v));
+  const P two(2);
+  const PackMatrix<P> dq = t * (l1 * skew(p) + l2 * derivative_of_double_cross(psi, p) +
+                                outer(two * (slope.left2 * p2 - slope.left1 * p1), psi));
+  const PackMatrix<P> dv =
+      g * derivative_of_double_cross(psi, v) - half * skew(v) + outer(two * slope.g * v2, psi);
+  const PackMatrix<P> inverse_transposed = transposed(inverse);
+  const PackMatrix<P> bending = spread(r1, beam.inverse_length * beam.bending_stiffness);
+  const PackMatrix<P> h = (dv + inverse_transposed * (dq + bending)) * inverse;
+
+  PackTangent<P> k;
+  k.force_x2 = cs;
+  k.force_spin2 = n_spin * b;
+  k.force_spin1 = n_spin - k.force_spin2;
+  k.moment2_x2 = transposed(k.force_spin2);
+  k.moment1_x2 = transposed(n_spin) - k.moment2_x2;
+  const PackMatrix<P> bt = transposed(b), bt_p_spin = bt * p_spin, bt_p_spin_b = bt_p_spin * b;
+  k.moment2_spin1 = bt_p_spin - bt_p_spin_b + times_skew(bt, p) - skew(gradient.moment2) - h;
+  k.moment2_spin2 = bt_p_spin_b + h;
+  const PackMatrix<P> p_spin_b = p_spin * b;
+  k.moment1_spin1 = p_spin - p_spin_b - k.moment2_spin1;
+  k.moment1_spin2 = p_spin_b - k.moment2_spin2;
+  return k;
+}
+
+}  // namespace topple

@@ -1,0 +1,45 @@
+// Where the time of steps goes.
+#pragma once
+
+#include <array>
+
+namespace topple {
+
+enum class Phase { other, search, ladder, reduced, forces, tangent, factor, solve, energy, observe, record };
+
+/// Sums of the time spent in each phase, for one thread. Without a clock nothing is measured.
+struct Profile {
+  double (*clock)() = nullptr;  ///< s, from any start
+  std::array<double, static_cast<int>(Phase::record) + 1> seconds{};
+  Phase phase = Phase::other;
+  double since = 0;  ///< s, by the clock
+
+  void enter(Phase next) {
+    if (!clock) return;
+    const double now = clock();
+    if (since > 0) seconds[static_cast<int>(phase)] += now - since;
+    since = now;
+    phase = next;
+  }
+};
+
+/// The time of a scope belongs to a phase, and not to the one around it. `profile` may be null.
+class InPhase {
+ public:
+  InPhase(Profile* profile, Phase phase) : profile_(profile && profile->clock ? profile : nullptr) {
+    if (!profile_) return;
+    before_ = profile_->phase;
+    profile_->enter(phase);
+  }
+  ~InPhase() {
+    if (profile_) profile_->enter(before_);
+  }
+  InPhase(const InPhase&) = delete;
+  InPhase& operator=(const InPhase&) = delete;
+
+ private:
+  Profile* profile_;
+  Phase before_ = Phase::other;
+};
+
+}  // namespace topple
