@@ -5,3 +5,5 @@ if(benchmark_FOUND)
   target_link_libraries(near_elements_bench PRIVATE topple_solver GTest::gtest benchmark::benchmark)
   target_include_directories(near_elements_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/..)
 endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/engines/engines.cmake)
