@@ -2,11 +2,14 @@
 // DIR/engines.csv, .svg and .png and prints the tables.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/engines/results.h"
 #include "solver/study/gnuplot.h"
@@ -48,13 +51,21 @@ void run(const std::filesystem::path& folder) {
   for (const double impact : results.theory.impacts) fmt::print(" {:.4f}", impact);
   fmt::print(" s; 2 Hz, {:g} gal: {:g} deg at {:.4f} s\n\n", k_amplitudes[std::size(k_amplitudes) - 1],
              k_fall / k_degree, results.theory.falls[std::size(k_amplitudes) - 1]);
-  for (int e = 0; e < static_cast<int>(results.engines.size()); ++e)
-    for (int s = 0; s < static_cast<int>(results.engines[e].grid.size()); ++s) {
-      const Setting& setting = results.engines[e].grid[s];
-      fmt::print(stderr, "\r{} {}/{} ", results.engines[e].name, s + 1, results.engines[e].grid.size());
-      results.trials.push_back(
-          {e, s, free_rocking(setting, results.theory), falling(setting, results.theory)});
-    }
+  // the engines take turns: other work on the machine meets all of them
+  std::vector<std::pair<double, Trial>> order;
+  for (int e = 0; e < static_cast<int>(results.engines.size()); ++e) {
+    const int count = static_cast<int>(results.engines[e].grid.size());
+    for (int k = 0; k < count; ++k) order.push_back({static_cast<double>(k) / count, {e, k, {}, {}}});
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [place, trial] : order) {
+    const Setting& setting = results.engines[trial.engine].grid[trial.setting];
+    fmt::print(stderr, "\r{:3.0f} % ", 100 * place);
+    trial.rocking = free_rocking(setting, results.theory);
+    trial.falling = falling(setting, results.theory);
+    results.trials.push_back(trial);
+  }
   fmt::print(stderr, "\n");
   write(folder / "engines.csv", study::csv_text(rows(results)));
   fmt::print("{}", tables(results));
