@@ -167,6 +167,9 @@ void BodyBuilder::close() {
     const Mat3 arm = skew(model_.node_position[i] - b.centre_of_gravity);
     b.inertia += model_.node_inertia[i] - model_.node_mass[i] * arm * arm;
   }
+  b.reach = 0;
+  for (int i = b.first_node; i < b.first_node + b.node_count; ++i)
+    b.reach = std::max(b.reach, (model_.node_position[i] - b.centre_of_gravity).norm());
   b.base_centre = b.centre_of_gravity;
   if (b.contact_point_count == 0) return;
 

@@ -33,4 +33,7 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& parameter
 /// depth = (W / (n alpha))^(1/q) on the n contact points of its base. 0 without gravity or planes.
 double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity);
 
+/// The same of one body; 0 without gravity, planes or contact points.
+double contact_period(const Model& model, int body, const ContactLaw& law, const Vec3& gravity);
+
 }  // namespace topple

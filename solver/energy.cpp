@@ -18,31 +18,27 @@ void book_contact(const ContactOutput& out, const Vec3& normal, const Vec3& trav
   energy.friction -= 0.5 * out.tangential.dot(travel) + sign * out.stick_energy;
 }
 
-// What a law that changes puts into springs that do not move.
-class LawChange {
- public:
-  LawChange(const ContactLaw& before, const ContactLaw& after, ContactLawKind kind, StepEnergy& energy)
-      : before_(before), after_(after), kind_(kind), energy_(energy) {}
-  void book(double weight, double depth, double L, bool between_members, double stick_energy, double growth) {
-    const auto held = [&](const ContactLaw& law) { return penalty_energy(law, depth, L, between_members); };
-    if (kind_ != ContactLawKind::printed) energy_.input += 0.5 * weight * (held(after_) - held(before_));
-    energy_.input += 0.5 * stick_energy * growth;
-    energy_.friction += 0.5 * stick_energy * growth;
-  }
-  void book(const Contacts& contacts, const std::vector<MemberPair>& pairs, double growth) {
-    for (const TouchingPair& pair : contacts.planes)
-      book(1, pair.depth, pair.L, false, pair.out.stick_energy, growth);
-    for (const MemberTouch& touch : contacts.members.touches)
-      book(touch.weight, touch.depth, pairs[touch.pair].L, true, touch.out.stick_energy, growth);
-  }
-
- private:
-  const ContactLaw &before_, &after_;
-  ContactLawKind kind_;
-  StepEnergy& energy_;
-};
-
 }  // namespace
+
+LawChange::LawChange(const ContactLaw& before, const ContactLaw& after, StepEnergy& energy)
+    : before_(before), after_(after), energy_(energy) {}
+
+void LawChange::book_start(double depth, double L, double stick_energy, double weight, bool between_members) {
+  book(weight, depth, L, between_members, stick_energy, after_.alpha / before_.alpha - 1);
+}
+
+void LawChange::book_end(double depth, double L, double stick_energy, double weight, bool between_members) {
+  book(weight, depth, L, between_members, stick_energy, 1 - before_.alpha / after_.alpha);
+}
+
+void LawChange::book(double weight, double depth, double L, bool between_members, double stick_energy,
+                     double growth) {
+  const auto held = [&](const ContactLaw& law) { return penalty_energy(law, depth, L, between_members); };
+  if (after_.kind != ContactLawKind::printed)
+    energy_.input += 0.5 * weight * (held(after_) - held(before_));
+  energy_.input += 0.5 * stick_energy * growth;
+  energy_.friction += 0.5 * stick_energy * growth;
+}
 
 void book_work(const BodySystem& s, const Parameters& parameters, double t, double h, const BodyMotion& start,
                const BodyMotion& end, const Contacts& contacts_start, const Contacts& contacts_end,
@@ -75,9 +71,15 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
 
   const ContactLaw law0 = contact_law(parameters, t), law1 = contact_law(parameters, t + h);
   if (law0.alpha == law1.alpha && law0.q == law1.q) return;
-  LawChange change(law0, law1, parameters.contact.kind, energy);
-  change.book(contacts_start, s.member_pairs(), law1.alpha / law0.alpha - 1);
-  change.book(contacts_end, s.member_pairs(), 1 - law0.alpha / law1.alpha);
+  LawChange change(law0, law1, energy);
+  for (const TouchingPair& pair : contacts_start.planes)
+    change.book_start(pair.depth, pair.L, pair.out.stick_energy);
+  for (const TouchingPair& pair : contacts_end.planes)
+    change.book_end(pair.depth, pair.L, pair.out.stick_energy);
+  for (const MemberTouch& touch : contacts_start.members.touches)
+    change.book_start(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+  for (const MemberTouch& touch : contacts_end.members.touches)
+    change.book_end(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight, true);
 }
 
 double EnergyLedger::balance_error() const {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "solver/ladder.h"
+
 namespace topple {
 namespace {
 
@@ -11,31 +13,55 @@ constexpr double k_margin = 0.05;  // m, around surfaces: how far bodies come be
 
 }  // namespace
 
-double likely_travel(const State& state, double h) {
+double likely_travel(const Model& model, const State& state, double h) {
   double greatest = 0;
-  for (std::size_t i = 0; i < state.velocity.size(); ++i)
-    greatest = std::max(greatest, h * state.velocity[i].norm() + h * h / 2 * state.acceleration[i].norm());
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (const BodyState& s = state.bodies[b]; s.rung != Rung::frame) {
+      const double reach = body.reach;
+      greatest = std::max(greatest, h * (s.velocity.norm() + reach * s.angular_velocity.norm() +
+                                         h / 2 * s.force.norm() / body.mass));
+      continue;
+    }
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      greatest = std::max(greatest, h * state.velocity[i].norm() + h * h / 2 * state.acceleration[i].norm());
+  }
   return greatest;
 }
 
-double greatest_travel(const State& from, const State& to) {
+double greatest_travel(const Model& model, const State& from, const State& to) {
   double greatest = 0;
-  for (std::size_t i = 0; i < from.position.size(); ++i)
-    greatest = std::max(greatest, (to.position[i] - from.position[i]).squaredNorm());
-  return std::sqrt(greatest);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (const BodyState& s = from.bodies[b], &e = to.bodies[b];
+        s.rung != Rung::frame && e.rung != Rung::frame) {
+      greatest = std::max(
+          greatest, (e.position - s.position).norm() + body.reach * s.rotation.angularDistance(e.rotation));
+      continue;
+    }
+    if (from.bodies[b].rung != to.bodies[b].rung) continue;  // where it changes nothing moves far
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      greatest = std::max(greatest, (to.position[i] - from.position[i]).norm());
+  }
+  return greatest;
 }
 
 void look_around(const Model& model, State& state, double travel) {
   if (model.bodies.size() < 2 || state.near_slack > 2 * travel) return;
+  place_nodes(model, state);
   state.near_slack = std::max(k_margin, 4 * travel);
   state.near = near_elements(model, state.position, state.near_slack);
 }
 
-Islands::Islands(const Model& model) : model_(model), held_(held_bodies(model)) {
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    alone_.push_back(held_[b] ? nullptr : std::make_unique<BodySystem>(model, b));
-    if (!held_[b]) systems_.push_back(alone_.back().get());
-  }
+Islands::Islands(const Model& model)
+    : model_(model),
+      held_(held_bodies(model)),
+      frame_(model.bodies.size(), false),
+      alone_(model.bodies.size()) {}
+
+BodySystem* Islands::alone(int body) {
+  if (!alone_[body] && !held_[body]) alone_[body] = std::make_unique<BodySystem>(model_, body);
+  return alone_[body].get();
 }
 
 BodySystem* Islands::joined(const std::vector<int>& bodies, std::vector<ElementPair> near) {
@@ -48,10 +74,16 @@ BodySystem* Islands::joined(const std::vector<int>& bodies, std::vector<ElementP
   return joined_.back().get();
 }
 
-void Islands::arrange(const std::vector<ElementPair>& near) {
-  if (near == near_) return;
-  near_ = near;
+void Islands::arrange(const std::vector<BodyState>& states, const std::vector<ElementPair>& near) {
   const int count = static_cast<int>(model_.bodies.size());
+  bool same = near == near_;
+  for (int b = 0; b < count; ++b) {
+    const bool frame = !held_[b] && states[b].rung == Rung::frame;
+    same = same && frame == frame_[b];
+    frame_[b] = frame;
+  }
+  if (same) return;
+  near_ = near;
   std::vector<int> parent(count);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int b) {
@@ -68,7 +100,7 @@ void Islands::arrange(const std::vector<ElementPair>& near) {
   std::vector<std::vector<int>> bodies(count);
   std::vector<std::vector<ElementPair>> pairs(count);
   for (int b = 0; b < count; ++b)
-    if (!held_[b]) bodies[root(b)].push_back(b);
+    if (frame_[b]) bodies[root(b)].push_back(b);
   for (const ElementPair& pair : near) {
     const int a = body_of(pair.a);
     pairs[root(held_[a] ? body_of(pair.b) : a)].push_back(pair);
@@ -78,7 +110,7 @@ void Islands::arrange(const std::vector<ElementPair>& near) {
   systems_.clear();
   for (int b = 0; b < count; ++b) {
     if (bodies[b].empty()) continue;
-    systems_.push_back(pairs[b].empty() ? alone_[b].get() : joined(bodies[b], std::move(pairs[b])));
+    systems_.push_back(pairs[b].empty() ? alone(b) : joined(bodies[b], std::move(pairs[b])));
   }
   joined_before_.clear();
 }

@@ -11,30 +11,32 @@
 namespace topple {
 
 /// Most that a node is likely to move within h, m.
-double likely_travel(const State& state, double h);
+double likely_travel(const Model& model, const State& state, double h);
 
 /// Greatest displacement of a node from one state to another, m.
-double greatest_travel(const State& from, const State& to);
+double greatest_travel(const Model& model, const State& from, const State& to);
 
 /// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
 void look_around(const Model& model, State& state, double travel);
 
-/// Systems of bodies that may touch each other: what happens in one does not depend on the others. Bodies
-/// whose nodes are all held are in none.
+/// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
+/// whose nodes are all held, and those on other rungs, are in none.
 class Islands {
  public:
   explicit Islands(const Model& model);
-  /// Systems of `near`, in the order of their first bodies; those that it does not change are kept.
-  void arrange(const std::vector<ElementPair>& near);
+  /// Systems of the frames in `bodies` and of `near`, whose bodies are frames or held, in the order of their
+  /// first bodies; those that nothing changes are kept.
+  void arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& near);
   const std::vector<BodySystem*>& systems() const { return systems_; }
-  /// One body without the others, nullptr: held.
-  BodySystem* alone(int body) const { return alone_[body].get(); }
+  /// One body without the others, whatever its rung; nullptr: held.
+  BodySystem* alone(int body);
 
  private:
   BodySystem* joined(const std::vector<int>& bodies, std::vector<ElementPair> near);
 
   const Model& model_;
   std::vector<bool> held_;
+  std::vector<bool> frame_;  // not held
   std::vector<ElementPair> near_;
   std::vector<std::unique_ptr<BodySystem>> alone_, joined_, joined_before_;
   std::vector<BodySystem*> systems_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,8 @@ struct ContactPoint {
   double width;  ///< m, contact width of its member
 };
 
+struct ElasticBasis;
+
 /// Connected members that move together.
 struct Body {
   std::string name;
@@ -64,12 +67,14 @@ struct Body {
   int first_contact_point, contact_point_count;
   double mass;                        ///< kg
   Vec3 centre_of_gravity;             ///< m, world, reference pose
+  double reach = 0;                   ///< m, greatest distance of a node from the centre of gravity
   Mat3 inertia;                       ///< kg m^2 about the centre of gravity, world axes, reference pose
   std::vector<Vec3> support_polygon;  ///< convex hull of the base's contact points, counter-clockwise seen
                                       ///< from above, world, reference pose; empty when it has no base
   std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
-  std::vector<std::array<int, 4>> panels;  ///< nodes of flat sheets, for pictures only
+  std::vector<std::array<int, 4>> panels;       ///< nodes of flat sheets, for pictures only
+  std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the rung elastic
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
 };
 

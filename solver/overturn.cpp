@@ -46,6 +46,7 @@ bool is_supported(const Model& model, int body) {
 
 BodyPose body_pose(const Model& model, const State& state, int index) {
   const Body& body = model.bodies[index];
+  if (const BodyState& s = state.bodies[index]; s.rung != Rung::frame) return {s.position, s.rotation};
   BodyPose pose;
   pose.centre.setZero();
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
@@ -82,6 +83,8 @@ double tilt(const BodyPose& pose) {
 
 BodyMomentum body_momentum(const Model& model, const State& state, int index) {
   const Body& body = model.bodies[index];
+  if (const BodyState& s = state.bodies[index]; s.rung != Rung::frame)
+    return {s.velocity, s.rotation * (body.inertia * s.angular_velocity)};
   BodyMomentum out{Vec3::Zero(), Vec3::Zero()};
   Vec3 centre = Vec3::Zero();
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {

@@ -18,6 +18,7 @@ struct ContactLaw {
   double restitution = 0;      ///< coulomb law; a body that rocks lands without bouncing (Housner)
   double normal_speed = 0.01;  ///< m/s, eps_n of the coulomb law
   double slip_speed = 0.01;    ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
+  bool operator==(const ContactLaw&) const = default;
 };
 
 /// The way from earlier values to those edited while it runs: what jumped would put energy in.
@@ -51,6 +52,9 @@ struct Shake {
   Passage passage;                       ///< from it to `amplitude` along `direction`
 };
 
+/// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.
+enum class BodyModel { automatic, rigid, elastic, frame };
+
 enum class Integrator { central_difference, generalized_alpha, newmark };
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene_keys.h, one table for scene files,
@@ -60,6 +64,8 @@ struct Parameters {
   ContactLaw contact_before;  ///< until an edit
   Passage contact_passage;    ///< from it to `contact`
   std::vector<Shake> shakes;
+  std::vector<BodyModel> models;            ///< one per body; empty: all frame
+  bool want_stress = true;                  ///< what `automatic` goes by
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1

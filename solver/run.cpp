@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/excitation.h"
+#include "solver/ladder.h"
 #include "solver/rotation.h"
 #include "solver/step_control.h"
 
@@ -34,6 +35,7 @@ Run::Run(const Setup& setup)
   if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
   if (!status_.ok()) return;
   prepare(setup.model, now_.parameters, now_.state, workspace_);
+  placed_ = false;
   observe();
 }
 
@@ -53,11 +55,18 @@ Run::Run(const Setup& setup, RunPoint point)
   see_forces();
 }
 
+const RunPoint& Run::point() const {
+  if (!placed_) place_nodes(setup_->model, now_.state);
+  placed_ = true;
+  return now_;
+}
+
 StepStatus Run::advance() {
   if (path_) {
     advance_load();
     return status_;
   }
+  placed_ = false;
   status_ = step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
@@ -100,6 +109,7 @@ void Run::observe() {
   const Model& model = setup_->model;
   const State& state = now_.state;
   see_forces();
+  if (!setup_->probes.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
   now_.outcome.observe(model, now_.parameters, state, contacts_, member_contacts(), sections_, events_);
 
   for (std::size_t k = 0; k < now_.probes.size(); ++k) {

@@ -81,8 +81,9 @@ class Run {
   bool stopped_early() const { return now_.stopped_early; }
 
   const Setup& setup() const { return *setup_; }
-  const RunPoint& point() const { return now_; }
-  const State& state() const { return now_.state; }
+  const RunPoint& point() const;
+  /// With all nodes placed.
+  const State& state() const { return point().state; }
   const Parameters& parameters() const { return now_.parameters; }
   const StepStatus& status() const { return status_; }
   const Outcome& outcome() const { return now_.outcome; }
@@ -104,7 +105,8 @@ class Run {
   void observe();
 
   const Setup* setup_;
-  RunPoint now_;
+  mutable RunPoint now_;  // nodes are placed when somebody looks
+  mutable bool placed_ = true;
   mutable Workspace workspace_;
   std::optional<LoadPath> path_;  // static runs
   StepStatus status_;

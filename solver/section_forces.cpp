@@ -30,6 +30,12 @@ SectionForces forces_along(const SectionForces& at_point, double length, double 
   return out;
 }
 
+double section_energy(const Element& element, const SectionForces& forces) {
+  return element.length / 2 *
+         (forces.normal.cwiseAbs2().cwiseQuotient(element.normal_stiffness).sum() +
+          forces.moment.cwiseAbs2().cwiseQuotient(element.bending_stiffness).sum());
+}
+
 double equivalent_stress(const Section& section, const SectionForces& forces) {
   const double normal = std::abs(forces.normal.x()) / section.area +
                         std::abs(forces.moment.y()) * section.fibre_z() / section.iy +

@@ -29,6 +29,21 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_acceleration);
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
+  for (auto& b : s.bodies) {
+    double rung = static_cast<double>(b.rung), reason = static_cast<double>(b.reason);
+    f(rung);
+    f(reason);
+    if constexpr (!std::is_const_v<AnyState>) {
+      b.rung = static_cast<Rung>(rung);
+      b.reason = static_cast<RungReason>(reason);
+    }
+    f(b.calm_since);
+    for (auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
+      for (int k = 0; k < 3; ++k) f((*v)[k]);
+    for (int k = 0; k < 4; ++k) f(b.rotation.coeffs()[k]);
+    for (auto* v : {&b.amplitude, &b.rate, &b.load})
+      for (int k = 0; k < k_modes; ++k) f((*v)[k]);
+  }
   for (auto& e : s.elements) {
     double hinge = std::bit_cast<double>(e.hinge);
     f(hinge);
@@ -42,8 +57,9 @@ void each_number(AnyState& s, F f) {
   f(s.load_factor);
   f(s.near_slack);
   auto& e = s.energy;
-  for (auto* number : {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction,
-                       &e.normal_damping, &e.numerical, &e.plastic, &e.start_total, &e.largest})
+  for (auto* number :
+       {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction, &e.normal_damping, &e.numerical,
+        &e.plastic, &e.model_switch, &e.start_total, &e.largest})
     f(*number);
 }
 
@@ -106,6 +122,7 @@ void resize(const Model& model, State& state) {
   state.rotation.assign(n, Quat::Identity());
   state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
   state.elements.assign(model.elements.size(), {});
+  state.bodies.assign(model.bodies.size(), {});
 }
 
 }  // namespace
@@ -138,7 +155,8 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
-                  state.near.size() + 5 * state.member_sticks.size() + 24);
+                  (22 + 3 * k_modes) * state.bodies.size() + state.near.size() +
+                  5 * state.member_sticks.size() + 24);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
   each_touching(state, [&](double x) { numbers.push_back(x); });
@@ -172,11 +190,34 @@ std::uint64_t hash(const State& state) {
   return sum;
 }
 
-bool is_finite(const State& state) {
-  bool finite = true;
-  each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
-  for (const MemberStick& stick : state.member_sticks) finite = finite && stick.stick.allFinite();
+bool is_finite(const State& state, bool nodes) {
+  double sum = state.energy.unexplained() + state.floor_displacement.sum() + state.floor_velocity.sum();
+  for (const BodyState& b : state.bodies)
+    sum += b.position.sum() + b.rotation.coeffs().sum() + b.velocity.sum() + b.angular_velocity.sum() +
+           b.amplitude.sum() + b.rate.sum() + b.force.sum() + b.moment.sum() + b.load.sum();
+  for (const MemberStick& stick : state.member_sticks) sum += stick.stick.sum();
+  bool finite = std::isfinite(sum);
+  if (nodes) each_number(state, [&](double x) { finite = finite && std::isfinite(x); });
   return finite;
+}
+
+void copy(const State& from, State& to, bool nodes) {
+  if (nodes) {
+    to = from;
+    return;
+  }
+  to.time = from.time;
+  to.step = from.step;
+  to.bodies = from.bodies;
+  to.stick = from.stick;
+  to.member_sticks = from.member_sticks;
+  to.near = from.near;
+  to.near_slack = from.near_slack;
+  to.floor_displacement = from.floor_displacement;
+  to.floor_velocity = from.floor_velocity;
+  to.step_size = from.step_size;
+  to.load_factor = from.load_factor;
+  to.energy = from.energy;
 }
 
 }  // namespace topple

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/body_state.h"
 #include "solver/element_state.h"
 #include "solver/member_contact.h"
 #include "solver/model.h"
@@ -26,20 +27,22 @@ struct EnergyLedger {
   double normal_damping = 0;  ///< dissipated by normal contact forces
   double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
   double plastic = 0;         ///< dissipated by hinges; moves of stress points and fracture are in it
+  double model_switch = 0;    ///< came in when bodies changed their rung (ladder.h)
   double start_total = 0;     ///< kinetic + strain + contact at the start
   double largest = 0;         ///< largest energy exchanged so far
 
   double dissipated() const { return friction + normal_damping + numerical + plastic; }
   /// Energy that nothing explains.
   double unexplained() const {
-    return kinetic + strain + gravity + contact - start_total - input + dissipated();
+    return kinetic + strain + gravity + contact - start_total - input - model_switch + dissipated();
   }
   /// |unexplained| over the largest energy exchanged so far (input, kinetic, potential).
   double balance_error() const;
 };
 
 /// Motion of a run at one accepted step, in the floor's frame. Per-node arrays have Model::node_total()
-/// entries.
+/// entries; those of bodies on the rungs rigid and elastic follow from `bodies` when place_nodes (ladder.h)
+/// was called, as Run::state() does.
 struct State {
   double time = 0;                                     ///< s
   std::int64_t step = 0;                               ///< accepted steps; settling does not count
@@ -51,6 +54,7 @@ struct State {
   std::vector<Vec3> angular_acceleration;              ///< rad/s^2, material axes
   std::vector<Vec3> algorithmic_acceleration;          ///< a of generalized-alpha
   std::vector<Vec3> algorithmic_angular_acceleration;  ///< likewise, material axes
+  std::vector<BodyState> bodies;                       ///< one per body
   /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
   std::vector<Vec3> stick;
   std::vector<MemberStick> member_sticks;  ///< in the order of elements, then places
@@ -78,7 +82,11 @@ State unpack(const Model& model, std::span<const double> numbers);
 /// 64-bit FNV-1a over the bytes of pack().
 std::uint64_t hash(const State& state);
 
-/// No NaN, no infinity anywhere.
-bool is_finite(const State& state);
+/// No NaN, no infinity anywhere; without `nodes` in all but the per-node arrays.
+bool is_finite(const State& state, bool nodes = true);
+
+/// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have their
+/// sizes.
+void copy(const State& from, State& to, bool nodes);
 
 }  // namespace topple

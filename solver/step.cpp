@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <tuple>
 
 #include "solver/body_system.h"
 #include "solver/central_difference.h"
@@ -12,6 +13,9 @@
 #include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
 #include "solver/islands.h"
+#include "solver/ladder.h"
+#include "solver/overturn.h"
+#include "solver/plasticity.h"
 #include "solver/settle.h"
 #include "solver/step_control.h"
 
@@ -46,34 +50,28 @@ void balance_accelerations(BodySystem& s, const Parameters& parameters, State& s
   }
 }
 
-// The floor's velocity jumps by `floor`: bodies keep their own, so they move the other way in the floor's
-// frame. Returns the kinetic energy that they gain there.
-double jump(const Model& model, const Vec3& floor, State& state) {
-  double gain = 0;
-  for (int i = 0; i < model.node_total(); ++i) {
-    gain -= 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
-    state.velocity[i] -= floor;
-    gain += 0.5 * model.node_mass[i] * state.velocity[i].squaredNorm();
-  }
-  for (const Support& support : model.supports)
-    for (int k = 0; k < 3; ++k)
-      if (support.fixed >> k & 1) {
-        double& v = state.velocity[support.node][k];
-        gain -= 0.5 * model.node_mass[support.node] * v * v;
-        v = 0;
-      }
-  state.floor_velocity += floor;
-  return gain;
-}
-
 }  // namespace
 
 struct Workspace::Impl {
   explicit Impl(const Model& model)
-      : islands(model), sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {}
+      : islands(model),
+        reduced_bodies(model.bodies.size()),
+        sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {}
   const std::vector<BodySystem*>& systems() const { return islands.systems(); }
+  ReducedBody& reduced(const Model& model, int body) {
+    if (!reduced_bodies[body]) reduced_bodies[body] = std::make_unique<ReducedBody>(model, body);
+    return *reduced_bodies[body];
+  }
 
   Islands islands;
+  std::vector<std::unique_ptr<ReducedBody>>
+      reduced_bodies;            // per body, once it was on another rung than frame
+  std::vector<RungChoice> base;  // per body, for the parameters below
+  std::vector<BodyModel> base_models;
+  bool base_stress = false;
+  double base_alpha = 0, base_q = 0;
+  std::vector<bool> near;        // per body: another is
+  std::vector<bool> new_frames;  // per body: since the last step
   IntegratorScratch scratch;
   BodyMotion motion;
   Contacts contacts;
@@ -132,12 +130,90 @@ std::string StepStatus::message(const Model& model) const {
   return "";
 }
 
-StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
-  StepStatus status;
+namespace {
+
+// The floor's velocity jumps by `floor`: bodies keep their own, so they move the other way in the floor's
+// frame. Returns the kinetic energy that they gain there.
+double jump(const Model& model, const Vec3& floor, State& state) {
+  double gain = 0;
+  const auto push = [&](double mass, Vec3& velocity) {
+    gain -= 0.5 * mass * velocity.squaredNorm();
+    velocity -= floor;
+    gain += 0.5 * mass * velocity.squaredNorm();
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (state.bodies[b].rung != Rung::frame) {
+      push(body.mass, state.bodies[b].velocity);
+      continue;
+    }
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      push(model.node_mass[i], state.velocity[i]);
+  }
+  for (const Support& support : model.supports)
+    for (int k = 0; k < 3; ++k)
+      if (support.fixed >> k & 1) {
+        double& v = state.velocity[support.node][k];
+        gain -= 0.5 * model.node_mass[support.node] * v * v;
+        v = 0;
+      }
+  state.floor_velocity += floor;
+  return gain;
+}
+
+void find_base(const Model& model, const Parameters& p, Workspace::Impl& w) {
+  if (!w.base.empty() && w.base_models == p.models && w.base_stress == p.want_stress &&
+      w.base_alpha == p.contact.alpha && w.base_q == p.contact.q)
+    return;
+  w.base_models = p.models;
+  w.base_stress = p.want_stress;
+  w.base_alpha = p.contact.alpha;
+  w.base_q = p.contact.q;
+  w.base.clear();
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) w.base.push_back(base_rung(model, p, b));
+}
+
+void find_near(const Model& model, const State& state, Workspace::Impl& w) {
+  w.near.assign(model.bodies.size(), false);
+  for (const ElementPair& pair : state.near)
+    for (const int e : {pair.a, pair.b}) w.near[model.members[model.elements[e].member].body] = true;
+}
+
+// Every body on its base, or a frame where another is near. Nothing is booked: the run begins here.
+void start_rungs(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
+  place_nodes(model, state);
+  state.near_slack = 0;
   look_around(model, state, 0);
-  workspace.impl().islands.arrange(state.near);
-  for (auto& system : workspace.impl().systems()) {
-    status = settle_system(*system, parameters, state, workspace.impl().scratch);
+  find_base(model, parameters, w);
+  find_near(model, state, w);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const RungChoice choice =
+        w.near[b] && w.base[b].rung != Rung::frame ? RungChoice{Rung::frame, RungReason::near} : w.base[b];
+    BodyState& s = state.bodies[b];
+    if (s.rung == Rung::frame && choice.rung != Rung::frame) s = reduce(model, state, b, choice.rung);
+    s.rung = choice.rung;
+    s.reason = choice.reason;
+  }
+  w.islands.arrange(state.bodies, state.near);
+}
+
+}  // namespace
+
+StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
+  Workspace::Impl& w = workspace.impl();
+  StepStatus status;
+  start_rungs(model, parameters, state, w);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    if (state.bodies[b].rung == Rung::frame) continue;
+    if (!w.reduced(model, b).settle(parameters, state.bodies[b], state.stick)) {
+      status.kind = StepStatus::Kind::not_settled;
+      status.time = state.time;
+      status.body = b;
+      return status;
+    }
+  }
+  for (auto& system : w.systems()) {
+    status = settle_system(*system, parameters, state, w.scratch);
     if (!status.ok()) return status;
   }
   return status;
@@ -145,25 +221,28 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
 
 void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
-  state.near_slack = 0;
-  look_around(model, state, 0);
-  w.islands.arrange(state.near);
+  start_rungs(model, parameters, state, w);
   EnergyLedger& energy = state.energy;
   energy.kinetic = energy.strain = energy.contact = 0;
-  for (auto& system : w.systems()) {
-    balance_accelerations(*system, parameters, state, w.motion);
-    const BodyEnergy part =
-        system->energy(contact_law(parameters, state.time), w.motion, system->contacts, w.sections);
+  const auto add = [&](const BodyEnergy& part) {
     energy.kinetic += part.kinetic;
     energy.strain += part.strain;
     energy.contact += part.contact;
+  };
+  const Instant now(parameters, state.time);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (state.bodies[b].rung != Rung::frame)
+      add(w.reduced(model, b).balance(parameters, now, state.bodies[b], state.stick));
+  for (auto& system : w.systems()) {
+    balance_accelerations(*system, parameters, state, w.motion);
+    add(system->energy(now.law, w.motion, system->contacts, w.sections));
   }
   energy.start_total = energy.kinetic + energy.strain + energy.contact;
   energy.largest = std::max(energy.kinetic, energy.strain + energy.contact);
 }
 
 void resume(const Model& model, const State& state, Workspace& workspace) {
-  workspace.impl().islands.arrange(state.near);
+  workspace.impl().islands.arrange(state.bodies, state.near);
   section_forces(model, state, workspace.impl().sections);
 }
 
@@ -188,7 +267,7 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    BodySystem* const system = w.islands.alone(b);
+    BodySystem* const system = w.next.bodies[b].rung == Rung::frame ? w.islands.alone(b) : nullptr;
     if (!system) continue;
     int node = -1;
     const double limit = explicit_limit(*system, &law, &node);
@@ -200,7 +279,7 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
 }
 
 // Body and element with the greatest contact force of the newest step; false: nothing touches.
-bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
+bool blame_hardest_contact(const Model& model, Workspace::Impl& w, StepStatus& status) {
   double greatest = 0;
   const auto blame = [&](const BodySystem& system, double force, int node) {
     if (!(force > greatest)) return;
@@ -209,6 +288,18 @@ bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
     status.body = system.model.node_body[node];
     status.element = system.element_at(node);
   };
+  for (std::size_t b = 0; b < w.next.bodies.size(); ++b) {
+    if (w.next.bodies[b].rung == Rung::frame) continue;
+    w.contact_forces.clear();
+    w.reduced_bodies[b]->list_contacts(w.contact_forces);
+    for (const ContactForce& force : w.contact_forces)
+      if (force.normal > greatest) {
+        greatest = force.normal;
+        status.body = static_cast<int>(b);
+        status.node = model.contact_points[force.point].node;
+        status.element = -1;
+      }
+  }
   for (const BodySystem* system : w.systems()) {
     for (const TouchingPair& pair : system->contacts.planes)
       blame(*system, pair.out.normal, system->node[pair.node]);
@@ -218,15 +309,133 @@ bool blame_hardest_contact(const Workspace::Impl& w, StepStatus& status) {
   return greatest > 0;
 }
 
+// Greatest sqrt(f + 1) of a body's sections.
+double yield_ratio(const Model& model, int b, const std::vector<SectionForces>& sections) {
+  const Body& body = model.bodies[b];
+  double greatest = 0;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const Element& element = model.elements[e];
+    if (!std::isfinite(element.capacity[0])) continue;
+    for (const int end : {-1, 1})
+      greatest = std::max(
+          greatest,
+          std::sqrt(1 + yield_function(element, forces_along(sections[e], element.length, element.s, end))));
+  }
+  return greatest;
+}
+
+// Nothing keeps a frame from coming down.
+bool is_calm(const Model& model, const Parameters& parameters, const State& state, int b,
+             Workspace::Impl& w) {
+  const Body& body = model.bodies[b];
+  double strain = 0;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const ElementState& element = state.elements[e];
+    if (element.hinge != Hinge::none || !element.offset.gamma.isZero(0) || !element.offset.kappa.isZero(0))
+      return false;
+    strain += section_energy(model.elements[e], w.sections[e]);
+  }
+  return !w.near[b] &&
+         strain < k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
+         yield_ratio(model, b, w.sections) < k_calm_yield;
+}
+
+// The rung that a body takes at `state`. The contacts of those that are not frames have been found.
+RungChoice choose_rung(const Model& model, const Parameters& parameters, State& state, int b,
+                       Workspace::Impl& w) {
+  BodyState& s = state.bodies[b];
+  const RungChoice& base = w.base[b];
+  if (base.rung == Rung::frame) return base;
+  if (w.near[b]) return {Rung::frame, RungReason::near};
+  if (s.rung == Rung::frame) {
+    if (!is_calm(model, parameters, state, b, w))
+      s.calm_since = -1;
+    else if (s.calm_since < 0)
+      s.calm_since = state.time;
+    else if (state.time - s.calm_since >= k_calm_for)
+      return {base.rung, RungReason::calm};
+    return {s.rung, s.reason};
+  }
+  const bool automatic = parameters.models[b] == BodyModel::automatic;
+  if (s.rung == Rung::elastic && automatic) {
+    ReducedBody& body = w.reduced(model, b);
+    if (body.rotation_bound(s) > k_small_rotation) return {Rung::frame, RungReason::deformation};
+    if (body.yield_bound(s) > k_near_yield) {
+      body.section_forces(s, w.sections);
+      if (yield_ratio(model, b, w.sections) > k_near_yield) return {Rung::frame, RungReason::yield};
+    }
+  }
+  return s.rung == base.rung ? RungChoice{s.rung, s.reason} : base;
+}
+
+// Takes a body to another rung. `now`: contacts of its present one have been found.
+void change_rung(const Model& model, const Parameters& parameters, const Instant& now, RungChoice choice,
+                 int b, State& state, Workspace::Impl& w) {
+  BodyState& s = state.bodies[b];
+  const auto total = [](const BodyEnergy& e) { return e.kinetic + e.strain + e.contact; };
+  const auto of_frame = [&] {
+    BodySystem& system = *w.islands.alone(b);
+    system.load(state, w.motion);
+    system.load_memory(state);
+    system.find_contacts(now.law, w.motion, state.stick, w.motion.position, system.contacts);
+    return total(system.energy(now.law, w.motion, system.contacts, w.sections));
+  };
+  ReducedBody& body = w.reduced(model, b);
+  const double height = body_pose(model, state, b).centre.dot(parameters.gravity);
+  const double before = s.rung == Rung::frame ? of_frame() : total(body.find_contacts(now, s, state.stick));
+  if (choice.rung == Rung::frame) {
+    place_nodes(model, state);
+    body.add_residual(s, state);
+    w.new_frames[b] = true;
+  } else if (s.rung == Rung::frame) {
+    s = reduce(model, state, b, choice.rung);
+  } else if (choice.rung == Rung::rigid) {
+    s.amplitude.setZero();
+    s.rate.setZero();
+  }
+  s.rung = choice.rung;
+  s.reason = choice.reason;
+  s.calm_since = -1;
+  const double after =
+      s.rung == Rung::frame ? of_frame() : total(body.balance(parameters, now, s, state.stick));
+  const double sunk = height - body_pose(model, state, b).centre.dot(parameters.gravity);
+  state.energy.model_switch += after - before + model.bodies[b].mass * sunk;
+  state.energy.gravity += model.bodies[b].mass * sunk;
+}
+
+// Contacts of what is not a frame, then the rungs on which `state` goes on.
+void change_rungs(const Model& model, const Parameters& parameters, const Instant& now, State& state,
+                  Workspace::Impl& w) {
+  find_base(model, parameters, w);
+  find_near(model, state, w);
+  w.new_frames.assign(model.bodies.size(), false);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    BodyState& s = state.bodies[b];
+    if (s.rung != Rung::frame) w.reduced(model, b).find_contacts(now, s, state.stick);
+    const RungChoice choice = choose_rung(model, parameters, state, b, w);
+    if (choice.rung == s.rung) {
+      s.reason = choice.reason;
+    } else {
+      change_rung(model, parameters, now, choice, b, state, w);
+    }
+  }
+  w.islands.arrange(state.bodies, state.near);
+  for (BodySystem* system : w.systems())
+    if (std::any_of(system->bodies.begin(), system->bodies.end(), [&](int b) { return w.new_frames[b]; }))
+      balance_accelerations(*system, parameters, state, w.motion);
+}
+
 // One step of size h from w.next, whose near elements are known, into w.next.
 StepStatus try_known(const Model& model, const Parameters& parameters, const State& state, double h,
                      int halvings, Workspace::Impl& w) {
   const double t = state.time;
+  const Instant start(parameters, t);
+  change_rungs(model, parameters, start, w.next, w);
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
   if (is_explicit) {
     find_explicit_limit(model, parameters, w);
-    if (h > *w.explicit_limit) {
+    if (w.explicit_limit && h > *w.explicit_limit) {
       status.kind = StepStatus::Kind::step_too_long;
       status.limit = *w.explicit_limit;
       status.time = t;
@@ -242,12 +451,23 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   if (const Vec3 floor = floor_velocity_jump(parameters.shakes, t - k_time_slack, t + h - k_time_slack);
       !floor.isZero(0)) {
     exchanged.input = jump(model, floor, next);
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+      if (next.bodies[b].rung != Rung::frame)
+        w.reduced(model, b).balance(parameters, start, next.bodies[b], next.stick);
     for (auto& system : w.systems()) balance_accelerations(*system, parameters, next, w.motion);
   }
 
   BodyEnergy held;
   int iterations = 0, rejected = 0;
   w.most_iterations = 0;
+  const auto hold = [&held](const BodyEnergy& part) {
+    held.kinetic += part.kinetic;
+    held.strain += part.strain;
+    held.contact += part.contact;
+  };
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (next.bodies[b].rung != Rung::frame)
+      hold(w.reduced(model, b).advance(parameters, start, h, next.bodies[b], next.stick, exchanged));
   for (auto& system : w.systems()) {
     status = is_explicit
                  ? advance_central_difference(*system, parameters, next, t, h, w.scratch, exchanged)
@@ -256,11 +476,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     w.most_iterations = std::max(w.most_iterations, status.newton_iterations);
     rejected += status.rejected;
     if (!status.ok()) break;
-    const BodyEnergy part =
-        system->energy(contact_law(parameters, t + h), w.scratch.trial, system->contacts, w.sections);
-    held.kinetic += part.kinetic;
-    held.strain += part.strain;
-    held.contact += part.contact;
+    hold(system->energy(contact_law(parameters, t + h), w.scratch.trial, system->contacts, w.sections));
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;
@@ -281,31 +497,35 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   e.strain = held.strain;
   e.contact = held.contact;
   e.largest = std::max({e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact});
-  if (!is_finite(next)) {
+  if (!is_finite(next, !w.systems().empty())) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
   } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy &&
-             blame_hardest_contact(w, status)) {
+             blame_hardest_contact(model, w, status)) {
     status.kind = StepStatus::Kind::energy_lost;
     status.time = next.time;
   }
   return status;
 }
 
+// Whether a step needs the per-node arrays: there are frames, or `w` has never seen this state.
+bool moves_nodes(const State& state, const Workspace::Impl& w) {
+  return !w.systems().empty() || w.next.position.size() != state.position.size();
+}
+
 // One step of size h into w.next.
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w) {
   constexpr int k_most_looks = 4;
-  double travel = likely_travel(state, h);
+  double travel = likely_travel(model, state, h);
   StepStatus status;
   for (int look = 0; look < k_most_looks; ++look) {
-    w.next = state;
+    copy(state, w.next, moves_nodes(state, w));
     look_around(model, w.next, travel);
-    w.islands.arrange(w.next.near);
     status = try_known(model, parameters, state, h, halvings, w);
     if (!status.ok() || model.bodies.size() < 2) return status;
-    travel = greatest_travel(state, w.next);
+    travel = greatest_travel(model, state, w.next);
     if (2 * travel < w.next.near_slack) {
       w.next.near_slack -= 2 * travel;
       return status;
@@ -329,13 +549,24 @@ double fit(double h, double left) {
   return left < 2 * h ? left / 2 : h;
 }
 
+// look_ahead of all bodies.
+double next_limit(const Model& model, const Parameters& parameters, const State& state, Workspace::Impl& w) {
+  double limit = look_ahead(model, parameters, state);
+  const ContactLaw law = contact_law(parameters, state.time);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (state.bodies[b].rung != Rung::frame)
+      limit = std::min(limit, w.reduced(model, b).look_ahead(law, state.bodies[b]));
+  return std::max(limit, 2 * k_least_step);
+}
+
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
                          double until) {
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   if (is_explicit) find_explicit_limit(model, parameters, w);
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
-  h = is_explicit ? k_explicit_share * *w.explicit_limit : std::min(h, look_ahead(model, parameters, state));
+  h = is_explicit ? k_explicit_share * *w.explicit_limit
+                  : std::min(h, next_limit(model, parameters, state, w));
   h = fit(h, left);
   StepStatus status;
   int iterations = 0, rejected = 0;
@@ -347,7 +578,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
       if (h == left) w.next.time = state.time + left;
       const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
       w.next.step_size = h;
-      if (!is_explicit) change_step(w.next, std::min(wanted, look_ahead(model, parameters, w.next)));
+      if (!is_explicit) change_step(w.next, std::min(wanted, next_limit(model, parameters, w.next, w)));
       std::swap(state, w.next);
       break;
     }
@@ -379,11 +610,19 @@ std::optional<double> explicit_limit(Workspace& workspace) {
   return workspace.impl().explicit_limit;
 }
 
-const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& parameters,
+const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
   w.contact_forces.clear();
   w.member_forces.clear();
+  const Instant now(parameters, state.time);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    if (state.bodies[b].rung == Rung::frame) continue;
+    ReducedBody& body = w.reduced(model, b);
+    body.find_contacts(now, state.bodies[b], state.stick);
+    body.section_forces(state.bodies[b], w.sections);
+    body.list_contacts(w.contact_forces);
+  }
   for (auto& system : w.systems()) {
     system->load(state, w.motion);
     system->load_memory(state);
@@ -395,6 +634,10 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
       w.member_forces.push_back(
           {system->near[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
   }
+  std::sort(w.contact_forces.begin(), w.contact_forces.end(),
+            [](const ContactForce& a, const ContactForce& b) {
+              return std::tie(a.point, a.plane) < std::tie(b.point, b.plane);
+            });
   return w.contact_forces;
 }
 

@@ -102,14 +102,15 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
 std::optional<double> explicit_limit(Workspace& workspace);
 
 /// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
-/// `workspace`.
+/// `workspace`. Also finds the section forces of bodies on the rung elastic.
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
 
 /// Forces between members of the last call of contact_forces.
 const std::vector<MemberForce>& member_forces(Workspace& workspace);
 
-/// Section forces of every element at the state that prepare, resume or the last successful step left.
+/// Section forces of every element at the state that prepare, resume or the last successful step left; of
+/// bodies that are not frames, at that of the last contact_forces.
 const std::vector<SectionForces>& section_forces(Workspace& workspace);
 
 }  // namespace topple

@@ -10,9 +10,6 @@
 namespace topple {
 namespace {
 
-constexpr double k_contact_part = 20;   // steps per period of a body on its contacts
-constexpr double k_closing_part = 4;    // steps in which a closing contact crosses its width
-constexpr double k_turn = 0.1;          // rad per step
 constexpr double k_energy_part = 0.02;  // of the tolerance: energy that a step may leave unexplained
 constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at rest is below
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to

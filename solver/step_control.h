@@ -10,6 +10,9 @@ namespace topple {
 inline constexpr double k_least_step = 1e-8;    ///< s, shorter steps are given up
 inline constexpr double k_longest_step = 0.05;  ///< s
 inline constexpr double k_first_step = 1e-4;    ///< s, tried first
+inline constexpr double k_contact_part = 20;    ///< steps per period of a body on its contacts
+inline constexpr double k_closing_part = 4;     ///< steps in which a closing contact crosses its width
+inline constexpr double k_turn = 0.1;           ///< rad per step
 
 /// What the motion at `state` allows, s: T_contact/20 of a body that touches, the time to touch or L/(4 v)
 /// where a contact closes, 0.1/|omega|.

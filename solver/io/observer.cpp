@@ -11,7 +11,6 @@ namespace topple::io {
 namespace {
 
 constexpr double k_checkpoint_rate = 1;  // Hz, of simulated time
-constexpr std::uint8_t k_frame_rung = 2;
 
 /// Whether k / rate has been reached for the next k. Steps that do not divide 1 / rate do not drift.
 bool due(double& next, double time, double rate) {
@@ -107,7 +106,7 @@ void fill_bodies(const Run& run, FrameRow& row) {
                                body_energy(run, model.bodies[b]),
                                std::isfinite(critical) ? critical : 0};
     std::copy_n(values, 11, row.body.data() + 11 * b);
-    row.rung[b] = k_frame_rung;
+    row.rung[b] = static_cast<std::uint8_t>(run.state().bodies[b].rung);
   }
 }
 

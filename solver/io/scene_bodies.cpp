@@ -4,6 +4,7 @@
 #include <set>
 
 #include "solver/cabinet.h"
+#include "solver/elastic_basis.h"
 #include "solver/io/scene_read.h"
 #include "solver/proximity.h"
 
@@ -269,6 +270,35 @@ void check_overlap(const Entry& root, const Setup& setup) {
   }
 }
 
+// What the last `count` bodies are computed as.
+void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) {
+  Model& model = setup.model;
+  BodyModel asked = entry.choice_as<BodyModel>("model");
+  const Entry run = root.entry("run");
+  const bool named = run.choice("integrator") != 0;
+  if (asked == BodyModel::automatic && (named || setup.run.analysis != Analysis::dynamic))
+    asked = BodyModel::frame;
+  if (asked == BodyModel::rigid || asked == BodyModel::elastic) {
+    if (named && setup.parameters.integrator != Integrator::central_difference)
+      entry.fail("model", "\"" + entry.text("model") +
+                              "\" bodies take central differences: run.integrator = \"" +
+                              run.text("integrator") + "\" is for frames");
+    const int first = static_cast<int>(model.bodies.size()) - count;
+    const auto its = [&](const auto& at) { return model.node_body[at.node] >= first; };
+    if (std::any_of(model.supports.begin(), model.supports.end(), its) ||
+        std::any_of(model.loads.begin(), model.loads.end(), its))
+      entry.fail("model", "a body with supports or loads is computed as \"frame\"");
+  }
+  for (int b = static_cast<int>(model.bodies.size()) - count; b < static_cast<int>(model.bodies.size());
+       ++b) {
+    setup.parameters.models.push_back(asked);
+    if (asked == BodyModel::frame || asked == BodyModel::rigid) continue;
+    model.bodies[b].elastic = elastic_basis(model, b);
+    if (asked == BodyModel::elastic && !model.bodies[b].elastic)
+      entry.fail("model", "no elastic body: a part of it moves without strain or has no mass");
+  }
+}
+
 }  // namespace
 
 void read_bodies(const Entry& root, Setup& setup) {
@@ -280,6 +310,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     check_tilt(entry, setup, spec.tilt);
     build(entry, [&] { setup.starts.push_back(add_cabinet(model, spec)); });
     check_size(entry, model.elements.size());
+    read_model(root, entry, 1, setup);
   }
   for (const Entry& entry : root.entries("frame")) {
     const FrameSpec spec = read_frame(entry, library);
@@ -292,11 +323,13 @@ void read_bodies(const Entry& root, Setup& setup) {
       setup.starts.insert(setup.starts.end(), starts.begin(), starts.end());
     });
     check_copies(entry, model, first);
+    read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
   }
   if (model.bodies.empty()) {
     root.fail("there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
   }
   read_grids(root, library, setup);
+  setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);
   check_overlap(root, setup);
 }
 

@@ -52,6 +52,12 @@ bool Entry::is_word(std::string_view key) const {
   return node ? node->kind == Node::Kind::text : find_key(table_, key)->fallback.size() == 1;
 }
 
+bool Entry::names(std::string_view key, std::string_view word) const {
+  const Node* node = find(key);
+  return node && std::any_of(node->items.begin(), node->items.end(),
+                             [&](const Item& item) { return item.value.text == word; });
+}
+
 std::vector<double> Entry::numbers(std::string_view key) const {
   const Key& spec = *find_key(table_, key);
   const Node* node = find(key);

@@ -32,6 +32,8 @@ class Entry {
   }
   /// True when the key holds a word of its choices (or its default is one) instead of numbers.
   bool is_word(std::string_view key) const;
+  /// Among the words of a list.
+  bool names(std::string_view key, std::string_view word) const;
   std::vector<double> numbers(std::string_view key) const;
   Vec3 vector(std::string_view key) const;
   /// The vector as a unit vector; a zero vector is an error.

@@ -42,10 +42,11 @@ void add_run(std::vector<Key>& keys) {
       .absent(run.duration)
       .only_in({"dynamic"});
   rows.word("integrator", {"auto", "generalized-alpha", "central-difference", "newmark"},
-            "auto is generalized-alpha")
+            "of frames; auto is generalized-alpha. Rigid and elastic bodies take central differences")
       .absent(0)
       .only_in({"dynamic"});
-  rows.words("want", {"motion", "stress"}, "what the scene is for").absent(0);
+  rows.words("want", {"motion", "stress"}, "what the scene is for; `model = \"auto\"` goes by it")
+      .absent_means("both");
   rows.number("beta", 0.01, 1, "of the Newmark method")
       .absent(parameters.beta)
       .only("integrator", {"newmark"})

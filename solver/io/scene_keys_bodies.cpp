@@ -1,5 +1,6 @@
 #include "solver/cabinet.h"
 #include "solver/io/scene_key_rows.h"
+#include "solver/parameters.h"
 
 namespace topple::io {
 namespace {
@@ -11,6 +12,15 @@ constexpr double k_far = 1e3;   // m
 constexpr double k_fast = 1e3;  // m/s and rad/s
 constexpr double k_large = 10;  // m
 constexpr double k_degree = k_pi / 180;
+
+void add_model(Rows& rows, BodyModel absent) {
+  rows.word("model", {"auto", "rigid", "elastic", "frame"},
+            "what the body is computed as; auto: the least that answers `run.want`, frame with an integrator "
+            "that "
+            "is named. A body is a frame while another is within 50 mm")
+      .absent(absent)
+      .only_in({"dynamic"});
+}
 
 void add_cabinet(std::vector<Key>& keys) {
   Rows rows(keys, "cabinet");
@@ -53,9 +63,7 @@ void add_cabinet(std::vector<Key>& keys) {
       .only("bracing", {"panels"});
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
   rows.later("damping", "ratio to critical at the first mode");
-  rows.word("model", {"auto", "frame"}, "auto is frame in this version")
-      .later({"rigid", "elastic"})
-      .absent(0);
+  add_model(rows, BodyModel::automatic);
 }
 
 void add_frame(std::vector<Key>& keys) {
@@ -81,6 +89,7 @@ void add_frame(std::vector<Key>& keys) {
   rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
       .absent(frame.angular_velocity)
       .only_in({"dynamic"});
+  add_model(rows, BodyModel::frame);
 }
 
 void add_frame_members(std::vector<Key>& keys) {

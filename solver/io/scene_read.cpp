@@ -117,6 +117,7 @@ void read_run(const Entry& root, Setup& setup) {
   setup.run.settle = run.flag("settle");
   setup.run.output_rate = run.number("output_rate");
   setup.run.stop_when = run.choice_as<StopWhen>("stop_when");
+  setup.parameters.want_stress = !run.has("want") || run.names("want", "stress");
   setup.parameters.gravity = run.vector("gravity");
   setup.parameters.integrator = k_integrators[run.choice("integrator")];
   setup.parameters.spectral_radius = run.number("spectral_radius");

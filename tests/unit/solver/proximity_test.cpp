@@ -68,14 +68,16 @@ TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
   floor.to[0] = 11;
   add_grid(model, floor);
   Islands islands(model);
+  const std::vector<BodyState> frames(model.bodies.size());
+  islands.arrange(frames, {});
   EXPECT_EQ(islands.systems().size(), 5u);
-  islands.arrange(near_elements(model, model.node_position, 0.02));
+  islands.arrange(frames, near_elements(model, model.node_position, 0.02));
   ASSERT_EQ(islands.systems().size(), 3u);  // the floor holds them all and is in none
   EXPECT_EQ(islands.systems()[0]->bodies, (std::vector<int>{0, 2, 4}));
   EXPECT_EQ(islands.systems()[1]->bodies, (std::vector<int>{1}));
   EXPECT_EQ(islands.systems()[2]->bodies, (std::vector<int>{3}));
   const BodySystem* const kept = islands.systems()[0];
-  islands.arrange(near_elements(model, model.node_position, 0.02));
+  islands.arrange(frames, near_elements(model, model.node_position, 0.02));
   EXPECT_EQ(islands.systems()[0], kept);
 }
 

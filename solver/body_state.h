@@ -1,0 +1,48 @@
+// How much of a body's motion is computed, and the motion of a body that is not computed node by node.
+#pragma once
+
+#include <cstdint>
+
+#include "solver/types.h"
+
+namespace topple {
+
+/// rigid: six unknowns. elastic: rigid motion and the lowest modes of small deformations in the body's frame.
+/// frame: every node, with large rotations, hinges and fracture.
+enum class Rung : std::uint8_t { rigid, elastic, frame };
+
+/// Why a body stands on its rung.
+enum class RungReason : std::uint8_t {
+  asked,              ///< the scene or an edit names it
+  motion,             ///< nothing but motion is asked for
+  stress,             ///< stresses are asked for
+  contact_frequency,  ///< the body bounces on its contacts almost as fast as it vibrates
+  yield,              ///< a section comes near its yield surface
+  deformation,        ///< too much for linear elasticity
+  near,               ///< another body is
+  calm                ///< nothing of that is left, and no hinge has formed
+};
+
+inline constexpr int k_modes = 12;  ///< of the rung elastic, at most
+using Amplitudes = Eigen::Array<double, k_modes, 1>;
+
+/// Part of State, one per body. On the rung `frame` the nodes hold the motion and only `rung` and `reason`
+/// mean something; on the others they follow from this (place_nodes). Modes are those of ElasticBasis; zero
+/// on the rung rigid.
+struct BodyState {
+  Rung rung = Rung::frame;
+  RungReason reason = RungReason::asked;
+  double calm_since = -1;                     ///< s, of a body that may come down soon; -1: it may not
+  Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
+  Quat rotation = Quat::Identity();           ///< reference to current
+  Vec3 velocity = Vec3::Zero();               ///< m/s
+  Vec3 angular_velocity = Vec3::Zero();       ///< rad/s, material axes
+  Amplitudes amplitude = Amplitudes::Zero();  ///< m sqrt(kg)
+  Amplitudes rate = Amplitudes::Zero();       ///< m sqrt(kg)/s
+  // What acts at this instant: gravity, floor and contacts.
+  Vec3 force = Vec3::Zero();             ///< N
+  Vec3 moment = Vec3::Zero();            ///< N m about the centre of gravity, floor's axes
+  Amplitudes load = Amplitudes::Zero();  ///< on the modes, N/sqrt(kg)
+};
+
+}  // namespace topple

@@ -1,0 +1,145 @@
+#include "solver/elastic_basis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/beam.h"
+#include "solver/block_lu.h"
+#include "solver/modes.h"
+#include "solver/plasticity.h"
+#include "solver/section_forces.h"
+
+namespace topple {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double k_shift =
+    1e-6;  // of the lowest w^2: makes K regular, and changes no residual more than that
+
+// Section forces at the stress points of small displacements in columns, six rows per node.
+MatrixXd recover(const Model& model, const Body& body, const MatrixXd& u) {
+  MatrixXd out(6 * body.element_count, u.cols());
+  for (int e = 0; e < body.element_count; ++e) {
+    const Element& element = model.elements[body.first_element + e];
+    const int i = 6 * (element.node[0] - body.first_node), j = 6 * (element.node[1] - body.first_node);
+    const double t = (1 + element.s) / 2;
+    const Mat3 local = element.triad.transpose();
+    const auto rows = [&](int r) { return u.middleRows<3>(r); };
+    MatrixXd gamma = local * (rows(j) - rows(i)) / element.length;
+    const MatrixXd turn = local * ((1 - t) * rows(i + 3) + t * rows(j + 3));
+    gamma.row(1) -= turn.row(2);
+    gamma.row(2) += turn.row(1);
+    const MatrixXd kappa = local * (rows(j + 3) - rows(i + 3)) / element.length;
+    out.middleRows<3>(6 * e) = element.normal_stiffness.asDiagonal() * gamma;
+    out.middleRows<3>(6 * e + 3) = element.bending_stiffness.asDiagonal() * kappa;
+  }
+  return out;
+}
+
+// Per column, the greatest sqrt(f + 1) at an end of an element.
+VectorXd greatest_yield(const Model& model, const Body& body, const MatrixXd& sections) {
+  VectorXd out = VectorXd::Zero(sections.cols());
+  for (int c = 0; c < sections.cols(); ++c)
+    for (int e = 0; e < body.element_count; ++e) {
+      const Element& element = model.elements[body.first_element + e];
+      if (!std::isfinite(element.capacity[0])) continue;
+      const SectionForces forces{sections.block<3, 1>(6 * e, c), sections.block<3, 1>(6 * e + 3, c)};
+      for (const int end : {-1, 1}) {
+        const SectionForces there = forces_along(forces, element.length, element.s, end);
+        out[c] = std::max(out[c], std::sqrt(yield_function(element, there) + 1));
+      }
+    }
+  return out;
+}
+
+MatrixXd mass_times(const Model& model, const Body& body, const MatrixXd& v) {
+  MatrixXd out(v.rows(), v.cols());
+  for (int i = 0; i < body.node_count; ++i) {
+    out.middleRows<3>(6 * i) = model.node_mass[body.first_node + i] * v.middleRows<3>(6 * i);
+    out.middleRows<3>(6 * i + 3) = model.node_inertia[body.first_node + i] * v.middleRows<3>(6 * i + 3);
+  }
+  return out;
+}
+
+// K + shift M about the reference pose, factored.
+BlockLu shifted_stiffness(const Model& model, const Body& body, double shift) {
+  std::vector<std::pair<int, int>> edges;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+    edges.emplace_back(model.elements[e].node[0] - body.first_node,
+                       model.elements[e].node[1] - body.first_node);
+  BlockLu lu(body.node_count, edges);
+  lu.set_zero();
+  BeamGradient gradient;
+  Mat12 tangent;
+  for (int e = 0; e < body.element_count; ++e) {
+    const Element& element = model.elements[body.first_element + e];
+    const auto& x = model.node_position;
+    beam_tangent(
+        element, ElementState{},
+        beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
+        gradient, tangent);
+    const auto [i, j] = edges[e];
+    lu.add(i, i, tangent.block<6, 6>(0, 0));
+    lu.add(i, j, tangent.block<6, 6>(0, 6));
+    lu.add(j, i, tangent.block<6, 6>(6, 0));
+    lu.add(j, j, tangent.block<6, 6>(6, 6));
+  }
+  for (int i = 0; i < body.node_count; ++i) {
+    Mat6 block = Mat6::Zero();
+    block.diagonal().head<3>().setConstant(shift * model.node_mass[body.first_node + i]);
+    block.bottomRightCorner<3, 3>() = shift * model.node_inertia[body.first_node + i];
+    lu.add(i, i, block);
+  }
+  lu.factor();
+  return lu;
+}
+
+}  // namespace
+
+std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index) {
+  const Body& body = model.bodies[index];
+  for (const Support& support : model.supports)
+    if (model.node_body[support.node] == index) return nullptr;
+  constexpr int k_rigid = 6;
+  const std::vector<Mode> modes = natural_modes(model, index, k_rigid + k_modes);
+  const auto rigid = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.rigid; });
+  if (rigid != k_rigid || static_cast<int>(modes.size()) <= k_rigid) return nullptr;
+
+  auto basis = std::make_shared<ElasticBasis>();
+  const int n = body.node_count;
+  basis->modes = static_cast<int>(modes.size()) - k_rigid;
+  basis->frequency.setZero();
+  MatrixXd all(6 * n, modes.size());
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    for (int i = 0; i < n; ++i) {
+      all.block<3, 1>(6 * i, c) = modes[c].displacement[i];
+      all.block<3, 1>(6 * i + 3, c) = modes[c].rotation[i];
+    }
+  basis->shape = all.rightCols(basis->modes);
+  for (int k = 0; k < basis->modes; ++k) basis->frequency[k] = 2 * k_pi * modes[k_rigid + k].frequency;
+  basis->section = recover(model, body, basis->shape);
+
+  const BlockLu lu = shifted_stiffness(model, body, k_shift * std::pow(basis->frequency[0], 2));
+  const MatrixXd mass_all = mass_times(model, body, all);
+  MatrixXd& residual = basis->residual_shape;
+  residual = MatrixXd::Zero(6 * n, 3 * n);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) residual(6 * i + k, 3 * i + k) = 1;
+  residual -= mass_all * (all.transpose() * residual).eval();
+  for (int c = 0; c < residual.cols(); ++c) lu.solve(residual.col(c).data());
+  residual -= all * (mass_all.transpose() * residual).eval();
+  basis->residual_section = recover(model, body, residual);
+
+  basis->mode_yield = greatest_yield(model, body, basis->section);
+  basis->residual_yield = greatest_yield(model, body, basis->residual_section);
+  basis->mode_rotation = VectorXd::Zero(basis->modes);
+  for (int k = 0; k < basis->modes; ++k)
+    for (int i = 0; i < n; ++i)
+      basis->mode_rotation[k] =
+          std::max(basis->mode_rotation[k], basis->shape.block<3, 1>(6 * i + 3, k).norm());
+  return basis;
+}
+
+}  // namespace topple

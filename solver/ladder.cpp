@@ -1,0 +1,103 @@
+#include "solver/ladder.h"
+
+#include <algorithm>
+
+#include "solver/edit.h"
+#include "solver/overturn.h"
+#include "solver/rotation.h"
+
+namespace topple {
+namespace {
+
+// Supports and loads act on nodes.
+bool only_frame(const Model& model, int body) {
+  const auto its = [&](const auto& at) { return model.node_body[at.node] == body; };
+  return model.bodies[body].ground || std::any_of(model.supports.begin(), model.supports.end(), its) ||
+         std::any_of(model.loads.begin(), model.loads.end(), its);
+}
+
+}  // namespace
+
+RungChoice base_rung(const Model& model, const Parameters& parameters, int body) {
+  const BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
+  const ElasticBasis* const basis = model.bodies[body].elastic.get();
+  if (asked == BodyModel::frame || only_frame(model, body)) return {Rung::frame, RungReason::asked};
+  if (asked == BodyModel::rigid) return {Rung::rigid, RungReason::asked};
+  if (!basis) return {Rung::frame, RungReason::asked};
+  if (asked == BodyModel::elastic) return {Rung::elastic, RungReason::asked};
+  if (parameters.want_stress) return {Rung::elastic, RungReason::stress};
+  const double period = contact_period(model, body, parameters.contact, parameters.gravity);
+  if (period > 0 && 2 * k_pi / period > k_slow_contact * basis->frequency[0])
+    return {Rung::elastic, RungReason::contact_frequency};
+  return {Rung::rigid, RungReason::motion};
+}
+
+void place_nodes(const Model& model, State& state) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyState& s = state.bodies[b];
+    if (s.rung == Rung::frame) continue;
+    const Body& body = model.bodies[b];
+    const Mat3 r = s.rotation.toRotationMatrix();
+    const bool bends = s.rung == Rung::elastic;
+    Eigen::VectorXd shift, rate;
+    if (bends) {
+      const int modes = body.elastic->modes;
+      shift = body.elastic->shape * s.amplitude.head(modes).matrix();
+      rate = body.elastic->shape * s.rate.head(modes).matrix();
+    }
+    for (int i = 0; i < body.node_count; ++i) {
+      const int g = body.first_node + i;
+      Vec3 arm = model.node_position[g] - body.centre_of_gravity;
+      state.rotation[g] = s.rotation;
+      state.angular_velocity[g] = s.angular_velocity;
+      Vec3 relative = Vec3::Zero();
+      if (bends) {
+        arm += shift.segment<3>(6 * i);
+        relative = rate.segment<3>(6 * i);
+        const Quat turn = exp_quaternion(shift.segment<3>(6 * i + 3));
+        state.rotation[g] = s.rotation * turn;
+        state.angular_velocity[g] = turn.conjugate() * (s.angular_velocity + rate.segment<3>(6 * i + 3));
+      }
+      state.position[g] = s.position + r * arm;
+      state.velocity[g] = s.velocity + r * (s.angular_velocity.cross(arm) + relative);
+      state.acceleration[g].setZero();
+      state.angular_acceleration[g].setZero();
+      state.algorithmic_acceleration[g].setZero();
+      state.algorithmic_angular_acceleration[g].setZero();
+    }
+  }
+}
+
+BodyState reduce(const Model& model, const State& state, int index, Rung rung) {
+  const Body& body = model.bodies[index];
+  const BodyPose pose = body_pose(model, state, index);
+  const BodyMomentum momentum = body_momentum(model, state, index);
+  BodyState s = state.bodies[index];
+  s.rung = rung;
+  s.position = pose.centre;
+  s.rotation = pose.rotation;
+  s.velocity = momentum.velocity;
+  s.angular_velocity = body.inertia.inverse() * (pose.rotation.conjugate() * momentum.angular_momentum);
+  s.amplitude.setZero();
+  s.rate.setZero();
+  if (rung == Rung::rigid) return s;
+  const ElasticBasis& basis = *body.elastic;
+  Eigen::VectorXd shift(6 * body.node_count), rate(6 * body.node_count);
+  for (int i = 0; i < body.node_count; ++i) {
+    const int g = body.first_node + i;
+    const double m = model.node_mass[g];
+    const Mat3& j = model.node_inertia[g];
+    const Vec3 arm = pose.rotation.conjugate() * (state.position[g] - pose.centre);
+    const Quat turn = pose.rotation.conjugate() * state.rotation[g];
+    shift.segment<3>(6 * i) = m * (arm - (model.node_position[g] - body.centre_of_gravity));
+    shift.segment<3>(6 * i + 3) = j * log_quaternion(turn);
+    rate.segment<3>(6 * i) = m * (pose.rotation.conjugate() * (state.velocity[g] - momentum.velocity) -
+                                  s.angular_velocity.cross(arm));
+    rate.segment<3>(6 * i + 3) = j * (turn * state.angular_velocity[g] - s.angular_velocity);
+  }
+  s.amplitude.head(basis.modes) = (basis.shape.transpose() * shift).array();
+  s.rate.head(basis.modes) = (basis.shape.transpose() * rate).array();
+  return s;
+}
+
+}  // namespace topple

@@ -1,0 +1,44 @@
+// The model ladder: what each body is computed as, and how it changes in the middle of a run.
+//
+// A body stands on the rung that Parameters::models names. automatic: rigid when nothing but motion is asked
+// for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
+// elastic. Every body is a frame while another is near (State::near), and an automatic one too once
+//   - a section could have sqrt(f + 1) > k_near_yield,
+//   - a node could turn by more than k_small_rotation relative to the body.
+// It comes down when none of that held for k_calm_for, no hinge ever formed in it, and its strain energy is
+// below k_negligible m g reach.
+//
+// Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the rigid
+// motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is left.
+// Linear momentum stays to rounding, angular momentum to the square of the deformation over the body's size;
+// the change of energy is booked as EnergyLedger::model_switch.
+#pragma once
+
+#include "solver/model.h"
+#include "solver/parameters.h"
+#include "solver/reduced_body.h"
+#include "solver/state.h"
+
+namespace topple {
+
+inline constexpr double k_slow_contact = 0.5;
+inline constexpr double k_near_yield = 0.9;
+inline constexpr double k_small_rotation = 0.02;  ///< rad
+inline constexpr double k_calm_yield = 0.45;
+inline constexpr double k_calm_for = 0.2;  ///< s
+inline constexpr double k_negligible = 1e-4;
+
+/// The rung on which a body begins, and to which it comes back.
+struct RungChoice {
+  Rung rung;
+  RungReason reason;
+};
+RungChoice base_rung(const Model& model, const Parameters& parameters, int body);
+
+/// Positions, rotations and velocities of the nodes of all bodies that are not frames, from State::bodies.
+void place_nodes(const Model& model, State& state);
+
+/// BodyState of the nodes of a body, for `rung`, which must not be frame.
+BodyState reduce(const Model& model, const State& state, int body, Rung rung);
+
+}  // namespace topple
