@@ -13,7 +13,7 @@ using study::gnuplot_quoted;
 
 constexpr int k_width = 1180, k_height = 800;
 constexpr study::Sheet k_sheet{k_width, k_height};
-constexpr int k_left = 90, k_right = 20, k_gap = 100, k_bottom = 76, k_header = 236;
+constexpr int k_left = 112, k_right = 24, k_gap = 124, k_bottom = 76, k_header = 252;
 
 // Colours of Okabe and Ito with a mark each; the faint ones are theirs at a third on white.
 struct Style {
@@ -49,17 +49,19 @@ std::string header(const Results& results) {
       k_sheet.label(versions + fmt::format(" on {}, one core.", study::processor_name()), k_left, top - 95,
                     std::string("noenhanced ") + k_grey) +
       k_sheet.label(
-          "Faint: every setting of the grid. Lines: settings that no other of the engine beats in both.",
+          "Faint: every setting of the grid. Lines: Pareto fronts, what no other setting of the engine beats "
+          "in time and "
+          "error.",
           k_left, top - 120, k_grey);
-  out += k_sheet.place(k_left, k_width - k_right, top - 172, top - 136) +
+  out += k_sheet.place(k_left, k_width - k_right, top - 182, top - 146) +
          "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
-         "set key at graph 0,1 left top horizontal Left reverse samplen 4 width 3\nplot ";
+         "set key at graph 0,1 left top horizontal Left reverse samplen 4 width 4\nplot ";
   for (int e = 0; e < static_cast<int>(results.engines.size()); ++e)
     out += fmt::format("{}NaN with linespoints {} title {} noenhanced", e == 0 ? "" : ", ", line_style(e),
                        gnuplot_quoted(results.engines[e].name));
   return out +
          "\nunset label\nunset key\nset border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4\n"
-         "set grid xtics ytics lc rgb '#dddddd' lw 0.8 dt 1\nset logscale xy\n";
+         "set grid xtics ytics lc rgb '#cccccc' lw 0.8 dt 1\nset logscale xy\n";
 }
 
 /// A panel over columns `from`..`to` of the sheet. `least`, `most`: ends of the axis of errors; what has none
@@ -87,16 +89,18 @@ std::string panel(const Results& results, Part Trial::*part, double unit, double
   // ours last: on top
   for (int e = static_cast<int>(results.engines.size()) - 1; e >= 0; --e)
     plot += fmt::format(", $front_{}{} with linespoints {} notitle", name, e, line_style(e));
-  std::string out = data + k_sheet.label(study::bold(title, 1.05), from - 40, k_height - k_header + 34, "") +
+  std::string out = data + k_sheet.label(study::bold(title, 1.05), from, k_height - k_header + 26, "") +
                     k_sheet.place(from, to, k_bottom, k_height - k_header);
   if (absent > 0)
-    out += fmt::format("set label 'no fall, or given up' at graph 0.99, first {} right offset 0,0.75 {}\n",
-                       absent, k_grey);
+    out +=
+        fmt::format("set label 'does not fall, or gave up' at graph 0.99, first {} right offset 0,0.75 {}\n",
+                    absent, k_grey);
   return out +
          fmt::format(
              "set xrange [0.1:300]\nset format x '%g'\nset xtics nomirror (0.1,1,10,100)\nset mxtics 10\n"
-             "set yrange [{}:{}]\nset format y '%g'\nset ytics nomirror (0.001,0.01,0.1,1)\nset mytics 10\n"
-             "set xlabel 'CPU time per simulated second, ms' offset 0,0.2\nset ylabel {} offset 0.8,0\n",
+             "set yrange [{}:{}]\nset format y '%g'\nset ytics nomirror (0.001,0.01,0.1,1,10,100)\nset "
+             "mytics 10\n"
+             "set xlabel 'CPU time per simulated second, ms' offset 0,0.2\nset ylabel {} offset 0.4,0\n",
              least, most, gnuplot_quoted(axis)) +
          "plot " + plot + "\nunset label\n";
 }
@@ -107,10 +111,10 @@ std::string chart(const Results& results, study::ChartFormat format) {
   const double width = (k_width - k_left - k_right - k_gap) / 2.;
   return k_sheet.begin(format) + header(results) +
          panel(results, &Trial::rocking, k_degree, k_left, k_left + width, "rocking",
-               fmt::format("Let go at half the critical angle, {:g} s", k_window),
-               "tilt, root mean square, deg", 5e-4, 5, 0) +
+               fmt::format("Let go at half of the critical angle, {:g} s", k_window),
+               "error of the tilt, root mean square, deg", 5e-4, 200, 0) +
          panel(results, &Trial::falling, 1., k_left + width + k_gap, k_width - k_right, "falling",
-               "Shaken at 2 Hz with 690, 695, 700 gal", "time of passing 45°, greatest error, s", 5e-4, 10,
+               "Shaken at 2 Hz: worst of 690, 695, 700 gal", "error of the time of passing 45°, s", 5e-4, 10,
                6) +
          "unset multiplot\n";
 }

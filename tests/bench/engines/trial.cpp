@@ -9,7 +9,7 @@
 namespace topple::bench {
 namespace {
 
-constexpr double k_timed = 0.1;         // s, spent at least on the time of one setting
+constexpr double k_timed = 0.05;        // s, spent at least on the time of one setting
 constexpr int k_repeats = 3;            // at least
 constexpr double k_theory_step = 1e-5;  // s
 
