@@ -17,8 +17,7 @@ inline constexpr double k_settling = 0.5;                   ///< s, at rest befo
 inline constexpr double k_gal = 0.01;                       ///< m/s^2
 inline constexpr double k_degree = std::numbers::pi / 180;  ///< rad
 
-/// What happens to the block: let go on its +x edge, or at rest on a floor that begins to shake along x at t
-/// = 0.
+/// What happens to the block: let go on its +x edge, or at rest on a floor that shakes along x from t = 0 on.
 struct Case {
   double tilt = 0;       ///< rad, > 0; 0: at rest
   double amplitude = 0;  ///< m/s^2, of the sine of the floor's acceleration

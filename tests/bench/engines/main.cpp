@@ -49,8 +49,7 @@ void run(const std::filesystem::path& folder) {
     fmt::print("{} {}: {}, {} settings\n", engine.name, engine.version, engine.how, engine.grid.size());
   fmt::print(
       "The shaking floor is gravity (-a(t), 0, -g) to MuJoCo, Bullet and ODE, a taken at the middle of each "
-      "step, "
-      "and a [[shake]] to topple.\nThey are used as installed, topple as built.\n");
+      "step, and a [[shake]] to topple.\nThey are used as installed, topple as built.\n");
   fmt::print("Housner without sliding: impacts of free rocking at");
   for (const double impact : results.theory.impacts) fmt::print(" {:.4f}", impact);
   fmt::print(" s; 2 Hz, {:g} gal: {:g} deg at {:.4f} s\n\n", k_amplitudes[std::size(k_amplitudes) - 1],

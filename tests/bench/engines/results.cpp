@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <span>
 
 namespace topple::bench {
 namespace {
@@ -36,7 +37,7 @@ std::string cheapest(const Results& results, Part Trial::*part, const std::strin
                      std::span<const double> errors, double unit, const char* unit_name) {
   std::string out = "\n| " + title + " |";
   for (const double error : errors) out += fmt::format(" {:g} {} |", error, unit_name);
-  out += "\n|---|" + std::string();
+  out += "\n|---|";
   for (std::size_t k = 0; k < errors.size(); ++k) out += "---|";
   for (int e = 0; e < static_cast<int>(results.engines.size()); ++e) {
     const std::vector<const Trial*> best = front(results.trials, e, part);
@@ -46,7 +47,7 @@ std::string cheapest(const Results& results, Part Trial::*part, const std::strin
         return *(trial->*part).error <= error * unit;
       });
       out +=
-          found == best.end() ? " not reached |" : fmt::format(" {:.2g} |", k_milli * *((*found)->*part).cpu);
+          found == best.end() ? " not reached |" : fmt::format(" {:.3g} |", k_milli * *((*found)->*part).cpu);
     }
   }
   return out + "\n";
@@ -99,8 +100,8 @@ std::string tables(const Results& results) {
       out +=
           fmt::format("| {} | {} | {} | {:.3g} | {:.2g} | {} | {} |\n", results.engines[e].name,
                       step_text(setting), setting.contact, k_milli * *trial->rocking.cpu,
-                      *trial->rocking.error / k_degree, text(trial->rocking.first_impact, k_milli, "{:.2g}"),
-                      text(trial->rocking.third_impact, k_milli, "{:.2g}"));
+                      *trial->rocking.error / k_degree, text(trial->rocking.first_impact, k_milli, "{:.3g}"),
+                      text(trial->rocking.third_impact, k_milli, "{:.3g}"));
     }
   out += fmt::format(
       "\nPareto front of each engine, 2 Hz: time of passing {:g} deg, s. Error: the greatest of the three\n\n"

@@ -37,13 +37,13 @@ std::string scene_text(const Case& c, const Options& options) {
   text +=
       "[floor]\ntype = \"plane\"\n"
       "[[material]]\nname = \"rigid\"\nyoung = 1e13\npoisson = 0.3\ndensity = 0.001\n"
-      "[[section]]\nname = \"post\"\nshape = \"custom\"\narea = 0.1\niy = 0.01\niz = 0.01\nj = 0.01\nky = "
-      "1\nkz = 1\n";
+      "[[section]]\nname = \"post\"\nshape = \"custom\"\narea = 0.1\niy = 0.01\niz = 0.01\nj = 0.01\n"
+      "ky = 1\nkz = 1\n";
   text +=
       fmt::format("width = {}\n[[frame]]\nname = \"block\"\nmodel = \"{}\"\n", 2 * half_width, options.model);
   text += fmt::format(
-      "nodes = [[{0}, {1}, {3}], [{0}, {2}, {3}], [{4}, {1}, {3}], [{4}, {2}, {3}], [0, 0, {5}]]\nmembers = "
-      "[\n",
+      "nodes = [[{0}, {1}, {3}], [{0}, {2}, {3}], [{4}, {1}, {3}], [{4}, {2}, {3}], [0, 0, {5}]]\n"
+      "members = [\n",
       -x, -y, y, half_width, x, z + half_width);
   for (int k = 0; k < 4; ++k)
     text += fmt::format("  {{ nodes = [{}, 4], section = \"post\", material = \"rigid\" }},\n", k);
