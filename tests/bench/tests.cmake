@@ -7,3 +7,5 @@ if(benchmark_FOUND)
     target_include_directories(${bench} PRIVATE ${CMAKE_CURRENT_LIST_DIR}/..)
   endforeach()
 endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/engines/engines.cmake)

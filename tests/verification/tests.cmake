@@ -5,5 +5,6 @@ gtest_discover_tests(planar_block_test)
 
 add_executable(rocking_block_test ${CMAKE_CURRENT_LIST_DIR}/rocking_block_test.cpp)
 target_link_libraries(rocking_block_test PRIVATE GTest::gtest_main)
+target_include_directories(rocking_block_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/..)
 target_compile_features(rocking_block_test PRIVATE cxx_std_20)
 gtest_discover_tests(rocking_block_test)

@@ -1,0 +1,93 @@
+// engines_bench DIR: the same rocking block in every engine that was found when this was built. Writes
+// DIR/engines.csv, .svg and .png and prints the tables.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/engines/results.h"
+#include "solver/study/gnuplot.h"
+#include "solver/study/measure.h"
+#include "solver/study/rows.h"
+
+namespace {
+
+using namespace topple;
+using namespace topple::bench;
+
+std::vector<Engine> engines() {
+  std::vector<Engine> found{topple_engine()};
+#ifdef WITH_MUJOCO
+  found.push_back(mujoco_engine());
+#endif
+#ifdef WITH_BULLET
+  found.push_back(bullet_engine());
+#endif
+#ifdef WITH_ODE
+  found.push_back(ode_engine());
+#endif
+  return found;
+}
+
+void write(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file << content;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+void run(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  Results results{engines(), reference(), {}};
+  fmt::print("{}, one core\n", study::processor_name());
+  for (const Engine& engine : results.engines)
+    fmt::print("{} {}: {}, {} settings\n", engine.name, engine.version, engine.how, engine.grid.size());
+  fmt::print(
+      "The shaking floor is gravity (-a(t), 0, -g) to MuJoCo, Bullet and ODE, a taken at the middle of each "
+      "step, and a [[shake]] to topple.\nThey are used as installed, topple as built.\n");
+  fmt::print("Housner without sliding: impacts of free rocking at");
+  for (const double impact : results.theory.impacts) fmt::print(" {:.4f}", impact);
+  fmt::print(" s; 2 Hz, {:g} gal: {:g} deg at {:.4f} s\n\n", k_amplitudes[std::size(k_amplitudes) - 1],
+             k_fall / k_degree, results.theory.falls[std::size(k_amplitudes) - 1]);
+  // the engines take turns: other work on the machine meets all of them
+  std::vector<std::pair<double, Trial>> order;
+  for (int e = 0; e < static_cast<int>(results.engines.size()); ++e) {
+    const int count = static_cast<int>(results.engines[e].grid.size());
+    for (int k = 0; k < count; ++k) order.push_back({static_cast<double>(k) / count, {e, k, {}, {}}});
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [place, trial] : order) {
+    const Setting& setting = results.engines[trial.engine].grid[trial.setting];
+    fmt::print(stderr, "\r{:3.0f} % ", 100 * place);
+    trial.rocking = free_rocking(setting, results.theory);
+    trial.falling = falling(setting, results.theory);
+    results.trials.push_back(trial);
+  }
+  fmt::print(stderr, "\n");
+  write(folder / "engines.csv", study::csv_text(rows(results)));
+  fmt::print("{}", tables(results));
+  std::fflush(stdout);
+  write(folder / "engines.svg", study::run_gnuplot(chart(results, study::ChartFormat::svg)));
+  write(folder / "engines.png", study::run_gnuplot(chart(results, study::ChartFormat::png)));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    fmt::print(stderr, "usage: engines_bench DIR\n");
+    return 2;
+  }
+  try {
+    run(arguments[1]);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "engines_bench: {}\n", error.what());
+    return 1;
+  }
+}
