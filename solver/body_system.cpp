@@ -279,9 +279,9 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   sum.kinetic = kinetic_energy(motion);
   if (ends_here && !yields) {
     sum.strain = beams_.latest_energy(sections);
+    ends_here = false;
   } else {
-    if (yields) beams_.remember(elements);
-    sum.strain = beams_.energy(motion.position, motion.rotation, sections);
+    sum.strain = elastic_energy(motion, sections);
   }
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
@@ -290,6 +290,11 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
   return sum;
+}
+
+double BodySystem::elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections) {
+  if (yields) beams_.remember(elements);
+  return beams_.energy(motion.position, motion.rotation, sections);
 }
 
 double BodySystem::kinetic_energy(const BodyMotion& motion) const {

@@ -91,6 +91,8 @@ class BodySystem {
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
                     std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
+  /// Of the elements' elastic strain, J; also fills this system's part of `sections`: forces without flow.
+  double elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections);
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
   /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.
