@@ -104,7 +104,6 @@ void BodySystem::add_packs() {
       const bool real = i + k < count;
       const int own = std::min(i + k, count - 1), g = node[own];
       pack.node[k] = own;
-      pack.global[k] = g;
       pack.diagonal[k] = lu.index(own, own);
       pack.real.set(k, real);
       pack.mass.set(k, real ? model.node_mass[g] : 0);
@@ -308,13 +307,10 @@ double BodySystem::kinetic_energy(const BodyMotion& motion) const {
 }
 
 void BodySystem::load(const State& state, BodyMotion& motion) const {
-  motion.resize(count);
-  for (int i = 0; i < count; ++i) {
-    motion.position[i] = state.position[node[i]];
-    motion.velocity[i] = state.velocity[node[i]];
-    motion.rotation[i] = state.rotation[node[i]];
-    motion.angular_velocity[i] = state.angular_velocity[node[i]];
-  }
+  take(state.position, motion.position);
+  take(state.velocity, motion.velocity);
+  take(state.rotation, motion.rotation);
+  take(state.angular_velocity, motion.angular_velocity);
 }
 
 void BodySystem::load_memory(const State& state) {
