@@ -1,5 +1,7 @@
 #include "solver/beam_pack.h"
 
+#include <new>
+
 #include "solver/plasticity.h"
 
 namespace topple {
@@ -93,9 +95,11 @@ void BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n
 
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
                                   std::span<const Quat> rotation, std::span<NodeForce> forces) {
-  // in two passes: the way through one pack is long, and the processor looks no further than one ahead
+  // in two passes: the way through one pack is long, and the processor looks no further than one ahead;
+  // strains are made in place, not copied there
   for (std::size_t n = 0; n < packs_.size(); ++n)
-    strains_[n] = pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j));
+    new (&strains_[n])
+        PackStrain<Four>(pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j)));
   Four total(0);
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];

@@ -178,6 +178,7 @@ bool is_finite(const State& s) {
   double odd_one = 0;
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
+#pragma GCC unroll 4
     for (; k + 4 <= count; k += 4) odd = odd | (load(x + k) - load(x + k));
     if (count < 4)
       for (; k < count; ++k) odd_one += x[k] - x[k];
