@@ -6,6 +6,7 @@
 
 #include "solver/beam.h"
 #include "solver/hinges.h"
+#include "solver/islands.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -164,6 +165,7 @@ void half_step(const BodySystem& s, const State& state, double h, IntegratorScra
 // is not finite.
 bool take_accelerations(const BodySystem& s, double h, BodyMotion& trial, State& state) {
   const Four half(h / 2);
+  const int own = own_nodes(s);
   PackVector<Four> odd{0, 0, 0};
   for (const NodePack& pack : s.node_packs) {
     const PackQuaternion<Four> q = gather(trial.rotation.data(), pack.node);
@@ -178,17 +180,20 @@ bool take_accelerations(const BodySystem& s, double h, BodyMotion& trial, State&
     }
     scatter(velocity, trial.velocity.data(), pack.node);
     scatter(omega, trial.angular_velocity.data(), pack.node);
-    const auto& to = pack.global;
-    scatter(velocity, state.velocity.data(), to);
-    scatter(omega, state.angular_velocity.data(), to);
-    for (auto* array : {&state.acceleration, &state.algorithmic_acceleration})
-      scatter(acceleration, array->data(), to);
+    const auto keep = [&](const PackVector<Four>& x, std::vector<Vec3>& array) {
+      if (pack.node[3] < own) return scatter(x, array.data(), pack.global);
+      for (int k = 0; k < 4; ++k)
+        if (pack.node[k] < own) array[pack.global[k]] = lane(x, k);
+    };
+    keep(velocity, state.velocity);
+    keep(omega, state.angular_velocity);
+    for (auto* array : {&state.acceleration, &state.algorithmic_acceleration}) keep(acceleration, *array);
     for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
-      scatter(angular, array->data(), to);
+      keep(angular, *array);
     const PackVector<Four> all = acceleration + angular;
     odd = odd + (all - all);
   }
-  for (int i = 0; i < s.count; ++i) {
+  for (int i = 0; i < own; ++i) {
     state.position[s.node[i]] = trial.position[i];
     state.rotation[s.node[i]] = trial.rotation[i];
   }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "solver/hinges.h"
+#include "solver/islands.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -366,7 +367,8 @@ void ImplicitStep::accept(StepEnergy& energy) {
              dot(rate0 + momentum_rate(pack, w1), at(w_.turn)) - dot(w1 + w0, pack.inertia * (w1 - w0)));
   }
   energy.numerical += sum(taken);
-  for (int i = 0; i < s_.count; ++i) {
+  const int own = own_nodes(s_);
+  for (int i = 0; i < own; ++i) {
     const int g = s_.node[i];
     state_.position[g] = w_.trial.position[i];
     state_.rotation[g] = w_.trial.rotation[i];

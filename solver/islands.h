@@ -19,6 +19,10 @@ double greatest_travel(const Model& model, const State& from, const State& to);
 /// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
 void look_around(const Model& model, State& state, double travel);
 
+/// Nodes of a system's own bodies, which come first. Those that follow are held, and may be in other systems
+/// as well: no step writes to them.
+int own_nodes(const BodySystem& system);
+
 /// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
 /// whose nodes are all held, and those on other rungs, are in none.
 class Islands {
