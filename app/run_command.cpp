@@ -24,7 +24,7 @@ namespace topple::app {
 
 namespace {
 
-constexpr int k_many_bodies = 64;  // that are not frames: a step of fewer is over before a thread wakes up
+constexpr int k_many_bodies = 32;  // that are not frames: a step of fewer is over before it is shared out
 
 /// Threads that make steps of `setup` faster.
 int paying_jobs(const Setup& setup) {
@@ -128,6 +128,7 @@ int run_command(const RunOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
   if (scene.setup.run.analysis == Analysis::modes) {
     if (!options.recording.empty()) throw BadInput("--output: modes are not recorded; --json writes them");
+    if (options.profile) throw BadInput("--profile: modes take no steps of time");
     return modes_command({.scene = options.scene, .overrides = options.overrides, .json = options.json});
   }
   if (options.profile && is_static(scene.setup)) throw BadInput("--profile: statics take no steps of time");

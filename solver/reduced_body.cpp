@@ -118,6 +118,7 @@ ReducedBody::ReducedBody(const Model& model, int body)
       }
     }
   }
+  for (Touches* touches : {&touches_, &touches_before_}) touches->all.reserve(sides_.size());
   shapes_.reserve(sides_.size() * modes);
 }
 
@@ -357,7 +358,6 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
                                  Velocity& u, const BodyState& s, ReducedScratch& w) {
   const int m = modes(s);
   double* const side = w.side;
-  if (w.derivatives.size() < touches_.size()) w.derivatives.resize(touches_.size());
   bool fresh = true;
   double last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
@@ -465,16 +465,17 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
   const double stick = law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0;
   const Mat3 root = inertia_.llt().matrixL().solve(Mat3::Identity()).transpose();
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k_unknowns, k_unknowns>;
+  Matrix stiffness = Matrix::Zero(n, n);
   each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t) {
     const Group& group = groups_[touch.group];
-    Eigen::MatrixXd j(3, n);
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, k_unknowns> j(3, n);
     j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
     j.middleCols<3>(3) = -skew(lane(group.place, which)) * root;
     for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = lane(group.shape[k], which);
     stiffness += law.alpha / side(touch).L[which] * std::max(slope, stick) * j.transpose() * j;
   });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
@@ -537,7 +538,7 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
 void ReducedBody::advance_part(const Parameters& parameters, const Instant& start, const Instant& end,
                                double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                ReducedScratch& w) {
-  std::swap(touches_, w.touches_start);
+  std::swap(touches_, touches_before_);
   const BodyState before = s;
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (s.rotation.conjugate() * s.moment));
@@ -577,7 +578,7 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
               dot(in_all_lanes(model_.planes[touch.plane].normal), travel);
     rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
-  for (const Touch& touch : w.touches_start)
+  for (const Touch& touch : touches_before_)
     book(touch, in_all_lanes(shift) + (r * place(s, groups_[touch.group]) - touch.arm), -1);
   for (const Touch& touch : touches_) book(touch, touch.travel, 1);
   booked.normal_damping += sum(damped);
@@ -593,9 +594,9 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
          0.5 * (s.rate.square() - before.rate.square()) -
          0.5 * basis_->frequency.square() * (s.amplitude.square() - before.amplitude.square()))
             .sum();
-  book_law_change(start.law, end.law, w.touches_start, booked);
+  book_law_change(start.law, end.law, touches_before_, booked);
 
-  each_touching(w.touches_start, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
+  each_touching(touches_before_, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
   keep_sticks(end.law, stick);
 }
 
@@ -623,6 +624,7 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
 BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                 double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                 ReducedScratch& w) {
+  if (w.derivatives.size() < sides_.size()) w.derivatives.resize(sides_.size());
   Instant from = start;
   double left = h;
   for (;;) {

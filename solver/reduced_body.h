@@ -156,10 +156,10 @@ class ReducedBody {
   std::shared_ptr<const ElasticBasis> basis_;
   double contact_mass_;
   std::vector<Group> groups_;
-  std::vector<Side> sides_;     // per plane, then group
-  Eigen::AlignedBox3d box_;     // m, of the contact points, from the centre of gravity, reference axes
-  std::vector<double> widest_;  // m, per plane: greatest gap of centre lines on its face
-  Touches touches_;
+  std::vector<Side> sides_;           // per plane, then group
+  Eigen::AlignedBox3d box_;           // m, of the contact points, from the centre of gravity, reference axes
+  std::vector<double> widest_;        // m, per plane: greatest gap of centre lines on its face
+  Touches touches_, touches_before_;  // the latter: where a part of a step starts
   // The state at which `touches_` is.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;
@@ -182,7 +182,6 @@ class ReducedBody {
 
 /// Scratch of a step, for one body after the other.
 struct ReducedScratch {
-  ReducedBody::Touches touches_start;
   std::vector<ReducedBody::Derivative> derivatives;  // per touch
   // Newton: M - (h/2) sum J^T (df/dv) J and its factors, and a right side. Rows of whole packs.
   double matrix[ReducedBody::k_unknowns][ReducedBody::k_unknowns + 2], side[ReducedBody::k_unknowns];

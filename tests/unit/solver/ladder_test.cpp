@@ -345,5 +345,21 @@ TEST(Ladder, goes_on_bit_for_bit_from_a_checkpoint) {
   }
 }
 
+// Nodes of bodies that are not frames are placed when somebody looks, and nothing may go by where they are.
+TEST(Ladder, who_looks_at_an_adaptive_run_changes_nothing) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = paper_cabinet(model);
+    setup.run.duration = 3;
+    setup.parameters.adaptive = true;
+    shake(setup, 4, 2);
+    topple::Run looked_at(setup), left_alone(setup);
+    for (int i = 0; i < 500; ++i) {
+      ASSERT_TRUE(looked_at.advance().ok() && left_alone.advance().ok());
+      EXPECT_GT(looked_at.state().position.size(), 0u);
+    }
+    EXPECT_EQ(hash(looked_at.state()), hash(left_alone.state()));
+  }
+}
+
 }  // namespace
 }  // namespace topple::test
