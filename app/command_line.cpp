@@ -143,8 +143,17 @@ class CommandLine {
     add_set(command, run_.overrides);
     add_path(command, "--json", run_.json, "FILE|-", "write the summary as JSON; - for standard output");
     command.add_flag("--quiet", run_.quiet, "no progress");
+    CLI::Option* const jobs =
+        command.add_option("--jobs", jobs_, "threads for bodies that are apart, default as many as pay")
+            ->type_name("N")
+            ->check(job_count, "", "count");
+    command.add_flag("--profile", run_.profile, "tell where the time of steps goes, on one thread")
+        ->excludes(jobs);
     add_later_flag(command, "--estimate");
-    command.callback([this] { action_ = [this] { return run_command(run_); }; });
+    command.callback([this] {
+      run_.jobs = whole_number<int>(jobs_);
+      action_ = [this] { return run_command(run_); };
+    });
   }
 
   void add_view() {

@@ -27,6 +27,8 @@ struct RunOptions {
   std::string recording;               ///< empty: none
   std::string json;                    ///< file, "-" or empty
   bool quiet = false;
+  bool profile = false;     ///< tells where the time of steps went
+  std::optional<int> jobs;  ///< threads; absent: as many as pay
 };
 int run_command(const RunOptions& options);
 

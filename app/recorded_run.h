@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "solver/io/scene.h"
@@ -15,9 +16,15 @@ struct RecordedRun {
   bool recorded;        ///< there is a recording, closed
 };
 
+struct RunManner {
+  bool quiet = false;
+  bool profile = false;          ///< adds "profile" to the summary; then one thread steps
+  std::optional<int> jobs = {};  ///< threads; absent: as many as pay
+};
+
 /// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C, which is
 /// deferred (interrupt.h). Throws io::WriteError when the recording cannot be written; it says what can still
 /// be read.
-RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet);
+RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner);
 
 }  // namespace topple::app

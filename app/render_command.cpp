@@ -222,7 +222,7 @@ int render_command(const RenderOptions& options) {
   defer_interrupts();
   check_outputs(options);
   const TemporaryFile file;
-  const RecordedRun run = record(*scene, file.path(), options.quiet);
+  const RecordedRun run = record(*scene, file.path(), {.quiet = options.quiet});
   if (!run.trouble.empty())
     say(run.trouble + (run.exit_code == k_failed && run.recorded ? "; drawing up to there" : ""));
   if (run.exit_code == k_interrupted || !run.recorded) return run.exit_code;

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "app/commands.h"
 #include "app/files.h"
@@ -10,26 +12,45 @@
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
+#include "app/run_profile.h"
 #include "app/summary.h"
 #include "app/words.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
+#include "solver/ladder.h"
+#include "solver/study/team.h"
 
 namespace topple::app {
 
 namespace {
+
+constexpr int k_many_bodies = 32;  // that are not frames: a step of fewer is over before it is shared out
+
+/// Threads that make steps of `setup` faster.
+int paying_jobs(const Setup& setup) {
+  if (is_static(setup)) return 1;
+  int frames = 0, others = 0;
+  for (int b = 0; b < setup.model.furniture_total(); ++b)
+    ++(base_rung(setup.model, setup.parameters, b).rung == Rung::frame ? frames : others);
+  if (frames < 2 && others < k_many_bodies) return 1;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, frames + others);
+}
 
 /// Steps to the end of `run`, a failure or Ctrl+C. `recorder`: null, or what has the first instant already.
 void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Progress& progress) {
   while (!run.over() && !interrupted()) {
     if (!run.advance().ok()) break;
     if (recorder) {
+      const InPhase phase(&run.profile(), Phase::record);
       recorder->write(observer.observe(run));
       recorder->flush_if_due();
     }
     progress.update(run.time());
   }
-  if (recorder) recorder->write(observer.last(run));
+  if (recorder) {
+    const InPhase phase(&run.profile(), Phase::record);
+    recorder->write(observer.last(run));
+  }
 }
 
 /// What follows the number up to which there is something.
@@ -58,10 +79,11 @@ std::string status_of(const Run& run) {
 
 }  // namespace
 
-RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) {
+RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
   std::optional<io::Recorder> recorder;
   if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model);
   const auto start = std::chrono::steady_clock::now();
+  std::optional<study::Team> team;
   Run run(scene.setup);
   const bool recorded = recorder && run.status().ok();  // what does not settle has no first instant
   RecordedRun result;
@@ -75,12 +97,18 @@ RecordedRun record(const io::Scene& scene, const std::string& path, bool quiet) 
       }
       begun = recorded;
       Progress progress(scene.name, is_static(scene.setup) ? "of the load path" : "s simulated",
-                        scene.setup.run.duration, quiet);
+                        scene.setup.run.duration, manner.quiet);
+      const int jobs = manner.profile ? 1 : manner.jobs.value_or(paying_jobs(scene.setup));
+      if (jobs > 1) run.share(team.emplace(jobs).share());
+      if (manner.profile) start_profile(run.profile());
       step_through(run, observer, recorded ? &*recorder : nullptr, progress);
     }
+    nlohmann::ordered_json profile;
+    if (manner.profile) profile = profile_summary(run.profile(), run.step());
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::string status = status_of(run);
     result.summary = summary(scene, run, status, wall);
+    if (manner.profile) result.summary["profile"] = std::move(profile);
     if (recorded) recorder->finish(status, json_text(result.summary));
     result.recorded = recorded;
     result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
@@ -100,8 +128,10 @@ int run_command(const RunOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
   if (scene.setup.run.analysis == Analysis::modes) {
     if (!options.recording.empty()) throw BadInput("--output: modes are not recorded; --json writes them");
+    if (options.profile) throw BadInput("--profile: modes take no steps of time");
     return modes_command({.scene = options.scene, .overrides = options.overrides, .json = options.json});
   }
+  if (options.profile && is_static(scene.setup)) throw BadInput("--profile: statics take no steps of time");
   const bool json_to_output = options.json == "-";
   defer_interrupts();
   if (!options.recording.empty()) require_writable_file("--output", options.recording, options.scene);
@@ -110,7 +140,8 @@ int run_command(const RunOptions& options) {
     if (same_file(options.json, options.recording))
       throw BadInput("--json: " + options.json + " is the recording; choose another name");
   }
-  const RecordedRun result = record(scene, options.recording, options.quiet);
+  const RecordedRun result = record(
+      scene, options.recording, {.quiet = options.quiet, .profile = options.profile, .jobs = options.jobs});
   if (!result.trouble.empty())
     say(result.trouble +
         (result.recorded
@@ -122,6 +153,7 @@ int run_command(const RunOptions& options) {
     fmt::print("{}\n", json_text(result.summary, 2));
   } else {
     fmt::print("{}", summary_table(result.summary));
+    if (options.profile) fmt::print("\n{}", profile_table(result.summary["profile"]));
     if (result.recorded) fmt::print("recording: {}\n", options.recording);
     if (!options.json.empty()) write_whole_file(options.json, json_text(result.summary, 2) + "\n");
   }

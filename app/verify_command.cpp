@@ -96,7 +96,7 @@ ordered_json rows_of(const io::Scene& scene) {
   if (scene.setup.run.analysis == Analysis::modes) {
     summary = modes_summary(scene, k_modes);
   } else {
-    RecordedRun run = record(scene, "", true);
+    RecordedRun run = record(scene, "", {.quiet = true, .jobs = 1});
     summary = std::move(run.summary);
     trouble = std::move(run.trouble);
   }

@@ -61,6 +61,12 @@ void solve(const Matrix& a, double* x, int unknowns) {
   }
 }
 
+// Of a contact's springs, in any direction, over alpha/L.
+double greatest_stiffness(const ContactLaw& law) {
+  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
+  return std::max(slope, law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0.);
+}
+
 }  // namespace
 
 Instant::Instant(const Parameters& parameters, double t)
@@ -118,7 +124,17 @@ ReducedBody::ReducedBody(const Model& model, int body)
       }
     }
   }
+  for (Touches* touches : {&touches_, &touches_before_}) touches->all.reserve(sides_.size());
   shapes_.reserve(sides_.size() * modes);
+  const double inverse_moment = inverse_inertia_.trace();
+  for (const Side& here : sides_)
+    for (int which = 0; which < 4; ++which) {
+      const Group& group = groups_[(&here - sides_.data()) % groups_.size()];
+      if (group.point[which] < 0) continue;
+      double inverse_mass = 1 / mass_ + lane(group.place, which).squaredNorm() * inverse_moment;
+      for (const Points& shape : group.shape) inverse_mass += lane(shape, which).squaredNorm();
+      stiffest_ += inverse_mass / here.L[which];
+    }
 }
 
 ReducedBody::Points ReducedBody::place(const BodyState& s, const Group& group) const {
@@ -357,7 +373,6 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
                                  Velocity& u, const BodyState& s, ReducedScratch& w) {
   const int m = modes(s);
   double* const side = w.side;
-  if (w.derivatives.size() < touches_.size()) w.derivatives.resize(touches_.size());
   bool fresh = true;
   double last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
@@ -465,19 +480,18 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.rung == s.rung)
       return known.step;
-  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
-  const double stick = law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0;
   const Mat3 root = inertia_.llt().matrixL().solve(Mat3::Identity()).transpose();
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k_unknowns, k_unknowns>;
+  Matrix stiffness = Matrix::Zero(n, n);
   each_touching(touches_, [&](const Touch& touch, int which, int, std::size_t) {
     const Group& group = groups_[touch.group];
-    Eigen::MatrixXd j(3, n);
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, k_unknowns> j(3, n);
     j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
     j.middleCols<3>(3) = -skew(lane(group.place, which)) * root;
     for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = lane(group.shape[k], which);
-    stiffness += law.alpha / side(touch).L[which] * std::max(slope, stick) * j.transpose() * j;
+    stiffness += law.alpha / side(touch).L[which] * greatest_stiffness(law) * j.transpose() * j;
   });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
@@ -540,7 +554,7 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
 void ReducedBody::advance_part(const Parameters& parameters, const Instant& start, const Instant& end,
                                double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                ReducedScratch& w) {
-  std::swap(touches_, w.touches_start);
+  std::swap(touches_, touches_before_);
   const BodyState before = s;
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (s.rotation.conjugate() * s.moment));
@@ -583,7 +597,7 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
               dot(in_all_lanes(model_.planes[touch.plane].normal), travel);
     rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
-  for (const Touch& touch : w.touches_start)
+  for (const Touch& touch : touches_before_)
     book(touch, in_all_lanes(shift) + (r * place(s, groups_[touch.group]) - touch.arm), -1);
   for (const Touch& touch : touches_) book(touch, touch.travel, 1);
   booked.normal_damping += sum(damped);
@@ -599,9 +613,9 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
          0.5 * (s.rate.square() - before.rate.square()) -
          0.5 * basis_->frequency.square() * (s.amplitude.square() - before.amplitude.square()))
             .sum();
-  book_law_change(start.law, end.law, w.touches_start, booked);
+  book_law_change(start.law, end.law, touches_before_, booked);
 
-  each_touching(w.touches_start, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
+  each_touching(touches_before_, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
   keep_sticks(end.law, stick);
 }
 
@@ -626,18 +640,33 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
   });
 }
 
+// The longest part of a step of size h that is stable: on what touches, and on what will. `touches_` may be
+// those of a trial afterwards.
+double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState& s, ReducedScratch& w) {
+  const double now = stable_part(law, s), size = now < h ? h / std::ceil(h / now - 1e-9) : h;
+  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * stiffest_) < k_stable_turn) return size;
+  BodyState ahead = s;
+  ahead.velocity += size / 2 / mass_ * s.force;
+  drift(size, ahead);
+  std::swap(touches_, w.touches_start);
+  find_touching(ahead, ahead.rotation.toRotationMatrix());
+  const double then = stable_part(law, s);
+  std::swap(touches_, w.touches_start);
+  return then < size ? h / std::ceil(h / then - 1e-9) : size;
+}
+
 BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                 double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                 ReducedScratch& w) {
   Instant from = start;
   double left = h;
   for (;;) {
-    const double parts = std::ceil(left / stable_part(from.law, s) - 1e-9);
-    if (!(parts > 1)) break;
-    const Instant to(parameters, from.time + left / parts);
-    advance_part(parameters, from, to, left / parts, s, stick, booked, w);
+    const double size = stable_size(from.law, left, s, w);
+    if (!(size < left)) break;
+    const Instant to(parameters, from.time + size);
+    advance_part(parameters, from, to, size, s, stick, booked, w);
     respond_at(to.law, s);
-    left -= left / parts;
+    left -= size;
     from = to;
   }
   advance_part(parameters, from, end, left, s, stick, booked, w);

@@ -141,6 +141,7 @@ class ReducedBody {
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
+  double stable_size(const ContactLaw& law, double h, const BodyState& s, ReducedScratch& w);
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
   void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
                        StepEnergy& energy) const;
@@ -156,11 +157,12 @@ class ReducedBody {
   const Mat3 inertia_, inverse_inertia_;  // material axes
   std::shared_ptr<const ElasticBasis> basis_;
   double contact_mass_;
+  double stiffest_ = 0;  // 1/(kg m), w^2 over alpha is below it whatever touches
   std::vector<Group> groups_;
-  std::vector<Side> sides_;     // per plane, then group
-  Eigen::AlignedBox3d box_;     // m, of the contact points, from the centre of gravity, reference axes
-  std::vector<double> widest_;  // m, per plane: greatest gap of centre lines on its face
-  Touches touches_;
+  std::vector<Side> sides_;           // per plane, then group
+  Eigen::AlignedBox3d box_;           // m, of the contact points, from the centre of gravity, reference axes
+  std::vector<double> widest_;        // m, per plane: greatest gap of centre lines on its face
+  Touches touches_, touches_before_;  // the latter: where a part of a step starts
   // The state at which `touches_` is.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;
@@ -184,7 +186,6 @@ class ReducedBody {
 
 /// Scratch of a step, for one body after the other.
 struct ReducedScratch {
-  ReducedBody::Touches touches_start;
   std::vector<ReducedBody::Derivative> derivatives;  // per touch
   // Newton: M - (h/2) sum J^T (df/dv) J and its factors, and a right side. Rows of whole packs.
   double matrix[ReducedBody::k_unknowns][ReducedBody::k_unknowns + 2], side[ReducedBody::k_unknowns];

@@ -101,6 +101,7 @@ bool Run::over() const {
 }
 
 void Run::see_forces() {
+  contacts_.reserve(setup_->model.contact_points.size() * setup_->model.planes.size());
   contacts_ = contact_forces(setup_->model, now_.parameters, now_.state, workspace_);
   sections_ = section_forces(workspace_);
 }

@@ -74,7 +74,11 @@ struct Workspace::Impl {
   explicit Impl(const Model& model)
       : islands(model),
         reduced_bodies(model.bodies.size()),
-        sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {}
+        sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {
+    moving.reserve(model.bodies.size());
+    parts.reserve(model.bodies.size());
+    contact_forces.reserve(model.contact_points.size() * model.planes.size());
+  }
   const std::vector<BodySystem*>& systems() const { return islands.systems(); }
   ReducedBody& reduced(const Model& model, int body) {
     if (!reduced_bodies[body]) reduced_bodies[body] = std::make_unique<ReducedBody>(model, body);

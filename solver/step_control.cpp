@@ -25,6 +25,7 @@ double spin(const Body& body, const State& state) {
 // As contact_limit, for the members of all bodies that are near each other.
 double member_limit(const Model& model, const ContactLaw& law, const State& state) {
   double limit = std::numeric_limits<double>::infinity();
+  if (state.near.empty()) return limit;
   std::vector<double> stiffness(model.bodies.size(), 0.);
   const auto body_of = [&](int e) { return model.members[model.elements[e].member].body; };
   for (const ElementPair& pair : state.near) {
@@ -74,7 +75,9 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
   double limit = std::min(k_longest_step, member_limit(model, law, state));
-  for (const Body& body : model.bodies) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (state.bodies[b].rung != Rung::frame) continue;
+    const Body& body = model.bodies[b];
     limit = std::min(limit, contact_limit(model, body, law, state));
     if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;
   }
@@ -90,7 +93,9 @@ double step_error(const Model& model, const Parameters& parameters, const State&
   for (const Body& body : model.bodies) total_mass += body.mass;
   const double largest = after.energy.largest + total_mass * k_at_rest * k_at_rest;
   const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
-  for (const Body& body : model.bodies) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (after.bodies[b].rung != Rung::frame) continue;
+    const Body& body = model.bodies[b];
     double change = 0, speed = 0;
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
       const auto square = [&](const Vec3& v, const Vec3& w) {

@@ -15,13 +15,13 @@ inline constexpr double k_closing_part = 4;     ///< steps in which a closing co
 inline constexpr double k_turn = 0.1;           ///< rad per step
 
 /// What the motion at `state` allows, s: T_contact/20 of a body that touches, the time to touch or L/(4 v)
-/// where a contact closes, 0.1/|omega|.
+/// where a contact closes, 0.1/|omega|. Of frames, whose nodes are where `state` has them.
 double look_ahead(const Model& model, const Parameters& parameters, const State& state);
 
 /// Local error of a step of the implicit methods over what the tolerance allows it; at most 1 passes.
 ///   |e|/h <= tolerance V,  e = (|1/6 - beta - delta/2| + |gamma - 1/2 + delta|) h^2 (a1 - a0),
 /// delta = alpha_m - alpha_f, a the algorithmic acceleration, |.| the mass-weighted mean over a body, the
-/// greatest of all bodies. V: its speed, not below a tenth of what the largest energy exchanged amounts to.
+/// greatest of all frames. V: its speed, not below a tenth of what the largest energy exchanged amounts to.
 /// Likewise the energy that the step leaves unexplained, against a twentieth of the tolerance of that energy.
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
                   double h);

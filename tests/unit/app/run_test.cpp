@@ -156,6 +156,61 @@ TEST_F(RunTest, the_same_scene_gives_the_same_states) {
   EXPECT_NE(a["last_state_hash"], info("c.h5")["last_state_hash"]);
 }
 
+TEST_F(RunTest, threads_change_no_state) {
+  const std::string at = "size = [\"380 mm\"";
+  std::string first = k_shaken, second = k_cabinet;
+  first.insert(first.find(at), "model = \"frame\"\n");
+  second.insert(second.find(at), "model = \"frame\"\nat = [\"5 m\", 0]\n");
+  second.replace(second.find("free"), 4, "other");
+  write_bytes("two.toml", first + second);
+  for (const char* jobs : {"1", "2", "3"}) {
+    const std::string name = std::string("jobs-") + jobs + ".h5";
+    ASSERT_EQ(topple({"run", "two.toml", "-o", name, "--jobs", jobs}).code, 0);
+    EXPECT_EQ(info(name)["last_state_hash"], info("jobs-1.h5")["last_state_hash"]);
+  }
+  expect_one_line({"run", "two.toml", "--jobs", "0"}, 2, "--jobs: \"0\" is not a whole number in 1..256");
+}
+
+TEST_F(RunTest, the_phases_of_a_profile_make_up_the_time_of_the_steps) {
+  const Ended ended = topple(
+      {"run", "s.toml", "--set", "cabinet.free.model=frame", "-o", "a.h5", "--profile", "--json", "-"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json s = json_of(ended.out);
+  ASSERT_TRUE(s.is_object()) << ended.out;
+  const Json& profile = s["profile"];
+  double sum = 0;
+  for (const char* key : {"search_s", "models_s", "bodies_s", "forces_s", "tangent_s", "factor_s", "solve_s",
+                          "energy_s", "observe_s", "record_s", "other_s"}) {
+    ASSERT_TRUE(profile.contains(key)) << key;
+    EXPECT_GE(profile[key], 0) << key;
+    sum += profile[key].get<double>();
+  }
+  for (const char* key : {"factor_s", "observe_s", "record_s"}) EXPECT_GT(profile[key], 0) << key;
+  EXPECT_EQ(profile["bodies_s"], 0);
+  EXPECT_NEAR(sum, profile["total_s"], 1e-9);
+  EXPECT_LE(profile["total_s"], s["wall_s"]);
+  EXPECT_EQ(profile["steps"], s["steps"]);
+  EXPECT_EQ(profile["threads"], 1);
+  EXPECT_EQ(profile.size(), 14u);
+  EXPECT_EQ(s, info("a.h5")["summary"]);
+}
+
+TEST_F(RunTest, a_profile_follows_the_table) {
+  const std::string plain = topple({"run", "s.toml"}).out, with = topple({"run", "s.toml", "--profile"}).out;
+  EXPECT_EQ(plain.find("factorisation"), std::string::npos);
+  EXPECT_LT(with.find("\nprobe middle: "), with.find("\nfactorisation "));
+  EXPECT_TRUE(with.ends_with("\nmeasured on one thread\n")) << with;
+  EXPECT_FALSE(json_of(topple({"run", "s.toml", "--json", "-"}).out).contains("profile"));
+  expect_one_line({"run", "s.toml", "--profile", "--jobs", "2"}, 2, "excludes");
+  for (const char* analysis : {"static", "modes"}) {
+    std::string text = k_beam;
+    const std::size_t begin = text.find("duration"), end = text.find("[[material]]");
+    text.replace(begin, end - begin, std::string("analysis = \"") + analysis + "\"\n");
+    write_bytes("timeless.toml", text);
+    expect_one_line({"run", "timeless.toml", "--profile"}, 2, "take no steps of time");
+  }
+}
+
 TEST_F(RunTest, a_scene_may_come_through_a_pipe) {
   for (const char* command : {"run", "check", "info"}) {
     int ends[2];

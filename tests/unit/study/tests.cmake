@@ -3,6 +3,8 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/standing_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/team_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/theory_test.cpp)
 target_link_libraries(study_test PRIVATE topple_study GTest::gtest_main)
+target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 gtest_discover_tests(study_test)

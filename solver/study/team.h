@@ -1,0 +1,27 @@
+// Threads for short work that comes again and again, such as the islands of a step.
+#pragma once
+
+#include <memory>
+
+#include "solver/parallel_for.h"
+
+namespace topple::study {
+
+/// Threads that wait for tasks, at first by turning in a loop, then asleep. Sharing out takes no memory.
+class Team {
+ public:
+  /// `workers` >= 1 with the thread that calls.
+  explicit Team(int workers);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  /// Lives no longer than the team; one call at a time.
+  ParallelFor share();
+
+ private:
+  struct Shared;
+  std::unique_ptr<Shared> shared_;
+};
+
+}  // namespace topple::study
