@@ -642,16 +642,16 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
 
 // The longest part of a step of size h that is stable: on what touches, and on what will. `touches_` may be
 // those of a trial afterwards.
-double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState& s, ReducedScratch& w) {
+double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState& s) {
   const double now = stable_part(law, s), size = now < h ? h / std::ceil(h / now - 1e-9) : h;
   if (size * std::sqrt(law.alpha * greatest_stiffness(law) * stiffest_) < k_stable_turn) return size;
   BodyState ahead = s;
   ahead.velocity += size / 2 / mass_ * s.force;
   drift(size, ahead);
-  std::swap(touches_, w.touches_start);
+  std::swap(touches_, touches_before_);
   find_touching(ahead, ahead.rotation.toRotationMatrix());
   const double then = stable_part(law, s);
-  std::swap(touches_, w.touches_start);
+  std::swap(touches_, touches_before_);
   return then < size ? h / std::ceil(h / then - 1e-9) : size;
 }
 
@@ -661,7 +661,7 @@ BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& sta
   Instant from = start;
   double left = h;
   for (;;) {
-    const double size = stable_size(from.law, left, s, w);
+    const double size = stable_size(from.law, left, s);
     if (!(size < left)) break;
     const Instant to(parameters, from.time + size);
     advance_part(parameters, from, to, size, s, stick, booked, w);

@@ -141,7 +141,7 @@ class ReducedBody {
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
-  double stable_size(const ContactLaw& law, double h, const BodyState& s, ReducedScratch& w);
+  double stable_size(const ContactLaw& law, double h, const BodyState& s);
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
   void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
                        StepEnergy& energy) const;
