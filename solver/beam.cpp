@@ -76,19 +76,6 @@ double beam_energy(const Element& element, const BeamStrain& elastic) {
           elastic.kappa.dot(element.bending_stiffness.cwiseProduct(elastic.kappa)));
 }
 
-BeamGradient beam_gradient(const Element& element, const ElementState& state, const BeamEnds& ends) {
-  const Kinematics k = kinematics(element, element.s, ends);
-  const SectionForces forces = respond(element, state, k.strain).forces;
-  const Vec3 n = k.rs * forces.normal;
-  const Vec3 m0 = forces.moment;
-  const Vec3 p = n.cross(k.d);
-  const Mat3 inverse = inverse_left_jacobian(ends.psi);
-  // B^T p with B = R1 t T(t psi) T(psi)^-1 R1^T, and A^T m0 with A = T(psi)^-1 R1^T
-  const Vec3 q = k.t * left_jacobian(k.t * ends.psi).transpose() * (ends.r1.transpose() * p);
-  const Vec3 moment = ends.r1 * (inverse.transpose() * (q + m0));
-  return {-n, p - moment, n, moment};
-}
-
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
                   BeamGradient& gradient, Mat12& tangent) {
   if (state.hinge == Hinge::broken) {

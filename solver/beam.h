@@ -30,9 +30,8 @@ double beam_energy(const Element& element, const BeamStrain& elastic);
 struct BeamGradient {
   Vec3 force1, moment1, force2, moment2;
 };
-BeamGradient beam_gradient(const Element& element, const ElementState& state, const BeamEnds& ends);
 
-/// Derivative of the gradient by (x1, spin1, x2, spin2), 12 x 12, row-major; not symmetric away from
+/// The gradient, and its derivative by (x1, spin1, x2, spin2), 12 x 12, row-major; not symmetric away from
 /// equilibrium.
 using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,

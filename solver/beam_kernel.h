@@ -71,11 +71,10 @@ template <class P>
 
 /// log_factor and small_angle lane by lane, for any angle below pi.
 inline Four any_log_factor(const PackQuaternion<Four>& q) {
-  Four factor;
+  Four factor = log_factor(q);
   for (int k = 0; k < 4; ++k) {
-    const double s = std::sqrt(q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k]);
-    factor.set(k,
-               s < 1e-3 ? 2 / q.w[k] * (1 - s * s / (3 * q.w[k] * q.w[k])) : 2 * std::atan2(s, q.w[k]) / s);
+    const double s2 = q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k], s = std::sqrt(s2);
+    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k])) factor.set(k, 2 * std::atan2(s, q.w[k]) / s);
   }
   return factor;
 }
@@ -138,14 +137,14 @@ template <class P>
   const P one = with_sign_of(P(1), turn.w);
   turn = {one * turn.v, one * turn.w};
   const PackVector<P> along = transposed_times(beam.triad_matrix, turn.v);
-  s.psi = log_factor(turn) * along;
-  P x = dot(s.psi, s.psi);
-  if (any_above(x, k_small_angle)) [[unlikely]] {
+  const P limit =
+      P(k_small_angle / 4) * (turn.w * turn.w);  // tan^2 of half the angle: the series may fold back
+  if (any_above(dot(turn.v, turn.v) - limit, 0)) [[unlikely]] {
     s.psi = any_log_factor(turn) * along;
-    x = dot(s.psi, s.psi);
-    s.angle = any_angle(x, beam.t);
+    s.angle = any_angle(dot(s.psi, s.psi), beam.t);
   } else {
-    s.angle = small_angle(x, beam.t);
+    s.psi = log_factor(turn) * along;
+    s.angle = small_angle(dot(s.psi, s.psi), beam.t);
   }
   s.e1 = ends.q1 * beam.triad;
   s.rs = rotation_matrix(normalized(s.e1 * PackQuaternion<P>{s.angle.sine * s.psi, s.angle.cosine}));

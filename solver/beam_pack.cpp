@@ -1,5 +1,7 @@
 #include "solver/beam_pack.h"
 
+#include <new>
+
 #include "solver/plasticity.h"
 
 namespace topple {
@@ -79,32 +81,34 @@ void BeamPacks::remember(std::span<const ElementState> elements) {
   }
 }
 
-PackSection<Four> BeamPacks::sections_of(std::span<const ElementState> elements, std::size_t n,
-                                         const PackStrain<Four>& strain) const {
+void BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n,
+                           const PackStrain<Four>& strain, PackSection<Four>& section) const {
   const Pack& pack = packs_[n];
-  PackSection<Four> section = elastic_section(pack.beam, strain);
-  for (int k = 0; pack.hinged && k < 4 && pack.element[k] >= 0; ++k) {
+  for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
     const SectionForces forces = respond(model_->elements[pack.element[k]], elements[4 * n + k],
                                          {lane(strain.gamma, k), lane(strain.kappa, k)})
                                      .forces;
     set_lane(section.normal, k, forces.normal);
     set_lane(section.moment, k, forces.moment);
   }
-  return section;
 }
 
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
                                   std::span<const Quat> rotation, std::span<NodeForce> forces) {
-  // in two passes: the way through one pack is long, and the processor looks no further than one ahead
+  // in two passes: the way through one pack is long, and the processor looks no further than one ahead;
+  // strains are made in place, not copied there
   for (std::size_t n = 0; n < packs_.size(); ++n)
-    strains_[n] = pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j));
+    new (&strains_[n])
+        PackStrain<Four>(pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j)));
   Four total(0);
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];
     const PackStrain<Four>& strain = strains_[n];
-    pack.section = sections_of(elements, n, strain);
-    total = total + pack_energy(pack.beam, strain, pack.section);
-    subtract(pack_gradient(pack.beam, strain, pack.section), pack.i, pack.j, forces);
+    PackSection<Four> section = elastic_section(pack.beam, strain);
+    if (pack.hinged) respond_to(elements, n, strain, section);
+    total = total + pack_energy(pack.beam, strain, section);
+    subtract(pack_gradient(pack.beam, strain, section), pack.i, pack.j, forces);
+    pack.section = section;
   }
   latest_energy_ = sum(total);
 }
@@ -114,7 +118,8 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::s
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     const Pack& pack = packs_[n];
     const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
-    const PackSection<Four> section = sections_of(elements, n, strain);
+    PackSection<Four> section = elastic_section(pack.beam, strain);
+    if (pack.hinged) respond_to(elements, n, strain, section);
     const PackGradient<Four> gradient = pack_gradient(pack.beam, strain, section);
     subtract(gradient, pack.i, pack.j, forces);
     if (pack.hinged) {

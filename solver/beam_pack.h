@@ -53,8 +53,8 @@ class BeamPacks {
     PackSection<Four> section;                ///< of the latest gradient
   };
 
-  PackSection<Four> sections_of(std::span<const ElementState> elements, std::size_t pack,
-                                const PackStrain<Four>& strain) const;
+  void respond_to(std::span<const ElementState> elements, std::size_t pack, const PackStrain<Four>& strain,
+                  PackSection<Four>& section) const;
   void add_hinged_tangent(std::span<const ElementState> elements, std::span<const Vec3> position,
                           std::span<const Quat> rotation, std::size_t pack, BlockLu& lu) const;
   static void store_sections(const Pack& pack, const PackSection<Four>& section,

@@ -122,7 +122,6 @@ void BodySystem::add_packs() {
       const bool real = i + k < count;
       const int own = std::min(i + k, count - 1), g = node[own];
       pack.node[k] = own;
-      pack.global[k] = g;
       pack.diagonal[k] = lu.index(own, own);
       pack.real.set(k, real);
       pack.mass.set(k, real ? model.node_mass[g] : 0);
@@ -297,9 +296,9 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   sum.kinetic = kinetic_energy(motion);
   if (ends_here && !yields) {
     sum.strain = beams_.latest_energy(sections);
+    ends_here = false;
   } else {
-    if (yields) beams_.remember(elements);
-    sum.strain = beams_.energy(motion.position, motion.rotation, sections);
+    sum.strain = elastic_energy(motion, sections);
   }
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
@@ -308,6 +307,11 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
   return sum;
+}
+
+double BodySystem::elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections) {
+  if (yields) beams_.remember(elements);
+  return beams_.energy(motion.position, motion.rotation, sections);
 }
 
 double BodySystem::kinetic_energy(const BodyMotion& motion) const {
@@ -321,13 +325,10 @@ double BodySystem::kinetic_energy(const BodyMotion& motion) const {
 }
 
 void BodySystem::load(const State& state, BodyMotion& motion) const {
-  motion.resize(count);
-  for (int i = 0; i < count; ++i) {
-    motion.position[i] = state.position[node[i]];
-    motion.velocity[i] = state.velocity[node[i]];
-    motion.rotation[i] = state.rotation[node[i]];
-    motion.angular_velocity[i] = state.angular_velocity[node[i]];
-  }
+  take(state.position, motion.position);
+  take(state.velocity, motion.velocity);
+  take(state.rotation, motion.rotation);
+  take(state.angular_velocity, motion.angular_velocity);
 }
 
 void BodySystem::load_memory(const State& state) {

@@ -1,6 +1,7 @@
 // Forces on the nodes of one body, or of bodies that may touch each other, and their derivatives.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -44,7 +45,6 @@ struct BodyMotion {
 /// Four nodes of a system that are worked on together; what fills the last pack repeats its last node.
 struct NodePack {
   std::array<int, 4> node;                    ///< numbered within the system
-  std::array<int, 4> global;                  ///< index into the model
   std::array<int, 4> diagonal;                ///< numbers of blocks in the sparse matrix
   Four real;                                  ///< 1; of what fills 0
   Four mass;                                  ///< kg; of what fills 0
@@ -91,6 +91,18 @@ class BodySystem {
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
                     std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
+  /// Of the elements' elastic strain, J; also fills this system's part of `sections`: forces without flow.
+  double elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections);
+  /// Copies this system's part of an array over the model's nodes into one over its own, and back.
+  template <class T>
+  void take(const std::vector<T>& all, std::vector<T>& own) const {
+    own.resize(count);
+    each_run([&](int global, int i, int nodes) { std::copy_n(&all[global], nodes, &own[i]); });
+  }
+  template <class T>
+  void put(const std::vector<T>& own, std::vector<T>& all) const {
+    each_run([&](int global, int i, int nodes) { std::copy_n(&own[i], nodes, &all[global]); });
+  }
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
   /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.
@@ -140,6 +152,16 @@ class BodySystem {
   std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
+  // f(index into the model, number within the system, count) of nodes that are consecutive in both.
+  template <class F>
+  void each_run(F&& f) const {
+    int i = 0;
+    for (const int b : bodies) {
+      f(model.bodies[b].first_node, i, model.bodies[b].node_count);
+      i += model.bodies[b].node_count;
+    }
+    for (; i < count; ++i) f(node[i], i, 1);
+  }
   void add_nodes();
   void add_packs();
   MemberPair member_pair(const ElementPair& pair) const;

@@ -146,26 +146,27 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Ve
 // Velocities to the middle of the step, then positions and rotations to its end.
 void half_step(const BodySystem& s, const State& state, double h, IntegratorScratch& w) {
   w.trial.resize(s.count);
+  s.take(state.acceleration, w.acceleration);
+  s.take(state.angular_acceleration, w.angular_acceleration);
   const Four step(h), half(h / 2);
   for (const NodePack& pack : s.node_packs) {
-    const auto& from = pack.global;
     const PackVector<Four> v =
-        gather(state.velocity.data(), from) + half * gather(state.acceleration.data(), from);
-    const PackVector<Four> omega =
-        gather(state.angular_velocity.data(), from) + half * gather(state.angular_acceleration.data(), from);
+        gather(w.start.velocity.data(), pack.node) + half * gather(w.acceleration.data(), pack.node);
+    const PackVector<Four> omega = gather(w.start.angular_velocity.data(), pack.node) +
+                                   half * gather(w.angular_acceleration.data(), pack.node);
     scatter(v, w.trial.velocity.data(), pack.node);
     scatter(omega, w.trial.angular_velocity.data(), pack.node);
-    scatter(gather(state.position.data(), from) + step * v, w.trial.position.data(), pack.node);
-    scatter(normalized(gather(state.rotation.data(), from) * exponential(step * omega)),
+    scatter(gather(w.start.position.data(), pack.node) + step * v, w.trial.position.data(), pack.node);
+    scatter(normalized(gather(w.start.rotation.data(), pack.node) * exponential(step * omega)),
             w.trial.rotation.data(), pack.node);
   }
 }
 
 // New accelerations and velocities from `force` and `moment`, and the new motion into `state`; false when it
 // is not finite.
-bool take_accelerations(const BodySystem& s, double h, BodyMotion& trial, State& state) {
+bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, State& state) {
+  BodyMotion& trial = w.trial;
   const Four half(h / 2);
-  const int own = own_nodes(s);
   PackVector<Four> odd{0, 0, 0};
   for (const NodePack& pack : s.node_packs) {
     const PackQuaternion<Four> q = gather(trial.rotation.data(), pack.node);
@@ -180,23 +181,19 @@ bool take_accelerations(const BodySystem& s, double h, BodyMotion& trial, State&
     }
     scatter(velocity, trial.velocity.data(), pack.node);
     scatter(omega, trial.angular_velocity.data(), pack.node);
-    const auto keep = [&](const PackVector<Four>& x, std::vector<Vec3>& array) {
-      if (pack.node[3] < own) return scatter(x, array.data(), pack.global);
-      for (int k = 0; k < 4; ++k)
-        if (pack.node[k] < own) array[pack.global[k]] = lane(x, k);
-    };
-    keep(velocity, state.velocity);
-    keep(omega, state.angular_velocity);
-    for (auto* array : {&state.acceleration, &state.algorithmic_acceleration}) keep(acceleration, *array);
-    for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
-      keep(angular, *array);
+    scatter(acceleration, w.acceleration.data(), pack.node);
+    scatter(angular, w.angular_acceleration.data(), pack.node);
     const PackVector<Four> all = acceleration + angular;
     odd = odd + (all - all);
   }
-  for (int i = 0; i < own; ++i) {
-    state.position[s.node[i]] = trial.position[i];
-    state.rotation[s.node[i]] = trial.rotation[i];
-  }
+  put_own(s, trial.position, state.position);
+  put_own(s, trial.rotation, state.rotation);
+  put_own(s, trial.velocity, state.velocity);
+  put_own(s, trial.angular_velocity, state.angular_velocity);
+  for (auto* array : {&state.acceleration, &state.algorithmic_acceleration})
+    put_own(s, w.acceleration, *array);
+  for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
+    put_own(s, w.angular_acceleration, *array);
   return !any_above(dot(odd, odd), 0);
 }
 
@@ -226,7 +223,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   add_plane_contacts(s, law, stick, h, w);
   for (int i = 0; i < s.count; ++i)
     if (s.fixed[i]) clear_fixed(s, i, s.force[i], s.moment[i]);
-  const bool finite = take_accelerations(s, h, w.trial, state);
+  const bool finite = take_accelerations(s, h, w, state);
   book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.contacts, energy);
   energy.plastic += commit_hinges(s, w.start, w.trial, state);
   s.store_stick(s.contacts, state);

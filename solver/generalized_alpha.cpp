@@ -86,13 +86,10 @@ void ImplicitStep::predict() {
   w_.right_hand_side.resize(6 * n);
   for (auto* array : {&w_.kept_residual, &w_.way}) array->reserve(6 * n);
   for (auto* array : {&w_.kept_travel, &w_.kept_turn}) array->reserve(n);
-  for (int i = 0; i < n; ++i) {
-    const int g = s_.node[i];
-    w_.balance0[i] = state_.acceleration[g];
-    w_.angular_balance0[i] = state_.angular_acceleration[g];
-    w_.algorithmic0[i] = state_.algorithmic_acceleration[g];
-    w_.algorithmic_angular0[i] = state_.algorithmic_angular_acceleration[g];
-  }
+  s_.take(state_.acceleration, w_.balance0);
+  s_.take(state_.angular_acceleration, w_.angular_balance0);
+  s_.take(state_.algorithmic_acceleration, w_.algorithmic0);
+  s_.take(state_.algorithmic_angular_acceleration, w_.algorithmic_angular0);
   const auto begin = [&](std::vector<Vec3>& v0, std::vector<Vec3>& a0, std::vector<Vec3>& step,
                          std::vector<Vec3>& coasting) {
     numbers(step) = h_ * (numbers(v0) + h_ / 2 * numbers(a0));
@@ -367,18 +364,14 @@ void ImplicitStep::accept(StepEnergy& energy) {
              dot(rate0 + momentum_rate(pack, w1), at(w_.turn)) - dot(w1 + w0, pack.inertia * (w1 - w0)));
   }
   energy.numerical += sum(taken);
-  const int own = own_nodes(s_);
-  for (int i = 0; i < own; ++i) {
-    const int g = s_.node[i];
-    state_.position[g] = w_.trial.position[i];
-    state_.rotation[g] = w_.trial.rotation[i];
-    state_.velocity[g] = w_.trial.velocity[i];
-    state_.angular_velocity[g] = w_.trial.angular_velocity[i];
-    state_.acceleration[g] = w_.acceleration[i];
-    state_.angular_acceleration[g] = w_.angular_acceleration[i];
-    state_.algorithmic_acceleration[g] = w_.algorithmic[i];
-    state_.algorithmic_angular_acceleration[g] = w_.algorithmic_angular[i];
-  }
+  put_own(s_, w_.trial.position, state_.position);
+  put_own(s_, w_.trial.rotation, state_.rotation);
+  put_own(s_, w_.trial.velocity, state_.velocity);
+  put_own(s_, w_.trial.angular_velocity, state_.angular_velocity);
+  put_own(s_, w_.acceleration, state_.acceleration);
+  put_own(s_, w_.angular_acceleration, state_.angular_acceleration);
+  put_own(s_, w_.algorithmic, state_.algorithmic_acceleration);
+  put_own(s_, w_.algorithmic_angular, state_.algorithmic_angular_acceleration);
   s_.store_stick(s_.contacts, state_);
 }
 

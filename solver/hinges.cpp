@@ -38,6 +38,7 @@ class Update {
   Update(BodySystem& system, const BodyMotion& trial, HingeStep& step)
       : s_(system), model_(system.model), trial_(trial), step_(step) {
     step_.formed.resize(s_.elements.size(), false);
+    step_.sections.resize(model_.elements.size());
   }
 
   bool break_sections();
@@ -96,9 +97,10 @@ void Update::find_candidates() const {
   found.clear();
   found.reserve(2 * count());
   const bool middle = model_.scheme == Scheme::midpoint;
+  s_.elastic_energy(trial_, step_.sections);
   for (int k = 0; k < count(); ++k) {
     if (!yields(element(k)) || s_.elements[k].hinge != Hinge::none || step_.formed[k]) continue;
-    const SectionForces forces = respond(element(k), s_.elements[k], strain(k)).forces;
+    const SectionForces& forces = step_.sections[s_.own_elements[k].element];
     for (int end = 0; end < (middle ? 1 : 2); ++end) {
       const double f = loading(k, forces, middle ? 0 : 2 * end - 1);
       if (f > k_yielding) found.push_back({std::llround(std::min(f, 1e9) / k_same), k, end});

@@ -33,6 +33,7 @@ struct HingeStep {
   int redos = 0;
   std::vector<Candidate> candidates;  ///< scratch, as `nodes`
   std::vector<int> nodes;
+  std::vector<SectionForces> sections;  ///< one per element of the model
 
   void clear() {
     formed.clear();

@@ -53,12 +53,6 @@ void look_around(const Model& model, State& state, double travel) {
   state.near = near_elements(model, state.position, state.near_slack);
 }
 
-int own_nodes(const BodySystem& system) {
-  int count = 0;
-  for (const int b : system.bodies) count += system.model.bodies[b].node_count;
-  return count;
-}
-
 Islands::Islands(const Model& model)
     : model_(model),
       held_(held_bodies(model)),

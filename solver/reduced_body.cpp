@@ -348,7 +348,7 @@ void ReducedBody::fill_modes(double h, int m, ReducedScratch& w) const {
       w.matrix[6 + k][i] = -h / 2 * sum(left[k][i]);
     }
     for (int j = 0; j < m; ++j) w.matrix[6 + k][6 + j] = -h / 2 * sum(corner[k][j]);
-    w.matrix[6 + k][6 + k] += 1;
+    w.matrix[6 + k][6 + k] += 1 / kick_[k];
   }
 }
 
@@ -381,7 +381,7 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
       side[i] = push[i];
       side[3 + i] = spin[i];
     }
-    for (int k = 0; k < m; ++k) side[6 + k] = u.rate[k] - free.rate[k] - h / 2 * sum(load[k]);
+    for (int k = 0; k < m; ++k) side[6 + k] = (u.rate[k] - free.rate[k]) / kick_[k] - h / 2 * sum(load[k]);
     if (fresh) {
       fill_rigid(inertia, h, w);
       if (m > 0) fill_modes(h, m, w);
@@ -416,8 +416,20 @@ void ReducedBody::each_touching(const Touches& touches, F f) const {
           groups_[touch.group].point[which] * model_.planes.size() + touch.plane);
 }
 
+void ReducedBody::find_swing(double h) {
+  if (swing_step_ == h) return;
+  swing_step_ = h;
+  for (int k = 0; k < k_modes; ++k) {
+    const double w = basis_->frequency[k], half = w * h / 2;
+    cosine_[k] = std::cos(w * h);
+    sine_[k] = w > 0 ? std::sin(w * h) / w : 0;
+    back_[k] = -w * std::sin(w * h);
+    kick_[k] = half > 0 ? std::tan(half) / half : 1;
+  }
+}
+
 // Returns the turn, a rotation vector in material axes.
-Vec3 ReducedBody::drift(double h, BodyState& s) {
+Vec3 ReducedBody::drift(double h, BodyState& s) const {
   s.position += h * s.velocity;
   // The angular momentum stays. Lie midpoint for the turn: from the velocity in the middle of the step.
   const Vec3 momentum = inertia_ * s.angular_velocity;
@@ -431,15 +443,6 @@ Vec3 ReducedBody::drift(double h, BodyState& s) {
   s.rotation.coeffs() *= 1.5 - 0.5 * s.rotation.squaredNorm();
   s.angular_velocity = inverse_inertia_ * (turn.conjugate() * momentum);
   if (s.rung != Rung::elastic) return spin;
-  if (swing_step_ != h) {
-    swing_step_ = h;
-    for (int k = 0; k < k_modes; ++k) {
-      const double w = basis_->frequency[k];
-      cosine_[k] = std::cos(w * h);
-      sine_[k] = w > 0 ? std::sin(w * h) / w : 0;
-      back_[k] = -w * std::sin(w * h);
-    }
-  }
   const Amplitudes q = s.amplitude;
   s.amplitude = cosine_ * q + sine_ * s.rate;
   s.rate = cosine_ * s.rate + back_ * q;
@@ -543,7 +546,10 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (s.rotation.conjugate() * s.moment));
   const bool bends = s.rung == Rung::elastic;
-  if (bends) s.rate += h / 2 * s.load;
+  if (bends) {
+    find_swing(h);
+    s.rate += h / 2 * kick_ * s.load;
+  }
   const Vec3 spin = drift(h, s);
 
   const Mat3 r0 = before.rotation.toRotationMatrix(), r = s.rotation.toRotationMatrix();
@@ -560,14 +566,14 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
     Velocity u = drifted;
     u.linear += h / 2 / mass_ * before.force;
     u.angular += r * (inverse_inertia_ * (r.transpose() * (h / 2 * before.moment)));
-    if (bends) u.rate += h / 2 * before.load;
+    if (bends) u.rate += h / 2 * kick_ * before.load;
     solve_velocity(end.law, inertia, h, {drifted.linear + h / 2 * field, drifted.angular, drifted.rate}, u, s,
                    w);
   }
   sum_loads(field, s);
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += h / 2 * (inverse_inertia_ * (r.transpose() * s.moment));
-  if (bends) s.rate += h / 2 * s.load;
+  if (bends) s.rate += h / 2 * kick_ * s.load;
 
   // As book_work, and what the method itself takes out, from its own kinematics.
   booked.gravity -= mass_ * parameters.gravity.dot(shift);

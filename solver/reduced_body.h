@@ -138,7 +138,8 @@ class ReducedBody {
   void fill_modes(double h, int modes, ReducedScratch& w) const;
   void advance_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                     BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
-  Vec3 drift(double h, BodyState& s);
+  void find_swing(double h);
+  Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
   void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
@@ -165,9 +166,10 @@ class ReducedBody {
   ContactLaw found_law_;
   std::vector<Points> shapes_;  // per touch and mode, floor's axes
   Eigen::VectorXd section_;
-  // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine.
+  // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine, and
+  // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection.
   double swing_step_ = 0;
-  Amplitudes cosine_, sine_, back_;
+  Amplitudes cosine_, sine_, back_, kick_;
   // Stable steps by what touches.
   struct Known {
     std::uint64_t touching;

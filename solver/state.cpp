@@ -196,21 +196,22 @@ bool is_finite(const State& s, bool nodes) {
   double odd_one = 0;
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
+#pragma GCC unroll 4
     for (; k + 4 <= count; k += 4) odd = odd | (load(x + k) - load(x + k));
-    for (; k < count; ++k) odd_one += x[k] - x[k];
+    if (count < 4)
+      for (; k < count; ++k) odd_one += x[k] - x[k];
+    else if (k < count)
+      odd = odd | (load(x + count - 4) - load(x + count - 4));
   };
   if (nodes) {
     for (const auto* array :
          {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
           &s.algorithmic_acceleration, &s.algorithmic_angular_acceleration})
       if (!array->empty()) look(array->front().data(), 3 * array->size());
-    for (const Quat& q : s.rotation) look(q.coeffs().data(), 4);
-    static_assert(sizeof(ElementState) == 7 * sizeof(double));
-    for (const ElementState& e : s.elements) {
-      const auto* const bytes = reinterpret_cast<const double*>(&e);  // load() may alias
-      look(bytes, 4);
-      look(bytes + 3, 4);
-    }
+    static_assert(sizeof(Quat) == 4 * sizeof(double) && sizeof(ElementState) == 7 * sizeof(double));
+    if (!s.rotation.empty()) look(s.rotation.front().coeffs().data(), 4 * s.rotation.size());
+    if (!s.elements.empty())
+      look(reinterpret_cast<const double*>(s.elements.data()), 7 * s.elements.size());  // load() may alias
   }
   for (const BodyState& b : s.bodies) {
     const double sum = b.position.sum() + b.velocity.sum() + b.angular_velocity.sum() + b.force.sum() +

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/beam.h"
 #include "solver/body_builder.h"
 #include "solver/body_system.h"
 #include "solver/cabinet.h"
@@ -135,6 +136,13 @@ inline Edit set(Edit::Key key, double value, int shake = 0) {
 
 inline Edit turn_to(const Vec3& direction) {
   return {.key = Edit::Key::direction, .value = direction};
+}
+
+inline BeamGradient beam_gradient(const Element& element, const ElementState& state, const BeamEnds& ends) {
+  BeamGradient gradient;
+  Mat12 tangent;
+  beam_tangent(element, state, ends, gradient, tangent);
+  return gradient;
 }
 
 inline constexpr unsigned k_clamped = 0x3f;

@@ -90,9 +90,10 @@ TEST(Statics, end_moment_rolls_a_beam_up_to_a_full_circle) {
     topple::Run run(setup);
     const State& state = end_of(run);
     ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
-    // equal curvature in every element closes the chain whatever its number
-    EXPECT_LT(state.position[members].norm(), 1e-8);
-    EXPECT_LT(state.rotation[members].vec().norm(), 1e-8);
+    // equal curvature in every element closes the chain whatever its number; rounding 1e-16 times
+    // EA L^2/EI = 1e8, tenfold
+    EXPECT_LT(state.position[members].norm(), 1e-7);
+    EXPECT_LT(state.rotation[members].vec().norm(), 1e-7);
     EXPECT_EQ(state.time, 1);
     EXPECT_EQ(state.step, load_steps);
   }
