@@ -98,7 +98,9 @@ class BodySystem {
   void take(const std::vector<T>& all, std::vector<T>& own) const {
     own.resize(count);
     each_run([&](int global, int i, int nodes) { std::copy_n(&all[global], nodes, &own[i]); });
+    for (int i = count - held_nodes(); i < count; ++i) own[i] = all[node[i]];
   }
+  /// Held nodes may be in other systems as well: no step writes to them.
   template <class T>
   void put(const std::vector<T>& own, std::vector<T>& all) const {
     each_run([&](int global, int i, int nodes) { std::copy_n(&own[i], nodes, &all[global]); });
@@ -152,7 +154,12 @@ class BodySystem {
   std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
-  // f(index into the model, number within the system, count) of nodes that are consecutive in both.
+  int held_nodes() const {
+    int held = count;
+    for (const int b : bodies) held -= model.bodies[b].node_count;
+    return held;
+  }
+  // f(index into the model, number within the system, count) of the nodes of each own body.
   template <class F>
   void each_run(F&& f) const {
     int i = 0;
@@ -160,7 +167,6 @@ class BodySystem {
       f(model.bodies[b].first_node, i, model.bodies[b].node_count);
       i += model.bodies[b].node_count;
     }
-    for (; i < count; ++i) f(node[i], i, 1);
   }
   void add_nodes();
   void add_packs();

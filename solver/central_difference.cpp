@@ -6,7 +6,6 @@
 
 #include "solver/beam.h"
 #include "solver/hinges.h"
-#include "solver/islands.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -186,14 +185,13 @@ bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, Sta
     const PackVector<Four> all = acceleration + angular;
     odd = odd + (all - all);
   }
-  put_own(s, trial.position, state.position);
-  put_own(s, trial.rotation, state.rotation);
-  put_own(s, trial.velocity, state.velocity);
-  put_own(s, trial.angular_velocity, state.angular_velocity);
-  for (auto* array : {&state.acceleration, &state.algorithmic_acceleration})
-    put_own(s, w.acceleration, *array);
+  s.put(trial.position, state.position);
+  s.put(trial.rotation, state.rotation);
+  s.put(trial.velocity, state.velocity);
+  s.put(trial.angular_velocity, state.angular_velocity);
+  for (auto* array : {&state.acceleration, &state.algorithmic_acceleration}) s.put(w.acceleration, *array);
   for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
-    put_own(s, w.angular_acceleration, *array);
+    s.put(w.angular_acceleration, *array);
   return !any_above(dot(odd, odd), 0);
 }
 

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "solver/hinges.h"
-#include "solver/islands.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -364,14 +363,14 @@ void ImplicitStep::accept(StepEnergy& energy) {
              dot(rate0 + momentum_rate(pack, w1), at(w_.turn)) - dot(w1 + w0, pack.inertia * (w1 - w0)));
   }
   energy.numerical += sum(taken);
-  put_own(s_, w_.trial.position, state_.position);
-  put_own(s_, w_.trial.rotation, state_.rotation);
-  put_own(s_, w_.trial.velocity, state_.velocity);
-  put_own(s_, w_.trial.angular_velocity, state_.angular_velocity);
-  put_own(s_, w_.acceleration, state_.acceleration);
-  put_own(s_, w_.angular_acceleration, state_.angular_acceleration);
-  put_own(s_, w_.algorithmic, state_.algorithmic_acceleration);
-  put_own(s_, w_.algorithmic_angular, state_.algorithmic_angular_acceleration);
+  s_.put(w_.trial.position, state_.position);
+  s_.put(w_.trial.rotation, state_.rotation);
+  s_.put(w_.trial.velocity, state_.velocity);
+  s_.put(w_.trial.angular_velocity, state_.angular_velocity);
+  s_.put(w_.acceleration, state_.acceleration);
+  s_.put(w_.angular_acceleration, state_.angular_acceleration);
+  s_.put(w_.algorithmic, state_.algorithmic_acceleration);
+  s_.put(w_.algorithmic_angular, state_.algorithmic_angular_acceleration);
   s_.store_stick(s_.contacts, state_);
 }
 

@@ -1,7 +1,6 @@
 // Which bodies may touch each other now, and the systems that they make.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -19,18 +18,6 @@ double greatest_travel(const Model& model, const State& from, const State& to);
 
 /// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
 void look_around(const Model& model, State& state, double travel);
-
-/// Copies what belongs to the bodies of a system out of an array over its nodes, into one over the model's.
-/// The held nodes that follow may be in other systems as well: no step writes to them.
-template <class T>
-void put_own(const BodySystem& system, const std::vector<T>& nodes, std::vector<T>& all) {
-  int i = 0;
-  for (const int b : system.bodies) {
-    const Body& body = system.model.bodies[b];
-    std::copy_n(&nodes[i], body.node_count, &all[body.first_node]);
-    i += body.node_count;
-  }
-}
 
 /// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
 /// whose nodes are all held, and those on other rungs, are in none.

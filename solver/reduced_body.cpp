@@ -61,6 +61,12 @@ void solve(const Matrix& a, double* x, int unknowns) {
   }
 }
 
+// Of a contact's springs, in any direction, over alpha/L.
+double greatest_stiffness(const ContactLaw& law) {
+  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
+  return std::max(slope, law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0.);
+}
+
 }  // namespace
 
 Instant::Instant(const Parameters& parameters, double t)
@@ -120,6 +126,15 @@ ReducedBody::ReducedBody(const Model& model, int body)
   }
   for (Touches* touches : {&touches_, &touches_before_}) touches->all.reserve(sides_.size());
   shapes_.reserve(sides_.size() * modes);
+  const double inverse_moment = inverse_inertia_.trace();
+  for (const Side& here : sides_)
+    for (int which = 0; which < 4; ++which) {
+      const Group& group = groups_[(&here - sides_.data()) % groups_.size()];
+      if (group.point[which] < 0) continue;
+      double inverse_mass = 1 / mass_ + lane(group.place, which).squaredNorm() * inverse_moment;
+      for (const Points& shape : group.shape) inverse_mass += lane(shape, which).squaredNorm();
+      stiffest_ += inverse_mass / here.L[which];
+    }
 }
 
 ReducedBody::Points ReducedBody::place(const BodyState& s, const Group& group) const {
@@ -465,8 +480,6 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.rung == s.rung)
       return known.step;
-  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
-  const double stick = law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0;
   const Mat3 root = inertia_.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k_unknowns, k_unknowns>;
   Matrix stiffness = Matrix::Zero(n, n);
@@ -476,7 +489,7 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
     j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
     j.middleCols<3>(3) = -skew(lane(group.place, which)) * root;
     for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = lane(group.shape[k], which);
-    stiffness += law.alpha / side(touch).L[which] * std::max(slope, stick) * j.transpose() * j;
+    stiffness += law.alpha / side(touch).L[which] * greatest_stiffness(law) * j.transpose() * j;
   });
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
@@ -627,6 +640,21 @@ void ReducedBody::book_law_change(const ContactLaw& before, const ContactLaw& af
   });
 }
 
+// The longest part of a step of size h that is stable: on what touches, and on what will. `touches_` may be
+// those of a trial afterwards.
+double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState& s) {
+  const double now = stable_part(law, s), size = now < h ? h / std::ceil(h / now - 1e-9) : h;
+  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * stiffest_) < k_stable_turn) return size;
+  BodyState ahead = s;
+  ahead.velocity += size / 2 / mass_ * s.force;
+  drift(size, ahead);
+  std::swap(touches_, touches_before_);
+  find_touching(ahead, ahead.rotation.toRotationMatrix());
+  const double then = stable_part(law, s);
+  std::swap(touches_, touches_before_);
+  return then < size ? h / std::ceil(h / then - 1e-9) : size;
+}
+
 BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                 double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                 ReducedScratch& w) {
@@ -634,12 +662,12 @@ BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& sta
   Instant from = start;
   double left = h;
   for (;;) {
-    const double parts = std::ceil(left / stable_part(from.law, s) - 1e-9);
-    if (!(parts > 1)) break;
-    const Instant to(parameters, from.time + left / parts);
-    advance_part(parameters, from, to, left / parts, s, stick, booked, w);
+    const double size = stable_size(from.law, left, s);
+    if (!(size < left)) break;
+    const Instant to(parameters, from.time + size);
+    advance_part(parameters, from, to, size, s, stick, booked, w);
     respond_at(to.law, s);
-    left -= left / parts;
+    left -= size;
     from = to;
   }
   advance_part(parameters, from, end, left, s, stick, booked, w);

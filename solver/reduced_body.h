@@ -141,6 +141,7 @@ class ReducedBody {
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
+  double stable_size(const ContactLaw& law, double h, const BodyState& s);
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
   void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
                        StepEnergy& energy) const;
@@ -156,6 +157,7 @@ class ReducedBody {
   const Mat3 inertia_, inverse_inertia_;  // material axes
   std::shared_ptr<const ElasticBasis> basis_;
   double contact_mass_;
+  double stiffest_ = 0;  // 1/(kg m), w^2 over alpha is below it whatever touches
   std::vector<Group> groups_;
   std::vector<Side> sides_;           // per plane, then group
   Eigen::AlignedBox3d box_;           // m, of the contact points, from the centre of gravity, reference axes
