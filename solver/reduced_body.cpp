@@ -658,6 +658,7 @@ double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState
 BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                 double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                 ReducedScratch& w) {
+  if (w.derivatives.size() < sides_.size()) w.derivatives.resize(sides_.size());
   Instant from = start;
   double left = h;
   for (;;) {

@@ -294,7 +294,8 @@ constexpr int k_bodies_per_task = 16;    // that are not frames: some microsecon
 constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
 
 // With the stiffer of the two laws of a passage.
-void find_explicit_limit(const Model& model, const Parameters& parameters, Workspace::Impl& w) {
+void find_explicit_limit(const Model& model, const Parameters& parameters, const State& state,
+                         Workspace::Impl& w) {
   ContactLaw law = parameters.contact;
   if (parameters.contact_passage.over > 0) {
     law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
@@ -305,7 +306,7 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, Works
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    BodySystem* const system = w.next.bodies[b].rung == Rung::frame ? w.islands.alone(b) : nullptr;
+    BodySystem* const system = state.bodies[b].rung == Rung::frame ? w.islands.alone(b) : nullptr;
     if (!system) continue;
     int node = -1;
     const double limit = explicit_limit(*system, &law, &node);
@@ -474,7 +475,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
   if (is_explicit) {
-    find_explicit_limit(model, parameters, w);
+    find_explicit_limit(model, parameters, w.next, w);
     if (w.explicit_limit && h > *w.explicit_limit) {
       status.kind = StepStatus::Kind::step_too_long;
       status.limit = *w.explicit_limit;
@@ -648,7 +649,7 @@ double next_limit(const Model& model, const Parameters& parameters, const State&
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
                          double until) {
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
-  if (is_explicit) find_explicit_limit(model, parameters, w);
+  if (is_explicit) find_explicit_limit(model, parameters, state, w);
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
   h = is_explicit ? k_explicit_share * *w.explicit_limit
