@@ -14,6 +14,7 @@
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
 #include "solver/io/scene.h"
+#include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
@@ -53,15 +54,20 @@ ordered_json describe(const io::Scene& scene) {
 }
 
 ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies) {
-  static const char* const k_kinds[] = {"uplift", "impact", "overturn", "hinge", "fracture"};
+  static const char* const k_kinds[] = {"uplift", "impact", "overturn", "hinge", "fracture", "model"};
   const auto kind = static_cast<std::size_t>(e.event.kind), body = static_cast<std::size_t>(e.event.body);
   if (kind >= std::size(k_kinds) || body >= bodies.size())
     throw io::InputError("the recording has an event of a kind or a body that it does not describe");
-  return {{"kind", k_kinds[kind]},
-          {"time_s", e.time},
-          {"step", e.step},
-          {"body", bodies[body]["name"]},
-          {"value", e.event.value}};
+  ordered_json out = {{"kind", k_kinds[kind]},
+                      {"time_s", e.time},
+                      {"step", e.step},
+                      {"body", bodies[body]["name"]},
+                      {"value", e.event.value}};
+  if (e.event.kind == Event::Kind::model) {
+    out["model"] = name(static_cast<Rung>(e.event.value));
+    out["reason"] = name(e.event.reason);
+  }
+  return out;
 }
 
 ordered_json describe(const LoggedEdit& logged) {

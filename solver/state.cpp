@@ -11,6 +11,15 @@
 namespace topple {
 namespace {
 
+// The choice that a number of a checkpoint stands for.
+template <class Choice>
+Choice as(double number, Choice last) {
+  for (int k = 0; k <= static_cast<int>(last); ++k)
+    if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(double(k)))
+      return static_cast<Choice>(k);
+  throw std::invalid_argument("a checkpoint of another version");
+}
+
 // Calls f on every number of the state, in the order of a checkpoint; `step` and counts are handled by the
 // callers.
 template <class AnyState, class F>
@@ -35,8 +44,8 @@ void each_number(AnyState& s, F f) {
     f(rung);
     f(reason);
     if constexpr (!std::is_const_v<AnyState>) {
-      b.rung = static_cast<Rung>(rung);
-      b.reason = static_cast<RungReason>(reason);
+      b.rung = as<Rung>(rung, Rung::frame);
+      b.reason = as<RungReason>(reason, RungReason::calm);
     }
     f(b.calm_since);
     for (auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
@@ -215,7 +224,8 @@ bool is_finite(const State& s, bool nodes) {
   }
   for (const BodyState& b : s.bodies) {
     const double sum = b.position.sum() + b.velocity.sum() + b.angular_velocity.sum() + b.force.sum() +
-                       b.moment.sum() + b.rotation.coeffs().sum() + b.amplitude.sum() + b.rate.sum();
+                       b.moment.sum() + b.rotation.coeffs().sum() + b.amplitude.sum() + b.rate.sum() +
+                       b.load.sum() + b.calm_since;
     odd_one += sum - sum;
   }
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());

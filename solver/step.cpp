@@ -702,6 +702,7 @@ const std::vector<ContactForce>& contact_forces(const Model& model, const Parame
   Workspace::Impl& w = workspace.impl();
   w.contact_forces.clear();
   w.member_forces.clear();
+  w.islands.arrange(state.bodies, state.near);
   const Instant now(parameters, state.time);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (state.bodies[b].rung == Rung::frame) continue;
