@@ -15,7 +15,7 @@
 namespace topple {
 namespace {
 
-constexpr double k_stable_turn = 1.2;  // rad per part of a step, of the stiffest motion on contacts; limit 2
+constexpr double k_stable_turn = 0.6;  // rad per part of a step, of the stiffest motion on contacts; limit 2
 constexpr double k_swing = 2.5;        // rad per part, of the highest mode
 constexpr double k_small_turn = 0.02;  // rad
 constexpr double k_velocity_error = 1e-7;  // of the speed
@@ -751,7 +751,11 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
   s.rate.setZero();
   const Vec3 origin = s.position;
   const int m = modes(s), n = 6 + m;
-  const double weight = mass_ * parameters.gravity.norm();
+  // rounding of the coordinates moves the forces of the springs
+  double balanced = k_balanced * mass_ * parameters.gravity.norm();
+  for (const Side& here : sides_)
+    balanced += 8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * now.law.alpha *
+                greatest_stiffness(now.law) / here.L[0];
   double sigma = k_first;
   for (int round = 0; round < k_rounds; ++round) {
     balance(still, now, s, stick);
@@ -783,7 +787,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     });
     double left = std::max(s.force.cwiseAbs().maxCoeff(), s.moment.cwiseAbs().maxCoeff() / reach_);
     if (m > 0) left = std::max(left, load.tail(m).cwiseAbs().maxCoeff() * std::sqrt(mass_));
-    if (left < k_balanced * weight && sigma > 1) {
+    if (left < balanced && sigma > 1) {
       // a balance that tips over by itself: Newton finds it as readily as a stable one
       const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver((stiffness + stiffness.transpose()) / 2,
                                                                     inertia, Eigen::EigenvaluesOnly);

@@ -86,11 +86,12 @@ TEST_F(PlasticRecordingTest, plastic_energy_is_a_column_and_the_ledger_adds_up_r
   double before = 0;
   for (std::size_t i = 0; i < ledger.size(); ++i) {
     const std::vector<double> e = recording.frame(static_cast<std::int64_t>(i)).energy;
-    ASSERT_EQ(e.size(), 10u);
+    ASSERT_EQ(e.size(), 11u);
     EXPECT_EQ(e[8], ledger[i].plastic) << i;
     const double dissipated = e[5] + e[6] + e[7] + e[8];
+    EXPECT_EQ(e[9], 0) << i;
     EXPECT_NEAR(std::abs(e[1] + e[2] + e[3] + e[4] + dissipated - e[0] - ledger[i].start_total),
-                e[9] * ledger[i].largest, 1e-12 * (1 + ledger[i].largest))
+                e[10] * ledger[i].largest, 1e-12 * (1 + ledger[i].largest))
         << i;
     EXPECT_GE(e[8], before - 1e-12) << i;
     before = e[8];
@@ -108,7 +109,7 @@ TEST_F(PlasticRecordingTest, energies_are_exported_with_their_names) {
   std::getline(text, line);
   EXPECT_EQ(line,
             "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
-            "plastic_J,balance_error");
+            "plastic_J,model_switch_J,balance_error");
   while (std::getline(text, line)) newest = line;
   std::vector<double> values;
   std::istringstream fields(newest);
@@ -116,7 +117,7 @@ TEST_F(PlasticRecordingTest, energies_are_exported_with_their_names) {
     values.push_back(std::strtod(field.c_str(), nullptr));
   EXPECT_EQ(values, (std::vector<double>{state.time, last.input, last.kinetic, last.strain, last.gravity,
                                          last.contact, last.friction, last.normal_damping, last.numerical,
-                                         last.plastic, last.balance_error()}));
+                                         last.plastic, last.model_switch, last.balance_error()}));
 }
 
 TEST_F(PlasticRecordingTest, hinge_and_fracture_events_come_back_and_are_those_that_the_outcome_counts) {

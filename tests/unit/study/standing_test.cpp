@@ -107,7 +107,8 @@ TEST(Standing, of_a_scene_is_what_its_body_is) {
 }
 
 TEST(Alone, a_body_settles_as_it_does_among_others) {
-  const topple::Setup scene = io::load_scene("paper-a").setup;
+  const topple::Setup scene =
+      io::load_scene("paper-a", {"cabinet.free.model=frame", "cabinet.walled.model=frame"}).setup;
   const topple::Run all(scene);
   for (int b = 0; b < 2; ++b) {
     const topple::Setup own = alone(scene, b, true);
