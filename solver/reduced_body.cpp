@@ -23,7 +23,8 @@ constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
 constexpr double k_same_line = 1e-6;       // m
 constexpr double k_bend = 0.05;            // of the reach: more than an elastic body deforms
 constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
-constexpr int k_most_iterations = 40;
+constexpr int k_most_iterations = 20;
+constexpr double k_least_part = 1. / 4096;  // of a step
 
 double mean_width(const ContactPoint& point, const Plane& plane) {
   return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
@@ -369,7 +370,7 @@ void ReducedBody::fill_modes(double h, int m, ReducedScratch& w) const {
 
 // The velocity u after half a step of what acts at its end, and the contact forces there. `free`: without
 // contacts. Newton.
-void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free,
+bool ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free,
                                  Velocity& u, const BodyState& s, ReducedScratch& w) {
   const int m = modes(s);
   double* const side = w.side;
@@ -416,10 +417,11 @@ void ReducedBody::solve_velocity(const ContactLaw& law, const Mat3& inertia, dou
     }
     // what is left after the correction: its rate, or its square over that of the smoothing
     const double rate = fresh ? std::min(1., size / law.normal_speed) : size / last;
-    if (!(size * rate > k_velocity_error * speed)) break;
+    if (size * rate <= k_velocity_error * speed) return true;
     fresh = iteration > 0 && rate > k_good_rate;
     last = size;
   }
+  return false;
 }
 
 template <class F>
@@ -551,7 +553,8 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
   return held;
 }
 
-void ReducedBody::advance_part(const Parameters& parameters, const Instant& start, const Instant& end,
+// False, and nothing is changed, when the velocity is not found.
+bool ReducedBody::advance_part(const Parameters& parameters, const Instant& start, const Instant& end,
                                double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                ReducedScratch& w) {
   std::swap(touches_, touches_before_);
@@ -580,8 +583,12 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
     u.linear += h / 2 / mass_ * before.force;
     u.angular += r * (inverse_inertia_ * (r.transpose() * (h / 2 * before.moment)));
     if (bends) u.rate += h / 2 * kick_ * before.load;
-    solve_velocity(end.law, inertia, h, {drifted.linear + h / 2 * field, drifted.angular, drifted.rate}, u, s,
-                   w);
+    if (!solve_velocity(end.law, inertia, h, {drifted.linear + h / 2 * field, drifted.angular, drifted.rate},
+                        u, s, w)) {
+      s = before;
+      std::swap(touches_, touches_before_);
+      return false;
+    }
   }
   sum_loads(field, s);
   s.velocity += h / 2 / mass_ * s.force;
@@ -617,6 +624,7 @@ void ReducedBody::advance_part(const Parameters& parameters, const Instant& star
 
   each_touching(touches_before_, [&](const Touch&, int, int, std::size_t at) { stick[at].setZero(); });
   keep_sticks(end.law, stick);
+  return true;
 }
 
 // Stores the stick springs after slipping.
@@ -655,24 +663,28 @@ double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState
   return then < size ? h / std::ceil(h / then - 1e-9) : size;
 }
 
-BodyEnergy ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
-                                double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
-                                ReducedScratch& w) {
+bool ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                          BodyState& s, std::span<Vec3> stick, StepEnergy& booked, BodyEnergy& held,
+                          ReducedScratch& w) {
   if (w.derivatives.size() < sides_.size()) w.derivatives.resize(sides_.size());
   Instant from = start;
-  double left = h;
-  for (;;) {
-    const double size = stable_size(from.law, left, s);
-    if (!(size < left)) break;
-    const Instant to(parameters, from.time + size);
-    advance_part(parameters, from, to, size, s, stick, booked, w);
+  double left = h, most = h;
+  for (bool last = false; !last;) {
+    const double size = std::min(stable_size(from.law, left, s), most);
+    last = size >= left;
+    const Instant to = last ? end : Instant(parameters, from.time + size);
+    if (!advance_part(parameters, from, to, last ? left : size, s, stick, booked, w)) {
+      most = size / 2;
+      if (most < k_least_part * h) return false;
+      last = false;
+      continue;
+    }
     respond_at(to.law, s);
     left -= size;
     from = to;
   }
-  advance_part(parameters, from, end, left, s, stick, booked, w);
-  respond_at(end.law, s);
-  return energy(end.law, s);
+  held = energy(end.law, s);
+  return true;
 }
 
 void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {

@@ -45,9 +45,10 @@ class ReducedBody {
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
   /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later, in parts that
-  /// are stable. `energy` is added to; returns what the body holds then.
-  BodyEnergy advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                     BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& scratch);
+  /// are stable. `energy` is added to;
+  /// `held`: what the body holds then. False: the contacts have no converged forces; `s` is then undefined.
+  bool advance(const Parameters& parameters, const Instant& start, const Instant& end, double h, BodyState& s,
+               std::span<Vec3> stick, StepEnergy& energy, BodyEnergy& held, ReducedScratch& scratch);
   /// Rest under gravity on planes; false: none was found, or it tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// As look_ahead of step_control.h.
@@ -132,11 +133,11 @@ class ReducedBody {
   void respond_at(const ContactLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
   void sum_loads(const Vec3& field, BodyState& s) const;
-  void solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free, Velocity& u,
+  bool solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free, Velocity& u,
                       const BodyState& s, ReducedScratch& w);
   void fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) const;
   void fill_modes(double h, int modes, ReducedScratch& w) const;
-  void advance_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+  bool advance_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                     BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;

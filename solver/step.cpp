@@ -509,9 +509,15 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     PartOfStep& part = w.parts[chunk];
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
-      add(w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
-                                      w.reduced_scratch[worker]),
-          part.held);
+      BodyEnergy holds;
+      if (!w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
+                                       holds, w.reduced_scratch[worker])) {
+        part.status.kind = StepStatus::Kind::newton_diverged;
+        part.status.time = end.time;
+        part.status.body = b;
+        return;
+      }
+      add(holds, part.held);
     }
   };
   const auto move_system = [&](int s, int worker) {
