@@ -1,6 +1,7 @@
 // What the rungs of the model ladder cost, with their errors beside it.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -48,7 +49,8 @@ void step_of(benchmark::State& state, BodyModel model) {
   const Setup setup = beside_a_wall(model, count);
   Workspace workspace(setup.model);
   State start = start_state(setup.model, setup.starts);
-  if (!settle(setup.model, setup.parameters, start, workspace).ok()) return state.SkipWithError("not settled");
+  if (!settle(setup.model, setup.parameters, start, workspace).ok())
+    return state.SkipWithError("not settled");
   prepare(setup.model, setup.parameters, start, workspace);
   State now = start;
   for (auto _ : state) {
@@ -86,7 +88,8 @@ Course follow(const Setup& setup) {
   return course;
 }
 
-/// The first four seconds of paper-a, both cabinets, stresses found at every step, against the frame at 0.1 ms.
+/// The first four seconds of paper-a, both cabinets, stresses found at every step, against the frame at 0.1
+/// ms.
 void paper_a(benchmark::State& state, BodyModel model) {
   Setup setup = io::load_scene("paper-a", {"run.duration=4"}).setup;
   static const Course exact = [&] {
@@ -107,18 +110,32 @@ void paper_a(benchmark::State& state, BodyModel model) {
   state.counters["tilt_rms_deg"] = std::sqrt(squares / static_cast<double>(count));
   state.counters["stress_error"] = course.stress / exact.stress - 1;
 }
-BENCHMARK_CAPTURE(paper_a, rigid, BodyModel::rigid)->Arg(500)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(paper_a, rigid, BodyModel::rigid)
+    ->Arg(500)
+    ->Arg(1000)
+    ->Arg(2000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(paper_a, elastic, BodyModel::elastic)
     ->Arg(500)
     ->Arg(1000)
     ->Arg(2000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(paper_a, frame, BodyModel::frame)->Arg(500)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(paper_a, frame, BodyModel::frame)
+    ->Arg(500)
+    ->Arg(1000)
+    ->Arg(2000)
+    ->Unit(benchmark::kMillisecond);
 
 /// The rocking block of the verification table, whose expectations its errors are compared with: 1 is the
 /// tolerance.
 void rocking(benchmark::State& state, BodyModel model) {
-  io::Scene scene = io::load_scene("rocking-free-50", {"run.time_step=" + std::to_string(state.range(0)) + " us"});
+  const auto& scenes = io::verification_scenes();
+  const auto found_scene = std::find_if(scenes.begin(), scenes.end(), [](const io::BuiltinScene& scene) {
+    return scene.name.ends_with("rocking-free-50");
+  });
+  io::Scene scene =
+      io::parse_scene(found_scene->text, std::string(found_scene->name),
+                      {"run.time_step=" + std::to_string(1e-6 * static_cast<double>(state.range(0)))});
   Setup& setup = scene.setup;
   compute_as(setup, model);
   BodyOutcome outcome;
@@ -133,21 +150,25 @@ void rocking(benchmark::State& state, BodyModel model) {
     prepare(setup.model, setup.parameters, now, workspace);
     state.ResumeTiming();
     while (now.time < setup.run.duration - setup.parameters.time_step / 2)
-      if (!step(setup.model, setup.parameters, now, workspace).ok()) return state.SkipWithError("step failed");
+      if (!step(setup.model, setup.parameters, now, workspace).ok())
+        return state.SkipWithError("step failed");
   }
   state.counters["per_simulated_s"] = benchmark::Counter(
       setup.run.duration, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  const std::map<std::string, double> found{
-      {"/bodies/0/peak_tilt_deg", outcome.peak_tilt * k_degrees},
-      {"/bodies/0/first_impact_s", outcome.first_impact.value_or(0)},
-      {"/bodies/0/rebound_tilt_deg", outcome.rebound_tilt * k_degrees}};
+  const std::map<std::string, double> found{{"/bodies/0/peak_tilt_deg", outcome.peak_tilt * k_degrees},
+                                            {"/bodies/0/first_impact_s", outcome.first_impact.value_or(0)},
+                                            {"/bodies/0/rebound_tilt_deg", outcome.rebound_tilt * k_degrees}};
   double worst = 0;
   for (const io::Expectation& e : scene.expectations)
     if (found.contains(e.value))
       worst = std::max(worst, std::abs(found.at(e.value) - e.reference) / (e.scale * e.tolerance));
   state.counters["error_over_tolerance"] = worst;
 }
-BENCHMARK_CAPTURE(rocking, rigid, BodyModel::rigid)->Arg(250)->Arg(500)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(rocking, rigid, BodyModel::rigid)
+    ->Arg(250)
+    ->Arg(500)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(rocking, frame, BodyModel::frame)->Arg(250)->Unit(benchmark::kMillisecond);
 
 }  // namespace
