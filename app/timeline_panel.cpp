@@ -219,7 +219,9 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
           else if (event.event.kind == Event::Kind::fracture) {
             list.AddLine({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour, 1.5f);
             list.AddLine({p.x - k_size, p.y + k_size}, {p.x + k_size, p.y - k_size}, colour, 1.5f);
-          } else
+          } else if (event.event.kind == Event::Kind::model)
+            list.AddRect({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
+          else
             list.AddRectFilled({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
         });
   }
