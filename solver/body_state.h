@@ -39,6 +39,7 @@ struct BodyState {
   Vec3 angular_velocity = Vec3::Zero();       ///< rad/s, material axes
   Amplitudes amplitude = Amplitudes::Zero();  ///< m sqrt(kg)
   Amplitudes rate = Amplitudes::Zero();       ///< m sqrt(kg)/s
+  double part = 0;  ///< s, of a step that the rung rigid tries next; 0: none was yet
   // What acts at this instant: gravity, floor and contacts.
   Vec3 force = Vec3::Zero();             ///< N
   Vec3 moment = Vec3::Zero();            ///< N m about the centre of gravity, floor's axes

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "solver/types.h"  // Eigen brings the intrinsics
 
@@ -81,6 +82,13 @@ inline constexpr unsigned k_all_lanes = 15;
   d = Four::Vector(_mm256_permute2f128_pd(ab1, cd1, 0x31));
 }
 
+[[gnu::always_inline]] inline double mul_add(double a, double b, double c) {
+  return std::fma(a, b, c);
+}
+[[gnu::always_inline]] inline double less_product(double c, double a, double b) {
+  return std::fma(-a, b, c);
+}
+
 template <class P>
 struct PackVector {
   P x, y, z;
@@ -99,15 +107,22 @@ struct PackVector {
 
 template <class P>
 [[gnu::always_inline]] inline P dot(const PackVector<P>& a, const PackVector<P>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
 template <class P>
 [[gnu::always_inline]] inline PackVector<P> cross(const PackVector<P>& a, const PackVector<P>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {less_product(a.y * b.z, a.z, b.y), less_product(a.z * b.x, a.x, b.z),
+          less_product(a.x * b.y, a.y, b.x)};
 }
 template <class P>
 [[gnu::always_inline]] inline PackVector<P> times(const PackVector<P>& a, const PackVector<P>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// f a + b
+template <class P>
+[[gnu::always_inline]] inline PackVector<P> mul_add(P f, const PackVector<P>& a, const PackVector<P>& b) {
+  return {mul_add(f, a.x, b.x), mul_add(f, a.y, b.y), mul_add(f, a.z, b.z)};
 }
 
 /// Rows.
@@ -128,7 +143,9 @@ struct PackMatrix {
     return {dot(a.row[0], v), dot(a.row[1], v), dot(a.row[2], v)};
   }
   [[gnu::always_inline]] friend PackMatrix operator*(const PackMatrix& a, const PackMatrix& b) {
-    const auto row = [&](const PackVector<P>& r) { return r.x * b.row[0] + r.y * b.row[1] + r.z * b.row[2]; };
+    const auto row = [&](const PackVector<P>& r) {
+      return mul_add(r.z, b.row[2], mul_add(r.y, b.row[1], r.x * b.row[0]));
+    };
     return {{row(a.row[0]), row(a.row[1]), row(a.row[2])}};
   }
 };
@@ -142,7 +159,7 @@ template <class P>
 /// a^T v
 template <class P>
 [[gnu::always_inline]] inline PackVector<P> transposed_times(const PackMatrix<P>& a, const PackVector<P>& v) {
-  return v.x * a.row[0] + v.y * a.row[1] + v.z * a.row[2];
+  return mul_add(v.z, a.row[2], mul_add(v.y, a.row[1], v.x * a.row[0]));
 }
 
 template <class P>
@@ -170,6 +187,12 @@ template <class P>
 [[gnu::always_inline]] inline PackMatrix<P> skew_times(const PackVector<P>& v, const PackMatrix<P>& a) {
   return {
       {v.y * a.row[2] - v.z * a.row[1], v.z * a.row[0] - v.x * a.row[2], v.x * a.row[1] - v.y * a.row[0]}};
+}
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> inverse(const PackMatrix<P>& m) {
+  const PackVector<P> a = cross(m.row[1], m.row[2]), b = cross(m.row[2], m.row[0]),
+                      c = cross(m.row[0], m.row[1]);
+  return P(1) / dot(m.row[0], a) * transposed(PackMatrix<P>{{a, b, c}});
 }
 /// a b^T
 template <class P>
@@ -299,6 +322,24 @@ template <class P, class... Rest>
 [[gnu::always_inline]] inline PackVector<Four> in_all_lanes(const Vec3& v) {
   return {Four(v.x()), Four(v.y()), Four(v.z())};
 }
+[[gnu::always_inline]] inline PackVector<Four> in_all_lanes(const PackVector<double>& v) {
+  return {Four(v.x), Four(v.y), Four(v.z)};
+}
+[[gnu::always_inline]] inline PackMatrix<Four> in_all_lanes(const PackMatrix<double>& m) {
+  return {{in_all_lanes(m.row[0]), in_all_lanes(m.row[1]), in_all_lanes(m.row[2])}};
+}
+[[gnu::always_inline]] inline PackVector<double> packed(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+[[gnu::always_inline]] inline PackMatrix<double> packed(const Mat3& m) {
+  return {{{m(0, 0), m(0, 1), m(0, 2)}, {m(1, 0), m(1, 1), m(1, 2)}, {m(2, 0), m(2, 1), m(2, 2)}}};
+}
+[[gnu::always_inline]] inline PackQuaternion<double> packed(const Quat& q) {
+  return {{q.x(), q.y(), q.z()}, q.w()};
+}
+[[gnu::always_inline]] inline Vec3 unpacked(const PackVector<double>& v) {
+  return {v.x, v.y, v.z};
+}
 [[gnu::always_inline]] inline PackVector<Four> operator*(const Mat3& m, const PackVector<Four>& a) {
   const auto row = [&](int i) { return Four(m(i, 0)) * a.x + Four(m(i, 1)) * a.y + Four(m(i, 2)) * a.z; };
   return {row(0), row(1), row(2)};
@@ -308,6 +349,18 @@ template <class P, class... Rest>
   const std::array<Four, 4> rows = lanes(v);
   const Four total = (rows[0] + rows[1]) + (rows[2] + rows[3]);
   return {total[0], total[1], total[2]};
+}
+
+/// Each over its lanes.
+[[gnu::always_inline]] inline Four sums(Four a, Four b, Four c, Four d) {
+  transpose(a, b, c, d);
+  return (a + b) + (c + d);
+}
+[[gnu::always_inline]] inline PackMatrix<double> sum(const PackMatrix<Four>& m) {
+  const auto& [a, b, c] = m.row;
+  const Four first = sums(a.x, a.y, a.z, b.x), second = sums(b.y, b.z, c.x, c.y);
+  return {
+      {{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {second[2], second[3], sum(c.z)}}};
 }
 
 [[gnu::always_inline]] inline Vec3 lane(const PackVector<Four>& v, int k) {

@@ -2,11 +2,17 @@
 //
 //   x_i = X + R (r_i + shape_i q),  u = (V, omega, dq/dt),  M = (m, R J R^T, 1)
 //
-// Inertia is that of the undeformed body. The step is symmetric: half an impulse of what acts at its start,
-// free motion (exact for X and q; R keeps the angular momentum and is of second order), half an impulse of
-// what acts at its end, with contacts taken at the velocity that they leave:
+// Inertia is that of the undeformed body. A step is taken in parts, by one of two methods:
 //
+// Swinging, for modes and soft contacts, in parts that are stable: half an impulse of what acts at the start,
+// free motion (exact for X and q; R keeps the angular momentum and is of second order), half an impulse of
+// what acts at the end, with contacts taken at the velocity that they leave:
 //   u1 = u_free + (h/2) M^-1 (G1 + sum_c J_c^T f_c(x1, J_c u1))
+//
+// Stiff, for a rigid body on contacts that would make those parts short: two implicit stages of second order
+// that damp what is too fast for the part (SDIRK2, gamma = 1 - 1/sqrt 2; Alexander 1977), on the rotation
+// vector from the start of the part. The local error of the velocity, from the forces at the three instants,
+// decides how long a part may be; a part ends where a point is about to touch.
 #pragma once
 
 #include <array>
@@ -16,10 +22,10 @@
 #include <span>
 #include <vector>
 
+#include "solver/body_contacts.h"
 #include "solver/body_system.h"
 #include "solver/elastic_basis.h"
 #include "solver/energy.h"
-#include "solver/pack.h"
 #include "solver/step.h"
 
 namespace topple {
@@ -27,12 +33,16 @@ namespace topple {
 /// What all bodies share at one instant.
 struct Instant {
   double time;
-  ContactLaw law;
+  PreparedLaw law;
   Vec3 floor;  ///< m/s^2, acceleration
   Instant(const Parameters& parameters, double t);
 };
 
-struct ReducedScratch;
+/// Scratch of a step, for one body after the other: Newton's matrix or its factors, and a right side.
+struct ReducedScratch {
+  ModeMatrix matrix;
+  double side[6 + k_modes];
+};
 
 /// Constants of one body, and its contacts.
 class ReducedBody {
@@ -44,15 +54,16 @@ class ReducedBody {
   /// The same, and all that acts on the body into `s`.
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
-  /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later, in parts that
-  /// are stable. `energy` is added to;
-  /// `held`: what the body holds then. False: the contacts have no converged forces; `s` is then undefined.
+  /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later. `energy` is
+  /// added to; `held`: what the body holds then. False: the contacts have no converged forces; `s` is then
+  /// undefined.
   bool advance(const Parameters& parameters, const Instant& start, const Instant& end, double h, BodyState& s,
                std::span<Vec3> stick, StepEnergy& energy, BodyEnergy& held, ReducedScratch& scratch);
   /// Rest under gravity on planes; false: none was found, or it tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
-  /// As look_ahead of step_control.h.
-  double look_ahead(const ContactLaw& law, const BodyState& s);
+  /// As look_ahead of step_control.h; for a stiff rigid body the length of its next part. Contacts of `s`
+  /// have been found.
+  double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
@@ -67,113 +78,62 @@ class ReducedBody {
   double rotation_bound(const BodyState& s) const;
 
  private:
-  friend struct ReducedScratch;
-  using Points = PackVector<Four>;
-  static constexpr int k_unknowns = 6 + k_modes;
-  /// Contact points, four by four; those that fill up the last group never touch.
-  struct Group {
-    Points place;               // m, from the centre of gravity, reference axes
-    std::array<int, 4> point;   // index into the model, -1: none
-    std::vector<Points> shape;  // per mode
+  /// Where the unknowns of a stage are counted from: m, rad, N s, N m s.
+  struct Origin {
+    PackVec3 position, turn, momentum, spin;
   };
-  /// Of a group and a plane.
-  struct Side {
-    Four gap;      // m, of the centre line on the face
-    Four L;        // m
-    Four stick;    // 1/m, stiffness of the stick spring over alpha
-    Four damping;  // its damping over sqrt(alpha)
+  struct Stage {
+    BodyVelocity u;
+    PackVec3 turning;       // rad/s, of the rotation vector
+    PackVec3 spin;          // N m s, angular momentum
+    double damped, rubbed;  // W
   };
-  /// A group of which some points touch a plane. Vectors in the floor's axes.
-  struct Touch {
-    int plane, group;
-    Four::Mask touching;
-    Four depth;
-    Points arm;     // m, from the centre of gravity
-    Points stick;   // m, travel since sticking began
-    Points travel;  // m, in the part of a step that led here
-    Four conservative, normal;
-    Points tangential;
-    Four stick_energy;
-  };
-  /// A list that keeps what it ever had room for.
-  struct Touches {
-    std::vector<Touch> all;
-    std::size_t count = 0;
-    Touch& add() {
-      if (count == all.size()) all.emplace_back();
-      return all[count++];
-    }
-    std::size_t size() const { return count; }
-    Touch& operator[](std::size_t c) { return all[c]; }
-    const Touch& operator[](std::size_t c) const { return all[c]; }
-    Touch* begin() { return all.data(); }
-    Touch* end() { return all.data() + count; }
-    const Touch* begin() const { return all.data(); }
-    const Touch* end() const { return all.data() + count; }
-  };
-  struct Velocity {
-    Vec3 linear, angular;  // floor's axes
-    Amplitudes rate;
-  };
-  using Derivative = std::array<std::array<Four, 3>, 3>;  // of the force by the velocity
+  struct StiffPart;
 
   int modes(const BodyState& s) const { return s.rung == Rung::elastic ? basis_->modes : 0; }
-  Points place(const BodyState& s, const Group& group) const;
-  double clearance(const Vec3& n, double height) const;
-  void find_touching(const BodyState& s, const Mat3& r);
-  void read_stick(std::span<const Vec3> stick, Touch& touch) const;
-  Points velocity_at(std::size_t touch, const Velocity& u, int modes) const;
-  template <bool with_derivative>
-  void respond(const ContactLaw& law, const Points& velocity, Touch& touch, Derivative& derivative) const;
-  template <bool with_derivative>
-  void respond_coulomb(const ContactLaw& law, const Points& velocity, Touch& touch,
-                       Derivative& derivative) const;
-  Points held_stick(const ContactLaw& law, const Touch& touch) const;
-  const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
-  void respond_at(const ContactLaw& law, const BodyState& s);
+  PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }
+  Vec3 angular_acceleration(const BodyState& s) const;
+  void respond_at(const PreparedLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
-  void sum_loads(const Vec3& field, BodyState& s) const;
-  bool solve_velocity(const ContactLaw& law, const Mat3& inertia, double h, const Velocity& free, Velocity& u,
-                      const BodyState& s, ReducedScratch& w);
-  void fill_rigid(const Mat3& inertia, double h, ReducedScratch& w) const;
-  void fill_modes(double h, int modes, ReducedScratch& w) const;
-  bool advance_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                    BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
+  BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
+  template <class F>
+  void each_force(const BodyState& s, F f) const;
+
+  bool solve_velocity(const PreparedLaw& law, const PackMat3& inertia, double h, const BodyVelocity& free,
+                      BodyVelocity& u, ContactLoads& loads, Amplitudes& load, int modes, ReducedScratch& w);
+  bool swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                  BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
-  double stable_size(const ContactLaw& law, double h, const BodyState& s);
-  BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
-  void book_law_change(const ContactLaw& before, const ContactLaw& after, const Touches& at_start,
-                       StepEnergy& energy) const;
-  void keep_sticks(const ContactLaw& law, std::span<Vec3> stick);
-  template <class F>
-  void each_force(const BodyState& s, F f) const;
-  template <class F>
-  void each_touching(const Touches& touches, F f) const;
+  double stable_size(const ContactLaw& law, double h, const BodyState& s, std::span<const Vec3> stick);
+
+  bool advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                       BodyState& s, std::span<Vec3> stick, StepEnergy& energy);
+  ContactLoads reach_stage(const StiffPart& part, const PreparedLaw& law, const Origin& from, bool with_slope,
+                           BodyState& at, Stage& stage, PackMat3& r);
+  bool solve_stage(StiffPart& part, const Instant& now, const PackVec3& field, const Origin& from,
+                   BodyState& at, Stage& stage);
+  bool stiff_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                  double allowed, BodyState& s, std::span<Vec3> stick, StepEnergy& energy, double& error);
+  double next_landing(const BodyState& s, double within) const;
+  double first_part(const ContactLaw& law) const;
 
   const Model& model_;
   const int body_;
   const double mass_, reach_;
-  const Mat3 inertia_, inverse_inertia_;  // material axes
+  const PackMat3 inertia_, inverse_inertia_;  // material axes
   std::shared_ptr<const ElasticBasis> basis_;
-  double contact_mass_;
-  double stiffest_ = 0;  // 1/(kg m), w^2 over alpha is below it whatever touches
-  std::vector<Group> groups_;
-  std::vector<Side> sides_;           // per plane, then group
-  Eigen::AlignedBox3d box_;           // m, of the contact points, from the centre of gravity, reference axes
-  std::vector<double> widest_;        // m, per plane: greatest gap of centre lines on its face
-  Touches touches_, touches_before_;  // the latter: where a part of a step starts
-  // The state at which `touches_` is.
+  BodyContacts contacts_;
+  // The state at which contacts_ was pressed.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;
-  std::vector<Points> shapes_;  // per touch and mode, floor's axes
   Eigen::VectorXd section_;
   // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine, and
   // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection.
   double swing_step_ = 0;
   Amplitudes cosine_, sine_, back_, kick_;
-  // Stable steps by what touches.
+  // Stable parts by what touches.
   struct Known {
     std::uint64_t touching;
     double alpha, q;
@@ -183,13 +143,6 @@ class ReducedBody {
   };
   std::array<Known, 8> known_{};
   int next_known_ = 0;
-};
-
-/// Scratch of a step, for one body after the other.
-struct ReducedScratch {
-  std::vector<ReducedBody::Derivative> derivatives;  // per touch
-  // Newton: M - (h/2) sum J^T (df/dv) J and its factors, and a right side. Rows of whole packs.
-  double matrix[ReducedBody::k_unknowns][ReducedBody::k_unknowns + 2], side[ReducedBody::k_unknowns];
 };
 
 }  // namespace topple

@@ -48,6 +48,7 @@ void each_number(AnyState& s, F f) {
       b.reason = as<RungReason>(reason, RungReason::calm);
     }
     f(b.calm_since);
+    f(b.part);
     for (auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
       for (int k = 0; k < 3; ++k) f((*v)[k]);
     for (int k = 0; k < 4; ++k) f(b.rotation.coeffs()[k]);
@@ -225,7 +226,7 @@ bool is_finite(const State& s, bool nodes) {
   for (const BodyState& b : s.bodies) {
     const double sum = b.position.sum() + b.velocity.sum() + b.angular_velocity.sum() + b.force.sum() +
                        b.moment.sum() + b.rotation.coeffs().sum() + b.amplitude.sum() + b.rate.sum() +
-                       b.load.sum() + b.calm_since;
+                       b.load.sum() + b.calm_since + b.part;
     odd_one += sum - sum;
   }
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());

@@ -75,6 +75,9 @@ struct Counted {
   friend Counted operator/(Counted a, Counted b) { return result(a.value / b.value); }
   friend Counted operator-(Counted a) { return -a.value; }
   friend Counted mul_add(Counted a, Counted b, Counted c) { return result(a.value * b.value + c.value, 2); }
+  friend Counted less_product(Counted c, Counted a, Counted b) {
+    return result(c.value - a.value * b.value, 2);
+  }
   friend Counted with_sign_of(Counted a, Counted b) { return std::copysign(a.value, b.value); }
   friend bool any_above(Counted a, double b) { return a.value > b; }
 };

@@ -133,9 +133,10 @@ void rocking(benchmark::State& state, BodyModel model) {
   const auto found_scene = std::find_if(scenes.begin(), scenes.end(), [](const io::BuiltinScene& scene) {
     return scene.name.ends_with("rocking-free-50");
   });
-  io::Scene scene =
-      io::parse_scene(found_scene->text, std::string(found_scene->name),
-                      {"run.time_step=" + std::to_string(1e-6 * static_cast<double>(state.range(0)))});
+  io::Scene scene = io::parse_scene(
+      found_scene->text, std::string(found_scene->name),
+      {"run.time_step=" +
+       (state.range(0) > 0 ? std::to_string(1e-6 * static_cast<double>(state.range(0))) : "auto")});
   Setup& setup = scene.setup;
   compute_as(setup, model);
   BodyOutcome outcome;
@@ -149,9 +150,14 @@ void rocking(benchmark::State& state, BodyModel model) {
     State now = start_state(setup.model, setup.starts);
     prepare(setup.model, setup.parameters, now, workspace);
     state.ResumeTiming();
-    while (now.time < setup.run.duration - setup.parameters.time_step / 2)
-      if (!step(setup.model, setup.parameters, now, workspace).ok())
+    long steps = 0;
+    while (now.time < setup.run.duration - setup.parameters.time_step / 2) {
+      if (!step(setup.model, setup.parameters, now, workspace, setup.run.duration).ok())
         return state.SkipWithError("step failed");
+      ++steps;
+    }
+    state.counters["steps"] = steps;
+    state.counters["balance_error"] = now.energy.balance_error();
   }
   state.counters["per_simulated_s"] = benchmark::Counter(
       setup.run.duration, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -165,6 +171,9 @@ void rocking(benchmark::State& state, BodyModel model) {
   state.counters["error_over_tolerance"] = worst;
 }
 BENCHMARK_CAPTURE(rocking, rigid, BodyModel::rigid)
+    ->Arg(0)
+    ->Arg(2000)
+    ->Arg(4000)
     ->Arg(250)
     ->Arg(500)
     ->Arg(1000)

@@ -1,0 +1,461 @@
+#include "solver/body_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "solver/elastic_basis.h"
+#include "solver/step_control.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_same_line = 1e-6;  // m
+constexpr double k_bend = 0.05;       // of the reach: more than an elastic body deforms
+
+double mean_width(const ContactPoint& point, const Plane& plane) {
+  return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+}
+
+[[gnu::always_inline]] inline Four power(Four depth, double q) {
+  if (q == 1) return depth;
+  if (q == 2) return depth * depth;
+  for (int i = 0; i < 4; ++i) depth.set(i, std::pow(depth[i], q));
+  return depth;
+}
+
+}  // namespace
+
+PreparedLaw::PreparedLaw(const ContactLaw& law)
+    : ContactLaw(law), root_alpha(std::sqrt(law.alpha)), loss(normal_loss(law.restitution)) {}
+
+BodyContacts::BodyContacts(const Model& model, int body)
+    : model_(model),
+      mass_(model.bodies[body].mass),
+      reach_(model.bodies[body].reach),
+      contact_mass_(mass_ / std::max(1, model.bodies[body].contact_point_count)),
+      least_length_(std::numeric_limits<double>::infinity()) {
+  const Body& b = model.bodies[body];
+  std::vector<int> order(b.contact_point_count);
+  for (int p = 0; p < b.contact_point_count; ++p) order[p] = b.first_contact_point + p;
+  const auto place_of = [&](int p) -> Vec3 {
+    return model.node_position[model.contact_points[p].node] - b.centre_of_gravity;
+  };
+  // Points that touch together stand together: a face's, then an edge's.
+  std::sort(order.begin(), order.end(), [&](int p, int q) {
+    const auto key = [&](int point) {
+      const Vec3 at = (place_of(point) / k_same_line).array().round();
+      return std::tuple(at.z(), at.x(), at.y(), point);
+    };
+    return key(p) < key(q);
+  });
+  const int modes = b.elastic ? b.elastic->modes : 0;
+  groups_.resize((order.size() + 4 - 1) / 4);
+  sides_.resize(model.planes.size() * groups_.size());
+  for (Side& side : sides_)
+    side = {Four(-std::numeric_limits<double>::infinity()), Four(1), Four(1), Four(0), {}};
+  widest_.assign(model.planes.size(), 0);
+  Eigen::AlignedBox3d box;
+  const double inverse_moment = b.inertia.inverse().trace();
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Group& group = groups_[g];
+    group.place = in_all_lanes(Vec3::Zero());
+    group.shape.assign(modes, in_all_lanes(Vec3::Zero()));
+    for (int which = 0; which < 4 && g * 4 + which < order.size(); ++which) {
+      const int p = order[g * 4 + which];
+      const ContactPoint& point = model.contact_points[p];
+      const Vec3 at = place_of(p);
+      group.point[which] = p;
+      group.size = which + 1;
+      set_lane(group.place, which, at);
+      box.extend(at);
+      double inverse_mass = 1 / mass_ + at.squaredNorm() * inverse_moment;
+      for (int k = 0; k < modes; ++k) {
+        const Vec3 shape = b.elastic->shape.block<3, 1>(6 * (point.node - b.first_node), k);
+        set_lane(group.shape[k], which, shape);
+        inverse_mass += shape.squaredNorm();
+      }
+      for (std::size_t k = 0; k < model.planes.size(); ++k) {
+        Side& side = sides_[k * groups_.size() + g];
+        const double L = mean_width(point, model.planes[k]);
+        const int spring = static_cast<int>(p * model.planes.size() + k);
+        if (which == 0) side.spring.fill(spring);
+        side.spring[which] = spring;
+        side.L.set(which, L);
+        side.stick.set(which, k_stick_stiffness / L);
+        side.damping.set(which, 2 * k_stick_damping * std::sqrt(side.stick[which] * contact_mass_));
+        side.gap.set(which, point.width / 2);
+        widest_[k] = std::max(widest_[k], point.width / 2);
+        least_length_ = std::min(least_length_, L);
+        stiffest_ += inverse_mass / L;
+      }
+    }
+  }
+  box_centre_ = box.center();
+  box_half_ = box.sizes() / 2;
+  for (Touches* touches : {&now_, &start_}) touches->all.reserve(sides_.size());
+  shapes_.reserve(sides_.size() * modes);
+}
+
+BodyContacts::Points BodyContacts::place(const BodyState& s, const Group& group) const {
+  Points at = group.place;
+  if (s.rung == Rung::elastic)
+    for (std::size_t k = 0; k < group.shape.size(); ++k) at = at + s.amplitude[k] * group.shape[k];
+  return at;
+}
+
+// Height of the box over a plane's face along n, the normal in reference axes.
+double BodyContacts::clearance(const Vec3& n, double height) const {
+  return height + n.x() * box_centre_.x() + n.y() * box_centre_.y() + n.z() * box_centre_.z() -
+         (std::abs(n.x()) * box_half_.x() + std::abs(n.y()) * box_half_.y() +
+          std::abs(n.z()) * box_half_.z());
+}
+
+void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
+  now_.count = 0;
+  shapes_.clear();
+  modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
+  const double bend = modes_ > 0 ? k_bend * reach_ : 0;
+  const std::size_t planes = model_.planes.size();
+  for (std::size_t k = 0; k < planes; ++k) {
+    const Plane& plane = model_.planes[k];
+    const double height = plane.normal.dot(s.position - plane.point);
+    const Vec3 n = unpacked(transposed_times(r, packed(plane.normal)));
+    if (clearance(n, height) > widest_[k] + bend) continue;
+    const Points normal = in_all_lanes(n);
+    const Side* const sides = &sides_[k * groups_.size()];
+    const PackMatrix<Four> turn = in_all_lanes(r);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const Group& group = groups_[g];
+      const Points at = modes_ > 0 ? place(s, group) : group.place;
+      const Four gap = dot(normal, at) + (Four(height) - sides[g].gap);
+      const Four::Mask touching = gap < 0;
+      if (bits(touching) == 0) continue;
+      Touch& touch = now_.add();
+      touch.plane = static_cast<int>(k);
+      touch.group = static_cast<int>(g);
+      touch.touching = touching;
+      touch.depth = choose(touching, -gap / sides[g].L, Four(0));
+      touch.arm = turn * at;
+      touch.stick = gather(stick.data(), sides[g].spring);
+      for (int j = 0; j < modes_; ++j) shapes_.push_back(turn * group.shape[j]);
+    }
+  }
+}
+
+void BodyContacts::follow(const BodyState& before, const PackMat3& r0, const BodyState& s,
+                          const PackMat3& r) {
+  const Points shift = in_all_lanes(Vec3(s.position - before.position));
+  if (modes_ > 0) {
+    const PackMatrix<Four> from = in_all_lanes(r0);
+    for (Touch& touch : now_.list()) {
+      touch.travel = shift + (touch.arm - from * place(before, groups_[touch.group]));
+      touch.stick = touch.stick + touch.travel;
+    }
+    return;
+  }
+  const PackMatrix<Four> turn = in_all_lanes(r - r0);
+  for (Touch& touch : now_.list()) {
+    touch.travel = shift + turn * groups_[touch.group].place;
+    touch.stick = touch.stick + touch.travel;
+  }
+}
+
+// As contact_force, four by four.
+template <bool with_slope>
+[[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Points& v,
+                                                                 double lever, Touch& touch) const {
+  const Side& here = side(touch);
+  const Four zero = Four(0);
+  const Points n = normal(touch);
+  const Four vn = dot(n, v);
+  const double eps = law.normal_speed;
+  const Four inverse = 1 / sqrt(mul_add(vn, vn, Four(eps * eps)));
+  const Four factor = less_product(Four(1), law.loss * vn, inverse);
+  touch.conservative = choose(touch.touching, law.alpha * power(touch.depth, law.q), zero);
+  touch.normal = touch.conservative * factor;
+
+  const Four k = law.alpha * here.stick, c = law.root_alpha * here.damping;
+  const Points stick = mul_add(-dot(n, touch.stick), n, touch.stick);
+  const Points trial = mul_add(c, mul_add(-vn, n, v), k * stick);
+  const Four limit = law.friction * touch.normal, size2 = dot(trial, trial);
+  const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
+  Four scale = Four(1), inverse_size = zero;
+  if (bits(sticks | ~touch.touching) != k_all_lanes) {
+    inverse_size = 1 / sqrt(size2);
+    scale = choose(sticks, scale, limit * inverse_size);
+    inverse_size = choose(sticks, zero, inverse_size);
+  }
+  scale = choose(touch.touching, scale, zero);
+  touch.tangential = -scale * trial;
+  const Four spring2 = k * k * dot(stick, stick);
+  touch.stick_energy = 0.5 / k * choose(spring2 <= limit * limit, spring2, limit * limit);
+  touch.stick_energy = choose(touch.touching, touch.stick_energy, zero);
+  if constexpr (with_slope) {
+    Four slope = -law.loss * eps * eps * touch.conservative * inverse * inverse * inverse, across = c;
+    if (lever > 0) {
+      Four stiffness = law.alpha / here.L;
+      if (law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
+      slope -= choose(touch.touching, lever * stiffness * factor, zero);
+      across += lever * k;
+    }
+    across = across * scale;
+    const Points along = inverse_size * trial;
+    const Points lead = (slope + across) * n, side_way = mul_add(across, along, -(law.friction * slope) * n);
+    const Four n_of[3] = {n.x, n.y, n.z}, along_of[3] = {along.x, along.y, along.z};
+    for (int i = 0; i < 3; ++i) touch.slope.row[i] = mul_add(n_of[i], lead, along_of[i] * side_way);
+    touch.slope.row[0].x -= across;
+    touch.slope.row[1].y -= across;
+    touch.slope.row[2].z -= across;
+  }
+}
+
+template <bool with_slope>
+[[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Points& v,
+                                                         double lever, Touch& touch) const {
+  if (law.kind == ContactLawKind::coulomb) {
+    respond_coulomb<with_slope>(law, v, lever, touch);
+  } else {
+    touch.conservative = touch.normal = touch.stick_energy = Four(0);
+    touch.tangential = in_all_lanes(Vec3::Zero());
+    if (with_slope)
+      for (Points& row : touch.slope.row) row = in_all_lanes(Vec3::Zero());
+    for (int which = 0; which < 4; ++which) {
+      if (!touch.touching[which]) continue;
+      Mat3 by_position, by_velocity;
+      const ContactOutput out =
+          contact_force(law,
+                        {model_.planes[touch.plane].normal, touch.depth[which], side(touch).L[which],
+                         lane(v, which), lane(touch.stick, which), contact_mass_},
+                        by_position, by_velocity);
+      touch.conservative.set(which, out.conservative);
+      touch.normal.set(which, out.normal);
+      set_lane(touch.tangential, which, out.tangential);
+      if (with_slope) set_lane(touch.slope, which, by_velocity + lever * by_position);
+    }
+  }
+  touch.force = mul_add(touch.normal, normal(touch), touch.tangential);
+}
+
+template <bool with_slope>
+ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, double lever) {
+  Points force = in_all_lanes(Vec3::Zero()), moment = force;
+  Four damped = Four(0), rubbed = damped;
+  const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
+  const Points* shape = shapes_.data();
+  for (Touch& touch : now_.list()) {
+    Points v = linear + cross(angular, touch.arm);
+    for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
+    respond<with_slope>(law, v, lever, touch);
+    force = force + touch.force;
+    moment = moment + cross(touch.arm, touch.force);
+    damped -= (touch.normal - touch.conservative) * dot(normal(touch), v);
+    rubbed -= dot(touch.tangential, v);
+  }
+  const Four first = sums(force.x, force.y, force.z, damped),
+             second = sums(moment.x, moment.y, moment.z, rubbed);
+  return {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}, first[3], second[3]};
+}
+template ContactLoads BodyContacts::press<false>(const PreparedLaw&, const BodyVelocity&, double);
+template ContactLoads BodyContacts::press<true>(const PreparedLaw&, const BodyVelocity&, double);
+
+void BodyContacts::press_modes(int modes, Amplitudes& load) const {
+  std::array<Four, k_modes> sum_of;
+  sum_of.fill(Four(0));
+  const Points* shape = shapes_.data();
+  for (const Touch& touch : now_.list())
+    for (int k = 0; k < modes; ++k) sum_of[k] += dot(*shape++, touch.force);
+  for (int k = 0; k < modes; ++k) load[k] = sum(sum_of[k]);
+}
+
+ContactSlope BodyContacts::slope() const {
+  const Points none = in_all_lanes(Vec3::Zero());
+  PackMatrix<Four> a{{none, none, none}}, b = a, c = a, d = a;
+  for (const Touch& touch : now_.list()) {
+    const PackMatrix<Four> turned = times_skew(touch.slope, touch.arm);
+    a = a + touch.slope;
+    b = b - turned;
+    c = c + skew_times(touch.arm, touch.slope);
+    d = d - skew_times(touch.arm, turned);
+  }
+  return {sum(a), sum(b), sum(c), sum(d)};
+}
+
+void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {
+  Four left[k_modes][6], top[6][k_modes], corner[k_modes][k_modes];
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) left[k][i] = top[i][k] = Four(0);
+    for (int j = 0; j < m; ++j) corner[k][j] = Four(0);
+  }
+  const Points* shape = shapes_.data();
+  for (const Touch& touch : now_.list()) {
+    for (int k = 0; k < m; ++k) {
+      const Points f = touch.slope * shape[k], moment = cross(touch.arm, f);
+      top[0][k] += f.x;
+      top[1][k] += f.y;
+      top[2][k] += f.z;
+      top[3][k] += moment.x;
+      top[4][k] += moment.y;
+      top[5][k] += moment.z;
+      for (int j = 0; j < m; ++j) corner[j][k] += dot(shape[j], f);
+      // the transpose's product: forces of the rigid columns on this mode
+      const Points b = transposed_times(touch.slope, shape[k]), turned = cross(touch.arm, b);
+      left[k][0] += b.x;
+      left[k][1] += b.y;
+      left[k][2] += b.z;
+      left[k][3] += turned.x;
+      left[k][4] += turned.y;
+      left[k][5] += turned.z;
+    }
+    shape += m;
+  }
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) {
+      matrix[i][6 + k] += factor * sum(top[i][k]);
+      matrix[6 + k][i] += factor * sum(left[k][i]);
+    }
+    for (int j = 0; j < m; ++j) matrix[6 + k][6 + j] += factor * sum(corner[k][j]);
+  }
+}
+
+// Travel of the stick springs after slipping, m.
+BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law, const Touch& touch) const {
+  if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
+  const Points n = normal(touch), stick = mul_add(-dot(n, touch.stick), n, touch.stick);
+  const Four limit = law.friction * touch.normal / (law.alpha * side(touch).stick);
+  const Four size2 = dot(stick, stick);
+  const Four::Mask sticks = size2 <= limit * limit;
+  if (bits(sticks | ~touch.touching) == k_all_lanes) return choose(touch.touching, Four(1), Four(0)) * stick;
+  const Four scale = choose(sticks, Four(1), limit / sqrt(size2));
+  return choose(touch.touching, scale, Four(0)) * stick;
+}
+
+void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
+  for (const Touch& touch : start_.list())
+    for (int k = 0; k < groups_[touch.group].size; ++k) stick[side(touch).spring[k]].setZero();
+  for (Touch& touch : now_.list()) {
+    touch.stick = held_stick(law, touch);
+    const std::array<Four, 4> rows = lanes(touch.stick);
+    for (int k = 0; k < groups_[touch.group].size; ++k)
+      store_three(stick[side(touch).spring[k]].data(), rows[k]);
+  }
+}
+
+double BodyContacts::stick_energy_gained() const {
+  Four gained = Four(0);
+  for (const Touch& touch : now_.list()) gained += touch.stick_energy;
+  for (const Touch& touch : start_.list()) gained -= touch.stick_energy;
+  return sum(gained);
+}
+
+double BodyContacts::energy(const ContactLaw& law) const {
+  Four held = Four(0);
+  for (const Touch& touch : now_.list()) {
+    held += touch.stick_energy;
+    if (law.kind != ContactLawKind::printed)
+      held += law.alpha / (law.q + 1) * side(touch).L * touch.depth * power(touch.depth, law.q);
+  }
+  return sum(held);
+}
+
+void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r,
+                               StepEnergy& booked) const {
+  Four damped = Four(0), rubbed = damped;
+  const auto book = [&](const Touch& touch, const Points& travel, double sign) {
+    damped -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
+    rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
+  };
+  for (const Touch& touch : start_.list())
+    book(touch, in_all_lanes(shift) + (in_all_lanes(r) * place(s, groups_[touch.group]) - touch.arm), -1);
+  for (const Touch& touch : now_.list()) book(touch, touch.travel, 1);
+  booked.normal_damping += sum(damped);
+  booked.friction += sum(rubbed);
+}
+
+void BodyContacts::book_law_change(const ContactLaw& before, const ContactLaw& after,
+                                   StepEnergy& booked) const {
+  if (before.alpha == after.alpha && before.q == after.q) return;
+  LawChange change(before, after, booked);
+  each_of(start_, [&](const Touch& touch, int which, int, std::size_t) {
+    change.book_start(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
+  });
+  each_of(now_, [&](const Touch& touch, int which, int, std::size_t) {
+    change.book_end(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
+  });
+}
+
+std::uint64_t BodyContacts::hash() const {
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const Touch& touch : now_.list())
+    hash = (hash ^ (static_cast<std::uint64_t>(touch.plane) << 32 |
+                    static_cast<std::uint64_t>(touch.group) << 8 | bits(touch.touching))) *
+           1099511628211ull;
+  return hash;
+}
+
+double BodyContacts::next_landing(const BodyState& s, const Vec3& acceleration,
+                                  const Vec3& angular_acceleration, double within) const {
+  const double never = std::numeric_limits<double>::infinity();
+  const Vec3& omega = s.angular_velocity;
+  const double reach =
+      within *
+      (s.velocity.norm() + reach_ * omega.norm() +
+       within / 2 * (acceleration.norm() + reach_ * (angular_acceleration.norm() + omega.squaredNorm())));
+  Four soonest = Four(never);
+  const PackMat3 r = rotation_matrix(packed(s.rotation));
+  for (std::size_t k = 0; k < model_.planes.size(); ++k) {
+    const Plane& plane = model_.planes[k];
+    const double height = plane.normal.dot(s.position - plane.point);
+    const Vec3 normal = unpacked(transposed_times(r, packed(plane.normal)));
+    if (clearance(normal, height) > widest_[k] + reach) continue;
+    const Points n = in_all_lanes(normal), turn = in_all_lanes(Vec3(normal.cross(omega))),
+                 bend = in_all_lanes(Vec3(normal.cross(angular_acceleration) + normal.dot(omega) * omega -
+                                          omega.squaredNorm() * normal));
+    const Four speed = Four(plane.normal.dot(s.velocity)), rise = Four(plane.normal.dot(acceleration));
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const Points& at = groups_[g].place;
+      const Four gap = dot(n, at) + (Four(height) - sides_[k * groups_.size() + g].gap);
+      // gap - closing t + rises t^2/2 = 0, the first t > 0
+      const Four closing = -speed - dot(turn, at), rises = rise + dot(bend, at);
+      const Four root = closing * closing - 2 * rises * gap;
+      const Four down = closing + sqrt(choose(root < 0, Four(0), root)), when = 2 * gap / down;
+      const Four::Mask lands = (Four(0) <= gap) & (Four(0) < down) & (Four(0) <= root) & (when < soonest);
+      soonest = choose(lands, when, soonest);
+    }
+  }
+  const double first = std::min(std::min(soonest[0], soonest[1]), std::min(soonest[2], soonest[3]));
+  return first < within ? first : never;
+}
+
+double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const {
+  double stiffness = 0, limit = k_longest_step;
+  const Vec3 omega = s.rotation * s.angular_velocity;
+  const PackMat3 r = rotation_matrix(packed(s.rotation));
+  for (std::size_t k = 0; k < model_.planes.size(); ++k) {
+    const Plane& plane = model_.planes[k];
+    const double fall = -plane.normal.dot(s.velocity), height = plane.normal.dot(s.position - plane.point);
+    const Vec3 normal = unpacked(transposed_times(r, packed(plane.normal)));
+    if (clearance(normal, height) - widest_[k] >
+        (std::max(0., fall) + reach_ * omega.norm()) * k_longest_step)
+      continue;
+    const Points n = in_all_lanes(normal),
+                 turn = in_all_lanes(unpacked(transposed_times(r, packed(Vec3(plane.normal.cross(omega))))));
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const Side& side = sides_[k * groups_.size() + g];
+      const Four gap = dot(n, groups_[g].place) + height - side.gap;
+      const Four closing = fall - dot(turn, groups_[g].place);
+      for (int which = 0; which < groups_[g].size; ++which) {
+        if (gap[which] < 0)
+          stiffness += penalty_stiffness(law, -gap[which] / side.L[which], side.L[which]);
+        else if (closing[which] * k_longest_step > gap[which])
+          limit = std::min(limit, std::max(gap[which] / closing[which],
+                                           side.L[which] / (k_closing_part * closing[which])));
+      }
+    }
+  }
+  if (stiffness > 0) limit = std::min(limit, 2 * k_pi * std::sqrt(mass_ / stiffness) / k_contact_part);
+  return limit;
+}
+
+}  // namespace topple

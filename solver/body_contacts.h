@@ -1,0 +1,185 @@
+// Contacts of a rigid or slightly deformed body with planes, its points four by four. Vectors are in the
+// floor's axes where nothing else is said.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/body_state.h"
+#include "solver/contact_law.h"
+#include "solver/energy.h"
+#include "solver/model.h"
+#include "solver/pack.h"
+#include "solver/step.h"
+
+namespace topple {
+
+using PackVec3 = PackVector<double>;
+using PackMat3 = PackMatrix<double>;
+
+/// A contact law with what is the same at all contacts.
+struct PreparedLaw : ContactLaw {
+  double root_alpha, loss;  ///< normal_loss
+  explicit PreparedLaw(const ContactLaw& law);
+};
+
+struct BodyVelocity {
+  PackVec3 linear, angular;  ///< m/s of the centre of gravity, rad/s
+  Amplitudes rate;
+};
+
+/// What contacts do to a body: N, N m about the centre of gravity, W lost in normal damping and W that
+/// friction and stick springs take.
+struct ContactLoads {
+  PackVec3 force, moment;
+  double damped, rubbed;
+};
+
+/// Derivatives of the force and the moment of contacts by linear and angular velocity.
+struct ContactSlope {
+  PackMat3 force_linear, force_angular, moment_linear, moment_angular;
+};
+
+/// Rows of a body's six unknowns and its modes, whole packs long.
+using ModeMatrix = double[6 + k_modes][6 + k_modes + 2];
+
+class BodyContacts {
+ public:
+  using Points = PackVector<Four>;
+  /// Four points of which some touch a plane.
+  struct Touch {
+    int plane, group;
+    Four::Mask touching;
+    Four depth;
+    Points arm;     // m, from the centre of gravity
+    Points stick;   // m, travel since sticking began
+    Points travel;  // m, in the part of a step that led here
+    Four conservative, normal;
+    Points tangential, force;
+    Four stick_energy;
+    PackMatrix<Four> slope;  // of the force by the velocity
+  };
+
+  BodyContacts(const Model& model, int body);
+
+  /// What touches becomes what touched at the start of a part.
+  void begin_part() { std::swap(now_, start_); }
+  /// Undoes begin_part.
+  void give_up_part() { std::swap(now_, start_); }
+  /// What touches at the pose of `s`, with rotation matrix `r` and stick springs of State::stick.
+  void find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick);
+  /// The springs follow the motion from `before`, with rotation matrix `r0`, to what find was given.
+  void follow(const BodyState& before, const PackMat3& r0, const BodyState& s, const PackMat3& r);
+  /// Forces of what touches. with_slope: slope and slope_of_modes give their derivatives along which the
+  /// place changes `lever` times as much as the velocity, s.
+  template <bool with_slope>
+  ContactLoads press(const PreparedLaw& law, const BodyVelocity& u, double lever);
+  /// On the modes, N/sqrt(kg), with the forces found last.
+  void press_modes(int modes, Amplitudes& load) const;
+  ContactSlope slope() const;
+  /// Adds `factor` times the derivatives that concern modes to rows and columns from the seventh on; six rows
+  /// of the body, then the modes.
+  void add_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;
+  /// Springs after slipping; those of the start of the part are let go.
+  void keep_sticks(const ContactLaw& law, std::span<Vec3> stick);
+
+  /// J, of springs.
+  double energy(const ContactLaw& law) const;
+  /// J, what stick springs hold more than at the start of the part.
+  double stick_energy_gained() const;
+  /// Work of damping and friction over a part, by the trapezoidal rule along the travel of the points.
+  void book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r, StepEnergy& booked) const;
+  /// What a law that changed over a part put into springs.
+  void book_law_change(const ContactLaw& before, const ContactLaw& after, StepEnergy& booked) const;
+
+  /// When the next point comes to a plane, s from now, with the acceleration of this instant; infinite: not
+  /// `within`. m/s^2; rad/s^2, material axes.
+  double next_landing(const BodyState& s, const Vec3& acceleration, const Vec3& angular_acceleration,
+                      double within) const;
+  /// k_longest_step, or less: the time to touch, or that in which contacts close and bounce.
+  double look_ahead(const ContactLaw& law, const BodyState& s) const;
+
+  bool any() const { return now_.count > 0; }
+  std::size_t count() const { return now_.count; }
+  /// The same for the same points on the same planes.
+  std::uint64_t hash() const;
+  /// Calls f(touch, lane, point, index into State::stick).
+  template <class F>
+  void each(F f) const {
+    each_of(now_, f);
+  }
+  double length(const Touch& touch, int lane) const { return side(touch).L[lane]; }
+  /// m, from the centre of gravity, reference axes, and N of one that touches; its k-th mode.
+  Vec3 place(const Touch& touch, int lane) const { return topple::lane(groups_[touch.group].place, lane); }
+  Vec3 shape(const Touch& touch, int lane, int k) const {
+    return topple::lane(groups_[touch.group].shape[k], lane);
+  }
+  /// 1/(kg m): no squared frequency of the body on its contacts over alpha is greater.
+  double stiffest() const { return stiffest_; }
+  /// Of a point and a plane.
+  std::size_t pairs() const { return sides_.size() * 4; }
+  double least_length() const { return least_length_; }
+  /// kg, the share of the body that a contact carries.
+  double share_of_mass() const { return contact_mass_; }
+
+ private:
+  // Those that fill up the last group never touch.
+  struct Group {
+    Points place;               // m, from the centre of gravity, reference axes
+    std::array<int, 4> point;   // index into the model
+    int size = 0;               // of those that there are
+    std::vector<Points> shape;  // per mode
+  };
+  // Of a group and a plane.
+  struct Side {
+    Four gap;                   // m, of the centre line on the face
+    Four L;                     // m
+    Four stick;                 // 1/m, stiffness of the stick spring over alpha
+    Four damping;               // its damping over sqrt(alpha)
+    std::array<int, 4> spring;  // index into State::stick; of none: that of the first
+  };
+  // Keeps what it ever had room for.
+  struct Touches {
+    std::vector<Touch> all;
+    std::size_t count = 0;
+    Touch& add() {
+      if (count == all.size()) all.emplace_back();
+      return all[count++];
+    }
+    std::span<const Touch> list() const { return {all.data(), count}; }
+    std::span<Touch> list() { return {all.data(), count}; }
+  };
+
+  const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
+  Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
+  double clearance(const Vec3& n, double height) const;
+  Points place(const BodyState& s, const Group& group) const;
+  template <bool with_slope>
+  void respond(const PreparedLaw& law, const Points& velocity, double lever, Touch& touch) const;
+  template <bool with_slope>
+  void respond_coulomb(const PreparedLaw& law, const Points& velocity, double lever, Touch& touch) const;
+  Points held_stick(const ContactLaw& law, const Touch& touch) const;
+  template <class F>
+  void each_of(const Touches& touches, F f) const {
+    for (const Touch& touch : touches.list())
+      for (int k = 0; k < 4; ++k)
+        if (touch.touching[k])
+          f(touch, k, groups_[touch.group].point[k],
+            groups_[touch.group].point[k] * model_.planes.size() + touch.plane);
+  }
+
+  const Model& model_;
+  double mass_, reach_, contact_mass_;
+  double stiffest_ = 0, least_length_;
+  std::vector<Group> groups_;
+  std::vector<Side> sides_;     // per plane, then group
+  Vec3 box_centre_, box_half_;  // m, of the points, from the centre of gravity, reference axes
+  std::vector<double> widest_;  // m, per plane: greatest gap of centre lines on its face
+  Touches now_, start_;
+  int modes_ = 0;               // of what find was given last
+  std::vector<Points> shapes_;  // per touch and mode
+};
+
+}  // namespace topple

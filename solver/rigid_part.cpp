@@ -1,0 +1,212 @@
+// The stiff method of ReducedBody.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/reduced_body.h"
+#include "solver/rigid_solver.h"
+#include "solver/rotation.h"
+#include "solver/step_control.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_gamma = 0.29289321881345254;  // 1 - 1/sqrt(2)
+constexpr double k_error_constant = 3 * k_gamma * k_gamma - 2 * k_gamma * k_gamma * k_gamma - 1. / 6;
+constexpr double k_stage_error = 1e-7;  // of the speed
+constexpr double k_good_rate = 0.1;     // of Newton with an old matrix
+constexpr double k_slow = 1e-3;         // m/s, below it errors of a stage are absolute
+constexpr double k_part_error = 0.1;    // of the tolerance times the speed: local error of the velocity
+constexpr double k_speed_floor = 0.01;  // of the speed of a fall through the reach
+constexpr double k_resolved = 0.3;      // rad, of a contact's bounce, in the first part after a touch
+constexpr double k_safety = 0.9, k_most_growth = 3, k_most_shrinking = 5;
+constexpr double k_least_part = 1e-4;  // of the first one
+constexpr double k_no_stage = 1e3;     // counts as this error
+constexpr int k_most_iterations = 20;
+
+// |a''| times h^2/2, from what acts at the ends of the stages.
+Vec3 bend(const Vec3& start, const Vec3& first, const Vec3& second) {
+  return (second - first) / (1 - k_gamma) - (first - start) / k_gamma;
+}
+
+}  // namespace
+
+struct ReducedBody::StiffPart {
+  const BodyState& start;
+  PackMat3 r0;
+  std::span<const Vec3> stick;
+  double lever;  // s, gamma h
+  RigidSolver solver;
+  bool fresh;  // the solver is to be made anew
+};
+
+// Places `at` where the stage's velocity leads, with rotation matrix r, and finds the forces there.
+ContactLoads ReducedBody::reach_stage(const StiffPart& part, const PreparedLaw& law, const Origin& from,
+                                      bool with_slope, BodyState& at, Stage& stage, PackMat3& r) {
+  const BodyVelocity& u = stage.u;
+  at.position = unpacked(mul_add(part.lever, u.linear, from.position));
+  PackVec3 turn = mul_add(part.lever, u.angular, from.turn);
+  const PackVec3 once = cross(turn, u.angular);
+  stage.turning = u.angular - 0.5 * once + 1. / 12 * cross(turn, once);  // inverse tangent of the exponential
+  turn = mul_add(part.lever, stage.turning, from.turn);
+  const PackQuaternion<double> q =
+      normalized(packed(exp_quaternion(unpacked(turn))) * packed(part.start.rotation));
+  at.rotation.coeffs() << q.v.x, q.v.y, q.v.z, q.w;
+  r = rotation_matrix(q);
+  contacts_.find(at, r, part.stick);
+  contacts_.follow(part.start, part.r0, at, r);
+  return with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+}
+
+// Newton for the velocity of a stage:  M u = momentum of `from` + lever (field + contacts).
+bool ReducedBody::solve_stage(StiffPart& part, const Instant& now, const PackVec3& field, const Origin& from,
+                              BodyState& at, Stage& stage) {
+  BodyVelocity& u = stage.u;
+  double last = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+    PackMat3 r;
+    const ContactLoads loads = reach_stage(part, now.law, from, part.fresh, at, stage, r);
+    const auto spin = [&] { return r * (inertia_ * transposed_times(r, u.angular)); };
+    PackVec3 x = mass_ * u.linear - from.momentum - part.lever * (loads.force + mass_ * field),
+             y = spin() - from.spin - part.lever * loads.moment;
+    if (part.fresh) part.solver = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.slope());
+    part.solver.solve(x, y);
+    u.linear = u.linear - x;
+    u.angular = u.angular - y;
+    const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    const double size = sum_of(x) + reach_ * sum_of(y),
+                 speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
+    // what is left after the correction: its rate, or its square over that of the smoothing
+    const double rate = part.fresh ? std::min(1., size / now.law.normal_speed) : size / last;
+    if (size * rate <= k_stage_error * speed) {
+      part.fresh = false;
+      stage.spin = spin();
+      stage.damped = loads.damped;
+      stage.rubbed = loads.rubbed;
+      return true;
+    }
+    part.fresh = rate > k_good_rate && (!part.fresh || iteration > 0);
+    last = size;
+  }
+  return false;
+}
+
+// False, and nothing is changed, when a stage is not found or the error of the velocity is greater than
+// allowed, m/s. `error`: over what is allowed.
+bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                             double allowed, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
+                             double& error) {
+  const double lever = k_gamma * h, rest = (1 - k_gamma) * h;
+  const Instant middle(parameters, start.time + lever);
+  const BodyState before = s;
+  contacts_.begin_part();
+  StiffPart part{before, rotation_matrix(packed(before.rotation)), stick, lever, {}, true};
+  const PackVec3 omega0 = part.r0 * packed(before.angular_velocity), force0 = packed(before.force),
+                 moment0 = packed(before.moment), gravity = packed(parameters.gravity),
+                 floor1 = packed(middle.floor), floor2 = packed(end.floor);
+  const PackMat3 inverse_inertia = part.r0 * inverse_inertia_ * transposed(part.r0);
+  const auto give_up = [&](double by) {
+    s = before;
+    contacts_.give_up_part();
+    error = by;
+    return false;
+  };
+
+  Origin from{packed(before.position),
+              {0, 0, 0},
+              mass_ * packed(before.velocity),
+              part.r0 * (inertia_ * packed(before.angular_velocity))};
+  const PackVec3 spin0 = from.spin;
+  Stage one;
+  one.u.linear = mul_add(lever / mass_, force0, packed(before.velocity));
+  one.u.angular = omega0 + lever * (inverse_inertia * moment0);
+  if (!solve_stage(part, middle, gravity - floor1, from, s, one)) return give_up(k_no_stage);
+  const PackVec3 force1 = 1 / lever * (mass_ * one.u.linear - from.momentum),
+                 moment1 = 1 / lever * (one.spin - from.spin);
+
+  from = {mul_add(rest, one.u.linear, from.position), rest * one.turning,
+          mul_add(rest, force1, from.momentum), mul_add(rest, moment1, from.spin)};
+  Stage two;
+  two.u.linear = 1 / mass_ * mul_add(lever, force1, from.momentum);
+  two.u.angular = omega0 + h * (inverse_inertia * moment1);
+  if (!solve_stage(part, end, gravity - floor2, from, s, two)) return give_up(k_no_stage);
+  const PackVec3 force2 = 1 / lever * (mass_ * two.u.linear - from.momentum),
+                 moment2 = 1 / lever * (two.spin - from.spin);
+
+  const Vec3 bent = bend(before.force, unpacked(force1), unpacked(force2)),
+             twisted = bend(before.moment, unpacked(moment1), unpacked(moment2));
+  error = 2 * k_error_constant * h *
+          (bent.norm() / mass_ + reach_ * unpacked(inverse_inertia * packed(twisted)).norm()) / allowed;
+  if (!(error <= 1)) return give_up(std::isfinite(error) ? error : k_no_stage);
+
+  // where the last correction of Newton leads
+  PackMat3 r;
+  reach_stage(part, end.law, from, false, s, two, r);
+  s.velocity = unpacked(two.u.linear);
+  s.angular_velocity = unpacked(transposed_times(r, two.u.angular));
+  s.force = unpacked(force2);
+  s.moment = unpacked(moment2);
+
+  const Vec3 shift = s.position - before.position;
+  const auto work = [&](const PackVec3& f1, const PackVec3& v1, const PackVec3& f2, const PackVec3& v2) {
+    return rest * dot(f1, v1) + lever * dot(f2, v2);
+  };
+  booked.gravity -= mass_ * parameters.gravity.dot(shift);
+  booked.input -= mass_ * work(floor1, one.u.linear, floor2, two.u.linear);
+  booked.normal_damping += rest * one.damped + lever * two.damped;
+  booked.friction += rest * one.rubbed + lever * two.rubbed - contacts_.stick_energy_gained();
+  booked.numerical += work(force1, one.u.linear, force2, two.u.linear) +
+                      work(moment1, one.u.angular, moment2, two.u.angular) -
+                      0.5 * mass_ * (s.velocity + before.velocity).dot(s.velocity - before.velocity) -
+                      0.5 * (dot(two.spin, two.u.angular) - dot(spin0, omega0));
+  contacts_.book_law_change(start.law, end.law, booked);
+  contacts_.keep_sticks(end.law, stick);
+  respond_at(end.law, s);
+  return true;
+}
+
+// A first guess at a part that follows a touch.
+double ReducedBody::first_part(const ContactLaw& law) const {
+  return k_resolved *
+         std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
+}
+
+double ReducedBody::next_landing(const BodyState& s, double within) const {
+  return contacts_.next_landing(s, s.force / mass_, angular_acceleration(s), within);
+}
+
+bool ReducedBody::advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end,
+                                  double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked) {
+  const double floor = k_speed_floor * std::sqrt(parameters.gravity.norm() * reach_);
+  Instant from = start;
+  double left = h, growth = k_most_growth;
+  while (left > 0) {
+    const double first = first_part(from.law);
+    double size = s.part > 0 ? s.part : first;
+    if (const double landing = next_landing(s, std::min(size, left)); landing < size)
+      size = std::max(landing, std::min(size, first));
+    const double wanted = size;
+    if (left < 2 * size) size = left <= size ? left : left / 2;
+    const bool last = size == left;
+    const Instant to = last ? end : Instant(parameters, from.time + size);
+    const double allowed = k_part_error * parameters.tolerance *
+                           std::max(s.velocity.norm() + reach_ * s.angular_velocity.norm(), floor);
+    double error;
+    const bool good = stiff_part(parameters, from, to, size, allowed, s, stick, booked, error);
+    const double next =
+        size * std::clamp(k_safety / std::cbrt(error), 1 / k_most_shrinking, good ? growth : k_safety);
+    if (!good) {
+      if (size < k_least_part * first) return false;
+      growth = 1;
+      s.part = next;
+      continue;
+    }
+    growth = k_most_growth;
+    s.part = size < wanted ? std::max(next, wanted) : next;
+    left = last ? 0 : left - size;
+    from = to;
+  }
+  return true;
+}
+
+}  // namespace topple
