@@ -96,7 +96,7 @@ ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
 }
 
 ordered_json describe(const io::Recording& recording) {
-  ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  ordered_json out = describe(io::recorded_scene(recording));
   const std::int32_t newest = recording.newest_branch();
   const std::vector<std::int64_t> shown = recording.frames_on_way_to(newest);
   out["kind"] = "recording";

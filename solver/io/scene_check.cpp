@@ -123,6 +123,10 @@ class Checker {
         return;
       case KeyType::text:
         return text(node, path);
+      case KeyType::texts:
+        list(node, path, 1, key.count);
+        for_entries(node, path, [&](const Node& entry, const std::string& p) { text(entry, p); });
+        return;
       case KeyType::choice:
         return word(key, node, path);
       case KeyType::choices:

@@ -1,6 +1,7 @@
 // Builds the rows of the table of keys; each call adds one.
 #pragma once
 
+#include <limits>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -74,6 +75,10 @@ class Rows {
   }
   Row history(std::string_view name, double least, double most, std::string_view about) {
     return add(name, KeyType::history, about, Dimension::none, {}, least, most);
+  }
+  Row texts(std::string_view name, int most, std::string_view about) {
+    return add(name, KeyType::texts, about, Dimension::none, {}, -std::numeric_limits<double>::infinity(),
+               std::numeric_limits<double>::infinity(), most);
   }
   Row word(std::string_view name, Words choices, std::string_view about) {
     return plain(name, KeyType::choice, about).or_word(std::move(choices));

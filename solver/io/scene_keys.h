@@ -16,6 +16,7 @@ enum class KeyType {
   integer,
   boolean,
   text,
+  texts,     ///< a list of 1 to `count` texts
   choice,    ///< one of `choices`
   choices,   ///< a list of some of `choices`
   numbers,   ///< a list of `count` quantities

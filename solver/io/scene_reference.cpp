@@ -45,6 +45,9 @@ std::string type_text(const Key& key) {
     case KeyType::text:
       text = "text";
       break;
+    case KeyType::texts:
+      text = "a list of 1 to " + std::to_string(key.count) + " texts";
+      break;
     case KeyType::choice:
       text = "one word";
       break;
