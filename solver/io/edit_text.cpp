@@ -30,16 +30,17 @@ bool of_shake(Edit::Key key) {
   throw InputError(edit_key(edit) + ": " + message);
 }
 
-/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was.
+/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was. `when`: the
+/// choices whose value can be edited.
 template <typename Choice>
-void expect_choice(const Edit& edit, Choice chosen) {
+void expect_choice(const Edit& edit, Choice chosen, const std::vector<std::string_view>& when) {
   const Key& key = key_of(edit.key);
   const Key& choice = *find_key(key.table, key.of);
   const std::string_view word = choice.choices[static_cast<std::size_t>(chosen)];
   std::string words;
-  for (const std::string_view when : key.when) {
-    if (when == word) return;
-    words += (words.empty() ? "" : " or ") + std::string(when);
+  for (const std::string_view other : when) {
+    if (other == word) return;
+    words += (words.empty() ? "" : " or ") + std::string(other);
   }
   const std::string of(key.of);
   fail(edit, "belongs to " + of + " = " + words + ", but " + of + " is " + std::string(word));
@@ -90,10 +91,12 @@ void check_edit(const Edit& edit, const Setup& setup) {
   if (of_shake(edit.key) && (edit.shake < 0 || edit.shake >= static_cast<int>(shakes.size())))
     fail(edit, "there is no such shake; the scene has " + std::to_string(shakes.size()));
   check_edit_value(edit);
-  if (of_shake(edit.key)) expect_choice(edit, shakes[edit.shake].kind);
-  if (edit.key == Edit::Key::frequency && shakes[edit.shake].kind == Shake::Kind::sweep)
-    fail(edit, "the frequencies of a sweep stay as they are");
-  if (edit.key == Edit::Key::restitution) expect_choice(edit, setup.parameters.contact.kind);
+  const std::vector<std::string_view>& when = key_of(edit.key).when;
+  if (edit.key == Edit::Key::frequency)
+    expect_choice(edit, shakes[edit.shake].kind, {"sine"});  // the two of a sweep stay as they are
+  else if (of_shake(edit.key))
+    expect_choice(edit, shakes[edit.shake].kind, when);
+  if (edit.key == Edit::Key::restitution) expect_choice(edit, setup.parameters.contact.kind, when);
 }
 
 }  // namespace topple::io
