@@ -37,7 +37,7 @@ void remove_mean(std::vector<double>& samples);
 /// Subtracts from the acceleration the parabola c0 + c1 t + c2 t^2 that leaves the least mean square
 /// velocity: the drift of the base line goes, and the velocity ends near zero (G. V. Berg, G. W. Housner,
 /// Integrated velocity and displacement of strong earthquake ground motion, Bull. Seismol. Soc. Am. 51, 1961,
-/// 175-189). Velocities by the trapezoidal rule, from rest. Three samples or more.
+/// 175-189). Velocities by the trapezoidal rule, from rest. Four samples or more.
 void subtract_parabola(std::vector<double>& samples);
 
 }  // namespace topple

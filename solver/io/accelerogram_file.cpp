@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "solver/accelerogram.h"
 #include "solver/io/scene.h"
@@ -409,11 +408,12 @@ bool next_content(Lines& lines) {
   return false;
 }
 
-bool is_csv(std::string_view text, const std::string& name) {
+bool is_csv(std::string_view text, const std::string& name, const AccelerogramNotes& notes) {
   Lines lines(text, name);
   if (!next_content(lines)) return false;
   const std::string_view header = trimmed(lines.line());
-  return header.find_first_of(",;\t") != std::string_view::npos ||
+  // one column alone has its times from the scene
+  return header.find_first_of(",;\t") != std::string_view::npos || notes.interval ||
          !acceleration_unit(read_column(header).unit).empty();
 }
 
@@ -458,9 +458,8 @@ Columns read_header(const Lines& lines, char separator, const AccelerogramNotes&
 double common_interval(const std::vector<double>& times, const std::vector<int>& line_of,
                        const Lines& lines) {
   constexpr double k_slack = 0.2;
-  std::vector<double> steps(times.size());
-  std::adjacent_difference(times.begin(), times.end(), steps.begin());
-  steps.erase(steps.begin());
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   for (std::size_t i = 0; i < steps.size(); ++i)
     if (!(steps[i] > 0))
       lines.fail_at(line_of[i + 1], "time: " + short_number(times[i + 1]) + " s does not come after " +
@@ -469,14 +468,17 @@ double common_interval(const std::vector<double>& times, const std::vector<int>&
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double usual = *middle, interval = (times.back() - times.front()) / static_cast<double>(steps.size());
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const double off = times[i + 1] - times[0] - static_cast<double>(i + 1) * interval;
-    if (std::abs(steps[i] - usual) > k_slack * usual || std::abs(off) > k_slack * usual)
-      lines.fail_at(line_of[i + 1], "time: a step of " + short_number(steps[i]) + " s, from " +
-                                        short_number(times[i]) + " s to " + short_number(times[i + 1]) +
-                                        " s, where the others are " + short_number(usual) +
-                                        " s; samples are equally spaced");
-  }
+  const auto refuse = [&](std::size_t i) {
+    lines.fail_at(line_of[i + 1], "time: a step of " + short_number(steps[i]) + " s, from " +
+                                      short_number(times[i]) + " s to " + short_number(times[i + 1]) +
+                                      " s, where the others are " + short_number(usual) +
+                                      " s; samples are equally spaced");
+  };
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (std::abs(steps[i] - usual) > k_slack * usual) refuse(i);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (std::abs(times[i + 1] - times[0] - static_cast<double>(i + 1) * interval) > k_slack * usual)
+      refuse(i);
   return interval;
 }
 
@@ -548,7 +550,7 @@ AccelerogramFile read_accelerogram(std::string_view bytes, const std::string& na
   if (bytes.empty()) throw InputError(name + ":1: is empty");
   refuse_binary(bytes, name);
   const bool knet = bytes.starts_with(k_knet_first), at2 = !knet && is_at2(bytes, name);
-  if (!knet && !at2 && !is_csv(bytes, name))
+  if (!knet && !at2 && !is_csv(bytes, name, notes))
     throw InputError(name + ":1: found " + shown(bytes.substr(0, bytes.find_first_of("\r\n"))) +
                      ", expected PEER AT2, K-NET ASCII, or CSV with a header such as time_s,ax_gal");
   if (notes.interval && (knet || at2))

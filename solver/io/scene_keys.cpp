@@ -113,7 +113,7 @@ void add_shake(std::vector<Key>& keys) {
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
   rows.word("type", {"sine", "sweep", "pulse", "record"}, "form of the acceleration").absent(shake.kind);
   rows.numbers("frequency", 2, D::frequency, "Hz", 1e-3, 1e3,
-               "of a sine; `[first, last]` of a sweep, which is exponential: each octave takes as long")
+               "frequency; of a sweep [first, last]: each octave takes as long")
       .or_one()
       .required()
       .only("type", {"sine", "sweep"});

@@ -78,7 +78,7 @@ std::vector<AccelerogramComponent> read_components(const Entry& entry, const Rea
       entry.fail("mean", "the counts of a K-NET file have an offset, so that their mean is always removed");
     for (std::vector<double>& samples : file.components) {
       if (without_mean) remove_mean(samples);
-      if (parabola && samples.size() < 3) entry.fail("baseline", names[k] + " has fewer than 3 samples");
+      if (parabola && samples.size() < 4) entry.fail("baseline", names[k] + " has fewer than 4 samples");
       if (parabola) subtract_parabola(samples);
       components.push_back({Vec3::UnitX(), file.interval, std::move(samples)});
       if (!equally_long(components.front(), components.back()))
