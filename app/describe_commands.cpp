@@ -227,7 +227,7 @@ int info_command(const InfoOptions& options) {
 int scenes_command() {
   for (const io::BuiltinScene& builtin : io::builtin_scenes()) {
     const std::string name(builtin.name);
-    fmt::print("{:<16} {}\n", name, io::load_scene(name).title);
+    fmt::print("{:<18} {}\n", name, io::load_scene(name).title);
   }
   return k_done;
 }

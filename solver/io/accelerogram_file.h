@@ -10,8 +10,8 @@ namespace topple::io {
 
 inline constexpr double k_most_samples = 1e7;        ///< of one component
 inline constexpr double k_shortest_interval = 1e-5;  ///< s between samples
-inline constexpr double k_longest_interval = 1;
-inline constexpr double k_highest_peak = 5;  ///< g; above it the unit is taken to be wrong
+inline constexpr double k_longest_interval = 1;      ///< s
+inline constexpr double k_highest_peak = 5;          ///< g; above it the unit is taken to be wrong
 
 /// Components that were sampled together.
 struct AccelerogramFile {

@@ -31,8 +31,6 @@ class Row {
   Row& only(std::string_view of, Words when) { return key_.of = of, key_.when = std::move(when), *this; }
   /// Belongs to these choices of run.analysis.
   Row& only_in(Words analyses) { return key_.analyses = std::move(analyses), *this; }
-  /// Words of the contract that this version refuses.
-  Row& later(Words words) { return key_.later = std::move(words), *this; }
   /// Words that may stand instead of the numbers.
   Row& or_word(Words words) { return key_.choices = std::move(words), *this; }
   /// One number is enough, also outside of a list.

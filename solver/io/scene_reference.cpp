@@ -146,8 +146,6 @@ std::string scene_reference() {
       later += "- `" + path + "`\n";
       continue;
     }
-    for (const std::string_view word : key.later)
-      later += "- `" + path + " = \"" + std::string(word) + "\"`\n";
     text += "| `" + std::string(key.name) + "` | " + type_text(key) + " | " + allowed_text(key) + " | " +
             absent_text(key) + " | " + meaning_text(key) + " |\n";
   }
