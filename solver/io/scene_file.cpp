@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 namespace topple::io {
 namespace {
@@ -17,16 +18,14 @@ std::string known_records() {
   return names;
 }
 
-}  // namespace
-
-std::string read_whole_file(const std::string& path, std::size_t most_bytes) {
+std::string read_whole_file(const std::string& path) {
   std::error_code status;
   if (!fs::exists(path, status)) throw InputError(path + ": no such file");
   if (fs::is_directory(path, status)) throw InputError(path + ": is a folder");
   if (!fs::is_regular_file(path, status)) throw InputError(path + ": is not a regular file");
-  if (const auto size = fs::file_size(path, status); !status && size > most_bytes)
+  if (const auto size = fs::file_size(path, status); !status && size > k_most_bytes)
     throw InputError(path + ": has " + std::to_string(size >> 20) + " MiB; more than " +
-                     std::to_string(most_bytes >> 20) + " MiB are not read");
+                     std::to_string(k_most_bytes >> 20) + " MiB are not read");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be opened");
   std::string bytes(std::istreambuf_iterator<char>(file), {});
@@ -40,6 +39,8 @@ std::optional<std::string> builtin_record(const std::string& name) {
   return std::nullopt;
 }
 
+}  // namespace
+
 ReadSceneFile files_beside(const std::string& origin) {
   return [folder = fs::path(origin).parent_path()](const std::string& name) {
     const std::string path = (folder / name).string();
@@ -48,7 +49,7 @@ ReadSceneFile files_beside(const std::string& origin) {
       if (std::optional<std::string> record = builtin_record(name)) return *std::move(record);
       throw InputError(path + ": no such file; built-in records: " + known_records());
     }
-    return read_whole_file(path, k_most_bytes);
+    return read_whole_file(path);
   };
 }
 
