@@ -96,7 +96,7 @@ ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
 }
 
 ordered_json describe(const io::Recording& recording) {
-  ordered_json out = describe(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  ordered_json out = describe(io::recorded_scene(recording));
   const std::int32_t newest = recording.newest_branch();
   const std::vector<std::int64_t> shown = recording.frames_on_way_to(newest);
   out["kind"] = "recording";
@@ -227,7 +227,7 @@ int info_command(const InfoOptions& options) {
 int scenes_command() {
   for (const io::BuiltinScene& builtin : io::builtin_scenes()) {
     const std::string name(builtin.name);
-    fmt::print("{:<16} {}\n", name, io::load_scene(name).title);
+    fmt::print("{:<18} {}\n", name, io::load_scene(name).title);
   }
   return k_done;
 }

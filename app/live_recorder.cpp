@@ -53,7 +53,7 @@ std::string LiveRecorder::failure() const {
 
 void LiveRecorder::work(const std::string& path, const io::Scene& scene) {
   try {
-    io::Recorder recorder(path, scene.name, scene.text, scene.setup.model);
+    io::Recorder recorder(path, scene.name, scene.text, scene.setup.model, scene.files);
     {
       const std::lock_guard lock(mutex_);
       started_ = true;

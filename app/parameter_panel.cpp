@@ -28,6 +28,7 @@ constexpr Slider k_sliders[] = {
     {Edit::Key::frequency, "frequency", "Hz", "%.3g Hz", 0.1, 10, false, true},
     {Edit::Key::amplitude, "amplitude", "gal", "%.0f gal", 0, 1000},
     {Edit::Key::direction, "direction", "", "%.0f°", -180, 180},
+    {Edit::Key::scale, "scale", "", "× %.2f", 0, 3},
     {Edit::Key::alpha, "α", "kgf", "%.4g kgf", 1. / 50, 50, true, true},
     {Edit::Key::q, "q", "", "%.2f", 0.5, 4},
     {Edit::Key::friction, "μ", "", "%.2f", 0, 1.5},
@@ -150,8 +151,8 @@ void draw_parameters(Player& player, std::string& refused) {
     if (loads && (key == Edit::Key::time_step || key == Edit::Key::restitution)) continue;
     const auto slider = std::find_if(std::begin(k_sliders), std::end(k_sliders),
                                      [k = key](const Slider& s) { return s.key == k; });
-    const bool of_shake =
-        key == Edit::Key::frequency || key == Edit::Key::amplitude || key == Edit::Key::direction;
+    const bool of_shake = key == Edit::Key::frequency || key == Edit::Key::amplitude ||
+                          key == Edit::Key::direction || key == Edit::Key::scale;
     const int group = of_shake ? shake : key == Edit::Key::time_step ? 1000 : -1;
     if (group != heading) {
       if (group == 1000)

@@ -176,9 +176,7 @@ int draw_sequence(const RenderOptions& o, const DrawAt& draw_at, double from, do
 
 int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const io::Scene> scene) {
   const io::Recording recording(path);
-  if (!scene)
-    scene =
-        std::make_shared<const io::Scene>(io::parse_scene(recording.scene_text(), recording.scene_name()));
+  if (!scene) scene = std::make_shared<const io::Scene>(io::recorded_scene(recording));
   io::check_edits(recording.history(), scene->setup);
   const Replay replay(recording);
   if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");

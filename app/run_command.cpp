@@ -81,7 +81,7 @@ std::string status_of(const Run& run) {
 
 RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
   std::optional<io::Recorder> recorder;
-  if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model);
+  if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model, scene.files);
   const auto start = std::chrono::steady_clock::now();
   std::optional<study::Team> team;
   Run run(scene.setup);

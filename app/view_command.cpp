@@ -60,8 +60,7 @@ LiveSource open_source(const ViewOptions& o) {
     if (!o.overrides.empty())
       throw BadInput("--set: " + o.source + " is a recording; only a scene can be changed");
     source.recording.emplace(o.source);
-    source.scene = std::make_shared<const io::Scene>(
-        io::parse_scene(source.recording->scene_text(), source.recording->scene_name()));
+    source.scene = std::make_shared<const io::Scene>(io::recorded_scene(*source.recording));
     if (source.recording->frame_count() == 0) throw BadInput(o.source + ": holds no frames");
     const Setup& setup = source.scene->setup;
     io::check_edits(source.recording->history(), setup);

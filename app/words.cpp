@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "solver/accelerogram.h"
+
 namespace topple::app {
 namespace {
 
@@ -43,9 +47,19 @@ std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
   const double gal = shake.amplitude / k_gal;
-  return shake.kind == Shake::Kind::sine
-             ? fmt::format("floor: {:.4g} Hz, {:.4g} gal", shake.frequency, gal)
-             : fmt::format("floor: pulse {:g} s, {:.4g} gal", shake.duration, gal);
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+      return fmt::format("floor: {:.4g} Hz, {:.4g} gal", shake.frequency, gal);
+    case Shake::Kind::sweep:
+      return fmt::format("floor: sweep {:.4g} to {:.4g} Hz, {:.4g} gal", shake.frequency,
+                         shake.last_frequency, gal);
+    case Shake::Kind::pulse:
+      return fmt::format("floor: pulse {:g} s, {:.4g} gal", shake.duration, gal);
+    case Shake::Kind::record:
+      return fmt::format("floor: record {:.3g} s, peak {:.4g} gal", shake.record->duration,
+                         std::abs(shake.scale) * shake.record->peak / k_gal);
+  }
+  return "";
 }
 
 std::string status_in_words(const Player& player) {

@@ -13,11 +13,26 @@ namespace {
 // on the floor off it; over two, one made 100 times as great does not.
 constexpr double k_contact_passage = 2;
 
+constexpr double k_record_period = 1;  // s, what a record is taken to have; it has none of its own
+
+double period(const Shake& shake, double t) {
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+    case Shake::Kind::sweep:
+      return 1 / shake_frequency(shake, t);
+    case Shake::Kind::pulse:
+      return shake.duration;
+    case Shake::Kind::record:
+      return k_record_period;
+  }
+  return 0;
+}
+
 void start_passage(Shake& shake, double t) {
   if (t <= shake.start) return;
   shake.amplitude_before = shake_amplitude(shake, t);
-  const double period = shake.kind == Shake::Kind::sine ? 1 / shake.frequency : shake.duration;
-  shake.passage = {t, period / 4};
+  shake.scale_before = shake_scale(shake, t);
+  shake.passage = {t, period(shake, t) / 4};
 }
 
 void start_contact_passage(const ContactLaw& law, const Model& model, double t, Parameters& parameters) {
@@ -34,7 +49,12 @@ void start_contact_passage(const ContactLaw& law, const Model& model, double t, 
 std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters) {
   std::vector<std::pair<Edit::Key, int>> keys;
   for (int i = 0; i < static_cast<int>(parameters.shakes.size()); ++i) {
-    if (parameters.shakes[i].kind == Shake::Kind::sine) keys.emplace_back(Edit::Key::frequency, i);
+    const Shake::Kind kind = parameters.shakes[i].kind;
+    if (kind == Shake::Kind::record) {
+      keys.emplace_back(Edit::Key::scale, i);
+      continue;
+    }
+    if (kind == Shake::Kind::sine) keys.emplace_back(Edit::Key::frequency, i);
     keys.emplace_back(Edit::Key::amplitude, i);
     keys.emplace_back(Edit::Key::direction, i);
   }
@@ -53,6 +73,8 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake) {
       return number(parameters.shakes[shake].amplitude);
     case Edit::Key::direction:
       return parameters.shakes[shake].direction;
+    case Edit::Key::scale:
+      return number(parameters.shakes[shake].scale);
     case Edit::Key::alpha:
       return number(parameters.contact.alpha);
     case Edit::Key::q:
@@ -87,6 +109,10 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& parameter
     case Edit::Key::direction:
       start_passage(parameters.shakes[edit.shake], t);
       parameters.shakes[edit.shake].direction = edit.value.stableNormalized();
+      return;
+    case Edit::Key::scale:
+      start_passage(parameters.shakes[edit.shake], t);
+      parameters.shakes[edit.shake].scale = value;
       return;
     case Edit::Key::time_step:
       parameters.time_step = value;

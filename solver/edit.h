@@ -12,9 +12,9 @@ namespace topple {
 /// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, only `direction`
 /// uses all three.
 struct Edit {
-  enum class Key { frequency, amplitude, direction, alpha, q, friction, restitution, time_step };
+  enum class Key { frequency, amplitude, direction, scale, alpha, q, friction, restitution, time_step };
   Key key;
-  int shake = 0;  ///< of frequency, amplitude and direction
+  int shake = 0;  ///< of frequency, amplitude, direction and scale
   Vec3 value = Vec3::Zero();
 };
 
@@ -24,9 +24,10 @@ std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters);
 /// The value that an edit of this key and shake sets.
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 
-/// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude and direction
-/// change over a quarter of a period (at once before the shake starts), numbers of the contact law over two
-/// of contact_period. The result depends on nothing but the arguments, so that edits can be repeated.
+/// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude, direction and
+/// scale change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),
+/// numbers of the contact law over two of contact_period. The result depends on nothing but the arguments, so
+/// that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 
 /// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with

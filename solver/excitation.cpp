@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "solver/accelerogram.h"
 
 namespace topple {
 namespace {
@@ -9,12 +12,14 @@ namespace {
 // Of amplitude 1.
 double sine(const Shake& shake, double t) {
   const double turns = shake_turns(shake, t);
-  if (shake.cycles > 0 && turns >= shake.cycles) return 0;
+  const double cycles =
+      shake.kind == Shake::Kind::sweep ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
+  if (cycles > 0 && turns >= cycles) return 0;
   double window = 1;
   if (shake.taper > 0) {
     const auto rise = [](double x) { return x >= 1 ? 1 : (1 - std::cos(k_pi * x)) / 2; };
     window = rise(turns / shake.taper);
-    if (shake.cycles > 0) window *= rise((shake.cycles - turns) / shake.taper);
+    if (cycles > 0) window *= rise((cycles - turns) / shake.taper);
   }
   return window * std::sin(2 * k_pi * turns);
 }
@@ -46,14 +51,61 @@ Vec3 shake_amplitude(const Shake& shake, double t) {
   return (1 - share) * shake.amplitude_before + share * now;
 }
 
+double shake_scale(const Shake& shake, double t) {
+  if (shake.passage.over == 0) return shake.scale;
+  const double share = shake.passage.share(t);
+  return (1 - share) * shake.scale_before + share * shake.scale;
+}
+
 double shake_turns(const Shake& shake, double t) {
+  if (shake.kind == Shake::Kind::sweep) {
+    const double octaves = std::log(shake.last_frequency / shake.frequency);
+    return shake.frequency * shake.duration / octaves *
+           std::expm1(octaves * (t - shake.start) / shake.duration);
+  }
   return shake.turns + shake.frequency * (t - shake.start - shake.turned);
+}
+
+double shake_frequency(const Shake& shake, double t) {
+  if (shake.kind != Shake::Kind::sweep) return shake.frequency;
+  const double share = std::clamp((t - shake.start) / shake.duration, 0., 1.);
+  return shake.frequency * std::pow(shake.last_frequency / shake.frequency, share);
+}
+
+double shake_end(const Shake& shake) {
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+      if (shake.cycles == 0) return std::numeric_limits<double>::infinity();
+      return shake.start + shake.turned + (shake.cycles - shake.turns) / shake.frequency;
+    case Shake::Kind::sweep:
+    case Shake::Kind::pulse:
+      return shake.start + shake.duration;
+    case Shake::Kind::record:
+      return shake.start + shake.record->duration;
+  }
+  return 0;
+}
+
+double sample_interval(const std::vector<Shake>& shakes, double t) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Shake& shake : shakes)
+    if (shake.kind == Shake::Kind::record && t >= shake.start && t < shake_end(shake))
+      least = std::min(least, shake.record->interval);
+  return least;
 }
 
 Vec3 shake_acceleration(const Shake& shake, double t) {
   if (t < shake.start) return Vec3::Zero();
-  return (shake.kind == Shake::Kind::sine ? sine(shake, t) : pulse(shake, t - shake.start)) *
-         shake_amplitude(shake, t);
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+    case Shake::Kind::sweep:
+      return sine(shake, t) * shake_amplitude(shake, t);
+    case Shake::Kind::pulse:
+      return pulse(shake, t - shake.start) * shake_amplitude(shake, t);
+    case Shake::Kind::record:
+      return shake_scale(shake, t) * acceleration(*shake.record, t - shake.start);
+  }
+  return Vec3::Zero();
 }
 
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {

@@ -6,15 +6,29 @@
 
 namespace topple {
 
-/// Acceleration of one shake at time t, m/s^2, world axes: A sin(2 pi f (t - start)) times a smooth taper, or
-/// a pulse. After an edit of the frequency the phase goes on from where it was.
+/// Acceleration of one shake at time t, m/s^2, world axes: A sin(2 pi n) times a smooth taper, n =
+/// shake_turns; a pulse; or scale times a record (accelerogram.h). Allocates nothing.
 Vec3 shake_acceleration(const Shake& shake, double t);
 
 /// Amplitude along its direction at time t, between two edits as between two values, m/s^2.
 Vec3 shake_amplitude(const Shake& shake, double t);
 
-/// Cycles that a sine has passed at time t.
+/// Factor of a record at time t, between two edits as between two values.
+double shake_scale(const Shake& shake, double t);
+
+/// Cycles that a sine or sweep has passed at time t. Sine: f (t - start); after an edit of the frequency the
+/// phase goes on from where it was. Sweep: exponential, f(t) = f0 (f1/f0)^(x/T) with x = t - start, so that
+/// each octave takes as long: f0 T/ln(f1/f0) ((f1/f0)^(x/T) - 1).
 double shake_turns(const Shake& shake, double t);
+
+/// Of a sine or sweep at time t, Hz.
+double shake_frequency(const Shake& shake, double t);
+
+/// Time from which on the shake is 0, s; infinite for a sine that goes on.
+double shake_end(const Shake& shake);
+
+/// Shortest time between the samples of the records that shake the floor at time t, s; infinite without one.
+double sample_interval(const std::vector<Shake>& shakes, double t);
 
 /// Sum of all shakes, m/s^2, world axes.
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t);

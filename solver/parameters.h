@@ -1,11 +1,14 @@
 // What may be edited while it runs.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "solver/types.h"
 
 namespace topple {
+
+struct Accelerogram;
 
 enum class ContactLawKind { coulomb, paper, printed };
 
@@ -31,25 +34,29 @@ struct Passage {
 
 /// One floor acceleration; several add up.
 struct Shake {
-  enum class Kind { sine, pulse };
+  enum class Kind { sine, sweep, pulse, record };
   enum class Shape { half_sine, full_sine, rectangle };
   enum class Start { rest, jump };
   Kind kind = Kind::sine;
-  double amplitude = 0;            ///< m/s^2
-  double frequency = 1;            ///< Hz, sine
-  Vec3 direction = Vec3::UnitX();  ///< unit
+  double amplitude = 0;            ///< m/s^2; not of a record
+  double frequency = 1;            ///< Hz, sine; sweep: at its start
+  double last_frequency = 1;       ///< Hz, sweep: at its end
+  Vec3 direction = Vec3::UnitX();  ///< unit; record: of its strongest component
   double start = 0;                ///< s
   double cycles = 0;               ///< sine: 0 = until the end
-  double taper = 0;                ///< sine: cycles of smooth rise and fall
+  double taper = 0;                ///< sine, sweep: cycles of smooth rise and fall
   Start initial_velocity = Start::rest;
-  Shape shape = Shape::half_sine;  ///< pulse
-  double duration = 1;             ///< s, pulse
+  Shape shape = Shape::half_sine;              ///< pulse
+  double duration = 1;                         ///< s, pulse, sweep
+  std::shared_ptr<const Accelerogram> record;  ///< record: not null
+  double scale = 1;                            ///< record: factor
 
   // Of edits while it runs (edit.h).
   double turned = 0;                     ///< s after `start`: `frequency` holds since
   double turns = 0;                      ///< cycles passed by then
   Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, along its direction
-  Passage passage;                       ///< from it to `amplitude` along `direction`
+  double scale_before = 1;
+  Passage passage;  ///< from them to `amplitude` along `direction` and to `scale`
 };
 
 /// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.

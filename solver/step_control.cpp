@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/contact_law.h"
+#include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
 
 namespace topple {
@@ -74,7 +75,8 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
-  double limit = std::min(k_longest_step, member_limit(model, law, state));
+  double limit = std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
+                           member_limit(model, law, state)});
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (state.bodies[b].rung != Rung::frame) continue;
     const Body& body = model.bodies[b];
@@ -122,9 +124,7 @@ double next_kink(const Model& model, const Parameters& parameters, double t) {
   };
   for (const Shake& shake : parameters.shakes) {
     meet(shake.start);
-    if (shake.kind == Shake::Kind::pulse) meet(shake.start + shake.duration);
-    if (shake.kind == Shake::Kind::sine && shake.cycles > 0)
-      meet(shake.start + shake.cycles / shake.frequency);
+    meet(shake_end(shake));
   }
   for (const Load& load : model.loads)
     for (const auto& [at, factor] : load.history) meet(at);

@@ -15,13 +15,10 @@ struct Name {
 
 // In the order of Edit::Key.
 constexpr Name k_names[] = {
-    {Edit::Key::frequency, "shake", "frequency"},
-    {Edit::Key::amplitude, "shake", "amplitude"},
-    {Edit::Key::direction, "shake", "direction"},
-    {Edit::Key::alpha, "contact", "alpha"},
-    {Edit::Key::q, "contact", "q"},
-    {Edit::Key::friction, "contact", "friction"},
-    {Edit::Key::restitution, "contact", "restitution"},
+    {Edit::Key::frequency, "shake", "frequency"}, {Edit::Key::amplitude, "shake", "amplitude"},
+    {Edit::Key::direction, "shake", "direction"}, {Edit::Key::scale, "shake", "scale"},
+    {Edit::Key::alpha, "contact", "alpha"},       {Edit::Key::q, "contact", "q"},
+    {Edit::Key::friction, "contact", "friction"}, {Edit::Key::restitution, "contact", "restitution"},
     {Edit::Key::time_step, "run", "time_step"},
 };
 
@@ -33,16 +30,20 @@ bool of_shake(Edit::Key key) {
   throw InputError(edit_key(edit) + ": " + message);
 }
 
-/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was.
+/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was. `when`: the
+/// choices whose value can be edited.
 template <typename Choice>
-void expect_choice(const Edit& edit, Choice chosen) {
+void expect_choice(const Edit& edit, Choice chosen, const std::vector<std::string_view>& when) {
   const Key& key = key_of(edit.key);
   const Key& choice = *find_key(key.table, key.of);
   const std::string_view word = choice.choices[static_cast<std::size_t>(chosen)];
-  if (word == key.when.front()) return;
+  std::string words;
+  for (const std::string_view other : when) {
+    if (other == word) return;
+    words += (words.empty() ? "" : " or ") + std::string(other);
+  }
   const std::string of(key.of);
-  fail(edit, "belongs to " + of + " = " + std::string(key.when.front()) + ", but " + of + " is " +
-                 std::string(word));
+  fail(edit, "belongs to " + of + " = " + words + ", but " + of + " is " + std::string(word));
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ std::optional<Edit> parse_edit_key(std::string_view text) {
 
 void check_edit_value(const Edit& edit) {
   const Key& key = key_of(edit.key);
-  const int count = key.type == KeyType::numbers ? key.count : 1;
+  const int count = edit.key == Edit::Key::direction ? key.count : 1;
   for (int i = 0; i < count; ++i) {
     const double value = edit.value[i];
     if (!std::isfinite(value)) fail(edit, short_number(value) + " is not a finite number");
@@ -90,8 +91,12 @@ void check_edit(const Edit& edit, const Setup& setup) {
   if (of_shake(edit.key) && (edit.shake < 0 || edit.shake >= static_cast<int>(shakes.size())))
     fail(edit, "there is no such shake; the scene has " + std::to_string(shakes.size()));
   check_edit_value(edit);
-  if (edit.key == Edit::Key::frequency) expect_choice(edit, shakes[edit.shake].kind);
-  if (edit.key == Edit::Key::restitution) expect_choice(edit, setup.parameters.contact.kind);
+  const std::vector<std::string_view>& when = key_of(edit.key).when;
+  if (edit.key == Edit::Key::frequency)
+    expect_choice(edit, shakes[edit.shake].kind, {"sine"});  // the two of a sweep stay as they are
+  else if (of_shake(edit.key))
+    expect_choice(edit, shakes[edit.shake].kind, when);
+  if (edit.key == Edit::Key::restitution) expect_choice(edit, setup.parameters.contact.kind, when);
 }
 
 }  // namespace topple::io

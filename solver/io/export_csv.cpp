@@ -183,7 +183,7 @@ void write_csv(const Recording& recording, const Model& model, const std::string
 }
 
 void export_csv(const Recording& recording, const std::string& folder) {
-  const Scene scene = parse_scene(recording.scene_text(), recording.scene_name());
+  const Scene scene = recorded_scene(recording);
   write_csv(recording, scene.setup.model, folder);
 }
 

@@ -10,6 +10,7 @@
 
 #include "solver/history.h"
 #include "solver/io/observer.h"
+#include "solver/io/scene.h"
 
 namespace topple::io {
 
@@ -29,7 +30,7 @@ class Recorder {
   /// Starts the recording in "PATH.part-PID"; the first flush with a frame renames it to `path`, so that a
   /// start that fails leaves an older file there as it was. Writes branch 0. Throws WriteError.
   Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-           const Model& model);
+           const Model& model, const std::vector<SceneFile>& files = {});
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
@@ -70,6 +71,8 @@ class Recording {
 
   const std::string& scene_name() const;
   const std::string& scene_text() const;
+  /// Those that the scene names, as they were when it was recorded.
+  const std::vector<SceneFile>& scene_files() const;
   const std::string& status() const;        ///< completed, stopped, diverged, interrupted
   const std::string& summary_json() const;  ///< empty when interrupted
   /// Follows a file that is still being written: takes in what came since. True when there was something new.
@@ -98,6 +101,9 @@ class Recording {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The scene from the text and the files in the recording. Throws InputError.
+Scene recorded_scene(const Recording& recording);
 
 /// True when the file's first bytes are those of HDF5.
 bool is_recording(const std::string& path);

@@ -2,6 +2,7 @@
 //
 //   /              attributes: format, version, scene (its name)
 //   /scene         the scene text, bytes
+//   /files/N       the files that it names, bytes; attribute: name. Absent in older recordings
 //   /model/...     fixed data, see recording_model.cpp; every fixed data set has its CRC-32C as attribute
 //   /frames/index  one FrameRecord a row, written last: its extent is the number of complete frames
 //   /frames/NAME   the fields of FrameRow, one row a frame (frame_fields)

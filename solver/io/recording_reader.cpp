@@ -147,6 +147,7 @@ struct Recording::Impl {
     name = read_text_attribute(file, "scene");
     const auto bytes = read_fixed(file, "scene");
     text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    read_files();
     check_model();
     open_rows();
     load();
@@ -162,6 +163,20 @@ struct Recording::Impl {
       throw InputError(path + ": recording format " + std::to_string(version) +
                        " is not supported by this version, which reads format " +
                        std::to_string(k_format_version));
+    }
+  }
+
+  void read_files() {
+    scene_files.clear();
+    if (checked(H5Lexists(file, "files", H5P_DEFAULT)) == 0) return;
+    const Handle group(H5Gopen2(file, "files", H5P_DEFAULT), H5Gclose);
+    for (int number = 1;; ++number) {
+      const std::string set_name = std::to_string(number);
+      if (checked(H5Lexists(group, set_name.c_str(), H5P_DEFAULT)) == 0) return;
+      const Handle set(H5Dopen2(group, set_name.c_str(), H5P_DEFAULT), H5Dclose);
+      const auto bytes = read_fixed(group, set_name.c_str());
+      scene_files.push_back({read_text_attribute(set, "name"),
+                             std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())});
     }
   }
 
@@ -302,6 +317,7 @@ struct Recording::Impl {
   std::array<RowReader, k_field_count> fields;
   RowShape shape;
   std::string name, text, status, summary;
+  std::vector<SceneFile> scene_files;
   std::vector<FrameRecord> frames;
   std::vector<CheckpointRecord> checkpoints;
   std::vector<EventRecord> recorded_events;
@@ -319,6 +335,9 @@ const std::string& Recording::scene_name() const {
 }
 const std::string& Recording::scene_text() const {
   return impl_->text;
+}
+const std::vector<SceneFile>& Recording::scene_files() const {
+  return impl_->scene_files;
 }
 const std::string& Recording::status() const {
   return impl_->status;
@@ -407,6 +426,15 @@ std::vector<RecordedEvent> Recording::events_on_way_to(std::int32_t branch) cons
     for (const RecordedEvent& event : all)
       if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
   return found;
+}
+
+Scene recorded_scene(const Recording& recording) {
+  const auto read = [&recording](const std::string& name) {
+    for (const SceneFile& file : recording.scene_files())
+      if (file.name == name) return file.bytes;
+    throw InputError(name + ": is not in the recording");
+  };
+  return parse_scene(recording.scene_text(), recording.scene_name(), {}, read);
 }
 
 bool is_recording(const std::string& path) {

@@ -86,7 +86,8 @@ void RowSet::describe(const char* units, const char* columns) {
 }
 
 RecordingWriter::RecordingWriter(const std::string& path, const std::string& scene_name,
-                                 const std::string& scene_text, const Model& model, const RowShape& shape)
+                                 const std::string& scene_text, const Model& model, const RowShape& shape,
+                                 const std::vector<SceneFile>& files)
     : path_(destination(path)), part_(path_), shown_path_(path) {
   part_ += ".part-" + std::to_string(getpid());
   std::error_code ignored;
@@ -95,7 +96,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const std::string& sce
     guarded([&] {
       descriptions_ = frame_fields(shape);
       std::transform(descriptions_.begin(), descriptions_.end(), field_bytes_.begin(), row_bytes);
-      create(scene_name, scene_text, model);
+      create(scene_name, scene_text, model, files);
     });
   } catch (const WriteError&) {
     fs::remove(part_, ignored);
@@ -129,8 +130,8 @@ void RecordingWriter::guarded(Work&& work) {
   }
 }
 
-void RecordingWriter::create(const std::string& scene_name, const std::string& scene_text,
-                             const Model& model) {
+void RecordingWriter::create(const std::string& scene_name, const std::string& scene_text, const Model& model,
+                             const std::vector<SceneFile>& files) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
@@ -144,11 +145,22 @@ void RecordingWriter::create(const std::string& scene_name, const std::string& s
   write_attribute(file_, "scene", scene_name);
   const Handle character = text_type(1);
   write_fixed(file_, "scene", character, {scene_text.size()}, scene_text.data());
+  write_files(files);
   write_model(file_, model);
   create_rows();
   append(Branch{});
   checked(H5Fflush(file_, H5F_SCOPE_GLOBAL));
   checked(H5Fstart_swmr_write(file_));
+}
+
+void RecordingWriter::write_files(const std::vector<SceneFile>& files) {
+  const Handle group(H5Gcreate2(file_, "files", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    write_fixed(group, number.c_str(), H5T_STD_U8LE, {files[i].bytes.size()}, files[i].bytes.data());
+    const Handle set(H5Dopen2(group, number.c_str(), H5P_DEFAULT), H5Dclose);
+    write_attribute(set, "name", files[i].name);
+  }
 }
 
 void RecordingWriter::create_rows() {

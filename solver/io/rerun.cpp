@@ -62,7 +62,7 @@ void check_edits(const History& history, const Setup& setup) {
 }
 
 Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>& seen) {
-  const Setup setup = parse_scene(recording.scene_text(), recording.scene_name()).setup;
+  const Setup setup = recorded_scene(recording).setup;
   const History& history = recording.history();
   check_edits(history, setup);
   const std::vector<Instant>& all = recording.checkpoint_index();

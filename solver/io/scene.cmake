@@ -9,17 +9,31 @@ topple_embed(
   BASE ${PROJECT_SOURCE_DIR}/assets/scenes
   FILES ${scene_files})
 
+set(record_files
+  ${PROJECT_SOURCE_DIR}/assets/records/long-period-x.AT2
+  ${PROJECT_SOURCE_DIR}/assets/records/long-period-y.EW
+  ${PROJECT_SOURCE_DIR}/assets/records/near-fault.csv)
+topple_embed(
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_records.cpp.in
+  OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
+  WITH_EXTENSION
+  FILES ${record_files})
+
 target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
+  ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/edit_text.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_entry.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_keys_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_shakes.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)

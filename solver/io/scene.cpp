@@ -5,6 +5,7 @@
 
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
+#include "solver/io/scene_file.h"
 #include "solver/io/scene_read.h"
 
 namespace topple::io {
@@ -36,8 +37,8 @@ std::string read_text(const std::string& path) {
 
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& origin,
-                  const std::vector<std::string>& overrides) {
+Scene parse_scene(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides,
+                  const ReadSceneFile& read) {
   refuse_large(text.size(), origin);
   Node root = parse_toml(text, origin);
   for (const std::string& change : overrides) apply_override(root, change);
@@ -49,7 +50,8 @@ Scene parse_scene(std::string_view text, const std::string& origin,
   scene.title = entry.has("title") ? entry.text("title") : scene.name;
   scene.text = overrides.empty() ? std::string(text) : write_toml(root);
   read_run(entry, scene.setup);
-  read_actions(entry, scene.setup);
+  read_shakes(entry, read ? read : files_beside(origin), scene);
+  read_contact(entry, scene.setup);
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);
   read_bodies(entry, scene.setup);
@@ -67,7 +69,8 @@ Scene load_scene(const std::string& path_or_name, const std::vector<std::string>
   if (fs::exists(path_or_name, status)) return parse_scene(read_text(path_or_name), path_or_name, overrides);
   std::string names;
   for (const BuiltinScene& scene : builtin_scenes()) {
-    if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
+    if (scene.name == path_or_name)
+      return parse_scene(scene.text, path_or_name + ".toml", overrides, builtin_files());
     names += (names.empty() ? "" : ", ") + std::string(scene.name);
   }
   for (const auto* scenes : {&verification_scenes(), &study_scenes()})

@@ -123,6 +123,10 @@ class Checker {
         return;
       case KeyType::text:
         return text(node, path);
+      case KeyType::texts:
+        list(node, path, 1, key.count);
+        for_entries(node, path, [&](const Node& entry, const std::string& p) { text(entry, p); });
+        return;
       case KeyType::choice:
         return word(key, node, path);
       case KeyType::choices:
@@ -169,8 +173,6 @@ class Checker {
   void number(const Key& key, const Node& node, const std::string& path) const {
     if (node.kind == Node::Kind::text) {
       if (contains(key.choices, node.text)) return;
-      if (contains(key.later, node.text))
-        fail(node.place, path, shown(node) + " " + std::string(k_unsupported));
       const Quantity quantity = parse_quantity(node.text, key.dimension);
       if (!quantity.si) fail(node.place, path, shown(node) + " " + quantity.problem);
       range(key, node, *quantity.si, path);
@@ -201,8 +203,6 @@ class Checker {
     if (node.kind != Node::Kind::text) {
       fail(node.place, path, "expected one of " + joined(key.choices) + ", found " + shown(node));
     }
-    if (contains(key.later, node.text))
-      fail(node.place, path, shown(node) + " " + std::string(k_unsupported));
     if (!contains(key.choices, node.text)) {
       fail(node.place, path, shown(node) + " is not one of " + joined(key.choices));
     }

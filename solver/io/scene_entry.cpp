@@ -39,6 +39,13 @@ std::string Entry::text(std::string_view key) const {
   return node ? node->text : std::string();
 }
 
+std::vector<std::string> Entry::texts(std::string_view key) const {
+  std::vector<std::string> values;
+  if (const Node* node = find(key))
+    for (const Item& item : node->items) values.push_back(item.value.text);
+  return values;
+}
+
 int Entry::choice(std::string_view key) const {
   const Key& spec = *find_key(table_, key);
   const Node* node = find(key);

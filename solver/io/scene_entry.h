@@ -24,6 +24,7 @@ class Entry {
   int integer(std::string_view key) const;
   bool flag(std::string_view key) const;
   std::string text(std::string_view key) const;
+  std::vector<std::string> texts(std::string_view key) const;
   /// Index of the chosen word in the table's choices.
   int choice(std::string_view key) const;
   template <typename E>

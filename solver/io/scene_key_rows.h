@@ -1,6 +1,7 @@
 // Builds the rows of the table of keys; each call adds one.
 #pragma once
 
+#include <limits>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -30,8 +31,6 @@ class Row {
   Row& only(std::string_view of, Words when) { return key_.of = of, key_.when = std::move(when), *this; }
   /// Belongs to these choices of run.analysis.
   Row& only_in(Words analyses) { return key_.analyses = std::move(analyses), *this; }
-  /// Words of the contract that this version refuses.
-  Row& later(Words words) { return key_.later = std::move(words), *this; }
   /// Words that may stand instead of the numbers.
   Row& or_word(Words words) { return key_.choices = std::move(words), *this; }
   /// One number is enough, also outside of a list.
@@ -74,6 +73,10 @@ class Rows {
   }
   Row history(std::string_view name, double least, double most, std::string_view about) {
     return add(name, KeyType::history, about, Dimension::none, {}, least, most);
+  }
+  Row texts(std::string_view name, int most, std::string_view about) {
+    return add(name, KeyType::texts, about, Dimension::none, {}, -std::numeric_limits<double>::infinity(),
+               std::numeric_limits<double>::infinity(), most);
   }
   Row word(std::string_view name, Words choices, std::string_view about) {
     return plain(name, KeyType::choice, about).or_word(std::move(choices));

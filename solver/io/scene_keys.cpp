@@ -1,6 +1,7 @@
 #include "solver/io/scene_keys.h"
 
 #include "solver/cabinet.h"
+#include "solver/io/accelerogram_file.h"
 #include "solver/io/scene_key_rows.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
@@ -110,25 +111,57 @@ void add_shake(std::vector<Key>& keys) {
   Rows rows(keys, "shake");
   const Shake shake{};
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
-  rows.word("type", {"sine", "pulse"}, "form of the acceleration")
-      .later({"sweep", "record"})
-      .absent(shake.kind);
-  rows.number("frequency", D::frequency, "Hz", 1e-3, 1e3, "frequency").required().only("type", {"sine"});
-  rows.number("amplitude", D::acceleration, "gal", 0, 1e3, "largest acceleration").required();
-  rows.numbers("direction", 3, -1e6, 1e6, "of the acceleration; made a unit vector").absent(shake.direction);
+  rows.word("type", {"sine", "sweep", "pulse", "record"}, "form of the acceleration").absent(shake.kind);
+  rows.numbers("frequency", 2, D::frequency, "Hz", 1e-3, 1e3,
+               "frequency; of a sweep [first, last]: each octave takes as long")
+      .or_one()
+      .required()
+      .only("type", {"sine", "sweep"});
+  rows.number("amplitude", D::acceleration, "gal", 0, 1e3, "largest acceleration")
+      .required()
+      .only("type", {"sine", "sweep", "pulse"});
+  rows.numbers("direction", 3, -1e6, 1e6, "of the acceleration; made a unit vector")
+      .absent(shake.direction)
+      .only("type", {"sine", "sweep", "pulse"});
   rows.number("start", D::time, "s", 0, 3600, "begin").absent(shake.start);
   rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", {"sine"});
-  rows.number("taper", 0, 1e6, "periods of smooth rise and fall").absent(shake.taper).only("type", {"sine"});
+  rows.number("taper", 0, 1e6, "periods of smooth rise and fall")
+      .absent(shake.taper)
+      .only("type", {"sine", "sweep"});
   rows.word("initial_velocity", {"rest", "jump"}, "jump: the floor starts with the velocity of a pure sine")
       .absent(shake.initial_velocity)
       .only("type", {"sine"});
   rows.word("shape", {"half-sine", "full-sine", "rectangle"}, "form of the pulse")
       .absent(shake.shape)
       .only("type", {"pulse"});
-  rows.number("duration", D::time, "s", 1e-6, 3600, "length of the pulse").required().only("type", {"pulse"});
-  rows.later("files", "of a record");
-  rows.later("directions", "of a record");
-  rows.later("scale", "of a record");
+  rows.number("duration", D::time, "s", 1e-6, 3600, "length of the pulse or sweep")
+      .required()
+      .only("type", {"sweep", "pulse"});
+  rows.texts("files", 3,
+             "accelerograms: PEER AT2, K-NET or KiK-net ASCII, CSV (accelerogram_file.h), one to three "
+             "components together, equally long; paths from the folder of the scene, or a built-in record")
+      .required()
+      .only("type", {"record"});
+  rows.vectors("directions", D::none, {}, -1e6, 1e6, "of the components; made unit vectors")
+      .absent_means("x, y, z, in the order of the components")
+      .only("type", {"record"});
+  rows.number("scale", -100, 100, "factor on the record").absent(shake.scale).only("type", {"record"});
+  rows.word("unit", {"g", "gal", "m/s^2", "cm/s^2"}, "of the samples, where a file does not state it")
+      .absent_means("as the files state")
+      .only("type", {"record"});
+  rows.number("dt", D::time, "s", k_shortest_interval, k_longest_interval,
+              "time between the samples of a CSV without a column of times")
+      .absent_means("as the files state")
+      .only("type", {"record"});
+  rows.word("mean", {"kept", "removed"}, "mean of each component; of a K-NET file always removed")
+      .absent(0)
+      .only("type", {"record"});
+  rows.word("baseline", {"none", "parabola"},
+            "correction of each component: parabola subtracts the one that leaves the least mean square "
+            "velocity "
+            "(Berg and Housner 1961; accelerogram.h)")
+      .absent(0)
+      .only("type", {"record"});
 }
 
 void add_contact(std::vector<Key>& keys) {

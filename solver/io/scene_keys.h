@@ -16,6 +16,7 @@ enum class KeyType {
   integer,
   boolean,
   text,
+  texts,     ///< a list of 1 to `count` texts
   choice,    ///< one of `choices`
   choices,   ///< a list of some of `choices`
   numbers,   ///< a list of `count` quantities
@@ -41,7 +42,6 @@ struct Key {
   std::string_view otherwise = {};    ///< what an absent key means when that is no value
   bool required = false;              ///< when its choice was made
   std::vector<std::string_view> choices = {};   ///< also words that a number or numbers may be replaced by
-  std::vector<std::string_view> later = {};     ///< words of the contract that this version refuses
   std::string_view of = {};                     ///< the key whose choice it belongs to
   std::vector<std::string_view> when = {};      ///< the choices of `of` that it belongs to
   std::vector<std::string_view> analyses = {};  ///< of run.analysis that it belongs to; empty: all

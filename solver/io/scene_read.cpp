@@ -142,28 +142,7 @@ void read_run(const Entry& root, Setup& setup) {
   }
 }
 
-void read_actions(const Entry& root, Setup& setup) {
-  for (const Entry& entry : root.entries("shake")) {
-    Shake shake;
-    shake.kind = entry.choice_as<Shake::Kind>("type");
-    shake.amplitude = entry.number("amplitude");
-    shake.direction = entry.direction("direction");
-    shake.start = entry.number("start");
-    if (shake.kind == Shake::Kind::sine) {
-      shake.frequency = entry.number("frequency");
-      if (entry.has("cycles")) shake.cycles = entry.number("cycles");
-      shake.taper = entry.number("taper");
-      shake.initial_velocity = entry.choice_as<Shake::Start>("initial_velocity");
-      if (entry.has("cycles") && 2 * shake.taper > shake.cycles) {
-        entry.fail("taper", "rise and fall together are longer than the cycles");
-      }
-    } else {
-      shake.shape = entry.choice_as<Shake::Shape>("shape");
-      shake.duration = entry.number("duration");
-    }
-    setup.parameters.shakes.push_back(shake);
-  }
-
+void read_contact(const Entry& root, Setup& setup) {
   const Entry contact = root.entry("contact");
   ContactLaw& law = setup.parameters.contact;
   law.kind = contact.choice_as<ContactLawKind>("law");

@@ -10,8 +10,11 @@ namespace topple::io {
 /// [run]: settings, gravity, integrator.
 void read_run(const Entry& root, Setup& setup);
 
-/// [[shake]] and [contact].
-void read_actions(const Entry& root, Setup& setup);
+/// [[shake]]; the files that they name become part of the scene.
+void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene);
+
+/// [contact].
+void read_contact(const Entry& root, Setup& setup);
 
 /// A [floor] or [[wall]] made of members.
 bool is_beams(const Entry& entry);

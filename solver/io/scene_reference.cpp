@@ -45,6 +45,9 @@ std::string type_text(const Key& key) {
     case KeyType::text:
       text = "text";
       break;
+    case KeyType::texts:
+      text = "a list of 1 to " + std::to_string(key.count) + " texts";
+      break;
     case KeyType::choice:
       text = "one word";
       break;
@@ -143,8 +146,6 @@ std::string scene_reference() {
       later += "- `" + path + "`\n";
       continue;
     }
-    for (const std::string_view word : key.later)
-      later += "- `" + path + " = \"" + std::string(word) + "\"`\n";
     text += "| `" + std::string(key.name) + "` | " + type_text(key) + " | " + allowed_text(key) + " | " +
             absent_text(key) + " | " + meaning_text(key) + " |\n";
   }

@@ -53,6 +53,19 @@ TEST_F(BadSceneTest, broken_toml) {
   expect_text_refused("", "topple: missing");
 }
 
+TEST_F(BadSceneTest, an_accelerogram_that_is_missing_or_wrong) {
+  const std::string record =
+      changed("frequency = \"2 Hz\"\namplitude = \"400 gal\"", "type = \"record\"\nfiles = [\"ns.csv\"]");
+  expect_text_refused(record, "s.toml:8:10: shake.table.files.1: ns.csv: no such file; built-in records: ");
+  write_bytes("ns.csv", "time_s,ax_g\n0,0.1\n0.01,300\n");
+  expect_text_refused(record, "ns.csv:3: peak: 300 g is above 5 g; is the unit right?");
+  write_bytes("ns.csv", std::string("\0\1\2", 3));
+  expect_text_refused(record, "ns.csv:1: is not text");
+  std::filesystem::remove("ns.csv");
+  std::filesystem::create_directory("ns.csv");
+  expect_text_refused(record, "shake.table.files.1: ns.csv: is a folder");
+}
+
 TEST_F(BadSceneTest, an_unknown_key) {
   expect_text_refused(changed("duration", "length"), "s.toml:4:1: run.length: unknown key; known: ");
 }

@@ -1,7 +1,9 @@
 #include "app/player.h"
 
+#include <cmath>
 #include <condition_variable>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 
 #include "live.h"
@@ -313,6 +315,41 @@ TEST_F(PlayerTest, a_recording_is_replayed_and_comes_to_life_in_a_file_of_its_ow
           if (row->step == 450) return row;
         return before.back();
       }());
+  run_->close("stopped");
+  expect_repeatable("again.h5", 2);
+}
+
+TEST_F(PlayerTest, a_record_is_scaled_replayed_and_continued_when_its_file_is_gone) {
+  std::string text = k_rocking;
+  const std::size_t begin = text.find("frequency"), end = text.find("[contact]");
+  text.replace(begin, end - begin, "type = \"record\"\nfiles = [\"" + path("quake.csv") + "\"]\n");
+  {
+    std::ofstream file(path("quake.csv"));
+    file << "time_s,ax_gal,ay_gal\n";
+    for (int i = 0; i <= 100; ++i)
+      file << i << "e-2," << 300 * std::sin(12.6 * i / 100) << "," << 50 * std::sin(20. * i / 100) << "\n";
+  }
+  start(text);
+  const Edit edit{Edit::Key::scale, 0, Vec3(1.5, 0, 0)};
+  run_to(0.2);
+  player().edit(edit);
+  run_to(0.6);
+  run_->close("stopped");
+  const std::vector<RowPtr> before = player().way();
+  player_.reset();
+  run_.reset();
+  std::filesystem::remove(path("quake.csv"));
+
+  io::Recording recording(path("live.h5"));
+  const auto scene = std::make_shared<const io::Scene>(io::recorded_scene(recording));
+  start({.scene = scene, .recording = std::move(recording), .output = path("again.h5")});
+  player().scrub(0.4);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit(); }));
+  EXPECT_EQ(player().parameters().shakes[0].scale, 1.5);
+  run_to(0.5);
+  for (const RowPtr& row : before)
+    if (row->step == 450) expect_same_motion(*row_at_step(450), *row);
   run_->close("stopped");
   expect_repeatable("again.h5", 2);
 }

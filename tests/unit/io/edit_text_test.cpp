@@ -31,6 +31,15 @@ topple::Setup two_shakes() {
   return setup;
 }
 
+/// One of each kind: a sine, a pulse, a record and a sweep.
+topple::Setup all_shakes() {
+  topple::Setup setup = two_shakes();
+  setup.parameters.shakes.resize(4);
+  setup.parameters.shakes[2].kind = Shake::Kind::record;
+  setup.parameters.shakes[3].kind = Shake::Kind::sweep;
+  return setup;
+}
+
 TEST(EditText, names_are_the_paths_of_the_scene) {
   EXPECT_EQ(edit_key(number(Edit::Key::amplitude, 0)), "shake.1.amplitude");
   EXPECT_EQ(edit_key(number(Edit::Key::frequency, 0, 11)), "shake.12.frequency");
@@ -43,7 +52,7 @@ TEST(EditText, names_are_the_paths_of_the_scene) {
 }
 
 TEST(EditText, every_name_reads_back_and_has_its_row_in_the_table_of_keys) {
-  for (const auto& [key, shake] : editable(two_shakes().parameters)) {
+  for (const auto& [key, shake] : editable(all_shakes().parameters)) {
     const Edit edit{.key = key, .shake = shake};
     const std::optional<Edit> read = parse_edit_key(edit_key(edit));
     ASSERT_TRUE(read) << edit_key(edit);
@@ -85,7 +94,7 @@ TEST(EditText, other_names_are_none) {
 }
 
 TEST(EditText, values_at_the_ends_of_a_range_pass_and_beyond_them_not) {
-  const topple::Setup setup = two_shakes();
+  const topple::Setup setup = all_shakes();
   for (const auto& [key, shake] : editable(setup.parameters)) {
     if (key == Edit::Key::direction) continue;
     const Key& row = key_of(key);
@@ -115,6 +124,12 @@ TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
             "shake.0.frequency: there is no such shake; the scene has 2");
   EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 1), setup),
             "shake.2.frequency: belongs to type = sine, but type is pulse");
+  EXPECT_EQ(error_of(number(Edit::Key::scale, 2, 1), setup),
+            "shake.2.scale: belongs to type = record, but type is pulse");
+  EXPECT_EQ(error_of(number(Edit::Key::amplitude, 2, 2), all_shakes()),
+            "shake.3.amplitude: belongs to type = sine or sweep or pulse, but type is record");
+  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 3), all_shakes()),
+            "shake.4.frequency: belongs to type = sine, but type is sweep");
 }
 
 TEST(EditText, a_direction_needs_a_length) {

@@ -8,9 +8,9 @@ namespace {
 /// A run of k_scene under edits that is recorded as it goes, and that can be continued from an earlier point.
 class Session {
  public:
-  explicit Session(const std::string& file)
-      : scene_(parse_scene(k_scene, "test")),
-        recorder_(file, scene_.name, scene_.text, scene_.setup.model),
+  explicit Session(const std::string& file, Scene scene = parse_scene(k_scene, "test"))
+      : scene_(std::move(scene)),
+        recorder_(file, scene_.name, scene_.text, scene_.setup.model, scene_.files),
         run_(scene_.setup) {
     take(observer_.observe(run_));
   }
@@ -148,6 +148,62 @@ TEST_F(RerunTest, an_edit_that_was_not_recorded_shows_as_a_difference_of_its_bra
   ASSERT_EQ(result.differences.size(), 1u);
   EXPECT_EQ(result.differences[0].branch, 1);
   EXPECT_EQ(result.differences[0].step, 100);
+}
+
+/// The scene of a cabinet that a record shakes, read from memory.
+Scene record_scene() {
+  std::string text = k_scene, file = "time_s,ax_gal,ay_gal\n";
+  const auto begin = text.find("type = \"sine\""), end = text.find("[floor]");
+  text.replace(begin, end - begin, "type = \"record\"\nfiles = [\"quake.csv\"]\nbaseline = \"parabola\"\n");
+  for (int i = 0; i <= 230; ++i)
+    file += std::to_string(0.01 * i) + "," + std::to_string(400 * std::sin(3 * 0.01 * i)) + "," +
+            std::to_string(100 * std::sin(5 * 0.01 * i)) + "\n";
+  return parse_scene(text, "test", {}, [file](const std::string&) { return file; });
+}
+
+TEST_F(RerunTest, a_record_is_repeated_and_continued_from_the_recording_alone) {
+  {
+    Session session(path("a.h5"), record_scene());
+    session.edit(Edit::Key::friction, 0.5);
+    session.go_to(1000);
+    const RunPoint point = session.point();
+    session.edit(Edit::Key::scale, 0.4);
+    session.go_to(2000);
+    session.go_on_from(point, 0);
+    session.go_to(1500);
+    session.edit(Edit::Key::scale, 1.3);
+    session.go_to(3000);
+    session.finish();
+  }
+  const Recording recording(path("a.h5"));
+  ASSERT_EQ(recording.scene_files().size(), 1u);
+  EXPECT_EQ(recording.scene_files()[0].name, "quake.csv");
+  EXPECT_EQ(recording.scene_files()[0].bytes, record_scene().files[0].bytes);
+  EXPECT_EQ(recording.scene_text(), record_scene().text);
+  const Rerun result = again(recording);
+  EXPECT_EQ(result.checkpoints, recording.checkpoint_count());
+  EXPECT_GE(result.checkpoints, 5);
+  EXPECT_TRUE(result.differences.empty());
+}
+
+TEST_F(RerunTest, a_file_that_is_not_in_the_recording_is_not_sought_elsewhere) {
+  const Scene scene = record_scene();
+  {
+    Recorder recorder(path("a.h5"), scene.name, scene.text, scene.setup.model);
+    recorder.write(Observer().observe(topple::Run(scene.setup)));
+    recorder.finish("completed", "{}");
+  }
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  write_bytes("quake.csv", scene.files[0].bytes);
+  try {
+    recorded_scene(Recording("a.h5"));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("quake.csv: is not in the recording"), std::string::npos)
+        << error.what();
+  }
+  std::filesystem::current_path(before);
 }
 
 TEST_F(RerunTest, what_does_not_belong_to_its_scene_is_refused) {

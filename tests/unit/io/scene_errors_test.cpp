@@ -91,17 +91,6 @@ TEST(SceneErrors, custom_section_of_a_material_that_yields_needs_plastic_moduli)
       std::string::npos);
 }
 
-TEST(SceneErrors, choices_of_later_versions_are_refused_by_name) {
-  const auto refused = [](const std::string& lines) {
-    const std::string error = after_beam(lines);
-    return error.find(" is not supported by this version") != std::string::npos
-               ? error.substr(0, error.find(": "))
-               : error;
-  };
-  EXPECT_EQ(refused("[[shake]]\nfrequency = [1, 2]\ntype = \"sweep\"\n"), "s.toml:19:8");
-  EXPECT_EQ(refused("[[shake]]\ntype = \"record\"\nfiles = []\n"), "s.toml:18:8");
-}
-
 TEST(SceneErrors, rigid_and_elastic_bodies_do_not_take_an_integrator_of_frames) {
   EXPECT_EQ(error_of(k_cabinet_scene, {"cabinet.free.model=rigid", "run.integrator=newmark"}),
             "--set cabinet.free.model=rigid: cabinet.free.model: \"rigid\" bodies take central differences: "
@@ -171,7 +160,7 @@ TEST(SceneErrors, keys_of_a_choice_not_made_are_refused) {
   EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\ntime_step = \"2 ms\"\n"),
             "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is 2 ms");
   EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\nduration = 1\n"),
-            "s.toml:20:1: shake.1.duration: belongs to type = pulse, but type is sine");
+            "s.toml:20:1: shake.1.duration: belongs to type = sweep or pulse, but type is sine");
   EXPECT_EQ(in_cabinet("bracing = \"none\"\npanel_thickness = 1e-3\n"),
             "s.toml:17:1: cabinet.free.panel_thickness: belongs to bracing = panels, but bracing is none");
   EXPECT_EQ(error_of(replaced(k_scene, "\"box\"", "\"solid\"")),
@@ -206,7 +195,9 @@ TEST(SceneErrors, missing_keys_are_named_at_their_entry) {
   EXPECT_EQ(error_of(replaced(k_cabinet_scene, "section = \"post\"\n", "")),
             "s.toml:12:1: cabinet.free.section: missing (a [[section]])");
   EXPECT_EQ(after_beam("\n[[shake]]\namplitude = 1\n"),
-            "s.toml:18:1: shake.1.frequency: missing; type = \"sine\" needs it (frequency)");
+            "s.toml:18:1: shake.1.frequency: missing; type = \"sine\" needs it (frequency; of a sweep "
+            "[first, last]: each "
+            "octave takes as long)");
   EXPECT_EQ(error_of(replaced(k_scene, "size = [\"30 mm\", \"30 mm\"]\n", "")),
             "s.toml:7:1: section.post.size: missing (outer sizes along local y and z; pipe: the diameter)");
   EXPECT_EQ(error_of(replaced(k_scene, "section = \"post\", ", "")),
@@ -441,8 +432,8 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "no-such-scene: no such file or built-in scene; built-in: beam-floor, breaking, cantilever, "
-                 "collide, dominoes, free-rocking, paper-a, paper-b, portal-pushover, stack, tumble, wedged, "
-                 "yielding");
+                 "collide, dominoes, floor-long-period, free-rocking, near-fault, paper-a, paper-b, "
+                 "portal-pushover, stack, tumble, wedged, yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

@@ -450,9 +450,10 @@ TEST(Scene, built_in_scenes_are_read_and_have_titles) {
     EXPECT_NE(scene.title, scene.name);
     EXPECT_EQ(scene.setup.starts.size(), scene.setup.model.bodies.size());
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"beam-floor", "breaking", "cantilever", "collide", "dominoes",
-                                             "free-rocking", "paper-a", "paper-b", "portal-pushover", "stack",
-                                             "tumble", "wedged", "yielding"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"beam-floor", "breaking", "cantilever", "collide", "dominoes",
+                                      "floor-long-period", "free-rocking", "near-fault", "paper-a", "paper-b",
+                                      "portal-pushover", "stack", "tumble", "wedged", "yielding"}));
 }
 
 TEST(Scene, the_wall_of_the_paper_scenes_is_10_mm_behind_the_walled_cabinet_and_out_of_reach_of_the_other) {

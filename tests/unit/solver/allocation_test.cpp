@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <new>
 
+#include "solver/accelerogram.h"
 #include "solver/elastic_basis.h"
+#include "solver/excitation.h"
 #include "unit/solver/fixtures.h"
 
 namespace {
@@ -101,6 +103,18 @@ TEST(Allocation, counter_counts) {
   plain.resize(static_cast<std::size_t>(Eigen::VectorXd::Zero(plain.size()).eval().size()));
   EXPECT_EQ(allocations, before + 3);
 #endif
+}
+
+TEST(Allocation, a_record_shakes_the_floor_without_taking_memory) {
+  Shake shake;
+  shake.kind = Shake::Kind::record;
+  shake.record = make_accelerogram({{Vec3::UnitX(), 0.01, std::vector<double>(1000, 2.)}});
+  const std::vector<Shake> shakes{shake};
+  const long before = allocations;
+  double sum = 0;
+  for (int i = 0; i < 1000; ++i) sum += floor_acceleration(shakes, 0.00999 * i).x();
+  EXPECT_NEAR(sum, 2000, 1e-9);
+  EXPECT_EQ(allocations, before);
 }
 
 TEST(Allocation, no_explicit_step_after_the_first_takes_memory) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/accelerogram.h"
 #include "solver/contact_law.h"
 #include "solver/excitation.h"
 #include "unit/solver/fixtures.h"
@@ -99,6 +100,46 @@ TEST(Edit, of_a_pulse_takes_a_quarter_of_its_length) {
   EXPECT_NEAR(floor_acceleration(p.shakes, 0.1).x(), 2, 1e-14);
   EXPECT_NEAR(floor_acceleration(p.shakes, 0.2).x(), 3, 1e-14);
   EXPECT_NEAR(floor_acceleration(p.shakes, 0.3).x(), 4, 1e-14);
+}
+
+TEST(Edit, of_the_amplitude_of_a_sweep_takes_a_quarter_of_the_period_it_is_at) {
+  Parameters p = shaken_parameters(2, 0.5);
+  p.shakes[0].kind = Shake::Kind::sweep;
+  p.shakes[0].last_frequency = 2;
+  p.shakes[0].duration = 10;
+  apply(set(Edit::Key::amplitude, 6), {}, 5, p);  // at 1 Hz
+  EXPECT_EQ(shake_amplitude(p.shakes[0], 5).x(), 2);
+  EXPECT_NEAR(shake_amplitude(p.shakes[0], 5.125).x(), 4, 1e-14);
+  EXPECT_EQ(shake_amplitude(p.shakes[0], 5.25).x(), 6);
+}
+
+TEST(Edit, of_the_scale_of_a_record_takes_a_quarter_of_a_second_without_a_jump) {
+  Parameters p;
+  Shake& shake = p.shakes.emplace_back();
+  shake.kind = Shake::Kind::record;
+  shake.record = make_accelerogram({{Vec3::UnitX(), 100, {2, 2}}});
+  shake.start = 1;
+  apply(set(Edit::Key::scale, 1.5), {}, 0.5, p);  // before it starts: at once
+  EXPECT_EQ(floor_acceleration(p.shakes, 1).x(), 3);
+  apply(set(Edit::Key::scale, -0.5), {}, 2, p);
+  EXPECT_EQ(floor_acceleration(p.shakes, 2).x(), 3);
+  EXPECT_NEAR(floor_acceleration(p.shakes, 2.125).x(), 1, 1e-14);
+  EXPECT_EQ(floor_acceleration(p.shakes, 2.25).x(), -1);
+  // the share's slope is at most pi/2 over its length
+  EXPECT_LT(roughest(p, 1.9, 2.4), 1.01 * 4 * k_pi / 2 / 0.25 * 1e-6);
+  // from within the passage
+  apply(set(Edit::Key::scale, 1), {}, 2.3, p);
+  apply(set(Edit::Key::scale, 2), {}, 2.425, p);
+  EXPECT_NEAR(floor_acceleration(p.shakes, 2.425).x(), 0.5, 1e-13);
+  EXPECT_EQ(floor_acceleration(p.shakes, 2.7).x(), 4);
+}
+
+TEST(Edit, of_a_record_is_of_its_scale_alone) {
+  Parameters p;
+  p.shakes.emplace_back().kind = Shake::Kind::record;
+  for (const auto& [key, shake] : editable(p))
+    EXPECT_TRUE(key != Edit::Key::amplitude && key != Edit::Key::frequency && key != Edit::Key::direction);
+  EXPECT_EQ(editable(p).front().first, Edit::Key::scale);
 }
 
 TEST(Edit, within_the_passage_of_another_goes_on_without_a_jump) {

@@ -197,5 +197,52 @@ TEST(Excitation, floor_filter_forgets_a_constant_and_is_linear) {
   EXPECT_LT(d.norm() + v.norm(), 1e-8);
 }
 
+Shake sweep(double first, double last, double duration) {
+  Shake s = sine(3, first);
+  s.kind = Shake::Kind::sweep;
+  s.last_frequency = last;
+  s.duration = duration;
+  s.start = 1;
+  return s;
+}
+
+TEST(Excitation, sweep_takes_as_long_for_each_octave) {
+  const Shake s = sweep(0.25, 8, 10);  // five octaves, 2 s each
+  for (int octave = 0; octave <= 5; ++octave)
+    EXPECT_NEAR(shake_frequency(s, 1 + 2 * octave), 0.25 * std::pow(2, octave), 1e-12);
+  const Shake down = sweep(8, 0.25, 10);
+  EXPECT_NEAR(shake_frequency(down, 3), 4, 1e-12);
+}
+
+TEST(Excitation, sweep_is_the_sine_of_the_integral_of_its_frequency) {
+  for (const Shake& s : {sweep(0.2, 5, 8), sweep(5, 0.2, 8)}) {
+    double turns = 0;
+    constexpr int steps = 4000;
+    constexpr double h = 8. / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double t = 1 + i * h;
+      // Simpson
+      turns +=
+          h / 6 * (shake_frequency(s, t) + 4 * shake_frequency(s, t + h / 2) + shake_frequency(s, t + h));
+      if (i + 1 == steps) break;
+      ASSERT_NEAR(along(s, t + h), 3 * std::sin(2 * k_pi * turns), 1e-9) << t;
+    }
+    EXPECT_EQ(along(s, 0.999), 0);
+    EXPECT_EQ(along(s, 9), 0);
+    EXPECT_EQ(shake_end(s), 9);
+  }
+}
+
+TEST(Excitation, taper_of_a_sweep_counts_its_own_cycles) {
+  Shake plain = sweep(1, 4, 6), s = plain;
+  s.taper = 2;
+  const double cycles = shake_turns(s, 7);
+  for (double t = 1.01; t < 7; t += 0.01) {
+    const double turns = shake_turns(s, t);
+    const auto rise = [](double x) { return x >= 1 ? 1 : (1 - std::cos(k_pi * x)) / 2; };
+    ASSERT_NEAR(along(s, t), along(plain, t) * rise(turns / 2) * rise((cycles - turns) / 2), 1e-12) << t;
+  }
+}
+
 }  // namespace
 }  // namespace topple::test
