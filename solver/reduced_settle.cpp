@@ -50,7 +50,9 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     contacts_.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t at) {
       Mat3 by_position, by_velocity;
       const Vec3& normal = model_.planes[touch.plane].normal;
-      const ContactOutput out = contact_force(now.law,
+      ContactLaw law = now.law;
+      law.alpha = touch.alpha[which];
+      const ContactOutput out = contact_force(law,
                                               {normal, touch.depth[which], contacts_.length(touch, which),
                                                Vec3::Zero(), stick[at], contacts_.share_of_mass()},
                                               by_position, by_velocity);

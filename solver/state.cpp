@@ -166,7 +166,7 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
-                  (22 + 3 * k_modes) * state.bodies.size() + state.near.size() +
+                  (23 + 3 * k_modes) * state.bodies.size() + state.near.size() +
                   5 * state.member_sticks.size() + 24);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });

@@ -97,8 +97,7 @@ double step_error(const Model& model, const Parameters& parameters, const State&
     total_mass += body.mass;
     small_fall += k_small_fall * body.mass * parameters.gravity.norm() * body.reach;
   }
-  const double largest =
-      std::max(after.energy.largest + total_mass * k_at_rest * k_at_rest, small_fall);
+  const double largest = std::max(after.energy.largest + total_mass * k_at_rest * k_at_rest, small_fall);
   const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (after.bodies[b].rung != Rung::frame) continue;
