@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_energy_part = 0.02;  // of the tolerance: energy that a step may leave unexplained
 constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at rest is below
-constexpr double k_small_fall = 1e-6;   // of the reach: what bodies gain by it counts as nothing
+constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it counts as nothing
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
 // Mean rotation of a body's nodes, rad/s.
