@@ -192,7 +192,7 @@ class BodySystem {
   std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `near`
-  std::vector<MemberStick> own_sticks_;
+  std::vector<MemberStick> own_sticks_, new_sticks_;
   bool keeps_sticks_ = false;
   BeamPacks beams_;
   std::vector<NodeForce> node_force_;  // applied less those of the beams

@@ -73,6 +73,7 @@ void add(const BodyEnergy& part, BodyEnergy& sum) {
 struct Workspace::Impl {
   explicit Impl(const Model& model)
       : islands(model),
+        search(model),
         reduced_bodies(model.bodies.size()),
         sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {
     moving.reserve(model.bodies.size());
@@ -86,6 +87,7 @@ struct Workspace::Impl {
   }
 
   Islands islands;
+  NearSearch search;
   std::vector<std::unique_ptr<ReducedBody>>
       reduced_bodies;                              // per body, once it was on another rung than frame
   std::vector<ReducedScratch> reduced_scratch{1};  // per worker
@@ -220,7 +222,7 @@ void find_near(const Model& model, const State& state, Workspace::Impl& w) {
 void start_rungs(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
   place_nodes(model, state);
   state.near_slack = 0;
-  look_around(model, state, 0);
+  look_around(model, w.search, state, 0);
   find_base(model, parameters, w);
   find_near(model, state, w);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
@@ -615,7 +617,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     {
       const InPhase phase(&w.profile, Phase::search);
       copy(state, w.next, moves_nodes(state, w));
-      look_around(model, w.next, travel);
+      look_around(model, w.search, w.next, travel);
     }
     status = try_known(model, parameters, state, h, halvings, w);
     if (!status.ok() || model.bodies.size() < 2) return status;
