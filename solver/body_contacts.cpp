@@ -218,6 +218,7 @@ template <bool with_slope>
       across += lever * k;
     }
     across = across * scale;
+    touch.drag = choose(sticks, across, zero);
     const Points along = inverse_size * trial;
     const Points lead = (slope + across) * n, side_way = mul_add(across, along, -(law.friction * slope) * n);
     const Four n_of[3] = {n.x, n.y, n.z}, along_of[3] = {along.x, along.y, along.z};
@@ -294,17 +295,29 @@ void BodyContacts::press_modes(int modes, Amplitudes& load) const {
   for (int k = 0; k < modes; ++k) load[k] = sum(sum_of[k]);
 }
 
-ContactSlope BodyContacts::slope() const {
+template <class F>
+ContactSlope BodyContacts::sum_slopes(F slope_of) const {
   const Points none = in_all_lanes(Vec3::Zero());
   PackMatrix<Four> a{{none, none, none}}, b = a, c = a, d = a;
   for (const Touch& touch : now_.list()) {
-    const PackMatrix<Four> turned = times_skew(touch.slope, touch.arm);
-    a = a + touch.slope;
+    const PackMatrix<Four> slope = slope_of(touch), turned = times_skew(slope, touch.arm);
+    a = a + slope;
     b = b - turned;
-    c = c + skew_times(touch.arm, touch.slope);
+    c = c + skew_times(touch.arm, slope);
     d = d - skew_times(touch.arm, turned);
   }
   return {sum(a), sum(b), sum(c), sum(d)};
+}
+
+ContactSlope BodyContacts::slope() const {
+  return sum_slopes([](const Touch& touch) { return touch.slope; });
+}
+
+ContactSlope BodyContacts::stick_slope() const {
+  return sum_slopes([&](const Touch& touch) {
+    const Points n = normal(touch);
+    return touch.drag * (outer(n, n) - diagonal(Points{Four(1), Four(1), Four(1)}));
+  });
 }
 
 void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {

@@ -67,6 +67,7 @@ class BodyContacts {
     Four stick_stiffness;    // N/m, likewise
     Four stick_energy;
     PackMatrix<Four> slope;  // of the force by the velocity
+    Four drag;               // N s/m, of what sticks, less its derivative along the plane
   };
 
   BodyContacts(const Model& model, int body);
@@ -86,6 +87,8 @@ class BodyContacts {
   /// On the modes, N/sqrt(kg), with the forces found last.
   void press_modes(int modes, Amplitudes& load) const;
   ContactSlope slope() const;
+  /// That of stick springs alone, with the forces found last with slopes.
+  ContactSlope stick_slope() const;
   /// Adds `factor` times the derivatives that concern modes to rows and columns from the seventh on; six rows
   /// of the body, then the modes.
   void add_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;
@@ -160,6 +163,8 @@ class BodyContacts {
     std::span<Touch> list() { return {all.data(), count}; }
   };
 
+  template <class F>
+  ContactSlope sum_slopes(F slope_of) const;
   const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
   Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
   double slope_at_rest(const ContactLaw& law) const;

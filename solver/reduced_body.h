@@ -12,7 +12,8 @@
 // Stiff, for a rigid body on contacts that would make those parts short: two implicit stages of second order
 // that damp what is too fast for the part (SDIRK2, gamma = 1 - 1/sqrt 2; Alexander 1977), on the rotation
 // vector from the start of the part. The local error of the velocity, from the forces at the three instants,
-// decides how long a part may be; a part ends where a point is about to touch.
+// decides how long a part may be, that of stick springs aside: nothing asks how they shiver. A part ends
+// where a point is about to touch.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@ constexpr double k_error_constant = 3 * k_gamma * k_gamma - 2 * k_gamma * k_gamm
 constexpr double k_stage_error = 1e-7;  // of the speed
 constexpr double k_good_rate = 0.1;     // of Newton with an old matrix
 constexpr double k_slow = 1e-3;         // m/s, below it errors of a stage are absolute
-constexpr double k_part_error = 0.1;    // of the tolerance times the speed: local error of the velocity
+constexpr double k_part_error = 0.03;   // of the tolerance times the speed: local error of the velocity
 constexpr double k_speed_floor = 0.01;  // of the speed of a fall through the reach
 constexpr double k_resolved = 0.3;      // rad, of a contact's bounce, in the first part after a touch
 constexpr double k_safety = 0.9, k_most_growth = 3, k_most_shrinking = 5;
@@ -25,8 +25,12 @@ constexpr double k_no_stage = 1e3;     // counts as this error
 constexpr int k_most_iterations = 20;
 
 // |a''| times h^2/2, from what acts at the ends of the stages.
-Vec3 bend(const Vec3& start, const Vec3& first, const Vec3& second) {
-  return (second - first) / (1 - k_gamma) - (first - start) / k_gamma;
+PackVec3 bend(const PackVec3& start, const PackVec3& first, const PackVec3& second) {
+  return 1 / (1 - k_gamma) * (second - first) - 1 / k_gamma * (first - start);
+}
+
+double norm(const PackVec3& v) {
+  return std::sqrt(dot(v, v));
 }
 
 }  // namespace
@@ -36,7 +40,7 @@ struct ReducedBody::StiffPart {
   PackMat3 r0;
   std::span<const Vec3> stick;
   double lever;  // s, gamma h
-  RigidSolver solver;
+  RigidSolver solver, sticks;
   bool fresh;  // the solver is to be made anew
 };
 
@@ -69,7 +73,10 @@ bool ReducedBody::solve_stage(StiffPart& part, const Instant& now, const PackVec
     const auto spin = [&] { return r * (inertia_ * transposed_times(r, u.angular)); };
     PackVec3 x = mass_ * u.linear - from.momentum - part.lever * (loads.force + mass_ * field),
              y = spin() - from.spin - part.lever * loads.moment;
-    if (part.fresh) part.solver = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.slope());
+    if (part.fresh) {
+      part.solver = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.slope());
+      part.sticks = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.stick_slope());
+    }
     part.solver.solve(x, y);
     u.linear = u.linear - x;
     u.angular = u.angular - y;
@@ -100,7 +107,7 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
   const Instant middle(parameters, start.time + lever);
   const BodyState before = s;
   contacts_.begin_part();
-  StiffPart part{before, rotation_matrix(packed(before.rotation)), stick, lever, {}, true};
+  StiffPart part{before, rotation_matrix(packed(before.rotation)), stick, lever, {}, {}, true};
   const PackVec3 omega0 = part.r0 * packed(before.angular_velocity), force0 = packed(before.force),
                  moment0 = packed(before.moment), gravity = packed(parameters.gravity),
                  floor1 = packed(middle.floor), floor2 = packed(end.floor);
@@ -133,10 +140,9 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
   const PackVec3 force2 = 1 / lever * (mass_ * two.u.linear - from.momentum),
                  moment2 = 1 / lever * (two.spin - from.spin);
 
-  const Vec3 bent = bend(before.force, unpacked(force1), unpacked(force2)),
-             twisted = bend(before.moment, unpacked(moment1), unpacked(moment2));
-  error = 2 * k_error_constant * h *
-          (bent.norm() / mass_ + reach_ * unpacked(inverse_inertia * packed(twisted)).norm()) / allowed;
+  PackVec3 bent = bend(force0, force1, force2), twisted = bend(moment0, moment1, moment2);
+  part.sticks.solve(bent, twisted);
+  error = 2 * k_error_constant * h * (norm(bent) + reach_ * norm(twisted)) / allowed;
   if (!(error <= 1)) return give_up(std::isfinite(error) ? error : k_no_stage);
 
   // where the last correction of Newton leads
