@@ -89,7 +89,6 @@ TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
                       std::string(option) + ": not supported by this version");
     expect_one_line({"study", kind, "-o", "out", "--resume"}, 2, "--resume: not supported by this version");
   }
-  expect_one_line({"run", "s.toml", "--estimate"}, 2, "--estimate: not supported by this version");
   expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
 }
