@@ -21,23 +21,25 @@ namespace {
 
 constexpr int k_width = 1280, k_height = 720, k_rate = 30;
 constexpr std::size_t k_lines = 4;  // bodies that are spoken of
+/// Right of the words and above the trace.
+constexpr render::Room k_room{-0.36f, 0.95f, -0.8f, 0.9f};
 constexpr render::Float4 k_blue = {0.13f, 0.36f, 0.65f, 1};
 
 /// One motion as frames that stand still where the floor is.
 class Actor {
  public:
-  explicit Actor(const NamedReplay& motion)
-      : motion_(motion), extent_(extent_of_all()), bridge_(motion.scene, extent_) {}
+  explicit Actor(const NamedReplay& replay)
+      : replay_(replay), extent_(extent_of_all()), bridge_(replay_.scene, extent_) {}
 
-  double first() const { return motion_.replay.first(); }
-  double last() const { return motion_.replay.last(); }
+  double first() const { return replay_.replay.first(); }
+  double last() const { return replay_.replay.last(); }
   io::FrameRow row(double time) const {
-    return from_floor(motion_.replay.at(std::clamp(time, first(), last())));
+    return from_floor(replay_.replay.at(std::clamp(time, first(), last())));
   }
   render::SceneFrame frame(const io::FrameRow& row) const {
-    return bridge_.frame(row, motion_.replay.parameters(motion_.scene, row));
+    return bridge_.frame(row, replay_.replay.parameters(replay_.scene, row));
   }
-  const NamedReplay& motion() const { return motion_; }
+  const NamedReplay& replay() const { return replay_; }
 
  private:
   static io::FrameRow from_floor(io::FrameRow row) {
@@ -46,13 +48,13 @@ class Actor {
   }
   RunExtent extent_of_all() const {
     RunExtent extent;
-    for (std::int64_t i = 0; i < motion_.replay.frame_count() && !interrupted(); ++i)
-      extent.add(motion_.scene.setup.model, motion_.scene.setup.parameters,
-                 from_floor(motion_.replay.frame(i)));
+    for (std::int64_t i = 0; i < replay_.replay.frame_count() && !interrupted(); ++i)
+      extent.add(replay_.scene.setup.model, replay_.scene.setup.parameters,
+                 from_floor(replay_.replay.frame(i)));
     return extent;
   }
 
-  const NamedReplay& motion_;
+  const NamedReplay& replay_;
   const RunExtent extent_;
   const Bridge bridge_;
 };
@@ -72,12 +74,13 @@ void add_ghost(const render::SceneFrame& ghost, render::SceneFrame& out) {
   }
 }
 
-void add_words(const char* letter, const Actor& player, const io::FrameRow& row, double time,
-               std::vector<std::string>& lines) {
-  const Model& model = player.motion().scene.setup.model;
-  const std::string ended = time > player.last() ? fmt::format(" (ended at {:.2f} s)", player.last()) : "";
+std::vector<std::string> words(const char* letter, const Actor& actor, const io::FrameRow& row, double time) {
+  const Model& model = actor.replay().scene.setup.model;
+  const std::string ended = time > actor.last() ? fmt::format(" (ended at {:.2f} s)", actor.last()) : "";
+  std::vector<std::string> lines;
   for (std::size_t b = 0; b < std::min(static_cast<std::size_t>(model.furniture_total()), k_lines); ++b)
     lines.push_back(fmt::format("{}  {}{}", letter, body_in_words(model, row, b), ended));
+  return lines;
 }
 
 render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
@@ -91,10 +94,12 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
   frame.trace.label = "floor acceleration of A, gal";
   frame.trace.cursor = static_cast<float>(time);
   frame.caption.title = fmt::format("t = {:.2f} s, seen from the floor", time);
-  frame.caption.lines = {"A, solid and blue: " + a.motion().name,
-                         "B, translucent and grey: " + b.motion().name};
-  add_words("A", a, row_a, time, frame.caption.lines);
-  add_words("B", b, row_b, time, frame.caption.lines);
+  frame.caption.lines = {"A, solid and blue: " + a.replay().name,
+                         "B, translucent and grey: " + b.replay().name};
+  const auto of_a = words("A", a, row_a, time), of_b = words("B", b, row_b, time);
+  for (std::size_t i = 0; i < std::max(of_a.size(), of_b.size()); ++i)
+    for (const auto* lines : {&of_a, &of_b})
+      if (i < lines->size()) frame.caption.lines.push_back((*lines)[i]);
   frame.caption.note = fmt::format("topple {} · deformation ×1", TOPPLE_VERSION);
   return frame;
 }
@@ -112,7 +117,11 @@ int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const Nam
     Progress progress("drawing", "pictures", count, quiet);
     for (int i = 0; i < count && !interrupted(); ++i) {
       const render::SceneFrame frame = frame_of_both(a, b, first + static_cast<double>(i) / k_rate);
-      video.write(picture.draw(frame, render::fit_camera(render::NamedView::iso, frame, picture.aspect())));
+      const auto corner = [](const render::Float3& x) { return Eigen::Vector3f(x.data()); };
+      video.write(picture.draw(
+          frame,
+          render::fit_box(render::sight_axes(render::sight_of(render::NamedView::iso)),
+                          corner(frame.bounds_min), corner(frame.bounds_max), k_room, picture.aspect())));
       progress.update(i + 1);
     }
     if (!interrupted()) {

@@ -12,6 +12,11 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t k_listed_bodies = 12;
 
+/// Five significant digits without an exponent.
+std::string plain(double value) {
+  return value < 1e5 ? short_shown(value, 5) : shown(value, 0);
+}
+
 std::string law_name(const ReportPage& page) {
   switch (page.report().scene->setup.parameters.contact.kind) {
     case ContactLawKind::coulomb:
@@ -102,8 +107,7 @@ std::string settings_section(ReportPage& page) {
       {page.say(words::k_step), step(page)},
       {page.say(words::k_contact), law_name(page)},
       {page.say(words::k_alpha),
-       fmt::format("{} kgf ({} N)", short_shown(p.contact.alpha / k_standard_gravity, 5),
-                   short_shown(p.contact.alpha, 5))},
+       fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
       {page.say(words::k_q), short_shown(p.contact.q)},
       {page.say(words::k_mu), short_shown(p.contact.friction)}};
   if (p.contact.kind == ContactLawKind::coulomb) {

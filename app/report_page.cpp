@@ -56,7 +56,7 @@ th, td { text-align: left; padding: 4px 8px; border-bottom: 1px solid #d5dae0; v
 thead th { border-bottom: 1.5px solid #1c1f23; font-weight: 600; vertical-align: bottom; }
 tr { break-inside: avoid; }
 .numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
-.numbers td { white-space: nowrap; }
+.numbers td, .numbers th:first-child { white-space: nowrap; }
 .verdict-cell { display: inline-block; min-width: 6.2em; text-align: left; }
 .settings th { width: 42%; font-weight: 400; }
 .settings td { overflow-wrap: anywhere; }

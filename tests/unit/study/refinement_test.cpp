@@ -72,7 +72,7 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_frames) {
 TEST(Refinement, the_stated_error_holds_the_true_one_of_adaptive_steps) {
   for (const char* tolerance : {"run.tolerance=1e-2", "run.tolerance=1e-3"}) {
     SCOPED_TRACE(tolerance);
-    expect_stated(io::load_scene("near-fault", {"run.time_step=auto", tolerance, "run.duration=4 s"}), 16);
+    expect_stated(io::load_scene("near-fault", {"run.time_step=auto", tolerance, "run.duration=5 s"}), 16);
     expect_stated(io::load_scene("paper-a", {"run.time_step=auto", tolerance, "run.duration=3 s"}), 16);
   }
 }

@@ -1,4 +1,5 @@
 add_executable(study_test
+  ${CMAKE_CURRENT_LIST_DIR}/anchors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/intensity_test.cpp
