@@ -43,6 +43,7 @@ svg.chart { display: block; width: 100%; height: auto; font-family: inherit; }
 .keys { display: flex; flex-wrap: wrap; gap: 2px 18px; padding-left: 62px; font-size: 12px; }
 .keys svg { width: 46px; height: 16px; vertical-align: middle; margin-right: 5px; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 10px; }
+figure:has(> .pictures) { break-inside: auto; }
 .pictures figure { margin: 0; }
 .picture { position: relative; }
 .picture img { width: 100%; display: block; border: 1px solid #b8c0c8; }
@@ -62,7 +63,7 @@ tr { break-inside: avoid; }
 .settings td { overflow-wrap: anywhere; }
 footer { margin-top: 26px; padding-top: 6px; border-top: 1px solid #b8c0c8; font-size: 12px; color: #444; overflow-wrap: anywhere; }
 @page { size: A4; margin: 14mm 14mm 16mm; }
-@media print { body { padding: 0; max-width: none; font-size: 10.5pt; } .wide { overflow: visible; } table { font-size: 9pt; }
+@media print { body { padding: 0; max-width: none; font-size: 9.5pt; } .wide { overflow: visible; } table { font-size: 8.5pt; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )css";
 

@@ -126,6 +126,11 @@ inline constexpr Phrase k_table_note{
     "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。すべり："
     "床に対する底面中心の水平移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回ること。±は推定数値誤差（第{1}節）。"};
+inline constexpr Phrase k_stress_note{
+    "Stresses are elastic: the scene's material does not yield, so that impacts reach values at which real "
+    "steel would flow.",
+    "応力は弾性計算による値である。シーンの材料は降伏しないため、衝突時には実際の鋼材なら降伏する値になること"
+    "がある。"};
 inline constexpr Phrase k_tilt_chart{"Figure {0}: tilt of the bodies.{1} Diamond: overturned from here on.",
                                      "図{0}：家具の傾斜角。{1}◇：この時刻以降、転倒。"};
 inline constexpr Phrase k_tilt_chart_standing{"Figure {0}: tilt of the bodies.{1}",
