@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t k_names = 3;    // bodies; more have the numbers of the chart in pictures
 constexpr std::size_t k_curves = 8;   // more cannot be told apart
 constexpr double k_far_below = 0.15;  // of the critical angle: tilts below it would be flat beside it
 constexpr double k_same_angle = 0.5;  // degrees
@@ -149,8 +150,9 @@ std::string pictures(ReportPage& page) {
   for (const KeyPicture& picture : page.report().pictures) {
     std::string labels;
     for (const KeyPicture::Label& label : picture.labels)
-      labels += fmt::format("<span style=\"left:{:.1f}%;top:{:.1f}%\">{}</span>", label.left, label.top,
-                            escaped(page.name(label.body)));
+      labels += fmt::format(
+          "<span style=\"left:{:.1f}%;top:{:.1f}%\">{}</span>", label.left, label.top,
+          page.bodies().size() > k_names ? std::to_string(label.body + 1) : escaped(page.name(label.body)));
     out += fmt::format(
         "<figure><div class=\"picture\"><img alt=\"{0}\" src=\"data:image/png;base64,{1}\">{2}</div>"
         "<figcaption>{0}</figcaption></figure>\n",
