@@ -23,7 +23,7 @@ namespace topple::app {
 namespace {
 
 // Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"compare", "report", "recover"};
+constexpr std::string_view k_later[] = {"recover"};
 constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
@@ -92,6 +92,8 @@ class CommandLine {
     add_modes();
     add_verify();
     add_study();
+    add_compare();
+    add_report();
     add_check();
     add_info();
     add_scenes();
@@ -149,7 +151,10 @@ class CommandLine {
             ->check(job_count, "", "count");
     command.add_flag("--profile", run_.profile, "tell where the time of steps goes, on one thread")
         ->excludes(jobs);
-    add_later_flag(command, "--estimate");
+    command.add_flag(
+        "--estimate", run_.estimate,
+        "run it again at half the step (or a tenth of the tolerance) for the error, at three times "
+        "the cost");
     command.callback([this] {
       run_.jobs = whole_number<int>(jobs_);
       action_ = [this] { return run_command(run_); };
@@ -283,6 +288,39 @@ class CommandLine {
     if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");
   }
 
+  void add_compare() {
+    CLI::App& command = add_command("compare", "what two scenes or recordings say and do differently",
+                                    "compare weak.h5 strong.h5 --mp4 both.mp4");
+    add_path(command, "A", compare_.a, "", "scene or recording").required();
+    add_path(command, "B", compare_.b, "", "scene or recording").required();
+    add_path(command, "--json", compare_.json, "FILE|-",
+             "write the differences as JSON; - for standard output");
+    add_path(command, "--mp4", compare_.mp4, "FILE",
+             "video of both on one clock, A solid, B translucent (needs ffmpeg)");
+    command.add_flag("--quiet", compare_.quiet, "no progress");
+    command.callback([this] { action_ = [this] { return compare_command(compare_); }; });
+  }
+
+  void add_report() {
+    CLI::App& command =
+        add_command("report", "one page for an engineer: what falls, when, how certain that is",
+                    "report paper-a -o paper-a.html --lang ja");
+    add_path(command, "SCENE", report_.scene, "", "path or name of a built-in scene").required();
+    add_path(command, "-o,--output", report_.file, "FILE.html", "page to write, default SCENE-report.html");
+    command.add_option("--lang", report_.language, "en (default) or ja")->type_name("LANGUAGE");
+    add_set(command, report_.overrides);
+    command.add_option("--jobs", jobs_, "runs at a time, default one per core")
+        ->type_name("N")
+        ->check(job_count, "", "count");
+    command.add_flag("--quiet", report_.quiet, "no progress");
+    command.callback([this] {
+      if (report_.language != "en" && report_.language != "ja")
+        throw BadInput("--lang: \"" + report_.language + "\" is not one of en, ja");
+      report_.jobs = whole_number<int>(jobs_);
+      action_ = [this] { return report_command(report_); };
+    });
+  }
+
   void add_check() {
     CLI::App& command = add_command("check", "validate scenes without running them",
                                     "check my-office.toml --set shake.1.amplitude=\"0.2 g\"");
@@ -352,6 +390,8 @@ class CommandLine {
   ModesOptions modes_;
   VerifyOptions verify_;
   StudyOptions study_;
+  CompareOptions compare_;
+  ReportOptions report_;
   std::string kind_, jobs_;
   std::string count_;
 };

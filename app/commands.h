@@ -29,6 +29,7 @@ struct RunOptions {
   bool quiet = false;
   bool profile = false;     ///< tells where the time of steps went
   std::optional<int> jobs;  ///< threads; absent: as many as pay
+  bool estimate = false;    ///< runs it again at finer steps for the error
 };
 int run_command(const RunOptions& options);
 
@@ -86,6 +87,24 @@ struct StudyOptions {
 int elements_command(const StudyOptions& options);
 /// `topple study penalty`: penalty contact of a scene.
 int penalty_command(const StudyOptions& options);
+
+struct CompareOptions {
+  std::string a, b;  ///< scenes or recordings
+  std::string json;  ///< file, "-" or empty
+  std::string mp4;   ///< ghost video; empty: none
+  bool quiet = false;
+};
+int compare_command(const CompareOptions& options);
+
+struct ReportOptions {
+  std::string scene;
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  std::string file;                    ///< HTML; empty: NAME-report.html in the working folder
+  std::string language = "en";         ///< en or ja
+  std::optional<int> jobs;             ///< runs at a time; absent: one per core
+  bool quiet = false;
+};
+int report_command(const ReportOptions& options);
 
 int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides);
 

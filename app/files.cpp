@@ -79,4 +79,18 @@ void write_whole_file(const std::string& path, const std::string& content) {
   throw std::runtime_error(path + ": cannot be written: " + std::strerror(cause));
 }
 
+TemporaryFile::TemporaryFile() {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error) throw std::runtime_error("TMPDIR is no folder; a scene is recorded there before it is drawn");
+  path_ = (folder / "topple-XXXXXX").string();
+  const int file = mkstemp(path_.data());
+  if (file < 0) throw std::runtime_error(path_ + ": cannot be created: " + std::strerror(errno));
+  close(file);
+}
+
+TemporaryFile::~TemporaryFile() {
+  unlink(path_.c_str());
+}
+
 }  // namespace topple::app

@@ -22,4 +22,17 @@ bool same_file(const std::string& a, const std::string& b);
 /// std::runtime_error with path and cause.
 void write_whole_file(const std::string& path, const std::string& content);
 
+/// An empty file in TMPDIR that goes when its owner goes. Throws std::runtime_error with the cause.
+class TemporaryFile {
+ public:
+  TemporaryFile();
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace topple::app

@@ -20,6 +20,7 @@ struct RunManner {
   bool quiet = false;
   bool profile = false;          ///< adds "profile" to the summary; then one thread steps
   std::optional<int> jobs = {};  ///< threads; absent: as many as pay
+  bool estimate = false;  ///< runs it again at finer steps: "error_estimate" of the summary; no statics
 };
 
 /// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C, which is

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,6 +14,7 @@
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
+#include "app/replay.h"
 #include "app/window_picture.h"
 #include "app/words.h"
 #include "render/osmesa_context.h"
@@ -29,56 +27,6 @@ namespace topple::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file that goes when its owner goes.
-class TemporaryFile {
- public:
-  TemporaryFile() {
-    std::error_code error;
-    const fs::path folder = fs::temp_directory_path(error);
-    if (error) throw std::runtime_error("TMPDIR is no folder; a scene is recorded there before it is drawn");
-    path_ = (folder / "topple-XXXXXX").string();
-    const int file = mkstemp(path_.data());
-    if (file < 0) throw std::runtime_error(path_ + ": cannot be created: " + std::strerror(errno));
-    close(file);
-  }
-  ~TemporaryFile() { unlink(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-/// What a recording shows of its newest branch, by time.
-class Replay {
- public:
-  explicit Replay(const io::Recording& recording)
-      : recording_(recording), frames_(recording.frames_on_way_to(recording.newest_branch())) {
-    for (const std::int64_t frame : frames_) times_.push_back(recording.index()[frame].time);
-  }
-  std::int64_t frame_count() const { return static_cast<std::int64_t>(frames_.size()); }
-  double first() const { return times_.front(); }
-  double last() const { return times_.back(); }
-  io::FrameRow frame(std::int64_t number) const { return recording_.frame(frames_[number]); }
-  /// Those that held at a row.
-  Parameters parameters(const io::Scene& scene, const io::FrameRow& row) const {
-    return parameters_at(scene.setup, recording_.history(), row.branch, row.step);
-  }
-  io::FrameRow at(double time) const {
-    const auto after = std::upper_bound(times_.begin(), times_.end(), time);
-    const std::int64_t next = std::min<std::int64_t>(after - times_.begin(), frame_count() - 1);
-    const std::int64_t here = std::max<std::int64_t>(next - 1, 0);
-    if (times_[here] == time || here == next) return frame(here);
-    return blend(frame(here), frame(next), time);
-  }
-
- private:
-  const io::Recording& recording_;
-  std::vector<std::int64_t> frames_;
-  std::vector<double> times_;
-};
 
 /// Refuses what can be refused before anything runs. `last`: time of the last instant, s; of a static run its
 /// part of the way.
@@ -125,13 +73,6 @@ class Drawing {
   }
 
  private:
-  static RunExtent extent_of(const Replay& replay, const io::Scene& scene) {
-    RunExtent extent;
-    for (std::int64_t i = 0; i < replay.frame_count() && !interrupted(); ++i)
-      extent.add(scene.setup.model, scene.setup.parameters, replay.frame(i));
-    return extent;
-  }
-
   const RenderOptions& options_;
   const RunExtent extent_;
   const io::Scene& scene_;

@@ -18,6 +18,7 @@
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
 #include "solver/ladder.h"
+#include "solver/study/refinement.h"
 #include "solver/study/team.h"
 
 namespace topple::app {
@@ -77,6 +78,22 @@ std::string status_of(const Run& run) {
                                : "interrupted";
 }
 
+/// "error_estimate" of the summary of `run`; null when Ctrl+C came first.
+nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::optional<study::Team>& team,
+                                bool quiet) {
+  const Setup finer = study::refined(scene.setup);
+  Run second(finer);
+  if (team) second.share(team->share());
+  Progress progress(scene.name + ", " + refinement_in_words(finer), "s simulated", finer.run.duration, quiet);
+  while (second.status().ok() && !second.over() && !interrupted()) {
+    if (!second.advance().ok()) break;
+    progress.update(second.time());
+  }
+  if (!second.status().ok()) return failed_estimate(finer, second.status().message(finer.model));
+  if (!second.over()) return nullptr;
+  return error_estimate(scene.setup, run.outcome(), second.outcome());
+}
+
 }  // namespace
 
 RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
@@ -109,10 +126,20 @@ RecordedRun record(const io::Scene& scene, const std::string& path, const RunMan
     const std::string status = status_of(run);
     result.summary = summary(scene, run, status, wall);
     if (manner.profile) result.summary["profile"] = std::move(profile);
+    bool estimated = true;
+    if (manner.estimate && run.over() && run.status().ok()) {
+      if (recorded) recorder->flush();
+      result.summary["error_estimate"] = estimate(scene, run, team, manner.quiet);
+      estimated = !result.summary["error_estimate"].is_null();
+    }
     if (recorded) recorder->finish(status, json_text(result.summary));
     result.recorded = recorded;
     result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
     if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);
+    if (!estimated) {
+      result.exit_code = k_interrupted;
+      result.trouble = "interrupted while the error was estimated; the run itself is complete";
+    }
     if (status == "interrupted")
       result.trouble = is_static(scene.setup)
                            ? fmt::format("interrupted at load factor {:.6g}", run.state().load_factor)
@@ -129,9 +156,11 @@ int run_command(const RunOptions& options) {
   if (scene.setup.run.analysis == Analysis::modes) {
     if (!options.recording.empty()) throw BadInput("--output: modes are not recorded; --json writes them");
     if (options.profile) throw BadInput("--profile: modes take no steps of time");
+    if (options.estimate) throw BadInput("--estimate: modes take no steps of time");
     return modes_command({.scene = options.scene, .overrides = options.overrides, .json = options.json});
   }
   if (options.profile && is_static(scene.setup)) throw BadInput("--profile: statics take no steps of time");
+  if (options.estimate && is_static(scene.setup)) throw BadInput("--estimate: statics take no steps of time");
   const bool json_to_output = options.json == "-";
   defer_interrupts();
   if (!options.recording.empty()) require_writable_file("--output", options.recording, options.scene);
@@ -140,8 +169,11 @@ int run_command(const RunOptions& options) {
     if (same_file(options.json, options.recording))
       throw BadInput("--json: " + options.json + " is the recording; choose another name");
   }
-  const RecordedRun result = record(
-      scene, options.recording, {.quiet = options.quiet, .profile = options.profile, .jobs = options.jobs});
+  const RecordedRun result = record(scene, options.recording,
+                                    {.quiet = options.quiet,
+                                     .profile = options.profile,
+                                     .jobs = options.jobs,
+                                     .estimate = options.estimate});
   if (!result.trouble.empty())
     say(result.trouble +
         (result.recorded

@@ -165,6 +165,27 @@ std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
 
+/// The line about `error_estimate`.
+std::string estimate_in_words(const ordered_json& e) {
+  const std::string begin = fmt::format("error ({}): ", e["how"].get<std::string>());
+  if (e.contains("failed"))
+    return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
+  if (!e["disagreements"].empty()) {
+    std::string words;
+    for (const auto& line : e["disagreements"])
+      words += (words.empty() ? "" : "; ") + line.get<std::string>();
+    return begin + "the verdict itself is open: " + words + "\n";
+  }
+  const auto part = [&](const char* name, const char* key, double scale, const char* unit) {
+    return e[key].is_null() ? "" : fmt::format("{} {:.2g} {}, ", name, scale * e[key].get<double>(), unit);
+  };
+  std::string words =
+      part("overturning", "overturn_time_s", 1, "s") + part("peak tilt", "peak_tilt_deg", 1, "deg") +
+      part("slide", "peak_slide_m", 1e3, "mm") + part("peak stress", "peak_stress_Pa", 1e-6, "MPa");
+  words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
+  return begin + words + "\n";
+}
+
 std::string static_head(const ordered_json& s) {
   std::string out = fmt::format(
       "{}: {} in {:.2f} s of wall time\nstatic: {} load steps, {} halved, {} iterations\n",
@@ -259,6 +280,60 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   return out;
 }
 
+std::string refinement_in_words(const Setup& setup) {
+  return setup.parameters.adaptive ? fmt::format("tolerance divided by {:g}", study::k_finer_tolerance)
+                                   : "step halved";
+}
+
+ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcome& finer) {
+  struct Quantity {
+    const char* key;
+    std::optional<double> study::BodyError::*error;
+    double unit;
+  };
+  static constexpr Quantity k_quantities[] = {
+      {"overturn_time_s", &study::BodyError::overturn_error, 1},
+      {"peak_tilt_deg", &study::BodyError::peak_tilt_error, 1 / k_degrees},
+      {"peak_slide_m", &study::BodyError::peak_slide_error, 1},
+      {"peak_stress_Pa", &study::BodyError::peak_stress_error, 1}};
+  const std::vector<study::BodyError> errors = study::errors(setup.model, run, finer);
+  ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array();
+  for (std::size_t b = 0; b < errors.size(); ++b) {
+    const study::BodyError& e = errors[b];
+    ordered_json body{{"name", setup.model.bodies[b].name}, {"same_verdict", e.same_verdict()}};
+    for (const Quantity& q : k_quantities) {
+      const std::optional<double>& error = e.*q.error;
+      body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);
+    }
+    bodies.push_back(std::move(body));
+    if (!e.same_verdict())
+      disagreements.push_back(fmt::format(
+          "{} {}, but {} when refined", setup.model.bodies[b].name,
+          e.overturned ? fmt::format("overturns at {:.4f} s", *e.overturn_time) : "does not overturn",
+          e.overturned ? "not" : fmt::format("at {:.4f} s", *e.overturn_refined)));
+  }
+  ordered_json out;
+  for (const Quantity& q : k_quantities) {
+    std::optional<double> greatest;
+    for (const study::BodyError& e : errors)
+      if (const std::optional<double>& error = e.*q.error)
+        greatest = std::max(greatest.value_or(0), *error / q.unit);
+    out[q.key] = disagreements.empty() ? number(greatest) : ordered_json(nullptr);
+  }
+  out["how"] = refinement_in_words(setup);
+  out["error_of_difference"] = study::k_error_of_difference;
+  out["disagreements"] = std::move(disagreements);
+  out["bodies"] = std::move(bodies);
+  return out;
+}
+
+ordered_json failed_estimate(const Setup& setup, const std::string& message) {
+  return {{"overturn_time_s", nullptr},
+          {"peak_tilt_deg", nullptr},
+          {"how", refinement_in_words(setup)},
+          {"failed", message}};
+}
+
 std::string json_text(const ordered_json& value, int indent) {
   return value.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -294,6 +369,8 @@ std::string summary_table(const ordered_json& s) {
       out += fmt::format("{}: {} from {} s ({})\n", b["name"].get<std::string>(),
                          change["model"].get<std::string>(), text(change["time_s"], "{:.3f}"),
                          change["reason"].get<std::string>());
+  if (s.contains("error_estimate") && !s["error_estimate"].is_null())
+    out += estimate_in_words(s["error_estimate"]);
   for (const auto& p : s["probes"]) {
     const auto& d = p["final"]["displacement_m"];
     out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),

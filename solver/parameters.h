@@ -80,6 +80,9 @@ struct Parameters {
   double time_step = 1e-3;          ///< s, fixed step
   bool adaptive = false;            ///< the step follows `tolerance` instead (step_control.h)
   double tolerance = 1e-3;          ///< of the adaptive step
+  /// Bodies that are no frames swing in parts of a step (reduced_body.h) this many times shorter than is
+  /// stable.
+  double finer_parts = 1;
 };
 
 }  // namespace topple

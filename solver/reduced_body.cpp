@@ -312,17 +312,19 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
 }
 
 // The longest part of a step of size h that is stable: on what touches, and on what will.
-double ReducedBody::stable_size(const ContactLaw& law, double h, const BodyState& s,
-                                std::span<const Vec3> stick) {
-  const double now = stable_part(law, s), size = now < h ? h / std::ceil(h / now - 1e-9) : h;
-  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * contacts_.stiffest()) < k_stable_turn)
+double ReducedBody::stable_size(const Parameters& parameters, const ContactLaw& law, double h,
+                                const BodyState& s, std::span<const Vec3> stick) {
+  const double now = stable_part(law, s) / parameters.finer_parts,
+               size = now < h ? h / std::ceil(h / now - 1e-9) : h;
+  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * contacts_.stiffest()) <
+      k_stable_turn / parameters.finer_parts)
     return size;
   BodyState ahead = s;
   ahead.velocity += size / 2 / mass_ * s.force;
   drift(size, ahead);
   contacts_.begin_part();
   contacts_.find(ahead, rotation_matrix(packed(ahead.rotation)), stick);
-  const double then = stable_part(law, s);
+  const double then = stable_part(law, s) / parameters.finer_parts;
   contacts_.give_up_part();
   return then < size ? h / std::ceil(h / then - 1e-9) : size;
 }
@@ -331,7 +333,7 @@ bool ReducedBody::advance(const Parameters& parameters, const Instant& start, co
                           BodyState& s, std::span<Vec3> stick, StepEnergy& booked, BodyEnergy& held,
                           ReducedScratch& w) {
   const bool touches = contacts_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
-  double size = !touches && s.rung == Rung::rigid ? h : stable_size(start.law, h, s, stick);
+  double size = !touches && s.rung == Rung::rigid ? h : stable_size(parameters, start.law, h, s, stick);
   if (s.rung == Rung::rigid && touches && (parameters.adaptive || size < h)) {
     if (!advance_stiffly(parameters, start, end, h, s, stick, booked)) return false;
     held = energy(end.law, s);
@@ -350,7 +352,7 @@ bool ReducedBody::advance(const Parameters& parameters, const Instant& start, co
       most = size / 2;
       if (most < k_least_part * h) return false;
     }
-    size = std::min(stable_size(from.law, left, s, stick), most);
+    size = std::min(stable_size(parameters, from.law, left, s, stick), most);
   }
   held = energy(end.law, s);
   return true;

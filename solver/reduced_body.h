@@ -107,7 +107,8 @@ class ReducedBody {
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const ContactLaw& law, const BodyState& s);
-  double stable_size(const ContactLaw& law, double h, const BodyState& s, std::span<const Vec3> stick);
+  double stable_size(const Parameters& parameters, const ContactLaw& law, double h, const BodyState& s,
+                     std::span<const Vec3> stick);
 
   bool advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                        BodyState& s, std::span<Vec3> stick, StepEnergy& energy);

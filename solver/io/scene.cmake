@@ -27,6 +27,7 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_difference.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_entry.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_file.cpp

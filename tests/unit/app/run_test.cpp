@@ -136,6 +136,43 @@ TEST_F(RunTest, the_table_tells_what_the_summary_tells) {
   EXPECT_TRUE(ended.out.ends_with("recording: a.h5\n")) << ended.out;
 }
 
+TEST_F(RunTest, an_estimate_of_the_error_stands_in_summary_table_and_recording) {
+  const Ended ended = topple({"run", "s.toml", "--estimate", "-o", "a.h5", "--json", "a.json"});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.err, "");
+  EXPECT_NE(ended.out.find("\nerror (step halved): peak tilt "), std::string::npos) << ended.out;
+  const Json s = json_of(bytes_of("a.json")), &e = s["error_estimate"];
+  ASSERT_TRUE(e.is_object());
+  EXPECT_EQ(e["how"], "step halved");
+  EXPECT_TRUE(e["overturn_time_s"].is_null());  // nothing falls
+  EXPECT_GT(e["peak_tilt_deg"], 0);
+  EXPECT_LT(e["peak_tilt_deg"], s["bodies"][0]["peak_tilt_deg"]);
+  EXPECT_TRUE(e["disagreements"].empty());
+  EXPECT_EQ(e["bodies"][0]["name"], "free");
+  EXPECT_EQ(s, info("a.h5")["summary"]);
+
+  const Json plain = json_of(topple({"run", "s.toml", "--json", "-"}).out);
+  EXPECT_FALSE(plain.contains("error_estimate"));
+  EXPECT_EQ(plain["bodies"], s["bodies"]);  // the run itself is the same
+  const Json halved = json_of(topple({"run", "s.toml", "--set", "run.time_step=0.5 ms", "--json", "-"}).out);
+  EXPECT_NEAR(e["peak_tilt_deg"].get<double>(),
+              2 * std::abs(s["bodies"][0]["peak_tilt_deg"].get<double>() -
+                           halved["bodies"][0]["peak_tilt_deg"].get<double>()),
+              1e-3 * s["bodies"][0]["peak_tilt_deg"].get<double>());
+}
+
+TEST_F(RunTest, the_error_of_an_adaptive_run_is_that_of_its_tolerance) {
+  const Ended ended = topple({"run", "s.toml", "--estimate", "--set", "run.time_step=auto"});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_NE(ended.out.find("\nerror (tolerance divided by 10): peak tilt "), std::string::npos) << ended.out;
+}
+
+TEST_F(RunTest, what_takes_no_steps_of_time_has_no_error_of_them) {
+  expect_one_line({"run", "portal-pushover", "--estimate"}, 2, "--estimate: statics take no steps of time");
+  expect_one_line({"run", "verify/beams-frequencies", "--estimate"}, 2,
+                  "--estimate: modes take no steps of time");
+}
+
 TEST_F(RunTest, progress_is_drawn_on_a_terminal_only_and_not_when_quiet) {
   const std::vector<std::string> call{"run",   "s.toml",
                                       "--set", "run.duration=0.5",

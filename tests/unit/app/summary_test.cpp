@@ -56,6 +56,29 @@ TEST_F(SummaryTest, what_does_not_exist_is_null) {
   EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
 }
 
+TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
+  io::Scene strong =
+      io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});
+  strong.setup.run.duration = 2;
+  topple::Run falls(strong.setup);
+  while (!falls.over()) ASSERT_TRUE(falls.advance().ok());
+  ASSERT_TRUE(falls.outcome().bodies()[0].beyond_since);
+  Json s = summary(scene_, run_, "completed", 0.5);
+  s["error_estimate"] = error_estimate(scene_.setup, run_.outcome(), falls.outcome());
+  const Json& e = s["error_estimate"];
+  for (const char* key : {"overturn_time_s", "peak_tilt_deg", "peak_slide_m", "peak_stress_Pa"})
+    EXPECT_TRUE(e[key].is_null() && e["bodies"][0][key].is_null()) << key;
+  ASSERT_EQ(e["disagreements"].size(), 1u);
+  const std::string words = e["disagreements"][0];
+  EXPECT_TRUE(words.starts_with("free does not overturn, but at ")) << words;
+  EXPECT_NE(summary_table(s).find("error (step halved): the verdict itself is open: " + words + "\n"),
+            std::string::npos);
+  EXPECT_EQ(error_estimate(scene_.setup, falls.outcome(), run_.outcome())["disagreements"][0]
+                .get<std::string>()
+                .find("free overturns at "),
+            0u);
+}
+
 TEST_F(SummaryTest, bodies_that_may_meet_have_a_speed_up_to_which_no_step_is_cut) {
   EXPECT_TRUE(summary(scene_, run_, "completed", 1)["safe_closing_speed_m_s"].is_null());
   const io::Scene two = io::load_scene("paper-a");

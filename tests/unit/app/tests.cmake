@@ -4,12 +4,14 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/bad_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bridge_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/compare_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/report_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp

@@ -1,7 +1,11 @@
 add_executable(study_test
+  ${CMAKE_CURRENT_LIST_DIR}/anchors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/intensity_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/refinement_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/spread_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/standing_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/team_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/theory_test.cpp)

@@ -1,0 +1,52 @@
+#include "solver/io/scene_difference.h"
+
+#include <gtest/gtest.h>
+
+namespace topple::io {
+namespace {
+
+std::vector<SceneDifference> changed(const std::vector<std::string>& overrides) {
+  return differences(load_scene("paper-a"), load_scene("paper-a", overrides));
+}
+
+TEST(SceneDifference, a_scene_is_like_itself) {
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    const Scene loaded = load_scene(std::string(scene.name));
+    EXPECT_TRUE(differences(loaded, loaded).empty()) << scene.name;
+  }
+}
+
+TEST(SceneDifference, values_are_compared_and_not_how_they_are_written) {
+  EXPECT_TRUE(changed({"shake.table.amplitude=1.9 m/s^2"}).empty());
+  EXPECT_TRUE(changed({"cabinet.free.size=[0.38, 0.88, 1.79]"}).empty());
+  EXPECT_TRUE(changed({"cabinet.free.yaw=0 deg"}).empty());                  // the default
+  EXPECT_TRUE(changed({"run.stop_when=never", "run.settle=true"}).empty());  // likewise
+}
+
+TEST(SceneDifference, both_values_are_told_in_the_unit_of_the_key) {
+  const auto found = changed({"contact.alpha=1000 N", "run.time_step=auto", "cabinet.walled.yaw=6 deg"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].key, "run.time_step");
+  EXPECT_EQ(*found[0].b, "auto");
+  EXPECT_EQ(found[1].key, "contact.alpha");
+  EXPECT_EQ(*found[1].a, "50 kgf");
+  EXPECT_EQ(*found[1].b, "101.972 kgf");
+  EXPECT_EQ(found[2].key, "cabinet.walled.yaw");
+  EXPECT_EQ(*found[2].a, "0 deg");
+  EXPECT_EQ(*found[2].b, "6 deg");
+}
+
+TEST(SceneDifference, an_entry_that_one_has_alone_is_one_line) {
+  const Scene a = load_scene("paper-a");
+  const Scene b = load_scene("paper-b");
+  int entries = 0;
+  for (const SceneDifference& d : differences(a, b)) {
+    if (d.key == "cabinet.free" && d.a == "present" && !d.b) ++entries;
+    if (d.key == "cabinet.lying" && !d.a && d.b == "present") ++entries;
+    EXPECT_FALSE(d.key.starts_with("cabinet.free.")) << d.key;
+  }
+  EXPECT_EQ(entries, 2);
+}
+
+}  // namespace
+}  // namespace topple::io
