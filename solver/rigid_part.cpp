@@ -55,7 +55,12 @@ ContactLoads ReducedBody::reach_stage(const StiffPart& part, const PreparedLaw& 
   r = rotation_matrix(q);
   contacts_.find(at, r, part.stick);
   contacts_.follow(part.start, part.r0, at, r);
-  return with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+  ContactLoads loads =
+      with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+  anchors_.find(at);
+  loads.force = loads.force + packed(anchors_.force());
+  loads.moment = loads.moment + packed(anchors_.moment());
+  return loads;
 }
 
 // Newton for the velocity of a stage:  M u = momentum of `from` + lever (field + contacts).
@@ -69,7 +74,11 @@ bool ReducedBody::solve_stage(StiffPart& part, const Instant& now, const PackVec
     const auto spin = [&] { return r * (inertia_ * transposed_times(r, u.angular)); };
     PackVec3 x = mass_ * u.linear - from.momentum - part.lever * (loads.force + mass_ * field),
              y = spin() - from.spin - part.lever * loads.moment;
-    if (part.fresh) part.solver = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.slope());
+    if (part.fresh) {
+      ContactSlope slope = contacts_.slope();
+      anchors_.add_slope(at, part.lever, slope);
+      part.solver = RigidSolver(mass_, inertia_at(r), part.lever, slope);
+    }
     part.solver.solve(x, y);
     u.linear = u.linear - x;
     u.angular = u.angular - y;
@@ -167,8 +176,10 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
 
 // A first guess at a part that follows a touch.
 double ReducedBody::first_part(const ContactLaw& law) const {
-  return k_resolved *
-         std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
+  const double contact = std::sqrt(contacts_.share_of_mass() * contacts_.least_length() /
+                                   (law.alpha * std::max(1., law.q)));
+  return k_resolved * (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness()))
+                                      : contact);
 }
 
 double ReducedBody::next_landing(const BodyState& s, double within) const {
