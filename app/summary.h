@@ -16,6 +16,9 @@ nlohmann::ordered_json modes_summary(const io::Scene& scene, int count);
 /// `status`: completed, stopped, diverged or interrupted.
 nlohmann::ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s);
 
+/// Name, body, type and strength of an anchor.
+nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor);
+
 /// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 

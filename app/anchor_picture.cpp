@@ -1,0 +1,144 @@
+#include "app/anchor_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topple::app {
+namespace {
+
+constexpr render::Float4 k_colour = {0.80f, 0.09f, 0.13f, 1};
+constexpr render::Float4 k_idle_colour = {0.87f, 0.48f, 0.46f, 1};    // slack
+constexpr render::Float4 k_broken_colour = {0.22f, 0.20f, 0.22f, 1};  // or away
+constexpr double k_band = 0.032, k_band_thickness = 0.006, k_rod = 0.013, k_plate = 0.032,
+                 k_thimble = 0.022;      // m, width and radii
+constexpr double k_plate_depth = 0.012;  // m
+constexpr double k_stump = 0.35;         // of the natural length
+constexpr double k_least_sag = 0.1;      // of the span: seen as slack
+constexpr double k_most_sag = 0.6;
+constexpr int k_stations = 13;
+
+enum Shape { band, rod, plate, thimble, k_shapes };
+
+render::Profile round(double radius) {
+  constexpr int k_sides = 20;
+  render::Profile out;
+  out.smooth = true;
+  for (int i = 0; i < k_sides; ++i) {
+    const double angle = 2 * k_pi * i / k_sides;
+    out.outline.push_back(
+        {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle))});
+  }
+  return out;
+}
+
+render::Profile rectangle(double y, double z) {
+  const auto a = static_cast<float>(y / 2), b = static_cast<float>(z / 2);
+  return {{{-a, -b}, {a, -b}, {a, b}, {-a, b}}, false};
+}
+
+/// Local x along `direction`, y level.
+Quat along(const Vec3& direction) {
+  const Vec3 x = direction.normalized();
+  Vec3 y = Vec3::UnitZ().cross(x);
+  if (y.norm() < 1e-3) y = Vec3::UnitY();
+  y = (y - x * x.dot(y)).normalized();
+  Mat3 axes;
+  axes << x, y, x.cross(y);
+  return Quat(axes);
+}
+
+class Painter {
+ public:
+  Painter(render::SceneFrame& out, std::uint32_t member, std::uint32_t body, std::uint32_t first_profile)
+      : out_(out), member_(member), body_(body), first_profile_(first_profile) {}
+
+  /// A tube through `points`.
+  void draw(Shape shape, const render::Float4& colour, const std::vector<Vec3>& points) {
+    render::Tube tube;
+    tube.first_station = static_cast<std::uint32_t>(out_.stations.size());
+    tube.station_count = static_cast<std::uint32_t>(points.size());
+    tube.profile = first_profile_ + static_cast<std::uint32_t>(shape);
+    tube.member = member_;
+    tube.body = body_;
+    tube.colour = colour;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 way = points[std::min(i + 1, points.size() - 1)] - points[i > 0 ? i - 1 : 0];
+      const Eigen::Vector3f x = points[i].cast<float>();
+      const Eigen::Quaternionf q = along(way).cast<float>();
+      out_.stations.push_back({{x.x(), x.y(), x.z()}, {q.w(), q.x(), q.y(), q.z()}, 0});
+    }
+    out_.tubes.push_back(tube);
+  }
+  void mark(Shape shape, const render::Float4& colour, const Vec3& at, const Vec3& direction) {
+    const Vec3 half = k_plate_depth / 2 * direction;
+    draw(shape, colour, {at - half, at + half});
+  }
+
+ private:
+  render::SceneFrame& out_;
+  const std::uint32_t member_, body_, first_profile_;
+};
+
+/// A parabola as long as the strap, hanging from its ends.
+std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
+  const Vec3 span = to - from;
+  const double chord = span.norm();
+  const double loose = std::max(length / chord - 1, 0.);
+  const double sag = chord * std::clamp(std::sqrt(3. / 8 * loose), k_least_sag, k_most_sag);
+  Vec3 down = -Vec3::UnitZ() + span * (span.z() / (chord * chord));
+  down = down.norm() > 0.05 ? down.normalized() : Vec3(Vec3::UnitX().cross(span).normalized());
+  std::vector<Vec3> points;
+  for (int i = 0; i < k_stations; ++i) {
+    const double t = static_cast<double>(i) / (k_stations - 1);
+    points.emplace_back(from + t * span + 4 * t * (1 - t) * sag * down);
+  }
+  return points;
+}
+
+}  // namespace
+
+Vec3 attached_point(const Model& model, const io::FrameRow& row, const Vec3& shift, std::size_t k) {
+  const Anchor& anchor = model.anchors[k];
+  const float *x = &row.position[3 * anchor.node], *q = &row.rotation[4 * anchor.node];
+  return Vec3(x[0], x[1], x[2]) + shift + Quat(q[0], q[1], q[2], q[3]).normalized() * anchor.arm;
+}
+
+void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift, render::SceneFrame& out) {
+  if (model.anchors.empty()) return;
+  const auto first_profile = static_cast<std::uint32_t>(out.profiles.size());
+  for (const render::Profile& profile :
+       {rectangle(k_band, k_band_thickness), round(k_rod), round(k_plate), round(k_thimble)})
+    out.profiles.push_back(profile);
+  for (std::size_t k = 0; k < model.anchors.size(); ++k) {
+    const Anchor& anchor = model.anchors[k];
+    const float state = row.anchor[4 * k + 3];
+    const double length = row.anchor[4 * k + 2];
+    const Vec3 from = anchor.to + shift, to = attached_point(model, row, shift, k);
+    Vec3 direction = to - from;
+    if (!(direction.norm() > 1e-6)) continue;
+    direction.normalize();
+    Painter painter(out, static_cast<std::uint32_t>(model.members.size() + k),
+                    static_cast<std::uint32_t>(anchor.body), first_profile);
+    const bool strap = anchor.type == Anchor::Type::strap;
+    const Shape shape = strap ? band : rod;
+    const bool gone = state == io::k_anchor_away || state == io::k_anchor_broken;
+    painter.mark(plate, gone ? k_broken_colour : k_colour, from, direction);
+    if (state == io::k_anchor_away) continue;
+    painter.mark(thimble, gone ? k_broken_colour : k_colour, to, direction);
+    if (state == io::k_anchor_broken) {
+      // stumps of a strap hang down, those of a rod stay
+      const Vec3 fall = strap ? Vec3(0.35 * direction - 0.9 * Vec3::UnitZ()).normalized() : direction,
+                 back = strap ? Vec3(-0.35 * direction - 0.9 * Vec3::UnitZ()).normalized() : Vec3(-direction);
+      painter.draw(shape, k_broken_colour, {from, from + k_stump * length * fall});
+      painter.draw(shape, k_broken_colour, {to, to + k_stump * length * back});
+    } else if (state == io::k_anchor_holds) {
+      painter.draw(shape, k_colour, {from, to});
+    } else if (strap) {
+      painter.draw(shape, k_idle_colour, sagging(from, to, length));
+    } else {
+      painter.draw(shape, k_idle_colour, {from, from + length * direction});
+    }
+  }
+}
+
+}  // namespace topple::app
