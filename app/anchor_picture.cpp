@@ -7,14 +7,15 @@ namespace topple::app {
 namespace {
 
 constexpr render::Float4 k_colour = {0.80f, 0.09f, 0.13f, 1};
-constexpr render::Float4 k_idle_colour = {0.87f, 0.48f, 0.46f, 1};    // slack
-constexpr render::Float4 k_broken_colour = {0.22f, 0.20f, 0.22f, 1};  // or away
-constexpr double k_band = 0.032, k_band_thickness = 0.006, k_rod = 0.013, k_plate = 0.032,
-                 k_thimble = 0.022;      // m, width and radii
+constexpr render::Float4 k_idle_colour = {0.93f, 0.45f, 0.42f, 1};  // carries nothing
+constexpr double k_band = 0.04, k_band_thickness = 0.016, k_rod = 0.016, k_plate = 0.042,
+                 k_thimble = 0.032;      // m, width and radii
 constexpr double k_plate_depth = 0.012;  // m
-constexpr double k_stump = 0.35;         // of the natural length
-constexpr double k_least_sag = 0.1;      // of the span: seen as slack
+constexpr double k_stump = 0.4;          // of the natural length
+constexpr double k_least_stump = 0.08;   // m
+constexpr double k_least_sag = 0.15;     // of the span: seen as slack
 constexpr double k_most_sag = 0.6;
+constexpr double k_steep = 0.5;  // rise over span
 constexpr int k_stations = 13;
 
 enum Shape { band, rod, plate, thimble, k_shapes };
@@ -79,14 +80,17 @@ class Painter {
   const std::uint32_t member_, body_, first_profile_;
 };
 
-/// A parabola as long as the strap, hanging from its ends.
+/// A parabola as long as the strap between its ends: down, or sideways where it is steep and a wall behind it
+/// would hide that.
 std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
   const Vec3 span = to - from;
   const double chord = span.norm();
   const double loose = std::max(length / chord - 1, 0.);
   const double sag = chord * std::clamp(std::sqrt(3. / 8 * loose), k_least_sag, k_most_sag);
-  Vec3 down = -Vec3::UnitZ() + span * (span.z() / (chord * chord));
-  down = down.norm() > 0.05 ? down.normalized() : Vec3(Vec3::UnitX().cross(span).normalized());
+  Vec3 side = Vec3::UnitZ().cross(span);
+  if (!(side.norm() > 1e-3 * chord)) side = Vec3::UnitX();
+  const bool steep = std::abs(span.z()) > k_steep * chord;
+  const Vec3 down = (steep ? side : Vec3(-Vec3::UnitZ() + span * (span.z() / (chord * chord)))).normalized();
   std::vector<Vec3> points;
   for (int i = 0; i < k_stations; ++i) {
     const double t = static_cast<double>(i) / (k_stations - 1);
@@ -121,16 +125,17 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
                     static_cast<std::uint32_t>(anchor.body), first_profile);
     const bool strap = anchor.type == Anchor::Type::strap;
     const Shape shape = strap ? band : rod;
-    const bool gone = state == io::k_anchor_away || state == io::k_anchor_broken;
-    painter.mark(plate, gone ? k_broken_colour : k_colour, from, direction);
+    const render::Float4& colour = state == io::k_anchor_holds ? k_colour : k_idle_colour;
+    painter.mark(plate, colour, from, direction);
     if (state == io::k_anchor_away) continue;
-    painter.mark(thimble, gone ? k_broken_colour : k_colour, to, direction);
+    painter.mark(thimble, colour, to, direction);
     if (state == io::k_anchor_broken) {
+      const double stump = std::max(k_stump * length, k_least_stump);
       // stumps of a strap hang down, those of a rod stay
-      const Vec3 fall = strap ? Vec3(0.35 * direction - 0.9 * Vec3::UnitZ()).normalized() : direction,
-                 back = strap ? Vec3(-0.35 * direction - 0.9 * Vec3::UnitZ()).normalized() : Vec3(-direction);
-      painter.draw(shape, k_broken_colour, {from, from + k_stump * length * fall});
-      painter.draw(shape, k_broken_colour, {to, to + k_stump * length * back});
+      const Vec3 fall = strap ? Vec3(0.6 * direction - 0.8 * Vec3::UnitZ()).normalized() : direction,
+                 back = strap ? Vec3(-0.6 * direction - 0.8 * Vec3::UnitZ()).normalized() : Vec3(-direction);
+      painter.draw(shape, k_idle_colour, {from, from + stump * fall});
+      painter.draw(shape, k_idle_colour, {to, to + stump * back});
     } else if (state == io::k_anchor_holds) {
       painter.draw(shape, k_colour, {from, to});
     } else if (strap) {

@@ -6,6 +6,7 @@
 
 #include "app/anchor_picture.h"
 #include "app/panels.h"
+#include "app/words.h"
 
 namespace topple::app {
 namespace {
@@ -27,12 +28,10 @@ void draw_anchor(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
   const float* const values = &row.anchor[4 * k];
   const Vec3 span = attached_point(model, row, Vec3::Zero(), k) - anchor.to;
-  static const char* const k_types[] = {"strap", "bracket", "pole"};
   ImGui::Text("%s", fmt::format("{} of {}", anchor.name, model.bodies[anchor.body].name).c_str());
-  ImGui::TextDisabled("%s",
-                      fmt::format("{}, {:.4g} kN/m, {:.0f} mm long", k_types[static_cast<int>(anchor.type)],
-                                  anchor.stiffness / 1e3, 1e3 * values[2])
-                          .c_str());
+  ImGui::TextDisabled("%s", fmt::format("{}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
+                                        anchor.stiffness / 1e3, 1e3 * values[2])
+                                .c_str());
   if (!ImGui::BeginTable("anchor", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg)) return;
   const auto line = [](const char* name, const std::string& value) {
     cell(name);

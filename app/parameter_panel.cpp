@@ -159,7 +159,8 @@ void draw_anchor(Player& player, int index, std::string& refused) {
                                         io::edit_key({Edit::Key::anchor, index}),
                                         model.bodies[static_cast<std::size_t>(anchor.body)].name)
                                 .c_str());
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.4f * ImGui::GetFrameHeight());
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
+                  ImGui::GetStyle().ItemSpacing.x);
   ImGui::BeginDisabled(on == scene_value);
   if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post(scene_value);
   ImGui::EndDisabled();

@@ -221,10 +221,9 @@ std::string anchor_line(const ordered_json& a) {
 }  // namespace
 
 ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
-  static const char* const k_types[] = {"strap", "bracket", "pole"};
   return {{"name", anchor.name},
           {"body", model.bodies[static_cast<std::size_t>(anchor.body)].name},
-          {"type", k_types[static_cast<std::size_t>(anchor.type)]},
+          {"type", anchor_type(anchor)},
           {"strength_N", number(anchor.strength)}};
 }
 

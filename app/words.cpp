@@ -34,10 +34,15 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
   return line;
 }
 
+const char* anchor_type(const Anchor& anchor) {
+  static const char* const k_types[] = {"strap", "bracket", "pole"};
+  return k_types[static_cast<std::size_t>(anchor.type)];
+}
+
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
   const float* const values = &row.anchor[4 * k];
-  const std::string line = anchor.name + ": ";
+  const std::string line = fmt::format("{} {}: ", anchor_type(anchor), anchor.name);
   if (values[3] != io::k_anchor_holds)
     return line + (values[3] == io::k_anchor_away ? "taken away" : io::anchor_word(values[3]));
   const double force = std::abs(values[0]);

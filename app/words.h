@@ -10,7 +10,10 @@ namespace topple::app {
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
 
-/// "left: holds 430 N, 22 % of its strength".
+/// "strap", "bracket" or "pole".
+const char* anchor_type(const Anchor& anchor);
+
+/// "strap left: pulls 430 N, 22 % of its strength".
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t anchor);
 
 /// One line for each of a few anchors, else one that counts them.

@@ -268,7 +268,8 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
     const Anchor& anchor = model.anchors[k];
     AnchorOutcome& o = anchors_[k];
     AnchorState whole = state.anchors[k];
-    const bool breaks = whole.hold == AnchorHold::broken && o.hold != AnchorHold::broken;
+    const bool first = !o.hold && state.step > 0;  // goes on from a checkpoint
+    const bool breaks = whole.hold == AnchorHold::broken && o.hold != AnchorHold::broken && !first;
     if (breaks) whole.hold = AnchorHold::in_place;  // as it was when it broke
     const double tension = anchor_force(anchor, whole, anchor_point(model, state, k).at).tension;
     o.hold = state.anchors[k].hold;

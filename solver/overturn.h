@@ -96,10 +96,10 @@ struct BodyOutcome {
 
 /// What happened to one anchor so far.
 struct AnchorOutcome {
-  double tension = 0;           ///< N, at this observation; negative: pushes
-  double peak_force = 0;        ///< N, of |tension|, that at which it broke included
-  std::optional<double> broke;  ///< s, when it broke last
-  AnchorHold hold = AnchorHold::in_place;
+  double tension = 0;              ///< N, at this observation; negative: pushes
+  double peak_force = 0;           ///< N, of |tension|, that at which it broke included
+  std::optional<double> broke;     ///< s, when it broke last
+  std::optional<AnchorHold> hold;  ///< at this observation
 };
 
 /// Follows a run step by step.

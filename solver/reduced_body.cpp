@@ -292,10 +292,12 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
     u.linear = mul_add(h / 2 / mass_, packed(before.force), u.linear);
     u.angular = u.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(before.moment)));
     if (bends) u.rate += h / 2 * kick_ * before.load;
-    BodyVelocity free{mul_add(h / 2, packed(Vec3(field + pull / mass_)), drifted.linear),
-                      drifted.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist))),
-                      drifted.rate};
-    if (bends) free.rate += h / 2 * kick_ * pressed;
+    BodyVelocity free{mul_add(h / 2, packed(field), drifted.linear), drifted.angular, drifted.rate};
+    if (anchors_.any()) {
+      free.linear = mul_add(h / 2 / mass_, packed(pull), free.linear);
+      free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
+      if (bends) free.rate += h / 2 * kick_ * pressed;
+    }
     if (!solve_velocity(end.law, inertia_at(r), h, free, u, loads, s.load, modes(s), w)) {
       s = before;
       contacts_.give_up_part();

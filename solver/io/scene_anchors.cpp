@@ -1,5 +1,6 @@
 // Anchors of a scene.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "solver/io/scene_read.h"
@@ -9,7 +10,7 @@
 namespace topple::io {
 namespace {
 
-// Of the body's reach, from the nearest member: what a bracket or a sheet between members may bridge.
+// Of the body's reach, from the nearest member: what a fitting may bridge.
 constexpr double k_nowhere = 0.1;
 
 std::string millimetres(double metres) {
@@ -32,6 +33,23 @@ NearestMember nearest_member(const Model& model, const Body& body, const State& 
     nearest = {element.member, distance};
   }
   return nearest;
+}
+
+/// Whether a point lies within `margin`, m, of a triangle's plane and over the triangle.
+bool lies_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point, double margin) {
+  const Vec3 normal = (b - a).cross(c - a), p = point - a;
+  const double area2 = normal.squaredNorm();
+  if (!(area2 > 0) || std::abs(p.dot(normal)) > margin * std::sqrt(area2)) return false;
+  const double u = p.cross(c - a).dot(normal) / area2, v = (b - a).cross(p).dot(normal) / area2;
+  return u >= 0 && v >= 0 && u + v <= 1;
+}
+
+/// A sheet of a cabinet carries what is screwed to it.
+bool lies_on_panel(const Body& body, const State& start, const Vec3& point, double margin) {
+  return std::any_of(body.panels.begin(), body.panels.end(), [&](const std::array<int, 4>& corners) {
+    const auto x = [&](int k) -> const Vec3& { return start.position[static_cast<std::size_t>(corners[k])]; };
+    return lies_on(x(0), x(1), x(2), point, margin) || lies_on(x(0), x(2), x(3), point, margin);
+  });
 }
 
 // What pulls may not lead through the face of a floor or wall. `width`: contact width of the member there.
@@ -73,9 +91,9 @@ void read_anchors(const Entry& root, Setup& setup) {
 
     const auto [member, distance] = nearest_member(model, body, start, point);
     const double width = model.sections[model.members[member].section].width;
-    if (distance > std::max(k_nowhere * body.reach, width))
-      entry.fail("point", "an anchor to nowhere: no member of \"" + body.name + "\" is nearer than " +
-                              millimetres(distance) + ", that of \"" + model.members[member].name + "\"");
+    if (distance > std::max(k_nowhere * body.reach, width) && !lies_on_panel(body, start, point, width))
+      entry.fail("point", "an anchor to nowhere: the nearest member of \"" + body.name + "\", \"" +
+                              model.members[member].name + "\", is " + millimetres(distance) + " away");
     if (!(anchor.length > 1e-6)) entry.fail("to", "is where `point` is: the anchor has no length");
     check_faces(root, entry, anchor, point, width);
 
