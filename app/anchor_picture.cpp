@@ -13,7 +13,8 @@ constexpr double k_band = 0.04, k_band_thickness = 0.016, k_rod = 0.016, k_plate
 constexpr double k_plate_depth = 0.012;  // m
 constexpr double k_stump = 0.4;          // of the natural length
 constexpr double k_least_stump = 0.08;   // m
-constexpr double k_least_sag = 0.15;     // of the span: seen as slack
+constexpr double k_least_sag = 0.15;     // of the span, and
+constexpr double k_seen_sag = 0.1;       // m: the lesser of the two is seen as slack
 constexpr double k_most_sag = 0.6;
 constexpr double k_steep = 0.5;  // rise over span
 constexpr int k_stations = 13;
@@ -86,7 +87,8 @@ std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
   const Vec3 span = to - from;
   const double chord = span.norm();
   const double loose = std::max(length / chord - 1, 0.);
-  const double sag = chord * std::clamp(std::sqrt(3. / 8 * loose), k_least_sag, k_most_sag);
+  const double sag =
+      chord * std::clamp(std::sqrt(3. / 8 * loose), std::min(k_least_sag, k_seen_sag / chord), k_most_sag);
   Vec3 side = Vec3::UnitZ().cross(span);
   if (!(side.norm() > 1e-3 * chord)) side = Vec3::UnitX();
   const bool steep = std::abs(span.z()) > k_steep * chord;

@@ -253,9 +253,13 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
       now.law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
   s.load.setZero();
   contacts_.press_modes(modes(s), s.load);
-  anchors_.press_modes(s, modes(s), s.load);
-  s.force = mass_ * (parameters.gravity - now.floor) + unpacked(loads.force) + anchors_.force();
-  s.moment = unpacked(loads.moment) + anchors_.moment();
+  s.force = mass_ * (parameters.gravity - now.floor) + unpacked(loads.force);
+  s.moment = unpacked(loads.moment);
+  if (anchors_.any()) {
+    anchors_.press_modes(s, modes(s), s.load);
+    s.force += anchors_.force();
+    s.moment += anchors_.moment();
+  }
   return held;
 }
 
@@ -281,6 +285,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   contacts_.find(s, r, stick);
   contacts_.follow(before, r0, s, r);
   anchors_.find(s);
+  const bool tied = anchors_.any();
   const Vec3 pull = anchors_.force(), twist = anchors_.moment();
   Amplitudes pressed = Amplitudes::Zero();
   anchors_.press_modes(s, modes(s), pressed);
@@ -293,7 +298,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
     u.angular = u.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(before.moment)));
     if (bends) u.rate += h / 2 * kick_ * before.load;
     BodyVelocity free{mul_add(h / 2, packed(field), drifted.linear), drifted.angular, drifted.rate};
-    if (anchors_.any()) {
+    if (tied) {
       free.linear = mul_add(h / 2 / mass_, packed(pull), free.linear);
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) free.rate += h / 2 * kick_ * pressed;
@@ -304,9 +309,13 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       return false;
     }
   }
-  s.force = mass_ * field + unpacked(loads.force) + pull;
-  s.moment = unpacked(loads.moment) + twist;
-  s.load += pressed;
+  s.force = mass_ * field + unpacked(loads.force);
+  s.moment = unpacked(loads.moment);
+  if (tied) {
+    s.force += pull;
+    s.moment += twist;
+    s.load += pressed;
+  }
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
   if (bends) s.rate += h / 2 * kick_ * s.load;

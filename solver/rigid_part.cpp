@@ -57,6 +57,7 @@ ContactLoads ReducedBody::reach_stage(const StiffPart& part, const PreparedLaw& 
   contacts_.follow(part.start, part.r0, at, r);
   ContactLoads loads =
       with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+  if (!anchors_.any()) return loads;
   anchors_.find(at);
   loads.force = loads.force + packed(anchors_.force());
   loads.moment = loads.moment + packed(anchors_.moment());
@@ -176,10 +177,10 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
 
 // A first guess at a part that follows a touch.
 double ReducedBody::first_part(const ContactLaw& law) const {
-  const double contact = std::sqrt(contacts_.share_of_mass() * contacts_.least_length() /
-                                   (law.alpha * std::max(1., law.q)));
-  return k_resolved * (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness()))
-                                      : contact);
+  const double contact =
+      std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
+  return k_resolved *
+         (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness())) : contact);
 }
 
 double ReducedBody::next_landing(const BodyState& s, double within) const {
