@@ -181,11 +181,12 @@ template <class P>
                                                             const PackSection<P>& section) {
   const PackVector<P> p = cross(section.normal, s.d);
   const PackVector<P> p1 = cross(s.psi, p), p2 = cross(s.psi, p1);
-  const PackVector<P> v = beam.t * (p + s.angle.left1 * p1 + s.angle.left2 * p2) + section.moment;
+  const PackVector<P> v =
+      mul_add(beam.t, mul_add(s.angle.left2, p2, mul_add(s.angle.left1, p1, p)), section.moment);
   const PackVector<P> v1 = cross(s.psi, v), v2 = cross(s.psi, v1);
   PackGradient<P> g;
   g.force2 = s.rs * section.normal;
-  g.moment2 = rotate(s.e1, v + P(0.5) * v1 + s.angle.g * v2);
+  g.moment2 = rotate(s.e1, mul_add(s.angle.g, v2, mul_add(P(0.5), v1, v)));
   g.moment1 = s.rs * p - g.moment2;
   return g;
 }

@@ -78,9 +78,8 @@ void BodyAnchors::press_modes(const BodyState& s, int modes, Amplitudes& load) c
 
 void BodyAnchors::add_slope(const BodyState& s, double lever, ContactSlope& slope) const {
   for (const Tie& tie : ties_) {
-    const Mat6 by_place =
-        lever * anchor_slope(anchor_tangent(anchor(tie), tie.state, s.position + tie.arm), tie.arm,
-                             tie.now.force);
+    const Mat6 by_place = lever * anchor_slope(anchor_tangent(anchor(tie), tie.state, s.position + tie.arm),
+                                               tie.arm, tie.now.force);
     const auto block = [&](int row, int column) { return packed(Mat3(by_place.block<3, 3>(row, column))); };
     slope.force_linear = slope.force_linear + block(0, 0);
     slope.force_angular = slope.force_angular + block(0, 3);

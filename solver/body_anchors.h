@@ -14,8 +14,8 @@ namespace topple {
 class BodyAnchors {
  public:
   struct Tie {
-    int index;  ///< into Model::anchors
-    int node;   ///< within the body
+    int index;                ///< into Model::anchors
+    int node;                 ///< within the body
     Vec3 place;               ///< m, of the attached point from the centre of gravity, reference axes
     std::vector<Vec3> shape;  ///< of the attached point, per mode, reference axes
     AnchorState state;

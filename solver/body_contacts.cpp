@@ -62,6 +62,7 @@ BodyContacts::BodyContacts(const Model& model, int body)
     Group& group = groups_[g];
     group.place = in_all_lanes(Vec3::Zero());
     group.shape.assign(modes, in_all_lanes(Vec3::Zero()));
+    group.give = in_all_lanes(packed(Mat3(Mat3::Zero())));
     for (int which = 0; which < 4 && g * 4 + which < order.size(); ++which) {
       const int p = order[g * 4 + which];
       const ContactPoint& point = model.contact_points[p];
@@ -75,6 +76,10 @@ BodyContacts::BodyContacts(const Model& model, int body)
         const Vec3 shape = b.elastic->shape.block<3, 1>(6 * (point.node - b.first_node), k);
         set_lane(group.shape[k], which, shape);
         inverse_mass += shape.squaredNorm();
+      }
+      if (b.elastic) {
+        const int node = point.node - b.first_node;
+        set_lane(group.give, which, Mat3(b.elastic->residual_shape.block<3, 3>(6 * node, 3 * node)));
       }
       for (std::size_t k = 0; k < model.planes.size(); ++k) {
         Side& side = sides_[k * groups_.size() + g];
@@ -112,11 +117,18 @@ double BodyContacts::clearance(const Vec3& n, double height) const {
           std::abs(n.z()) * box_half_.z());
 }
 
+// dP/d depth over alpha where a contact bears a quarter of the weight.
+double BodyContacts::slope_at_rest(const ContactLaw& law) const {
+  if (law.q == 1) return 1;
+  return law.q * std::pow(mass_ * k_standard_gravity / 4 / law.alpha, 1 - 1 / law.q);
+}
+
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
   now_.count = 0;
   shapes_.clear();
   modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
-  const double bend = modes_ > 0 ? k_bend * reach_ : 0;
+  gives_ = s.rung == Rung::elastic;
+  const double bend = gives_ ? k_bend * reach_ : 0;
   const std::size_t planes = model_.planes.size();
   for (std::size_t k = 0; k < planes; ++k) {
     const Plane& plane = model_.planes[k];
@@ -140,6 +152,11 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
       touch.arm = turn * at;
       touch.stick = gather(stick.data(), sides[g].spring);
       for (int j = 0; j < modes_; ++j) shapes_.push_back(turn * group.shape[j]);
+      if (gives_) {
+        touch.give = dot(normal, group.give * normal);
+        touch.give_across =
+            0.5 * (group.give.row[0].x + group.give.row[1].y + group.give.row[2].z - touch.give);
+      }
     }
   }
 }
@@ -173,10 +190,10 @@ template <bool with_slope>
   const double eps = law.normal_speed;
   const Four inverse = 1 / sqrt(mul_add(vn, vn, Four(eps * eps)));
   const Four factor = less_product(Four(1), law.loss * vn, inverse);
-  touch.conservative = choose(touch.touching, law.alpha * power(touch.depth, law.q), zero);
+  touch.conservative = choose(touch.touching, touch.alpha * power(touch.depth, law.q), zero);
   touch.normal = touch.conservative * factor;
 
-  const Four k = law.alpha * here.stick, c = law.root_alpha * here.damping;
+  const Four k = touch.stick_stiffness, c = law.root_alpha * here.damping;
   const Points stick = mul_add(-dot(n, touch.stick), n, touch.stick);
   const Points trial = mul_add(c, mul_add(-vn, n, v), k * stick);
   const Four limit = law.friction * touch.normal, size2 = dot(trial, trial);
@@ -195,7 +212,7 @@ template <bool with_slope>
   if constexpr (with_slope) {
     Four slope = -law.loss * eps * eps * touch.conservative * inverse * inverse * inverse, across = c;
     if (lever > 0) {
-      Four stiffness = law.alpha / here.L;
+      Four stiffness = touch.alpha / here.L;
       if (law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
       slope -= choose(touch.touching, lever * stiffness * factor, zero);
       across += lever * k;
@@ -244,7 +261,15 @@ ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, 
   Four damped = Four(0), rubbed = damped;
   const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
   const Points* shape = shapes_.data();
+  const double slope = gives_ ? law.alpha * slope_at_rest(law) : 0;
   for (Touch& touch : now_.list()) {
+    const Side& here = side(touch);
+    touch.alpha = Four(law.alpha);
+    touch.stick_stiffness = law.alpha * here.stick;
+    if (gives_) {
+      touch.alpha = touch.alpha / (1 + slope * touch.give / here.L);
+      touch.stick_stiffness = touch.stick_stiffness / (1 + touch.give_across * touch.stick_stiffness);
+    }
     Points v = linear + cross(angular, touch.arm);
     for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
     respond<with_slope>(law, v, lever, touch);
@@ -323,7 +348,7 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
 BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law, const Touch& touch) const {
   if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
   const Points n = normal(touch), stick = mul_add(-dot(n, touch.stick), n, touch.stick);
-  const Four limit = law.friction * touch.normal / (law.alpha * side(touch).stick);
+  const Four limit = law.friction * touch.normal / touch.stick_stiffness;
   const Four size2 = dot(stick, stick);
   const Four::Mask sticks = size2 <= limit * limit;
   if (bits(sticks | ~touch.touching) == k_all_lanes) return choose(touch.touching, Four(1), Four(0)) * stick;
@@ -354,7 +379,7 @@ double BodyContacts::energy(const ContactLaw& law) const {
   for (const Touch& touch : now_.list()) {
     held += touch.stick_energy;
     if (law.kind != ContactLawKind::printed)
-      held += law.alpha / (law.q + 1) * side(touch).L * touch.depth * power(touch.depth, law.q);
+      held += touch.alpha * (1 / (law.q + 1)) * side(touch).L * touch.depth * power(touch.depth, law.q);
   }
   return sum(held);
 }
@@ -378,10 +403,12 @@ void BodyContacts::book_law_change(const ContactLaw& before, const ContactLaw& a
   if (before.alpha == after.alpha && before.q == after.q) return;
   LawChange change(before, after, booked);
   each_of(start_, [&](const Touch& touch, int which, int, std::size_t) {
-    change.book_start(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
+    change.book_start(touch.depth[which], side(touch).L[which], touch.stick_energy[which],
+                      touch.alpha[which] / before.alpha);
   });
   each_of(now_, [&](const Touch& touch, int which, int, std::size_t) {
-    change.book_end(touch.depth[which], side(touch).L[which], touch.stick_energy[which]);
+    change.book_end(touch.depth[which], side(touch).L[which], touch.stick_energy[which],
+                    touch.alpha[which] / after.alpha);
   });
 }
 

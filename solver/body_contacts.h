@@ -1,5 +1,9 @@
 // Contacts of a rigid or slightly deformed body with planes, its points four by four. Vectors are in the
 // floor's axes where nothing else is said.
+//
+// What modes leave out of a body's deflection is local: each point of an elastic body stands on a spring of
+// its own, in series with its contact. That makes alpha softer; exactly for q = 1, else as at the depth that
+// bears a quarter of the weight.
 #pragma once
 
 #include <array>
@@ -58,6 +62,9 @@ class BodyContacts {
     Points travel;  // m, in the part of a step that led here
     Four conservative, normal;
     Points tangential, force;
+    Four give, give_across;  // m/N, what the body gives way where it is pushed, less what its modes do
+    Four alpha;              // N, of the spring with what gives way behind it
+    Four stick_stiffness;    // N/m, likewise
     Four stick_energy;
     PackMatrix<Four> slope;  // of the force by the velocity
   };
@@ -131,6 +138,7 @@ class BodyContacts {
     std::array<int, 4> point;   // index into the model
     int size = 0;               // of those that there are
     std::vector<Points> shape;  // per mode
+    PackMatrix<Four> give;      // m/N, as of a touch
   };
   // Of a group and a plane.
   struct Side {
@@ -154,6 +162,7 @@ class BodyContacts {
 
   const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
   Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
+  double slope_at_rest(const ContactLaw& law) const;
   double clearance(const Vec3& n, double height) const;
   Points place(const BodyState& s, const Group& group) const;
   template <bool with_slope>
@@ -172,6 +181,7 @@ class BodyContacts {
 
   const Model& model_;
   double mass_, reach_, contact_mass_;
+  bool gives_ = false;  // what find was given last is elastic
   double stiffest_ = 0, least_length_;
   std::vector<Group> groups_;
   std::vector<Side> sides_;     // per plane, then group

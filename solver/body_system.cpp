@@ -327,9 +327,9 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
   for (const OwnAnchor& own : anchors)
-    sum.anchor += anchor_force(model.anchors[own.index], own.state,
-                               motion.position[own.node] + own.arm(model, motion))
-                      .energy;
+    sum.anchor +=
+        anchor_force(model.anchors[own.index], own.state, motion.position[own.node] + own.arm(model, motion))
+            .energy;
   return sum;
 }
 
@@ -394,10 +394,10 @@ void BodySystem::store_stick(const Contacts& now, State& state) {
   for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
   if (near.empty()) return;
 
-  std::vector<MemberStick> sticks;
+  new_sticks_.clear();
   for (const MemberTouch& touch : now.members.touches)
-    sticks.push_back({near[touch.pair], touch.place, touch.out.stick});
-  replace_sticks(near, sticks, keeps_sticks_ ? own_sticks_ : state.member_sticks);
+    new_sticks_.push_back({near[touch.pair], touch.place, touch.out.stick});
+  replace_sticks(near, new_sticks_, keeps_sticks_ ? own_sticks_ : state.member_sticks);
 }
 
 int BodySystem::element_at(int global) const {

@@ -71,8 +71,8 @@ class BodySystem {
   BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> near);
 
   /// Applied minus internal force and moment (world axes) at time t: gravity, -m a(t), loads, beams,
-  /// anchors, contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills `force`,
-  /// `moment` and `contacts`.
+  /// anchors, contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills
+  /// `force`, `moment` and `contacts`.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
   /// Without contacts: fills `force` and `moment`.
@@ -157,8 +157,8 @@ class BodySystem {
   std::vector<ElementState> elements;  ///< per own element; elastic until loaded
   std::vector<OwnLoad> loads;
   std::vector<OwnAnchor> anchors;  ///< as they were loaded
-  bool yields;             ///< some element can
-  bool ends_here = false;  ///< the latest evaluation is that of the motion with which the step ends
+  bool yields;                     ///< some element can
+  bool ends_here = false;          ///< the latest evaluation is that of the motion with which the step ends
   /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
@@ -203,7 +203,7 @@ class BodySystem {
   std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `near`
-  std::vector<MemberStick> own_sticks_;
+  std::vector<MemberStick> own_sticks_, new_sticks_;
   bool keeps_sticks_ = false;
   BeamPacks beams_;
   std::vector<NodeForce> node_force_;  // applied less those of the beams

@@ -150,12 +150,12 @@ void half_step(const BodySystem& s, const State& state, double h, IntegratorScra
   const Four step(h), half(h / 2);
   for (const NodePack& pack : s.node_packs) {
     const PackVector<Four> v =
-        gather(w.start.velocity.data(), pack.node) + half * gather(w.acceleration.data(), pack.node);
-    const PackVector<Four> omega = gather(w.start.angular_velocity.data(), pack.node) +
-                                   half * gather(w.angular_acceleration.data(), pack.node);
+        mul_add(half, gather(w.acceleration.data(), pack.node), gather(w.start.velocity.data(), pack.node));
+    const PackVector<Four> omega = mul_add(half, gather(w.angular_acceleration.data(), pack.node),
+                                           gather(w.start.angular_velocity.data(), pack.node));
     scatter(v, w.trial.velocity.data(), pack.node);
     scatter(omega, w.trial.angular_velocity.data(), pack.node);
-    scatter(gather(w.start.position.data(), pack.node) + step * v, w.trial.position.data(), pack.node);
+    scatter(mul_add(step, v, gather(w.start.position.data(), pack.node)), w.trial.position.data(), pack.node);
     scatter(normalized(gather(w.start.rotation.data(), pack.node) * exponential(step * omega)),
             w.trial.rotation.data(), pack.node);
   }
@@ -170,13 +170,13 @@ bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, Sta
   for (const NodePack& pack : s.node_packs) {
     const PackQuaternion<Four> q = gather(trial.rotation.data(), pack.node);
     const PackVector<Four> acceleration = pack.inverse_mass * gather(s.force.data(), pack.node);
-    const PackVector<Four> velocity = gather(trial.velocity.data(), pack.node) + half * acceleration;
+    const PackVector<Four> velocity = mul_add(half, acceleration, gather(trial.velocity.data(), pack.node));
     const PackVector<Four> moment = rotate(conjugate(q), gather(s.moment.data(), pack.node));
     const PackVector<Four> middle = gather(trial.angular_velocity.data(), pack.node);
     PackVector<Four> omega = middle, angular{0, 0, 0};
     for (int pass = 0; pass < 3; ++pass) {  // the gyroscopic moment at the new velocity: a strong contraction
       angular = pack.inverse_inertia * (moment - cross(omega, pack.inertia * omega));
-      omega = middle + half * angular;
+      omega = mul_add(half, angular, middle);
     }
     scatter(velocity, trial.velocity.data(), pack.node);
     scatter(omega, trial.angular_velocity.data(), pack.node);

@@ -12,7 +12,18 @@ namespace topple {
 /// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, only `direction`
 /// uses all three. anchor: 1 puts it in place, 0 takes it away.
 struct Edit {
-  enum class Key { frequency, amplitude, direction, scale, alpha, q, friction, restitution, anchor, time_step };
+  enum class Key {
+    frequency,
+    amplitude,
+    direction,
+    scale,
+    alpha,
+    q,
+    friction,
+    restitution,
+    anchor,
+    time_step
+  };
   Key key;
   int shake = 0;  ///< of frequency, amplitude, direction and scale; of anchor: its index
   Vec3 value = Vec3::Zero();

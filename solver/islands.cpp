@@ -46,11 +46,11 @@ double greatest_travel(const Model& model, const State& from, const State& to) {
   return greatest;
 }
 
-void look_around(const Model& model, State& state, double travel) {
+void look_around(const Model& model, NearSearch& search, State& state, double travel) {
   if (model.bodies.size() < 2 || state.near_slack > 2 * travel) return;
   place_nodes(model, state);
   state.near_slack = std::max(k_margin, 4 * travel);
-  state.near = near_elements(model, state.position, state.near_slack);
+  state.near = search.find(state.position, state.near_slack);
 }
 
 Islands::Islands(const Model& model)

@@ -17,7 +17,7 @@ double likely_travel(const Model& model, const State& state, double h);
 double greatest_travel(const Model& model, const State& from, const State& to);
 
 /// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
-void look_around(const Model& model, State& state, double travel);
+void look_around(const Model& model, NearSearch& search, State& state, double travel);
 
 /// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
 /// whose nodes are all held, and those on other rungs, are in none.

@@ -96,13 +96,13 @@ struct Anchor {
   enum class Type { strap, bracket, pole };
   std::string name;
   int body;
-  int node;    ///< of the body, the nearest to the attached point, which is rigidly joined to it
-  Vec3 arm;    ///< m, from the node to the attached point, reference axes
-  Vec3 to;     ///< m, floor's frame
-  Type type;   ///< strap: pulls only; bracket: both ways; pole: pushes only
-  double stiffness;                                            ///< N/m
+  int node;          ///< of the body, the nearest to the attached point, which is rigidly joined to it
+  Vec3 arm;          ///< m, from the node to the attached point, reference axes
+  Vec3 to;           ///< m, floor's frame
+  Type type;         ///< strap: pulls only; bracket: both ways; pole: pushes only
+  double stiffness;  ///< N/m
   double strength = std::numeric_limits<double>::infinity();  ///< N, it breaks above
-  double length;                                               ///< m, natural: that at the start, > 0
+  double length;                                              ///< m, natural: that at the start, > 0
 };
 
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,

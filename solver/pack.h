@@ -234,7 +234,8 @@ struct PackQuaternion {
   P w;
 
   [[gnu::always_inline]] friend PackQuaternion operator*(const PackQuaternion& a, const PackQuaternion& b) {
-    return {a.w * b.v + b.w * a.v + cross(a.v, b.v), a.w * b.w - dot(a.v, b.v)};
+    return {mul_add(a.w, b.v, mul_add(b.w, a.v, cross(a.v, b.v))),
+            less_product(less_product(less_product(a.w * b.w, a.v.x, b.v.x), a.v.y, b.v.y), a.v.z, b.v.z)};
   }
 };
 
@@ -245,13 +246,13 @@ template <class P>
 /// Of one that rounding moved off length 1.
 template <class P>
 [[gnu::always_inline]] inline PackQuaternion<P> normalized(const PackQuaternion<P>& q) {
-  const P inverse = P(1.5) - P(0.5) * (dot(q.v, q.v) + q.w * q.w);
+  const P inverse = less_product(P(1.5), P(0.5), mul_add(q.w, q.w, dot(q.v, q.v)));
   return {inverse * q.v, inverse * q.w};
 }
 template <class P>
 [[gnu::always_inline]] inline PackVector<P> rotate(const PackQuaternion<P>& q, const PackVector<P>& a) {
   const PackVector<P> once = cross(q.v, a), twice = once + once;
-  return a + q.w * twice + cross(q.v, twice);
+  return mul_add(q.w, twice, a) + cross(q.v, twice);
 }
 template <class P>
 [[gnu::always_inline]] inline PackMatrix<P> rotation_matrix(const PackQuaternion<P>& q) {

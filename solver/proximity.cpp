@@ -1,9 +1,7 @@
 #include "solver/proximity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <unordered_map>
 
 namespace topple {
 namespace {
@@ -18,69 +16,6 @@ Box element_box(const Model& model, const Element& element, std::span<const Vec3
   box.min() -= reach;
   box.max() += reach;
   return box;
-}
-
-using Cell = std::array<int, 3>;
-struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
-    std::size_t sum = 0;
-    for (int k : cell) sum = sum * 0x9e3779b97f4a7c15ull + static_cast<std::size_t>(static_cast<unsigned>(k));
-    return sum ^ sum >> 32;
-  }
-};
-
-// Pairs of bodies, not both held, whose boxes overlap.
-std::vector<std::pair<int, int>> near_bodies(const std::vector<Box>& boxes, const std::vector<bool>& held) {
-  double cell = 1e-3;
-  std::vector<int> free, still;
-  for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-    (held[i] ? still : free).push_back(i);
-    if (!held[i]) cell = std::max(cell, boxes[i].sizes().maxCoeff());
-  }
-  std::vector<std::pair<int, int>> found;
-  const auto meet = [&](int i, int j) {
-    if (boxes[i].intersects(boxes[j])) found.emplace_back(std::min(i, j), std::max(i, j));
-  };
-  const auto cell_of = [&](const Box& box) {
-    const Vec3 x = box.center() / cell;
-    Cell at;
-    for (int k = 0; k < 3; ++k) at[k] = static_cast<int>(std::floor(std::clamp(x[k], -1e9, 1e9)));
-    return at;
-  };
-  // Centres of boxes that overlap are at most one cell apart.
-  std::unordered_map<Cell, std::vector<int>, CellHash> grid;
-  for (int i : free) {
-    const Cell at = cell_of(boxes[i]);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz)
-          if (const auto it = grid.find({at[0] + dx, at[1] + dy, at[2] + dz}); it != grid.end())
-            for (int j : it->second) meet(i, j);
-    grid[at].push_back(i);
-    for (int j : still) meet(i, j);
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-void add_near_elements(const Model& model, std::span<const Vec3> position, int a, int b, const Box& common,
-                       double margin, std::vector<ElementPair>& found) {
-  const auto inside = [&](const Body& body) {
-    std::vector<std::pair<int, Box>> elements;
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-      if (const Box box = element_box(model, model.elements[e], position, margin); box.intersects(common))
-        elements.emplace_back(e, box);
-    return elements;
-  };
-  const auto of_a = inside(model.bodies[a]), of_b = inside(model.bodies[b]);
-  for (const auto& [i, box_i] : of_a)
-    for (const auto& [j, box_j] : of_b) {
-      if (!box_i.intersects(box_j)) continue;
-      const int *m = model.elements[i].node, *n = model.elements[j].node;
-      const double l =
-          nearest_points(position[m[0]], position[m[1]], position[n[0]], position[n[1]]).between.norm();
-      if (l <= contact_length(model, {i, j}) + margin) found.push_back({i, j});
-    }
 }
 
 }  // namespace
@@ -119,19 +54,78 @@ std::vector<bool> held_bodies(const Model& model) {
   return held;
 }
 
-std::vector<ElementPair> near_elements(const Model& model, std::span<const Vec3> position, double margin) {
-  std::vector<Box> boxes;
-  for (const Body& body : model.bodies) {
+NearSearch::NearSearch(const Model& model) : model_(model), held_(held_bodies(model)) {}
+
+// Pairs of bodies, not both held, whose boxes overlap.
+void NearSearch::find_bodies() {
+  double cell = 1e-3;
+  cells_.clear();
+  pairs_.clear();
+  const int count = static_cast<int>(boxes_.size());
+  for (int i = 0; i < count; ++i)
+    if (!held_[i]) cell = std::max(cell, boxes_[i].sizes().maxCoeff());
+  for (int i = 0; i < count; ++i) {
+    if (held_[i]) continue;
+    const Vec3 x = boxes_[i].center() / cell;
+    Placed placed{{}, i};
+    for (int k = 0; k < 3; ++k) placed.cell[k] = static_cast<int>(std::floor(std::clamp(x[k], -1e9, 1e9)));
+    cells_.push_back(placed);
+  }
+  std::sort(cells_.begin(), cells_.end());
+  const auto meet = [&](int i, int j) {
+    if (boxes_[i].intersects(boxes_[j])) pairs_.emplace_back(std::min(i, j), std::max(i, j));
+  };
+  // Centres of boxes that overlap are at most one cell apart: in a row of three cells along z.
+  for (const Placed& one : cells_) {
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy) {
+        const std::array<int, 3> row{one.cell[0] + dx, one.cell[1] + dy, one.cell[2] - 1};
+        for (auto other = std::lower_bound(cells_.begin(), cells_.end(), Placed{row, -1});
+             other != cells_.end() && other->cell[0] == row[0] && other->cell[1] == row[1] &&
+             other->cell[2] <= row[2] + 2;
+             ++other)
+          if (other->body < one.body) meet(one.body, other->body);
+      }
+    for (int j = 0; j < count; ++j)
+      if (held_[j]) meet(one.body, j);
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+}
+
+void NearSearch::find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,
+                             std::vector<std::pair<int, Box>>& elements) const {
+  elements.clear();
+  const Body& b = model_.bodies[body];
+  for (int e = b.first_element; e < b.first_element + b.element_count; ++e)
+    if (const Box box = element_box(model_, model_.elements[e], position, margin); box.intersects(common))
+      elements.emplace_back(e, box);
+}
+
+const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position, double margin) {
+  boxes_.clear();
+  for (const Body& body : model_.bodies) {
     Box box;
     for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-      box.extend(element_box(model, model.elements[e], position, margin));
-    boxes.push_back(box);
+      box.extend(element_box(model_, model_.elements[e], position, margin));
+    boxes_.push_back(box);
   }
-  std::vector<ElementPair> found;
-  for (const auto& [a, b] : near_bodies(boxes, held_bodies(model)))
-    add_near_elements(model, position, a, b, boxes[a].intersection(boxes[b]), margin, found);
-  std::sort(found.begin(), found.end());
-  return found;
+  find_bodies();
+  found_.clear();
+  for (const auto& [a, b] : pairs_) {
+    const Box common = boxes_[a].intersection(boxes_[b]);
+    find_inside(a, common, position, margin, of_a_);
+    find_inside(b, common, position, margin, of_b_);
+    for (const auto& [i, box_i] : of_a_)
+      for (const auto& [j, box_j] : of_b_) {
+        if (!box_i.intersects(box_j)) continue;
+        const int *m = model_.elements[i].node, *n = model_.elements[j].node;
+        const double l =
+            nearest_points(position[m[0]], position[m[1]], position[n[0]], position[n[1]]).between.norm();
+        if (l <= contact_length(model_, {i, j}) + margin) found_.push_back({i, j});
+      }
+  }
+  std::sort(found_.begin(), found_.end());
+  return found_;
 }
 
 }  // namespace topple

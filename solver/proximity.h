@@ -1,8 +1,10 @@
 // Which elements of different bodies are near each other, and where their centre lines are nearest.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "solver/model.h"
@@ -31,12 +33,36 @@ NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1);
 /// L of Eq. 2 of two elements: the mean of their members' contact widths, m.
 double contact_length(const Model& model, const ElementPair& pair);
 
-/// Pairs of elements whose surfaces are within `margin`, m, of each other, in order. Bodies are found on a
-/// grid as wide as the largest free one, so that the time is linear in their number; bodies whose nodes are
-/// all held do not meet each other.
-std::vector<ElementPair> near_elements(const Model& model, std::span<const Vec3> position, double margin);
-
 /// Per body: supports hold every direction of all its nodes.
 std::vector<bool> held_bodies(const Model& model);
+
+/// Looks for near elements again and again, in the memory that the first time took.
+class NearSearch {
+ public:
+  explicit NearSearch(const Model& model);
+  /// Pairs of elements whose surfaces are within `margin`, m, of each other, in order; they live until the
+  /// next call. Bodies are found on a grid as wide as the largest free one, so that the time is nearly linear
+  /// in their number; bodies whose nodes are all held do not meet each other.
+  const std::vector<ElementPair>& find(std::span<const Vec3> position, double margin);
+
+ private:
+  using Box = Eigen::AlignedBox3d;
+  struct Placed {
+    std::array<int, 3> cell;
+    int body;
+    friend auto operator<=>(const Placed&, const Placed&) = default;
+  };
+  void find_bodies();
+  void find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,
+                   std::vector<std::pair<int, Box>>& elements) const;
+
+  const Model& model_;
+  const std::vector<bool> held_;
+  std::vector<Box> boxes_;                        // per body
+  std::vector<Placed> cells_;                     // free bodies by place
+  std::vector<std::pair<int, int>> pairs_;        // bodies
+  std::vector<std::pair<int, Box>> of_a_, of_b_;  // elements where two boxes overlap
+  std::vector<ElementPair> found_;
+};
 
 }  // namespace topple

@@ -32,8 +32,8 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
   double balanced = k_balanced * mass_ * parameters.gravity.norm();
   balanced += 8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * now.law.alpha *
               std::max(now.law.q, k_stick_stiffness) * contacts_.pairs() / contacts_.least_length();
-  balanced += 8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) *
-              anchors_.greatest_stiffness();
+  balanced +=
+      8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * anchors_.greatest_stiffness();
   double sigma = k_first;
   for (int round = 0; round < k_rounds; ++round) {
     balance(still, now, s, stick);
@@ -52,7 +52,9 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     contacts_.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t at) {
       Mat3 by_position, by_velocity;
       const Vec3& normal = model_.planes[touch.plane].normal;
-      const ContactOutput out = contact_force(now.law,
+      ContactLaw law = now.law;
+      law.alpha = touch.alpha[which];
+      const ContactOutput out = contact_force(law,
                                               {normal, touch.depth[which], contacts_.length(touch, which),
                                                Vec3::Zero(), stick[at], contacts_.share_of_mass()},
                                               by_position, by_velocity);

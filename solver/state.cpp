@@ -176,7 +176,7 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
-                  (22 + 3 * k_modes) * state.bodies.size() + state.near.size() +
+                  (23 + 3 * k_modes) * state.bodies.size() + state.near.size() +
                   5 * state.member_sticks.size() + 2 * state.anchors.size() + 26);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
@@ -242,10 +242,26 @@ bool is_finite(const State& s, bool nodes) {
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
   for (const MemberStick& stick : s.member_sticks) look(stick.stick.data(), 3);
   const EnergyLedger& e = s.energy;
-  for (const double x :
-       {s.time, s.floor_displacement.sum(), s.floor_velocity.sum(), s.step_size, s.load_factor, s.near_slack,
-        e.input, e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.normal_damping, e.numerical,
-        e.plastic, e.model_switch, e.anchor, e.released, e.start_total, e.largest})
+  for (const double x : {s.time,
+                         s.floor_displacement.sum(),
+                         s.floor_velocity.sum(),
+                         s.step_size,
+                         s.load_factor,
+                         s.near_slack,
+                         e.input,
+                         e.kinetic,
+                         e.strain,
+                         e.gravity,
+                         e.contact,
+                         e.friction,
+                         e.normal_damping,
+                         e.numerical,
+                         e.plastic,
+                         e.model_switch,
+                         e.anchor,
+                         e.released,
+                         e.start_total,
+                         e.largest})
     odd_one += x - x;
   return !any_above(odd, 0) && odd_one == 0;
 }

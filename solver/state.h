@@ -15,8 +15,8 @@
 
 namespace topple {
 
-/// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity, contact and anchor are what is
-/// there or came in; dissipated is what went out.
+/// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity, contact and anchor are
+/// what is there or came in; dissipated is what went out.
 struct EnergyLedger {
   double input =
       0;  ///< work of the floor's acceleration, loads and edits on the bodies, in the floor's frame

@@ -81,6 +81,7 @@ void take(const BodyEnergy& held, EnergyLedger& energy) {
 struct Workspace::Impl {
   explicit Impl(const Model& model)
       : islands(model),
+        search(model),
         reduced_bodies(model.bodies.size()),
         sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {
     moving.reserve(model.bodies.size());
@@ -96,6 +97,7 @@ struct Workspace::Impl {
   }
 
   Islands islands;
+  NearSearch search;
   std::vector<std::unique_ptr<ReducedBody>>
       reduced_bodies;                              // per body, once it was on another rung than frame
   std::vector<ReducedScratch> reduced_scratch{1};  // per worker
@@ -231,7 +233,7 @@ void find_near(const Model& model, const State& state, Workspace::Impl& w) {
 void start_rungs(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
   place_nodes(model, state);
   state.near_slack = 0;
-  look_around(model, state, 0);
+  look_around(model, w.search, state, 0);
   find_base(model, parameters, w);
   find_near(model, state, w);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
@@ -537,8 +539,9 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
       BodyEnergy holds;
-      if (!w.reduced(model, next, b).advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
-                                       holds, w.reduced_scratch[worker])) {
+      if (!w.reduced(model, next, b)
+               .advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged, holds,
+                        w.reduced_scratch[worker])) {
         part.status.kind = StepStatus::Kind::newton_diverged;
         part.status.time = end.time;
         part.status.body = b;
@@ -613,7 +616,8 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   take(held, e);
   e.largest = std::max(
       {e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact + e.anchor});
-  if (!is_finite(next, !w.systems().empty())) {
+  // central differences have looked at the accelerations
+  if (!is_finite(next, !w.systems().empty() && !is_explicit)) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = -1;
@@ -640,7 +644,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     {
       const InPhase phase(&w.profile, Phase::search);
       copy(state, w.next, moves_nodes(state, w));
-      look_around(model, w.next, travel);
+      look_around(model, w.search, w.next, travel);
     }
     status = try_known(model, parameters, state, h, halvings, w);
     if (!status.ok() || model.bodies.size() < 2) return status;

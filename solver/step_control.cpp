@@ -14,6 +14,7 @@ namespace {
 
 constexpr double k_energy_part = 0.02;  // of the tolerance: energy that a step may leave unexplained
 constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at rest is below
+constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it counts as nothing
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
 // Mean rotation of a body's nodes, rad/s.
@@ -92,9 +93,12 @@ double step_error(const Model& model, const Parameters& parameters, const State&
   const GeneralizedAlpha c(parameters);
   const double delta = c.alpha_m - c.alpha_f;
   const double factor = std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
-  double total_mass = 0, greatest = 0;
-  for (const Body& body : model.bodies) total_mass += body.mass;
-  const double largest = after.energy.largest + total_mass * k_at_rest * k_at_rest;
+  double total_mass = 0, small_fall = 0, greatest = 0;
+  for (const Body& body : model.bodies) {
+    total_mass += body.mass;
+    small_fall += k_small_fall * body.mass * parameters.gravity.norm() * body.reach;
+  }
+  const double largest = std::max(after.energy.largest + total_mass * k_at_rest * k_at_rest, small_fall);
   const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (after.bodies[b].rung != Rung::frame) continue;

@@ -23,7 +23,8 @@ double look_ahead(const Model& model, const Parameters& parameters, const State&
 ///   |e|/h <= tolerance V,  e = (|1/6 - beta - delta/2| + |gamma - 1/2 + delta|) h^2 (a1 - a0),
 /// delta = alpha_m - alpha_f, a the algorithmic acceleration, |.| the mass-weighted mean over a body, the
 /// greatest of all frames. V: its speed, not below a tenth of what the largest energy exchanged amounts to.
-/// Likewise the energy that the step leaves unexplained, against a twentieth of the tolerance of that energy.
+/// Likewise the energy that the step leaves unexplained, against 0.02 of the tolerance of that energy. That
+/// energy counts as not less than a fall by 1e-8 of their reach gives the bodies.
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
                   double h);
 

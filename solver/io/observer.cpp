@@ -146,9 +146,9 @@ FrameRow frame_row(const Run& run) {
   fill_contacts(run, row);
   fill_bodies(run, row);
   const EnergyLedger& e = state.energy;
-  const double energies[11] = {e.input,          e.kinetic,   e.strain,  e.gravity,      e.contact,
-                               e.friction,       e.normal_damping, e.numerical, e.plastic, e.model_switch,
-                               e.balance_error()};
+  const double energies[11] = {e.input,   e.kinetic,      e.strain,         e.gravity,
+                               e.contact, e.friction,     e.normal_damping, e.numerical,
+                               e.plastic, e.model_switch, e.balance_error()};
   std::copy_n(energies, 11, row.energy.begin());
   fill_anchors(run, row);
   row.load_factor = state.load_factor;

@@ -39,8 +39,8 @@ struct FrameRow {
   double floor_acceleration[3] = {};  ///< m/s^2
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs
-  std::vector<float> anchor;          ///< a x 4: tension (N, negative: pushes), energy (J), natural length (m),
-                                      ///< state (k_anchor_away, ...)
+  std::vector<float> anchor;  ///< a x 4: tension (N, negative: pushes), energy (J), natural length (m),
+                              ///< state (k_anchor_away, ...)
 };
 
 /// A whole state, to go on from.

@@ -257,7 +257,8 @@ void check_overlap(const Entry& root, const Setup& setup) {
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
   const State start = start_state(model, setup.starts);
-  for (const ElementPair& pair : near_elements(model, start.position, 0)) {
+  NearSearch search(model);
+  for (const ElementPair& pair : search.find(start.position, 0)) {
     const Element &a = model.elements[pair.a], &b = model.elements[pair.b];
     const auto& x = start.position;
     const Vec3 between = nearest_points(x[a.node[0]], x[a.node[1]], x[b.node[0]], x[b.node[1]]).between;

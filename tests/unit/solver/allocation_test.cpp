@@ -215,6 +215,28 @@ TEST_P(RockingAllocation, no_step_after_the_first_takes_memory_but_for_its_event
   EXPECT_EQ(planes, 3);
 }
 
+// A cabinet falls on another. Who comes near, or leaves, takes memory.
+TEST(Allocation, bodies_that_lie_on_each_other_take_no_memory) {
+  topple::Setup setup = shaken(3);
+  CabinetSpec spec = tall_cabinet();
+  spec.name = "falling";
+  spec.at = Vec3(0.05, 0.1, 1.9);
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.parameters.contact.alpha = 2000;
+  Simulation sim(setup.model, setup.starts, setup.parameters, false);
+  ASSERT_TRUE(sim.advance(1000));
+  int steps = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<ElementPair> near = sim.state.near;
+    const long before = allocations;
+    ASSERT_TRUE(sim.advance().ok());
+    if (near.empty() || sim.state.near != near) continue;
+    ASSERT_EQ(allocations, before) << "step " << i;
+    ++steps;
+  }
+  EXPECT_GT(steps, 500);
+}
+
 INSTANTIATE_TEST_SUITE_P(Rungs, RockingAllocation,
                          ::testing::Combine(::testing::Values(BodyModel::rigid, BodyModel::elastic,
                                                               BodyModel::frame),

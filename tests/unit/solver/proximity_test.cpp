@@ -51,7 +51,7 @@ TEST(Proximity, grid_finds_the_pairs_that_comparing_all_finds) {
         all.push_back({a, b});
     }
   EXPECT_GT(all.size(), 100u);
-  EXPECT_EQ(near_elements(model, model.node_position, margin), all);
+  EXPECT_EQ(NearSearch(model).find(model.node_position, margin), all);
 }
 
 TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
@@ -71,13 +71,13 @@ TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
   const std::vector<BodyState> frames(model.bodies.size());
   islands.arrange(frames, {});
   EXPECT_EQ(islands.systems().size(), 5u);
-  islands.arrange(frames, near_elements(model, model.node_position, 0.02));
+  islands.arrange(frames, NearSearch(model).find(model.node_position, 0.02));
   ASSERT_EQ(islands.systems().size(), 3u);  // the floor holds them all and is in none
   EXPECT_EQ(islands.systems()[0]->bodies, (std::vector<int>{0, 2, 4}));
   EXPECT_EQ(islands.systems()[1]->bodies, (std::vector<int>{1}));
   EXPECT_EQ(islands.systems()[2]->bodies, (std::vector<int>{3}));
   const BodySystem* const kept = islands.systems()[0];
-  islands.arrange(frames, near_elements(model, model.node_position, 0.02));
+  islands.arrange(frames, NearSearch(model).find(model.node_position, 0.02));
   EXPECT_EQ(islands.systems()[0], kept);
 }
 
