@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/anchor_picture.h"
 #include "app/words.h"
 
 namespace topple::app {
@@ -52,7 +53,7 @@ void expect_same_model(const Model& model, const io::FrameRow& row) {
   const std::size_t nodes = model.node_position.size(), elements = model.elements.size();
   if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
       row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
-      row.body.size() != 11 * model.bodies.size())
+      row.body.size() != 11 * model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
     throw io::InputError(io::k_another_model);
 }
 
@@ -107,6 +108,10 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
     if (model.bodies[model.node_body[i]].ground) continue;
     low = low.cwiseMin(position(row, i) + shift);
     high = high.cwiseMax(position(row, i) + shift);
+  }
+  for (const Anchor& anchor : model.anchors) {
+    low = low.cwiseMin(anchor.to + shift);
+    high = high.cwiseMax(anchor.to + shift);
   }
   double peak = 0;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
@@ -181,6 +186,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   const Vec3 shift = floor_shift(row);
   add_tubes(row, out.stations, out.tubes);
   add_hinges(row, out);
+  add_anchors(scene_.setup.model, row, shift, out);
   out.legend.quantity = "equivalent stress";
   out.legend.unit = "MPa";
   out.legend.range_policy = "covers 95 % of the run";
@@ -357,6 +363,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
   }
   for (std::size_t b = 0; b < static_cast<std::size_t>(setup.model.furniture_total()); ++b)
     out.caption.lines.push_back(body_in_words(setup.model, row, b));
+  for (const std::string& line : anchors_in_words(setup.model, row)) out.caption.lines.push_back(line);
   std::string contact;
   if (!setup.model.planes.empty())
     contact = fmt::format(" · contact α = {:g} kgf, q = {:g}, μ = {:g}",

@@ -50,19 +50,32 @@ ordered_json describe(const io::Scene& scene) {
                              {"inertia_kg_m2", vector(body.inertia.diagonal())},
                              {"nodes", body.node_count},
                              {"elements", body.element_count}});
+  out["anchors"] = ordered_json::array();
+  for (std::size_t k = 0; k < setup.model.anchors.size(); ++k) {
+    const Anchor& anchor = setup.model.anchors[k];
+    out["anchors"].push_back(describe_anchor(setup.model, anchor));
+    out["anchors"].back()["length_m"] = anchor.length;
+    out["anchors"].back()["stiffness_N_m"] = anchor.stiffness;
+    out["anchors"].back()["on"] = setup.parameters.anchors[k];
+  }
   return out;
 }
 
-ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies) {
-  static const char* const k_kinds[] = {"uplift", "impact", "overturn", "hinge", "fracture", "model"};
+ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies, const ordered_json& anchors) {
+  static const char* const k_kinds[] = {"uplift",   "impact", "overturn", "hinge",
+                                        "fracture", "model",  "anchor"};
   const auto kind = static_cast<std::size_t>(e.event.kind), body = static_cast<std::size_t>(e.event.body);
   if (kind >= std::size(k_kinds) || body >= bodies.size())
     throw io::InputError("the recording has an event of a kind or a body that it does not describe");
+  const auto anchor = static_cast<std::size_t>(e.event.anchor);
+  if (e.event.kind == Event::Kind::anchor && anchor >= anchors.size())
+    throw io::InputError("the recording has an event of an anchor that it does not describe");
   ordered_json out = {{"kind", k_kinds[kind]},
                       {"time_s", e.time},
                       {"step", e.step},
                       {"body", bodies[body]["name"]},
                       {"value", e.event.value}};
+  if (e.event.kind == Event::Kind::anchor) out["anchor"] = anchors[anchor]["name"];
   if (e.event.kind == Event::Kind::model) {
     out["model"] = name(static_cast<Rung>(e.event.value));
     out["reason"] = name(e.event.reason);
@@ -86,13 +99,20 @@ bool is_static(const ordered_json& description) {
 /// The ledger at one instant, named as in the summary.
 ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
   const std::vector<double>& e = row.energy;
-  return {
-      {"input_J", e[0]},        {"kinetic_J", e[1]},
-      {"strain_J", e[2]},       {"gravity_J", e[3]},
-      {"contact_J", e[4]},      {"dissipated_J", e[5] + e[6] + e[7] + e[8]},
-      {"friction_J", e[5]},     {"normal_damping_J", e[6]},
-      {"numerical_J", e[7]},    {"plastic_J", e[8]},
-      {"model_switch_J", e[9]}, {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[10])}};
+  return {{"input_J", e[0]},
+          {"kinetic_J", e[1]},
+          {"strain_J", e[2]},
+          {"gravity_J", e[3]},
+          {"contact_J", e[4]},
+          {"dissipated_J", e[5] + e[6] + e[7] + e[8] + (e.size() > 12 ? e[12] : 0)},
+          {"friction_J", e[5]},
+          {"normal_damping_J", e[6]},
+          {"numerical_J", e[7]},
+          {"plastic_J", e[8]},
+          {"model_switch_J", e[9]},
+          {"anchor_J", e.size() > 12 ? e[11] : 0},
+          {"released_J", e.size() > 12 ? e[12] : 0},
+          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[10])}};
 }
 
 ordered_json describe(const io::Recording& recording) {
@@ -116,7 +136,7 @@ ordered_json describe(const io::Recording& recording) {
   for (const LoggedEdit& e : recording.history().edits) out["edits"].push_back(describe(e));
   out["events"] = ordered_json::array();
   for (const io::RecordedEvent& e : recording.events_on_way_to(newest))
-    out["events"].push_back(describe(e, out["bodies"]));
+    out["events"].push_back(describe(e, out["bodies"], out["anchors"]));
   if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());
   return out;
 }
@@ -169,6 +189,14 @@ std::string table(const ordered_json& d) {
         b["name"].get<std::string>(), b["mass_kg"].get<double>(), c[0].get<double>(), c[1].get<double>(),
         c[2].get<double>(), i[0].get<double>(), i[1].get<double>(), i[2].get<double>());
   }
+  for (const auto& a : d["anchors"])
+    out += fmt::format("anchor {}: {} of {:.4g} kN/m on {}, {}{}\n", a["name"].get<std::string>(),
+                       a["type"].get<std::string>(), 1e-3 * a["stiffness_N_m"].get<double>(),
+                       a["body"].get<std::string>(),
+                       a["strength_N"].is_null()
+                           ? "never breaks"
+                           : fmt::format("breaks above {:.4g} kN", 1e-3 * a["strength_N"].get<double>()),
+                       a["on"].get<bool>() ? "" : ", away at the start");
   if (d["kind"] != "recording") return out;
   out += fmt::format("{}: {} frames to {}, {} checkpoints, last state {}\n", d["status"].get<std::string>(),
                      d["frames"].get<long>(),
@@ -182,7 +210,8 @@ std::string table(const ordered_json& d) {
   for (const auto& e : d["events"])
     out += (is_static(d) ? fmt::format("load step {:>4}", e["step"].get<long>())
                          : fmt::format("{:>10.4f} s", e["time_s"].get<double>())) +
-           fmt::format("  {} {}\n", e["body"].get<std::string>(), e["kind"].get<std::string>());
+           fmt::format("  {} {}{}\n", e["body"].get<std::string>(), e["kind"].get<std::string>(),
+                       e.contains("anchor") ? " " + e["anchor"].get<std::string>() + " broke" : "");
   return out;
 }
 

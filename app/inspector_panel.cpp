@@ -2,8 +2,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "app/anchor_picture.h"
 #include "app/panels.h"
+#include "app/words.h"
 
 namespace topple::app {
 namespace {
@@ -21,9 +24,35 @@ void cell(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
+void draw_anchor(const Model& model, const io::FrameRow& row, std::size_t k) {
+  const Anchor& anchor = model.anchors[k];
+  const float* const values = &row.anchor[4 * k];
+  const Vec3 span = attached_point(model, row, Vec3::Zero(), k) - anchor.to;
+  ImGui::Text("%s", fmt::format("{} of {}", anchor.name, model.bodies[anchor.body].name).c_str());
+  ImGui::TextDisabled("%s", fmt::format("{}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
+                                        anchor.stiffness / 1e3, 1e3 * values[2])
+                                .c_str());
+  if (!ImGui::BeginTable("anchor", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg)) return;
+  const auto line = [](const char* name, const std::string& value) {
+    cell(name);
+    cell(value);
+  };
+  const bool limited = std::isfinite(anchor.strength);
+  line("state", io::anchor_word(values[3]));
+  line("force, N", fmt::format("{:.4g}", values[0]));
+  line("strength, N", limited ? fmt::format("{:.4g}", anchor.strength) : "never breaks");
+  line("share of strength",
+       limited ? fmt::format("{:.1f} %", 100 * std::abs(values[0]) / anchor.strength) : "-");
+  line("stretch, mm", fmt::format("{:.3g}", 1e3 * (span.norm() - values[2])));
+  line("energy, J", fmt::format("{:.3g}", values[1]));
+  ImGui::EndTable();
+}
+
 }  // namespace
 
 void draw_inspector(const Model& model, const io::FrameRow& row, std::size_t member_index) {
+  if (member_index >= model.members.size())
+    return draw_anchor(model, row, member_index - model.members.size());
   const Member& member = model.members[member_index];
   const Section& section = model.sections[static_cast<std::size_t>(member.section)];
   const auto first = static_cast<std::size_t>(member.first_element);

@@ -30,7 +30,7 @@ void draw_timeline(Player& player, const Box& box);
 /// Sliders of what may be edited. What was refused, and why, is left in `refused`.
 void draw_parameters(Player& player, std::string& refused);
 
-/// Stress and section forces of `member` in `row`.
+/// Stress and section forces of `member` in `row`; beyond the last member those of an anchor (Tube::member).
 void draw_inspector(const Model& model, const io::FrameRow& row, std::size_t member);
 
 }  // namespace topple::app

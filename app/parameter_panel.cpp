@@ -140,6 +140,34 @@ class Row {
   const Vec3 scene_value_, value_;
 };
 
+/// Ticked: in place.
+void draw_anchor(Player& player, int index, std::string& refused) {
+  const Model& model = player.scene().setup.model;
+  const bool scene_value = edited_value(player.scene().setup.parameters, Edit::Key::anchor, index).x() != 0;
+  bool on = edited_value(player.parameters(), Edit::Key::anchor, index).x() != 0;
+  const auto post = [&](bool value) {
+    player.begin_edit();
+    player.edit({Edit::Key::anchor, index, Vec3(value ? 1 : 0, 0, 0)});
+    refused.clear();
+  };
+  ImGui::PushID(index);
+  const Anchor& anchor = model.anchors[static_cast<std::size_t>(index)];
+  if (ImGui::Checkbox(anchor.name.c_str(), &on)) post(on);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("%s", fmt::format("{}: ties {} to the wall or floor. One that is put in place starts "
+                                        "without force",
+                                        io::edit_key({Edit::Key::anchor, index}),
+                                        model.bodies[static_cast<std::size_t>(anchor.body)].name)
+                                .c_str());
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
+                  ImGui::GetStyle().ItemSpacing.x);
+  ImGui::BeginDisabled(on == scene_value);
+  if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post(scene_value);
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the scene's value");
+  ImGui::PopID();
+}
+
 }  // namespace
 
 void draw_parameters(Player& player, std::string& refused) {
@@ -153,10 +181,15 @@ void draw_parameters(Player& player, std::string& refused) {
                                      [k = key](const Slider& s) { return s.key == k; });
     const bool of_shake = key == Edit::Key::frequency || key == Edit::Key::amplitude ||
                           key == Edit::Key::direction || key == Edit::Key::scale;
-    const int group = of_shake ? shake : key == Edit::Key::time_step ? 1000 : -1;
+    const int group = of_shake                      ? shake
+                      : key == Edit::Key::time_step ? 1000
+                      : key == Edit::Key::anchor    ? 999
+                                                    : -1;
     if (group != heading) {
       if (group == 1000)
         ImGui::TextDisabled("Integration");
+      else if (group == 999)
+        ImGui::TextDisabled("Anchors");
       else if (group < 0)
         ImGui::TextDisabled("Contact");
       else
@@ -165,7 +198,10 @@ void draw_parameters(Player& player, std::string& refused) {
                                       : fmt::format("Floor, shake {}", shake + 1).c_str());
       heading = group;
     }
-    Row(player, *slider, shake).draw(refused);
+    if (key == Edit::Key::anchor)
+      draw_anchor(player, shake, refused);
+    else
+      Row(player, *slider, shake).draw(refused);
   }
   ImGui::EndDisabled();
   if (!player.can_edit() && !player.way().empty())

@@ -79,6 +79,22 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"peak_pinch_ratio", number(o.peak_pinch)}};
 }
 
+ordered_json anchors(const Run& run) {
+  ordered_json out = ordered_json::array();
+  const Model& model = run.setup().model;
+  for (std::size_t k = 0; k < model.anchors.size(); ++k) {
+    const AnchorOutcome& o = run.outcome().anchors()[k];
+    ordered_json one = describe_anchor(model, model.anchors[k]);
+    one["peak_force_N"] = number(o.peak_force);
+    one["final_force_N"] = number(o.tension);
+    one["in_place"] = o.hold == AnchorHold::in_place;
+    one["broke"] = o.broke.has_value();
+    one["break_time_s"] = number(o.broke);
+    out.push_back(one);
+  }
+  return out;
+}
+
 std::string integrator_name(Integrator integrator) {
   switch (integrator) {
     case Integrator::central_difference:
@@ -213,7 +229,24 @@ std::string dynamic_head(const ordered_json& s) {
   return out + energy_in_words(s["energy"]) + "\n";
 }
 
+std::string anchor_line(const ordered_json& a) {
+  const double peak = a["peak_force_N"].get<double>();
+  std::string line = fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
+  if (a["broke"].get<bool>())
+    return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
+  if (!a["strength_N"].is_null())
+    line += fmt::format(", {:.0f} % of its strength", 100 * peak / a["strength_N"].get<double>());
+  return line + (a["in_place"].get<bool>() ? "\n" : ", taken away\n");
+}
+
 }  // namespace
+
+ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
+  return {{"name", anchor.name},
+          {"body", model.bodies[static_cast<std::size_t>(anchor.body)].name},
+          {"type", anchor_type(anchor)},
+          {"strength_N", number(anchor.strength)}};
+}
 
 ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
   const State& state = run.state();
@@ -250,13 +283,15 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"strain_J", number(e.strain)},
       {"gravity_J", number(e.gravity)},
       {"contact_J", number(e.contact)},
+      {"anchor_J", number(e.anchor)},
       {"start_J", number(e.start_total)},
-      {"final_J", number(e.kinetic + e.strain + e.contact)},
+      {"final_J", number(e.kinetic + e.strain + e.contact + e.anchor)},
       {"dissipated_J", number(e.dissipated())},
       {"friction_J", number(e.friction)},
       {"normal_damping_J", number(e.normal_damping)},
       {"numerical_J", number(e.numerical)},
       {"plastic_J", number(e.plastic)},
+      {"released_J", number(e.released)},
       {"model_switch_J", number(e.model_switch)},
       {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
@@ -265,6 +300,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   const Model& model = run.setup().model;
   for (int b = 0; b < model.furniture_total(); ++b)
     out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, b)));
+  out["anchors"] = anchors(run);
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {
     const ProbeOutcome& probe = run.probes()[k];
@@ -369,6 +405,7 @@ std::string summary_table(const ordered_json& s) {
       out += fmt::format("{}: {} from {} s ({})\n", b["name"].get<std::string>(),
                          change["model"].get<std::string>(), text(change["time_s"], "{:.3f}"),
                          change["reason"].get<std::string>());
+  for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);
   for (const auto& p : s["probes"]) {

@@ -28,6 +28,9 @@ nlohmann::ordered_json failed_estimate(const Setup& setup, const std::string& me
 /// "step halved" or "tolerance divided by 10": what the finer run of `setup` has.
 std::string refinement_in_words(const Setup& setup);
 
+/// Name, body, type and strength of an anchor.
+nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor);
+
 /// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 

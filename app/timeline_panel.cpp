@@ -167,6 +167,11 @@ std::string when(const Player& player, std::int64_t step, double time) {
 }
 
 std::string event_text(const Player& player, const io::RecordedEvent& event) {
+  if (event.event.kind == Event::Kind::anchor) {
+    const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
+    return fmt::format("{}: anchor {} breaks at {:.0f} N", when(player, event.step, event.time), anchor.name,
+                       std::abs(event.event.value));
+  }
   const char* what = event.event.kind == Event::Kind::uplift     ? "lifts off"
                      : event.event.kind == Event::Kind::impact   ? "strikes the floor"
                      : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
@@ -186,8 +191,9 @@ std::string edit_text(const Player& player, const LoggedEdit& edit) {
   const io::Key& key = io::key_of(edit.edit.key);
   const Vec3& v = edit.edit.value;
   const std::string value =
-      edit.edit.key == Edit::Key::direction
-          ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
+      edit.edit.key == Edit::Key::direction ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
+      : key.type == io::KeyType::boolean
+          ? std::string(v.x() != 0 ? "true" : "false")
           : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
   return fmt::format("{}: {} = {}", when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
 }
@@ -216,7 +222,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
             list.AddLine({p.x, p.y - k_size}, {p.x, p.y + k_size}, colour, 2);
           else if (event.event.kind == Event::Kind::hinge)
             list.AddCircle(p, k_size, colour, 12, 1.5f);
-          else if (event.event.kind == Event::Kind::fracture) {
+          else if (event.event.kind == Event::Kind::fracture || event.event.kind == Event::Kind::anchor) {
             list.AddLine({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour, 1.5f);
             list.AddLine({p.x - k_size, p.y + k_size}, {p.x + k_size, p.y - k_size}, colour, 1.5f);
           } else if (event.event.kind == Event::Kind::model)

@@ -233,6 +233,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const Model& model = player_.scene().setup.model;
   for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
     line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
+  for (const std::string& words : anchors_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
   render::LeftOut left_out;
   const float legend = 190 * scale_;
   // Here the scene may lie behind it.
@@ -268,7 +269,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   if (picked_ && row)
     draw_inspector(player_.scene().setup.model, *row, *picked_);
   else
-    ImGui::TextDisabled("Click a member to inspect it.");
+    ImGui::TextDisabled("Click a member or an anchor to inspect it.");
   ImGui::End();
 }
 

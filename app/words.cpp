@@ -13,6 +13,7 @@ constexpr double k_degrees = 180 / k_pi;
 constexpr double k_upright = 0.1;  // degrees: less is standing
 constexpr double k_lying = 60;     // degrees
 constexpr double k_slid = 1e-3;    // m
+constexpr std::size_t k_few_anchors = 4;
 
 }  // namespace
 
@@ -31,6 +32,42 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
     line += "standing";
   if (slide > k_slid) line += fmt::format(", slid {:.0f} mm", 1e3 * slide);
   return line;
+}
+
+const char* anchor_type(const Anchor& anchor) {
+  static const char* const k_types[] = {"strap", "bracket", "pole"};
+  return k_types[static_cast<std::size_t>(anchor.type)];
+}
+
+std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
+  const Anchor& anchor = model.anchors[k];
+  const float* const values = &row.anchor[4 * k];
+  const std::string line = fmt::format("{} {}: ", anchor_type(anchor), anchor.name);
+  if (values[3] != io::k_anchor_holds)
+    return line + (values[3] == io::k_anchor_away ? "taken away" : io::anchor_word(values[3]));
+  const double force = std::abs(values[0]);
+  const std::string held = fmt::format("{} {:.0f} N", values[0] > 0 ? "pulls" : "pushes", force);
+  return line + held +
+         (std::isfinite(anchor.strength)
+              ? fmt::format(", {:.0f} % of its strength", 100 * force / anchor.strength)
+              : "");
+}
+
+std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row) {
+  std::vector<std::string> lines;
+  if (model.anchors.size() <= k_few_anchors) {
+    for (std::size_t k = 0; k < model.anchors.size(); ++k) lines.push_back(anchor_in_words(model, row, k));
+    return lines;
+  }
+  std::string counts;
+  for (const float state : {io::k_anchor_holds, io::k_anchor_slack, io::k_anchor_broken, io::k_anchor_away}) {
+    int count = 0;
+    for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[4 * k + 3] == state;
+    if (count > 0)
+      counts += fmt::format("{} {} {}", counts.empty() ? "" : ",", count, io::anchor_word(state));
+  }
+  lines.push_back("anchors:" + counts);
+  return lines;
 }
 
 bool is_static(const Setup& setup) {

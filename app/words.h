@@ -10,6 +10,15 @@ namespace topple::app {
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
 
+/// "strap", "bracket" or "pole".
+const char* anchor_type(const Anchor& anchor);
+
+/// "strap left: pulls 430 N, 22 % of its strength".
+std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t anchor);
+
+/// One line for each of a few anchors, else one that counts them.
+std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row);
+
 /// Its rows go by load step and load factor, not by time.
 bool is_static(const Setup& setup);
 

@@ -93,6 +93,9 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
   for (const Load& load : model.loads)
     if (std::find(bodies.begin(), bodies.end(), model.node_body[load.node]) != bodies.end())
       loads.push_back({&load, local(load.node)});
+  for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k)
+    if (std::find(bodies.begin(), bodies.end(), model.anchors[k].body) != bodies.end())
+      anchors.push_back({k, local(model.anchors[k].node), {}});
 }
 
 void BodySystem::add_nodes() {
@@ -210,6 +213,21 @@ void BodySystem::take_forces() {
   }
 }
 
+template <bool with_tangent>
+void BodySystem::add_anchors(const BodyMotion& motion) {
+  for (const OwnAnchor& own : anchors) {
+    const Anchor& anchor = model.anchors[own.index];
+    const Vec3 arm = own.arm(model, motion), at = motion.position[own.node] + arm;
+    const AnchorForce now = anchor_force(anchor, own.state, at);
+    force[own.node] += now.force;
+    moment[own.node] += arm.cross(now.force);
+    if constexpr (with_tangent) {
+      const Mat6 slope = -anchor_slope(anchor_tangent(anchor, own.state, at), arm, now.force);
+      lu.add(own.node, own.node, slope);
+    }
+  }
+}
+
 ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start) const {
   const Vec3 stick = stick_start[pair.point * model.planes.size() + pair.plane] + motion.position[pair.node] -
@@ -279,6 +297,7 @@ void BodySystem::evaluate_free(const Parameters& parameters, double t, const Bod
   start_forces(parameters, t);
   beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_);
   take_forces();
+  add_anchors<false>(motion);
 }
 
 void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
@@ -287,6 +306,7 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
   start_forces(parameters, t);
   beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_, lu);
   take_forces();
+  add_anchors<true>(motion);
   add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
 }
 
@@ -306,6 +326,10 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
     sum.contact += pair.out.stick_energy;
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
+  for (const OwnAnchor& own : anchors)
+    sum.anchor +=
+        anchor_force(model.anchors[own.index], own.state, motion.position[own.node] + own.arm(model, motion))
+            .energy;
   return sum;
 }
 
@@ -334,6 +358,7 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
 void BodySystem::load_memory(const State& state) {
   for (std::size_t k = 0; yields && k < own_elements.size(); ++k)
     elements[k] = state.elements[own_elements[k].element];
+  for (OwnAnchor& own : anchors) own.state = state.anchors[own.index];
   load_sticks(state);
 }
 

@@ -54,7 +54,7 @@ struct NodePack {
 
 /// Energies of a system that depend on where it is, J.
 struct BodyEnergy {
-  double kinetic = 0, strain = 0, contact = 0;
+  double kinetic = 0, strain = 0, contact = 0, anchor = 0;
 };
 
 /// Factor of a load at time t.
@@ -71,8 +71,8 @@ class BodySystem {
   BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> near);
 
   /// Applied minus internal force and moment (world axes) at time t: gravity, -m a(t), loads, beams,
-  /// contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills `force`,
-  /// `moment` and `contacts`.
+  /// anchors, contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills
+  /// `force`, `moment` and `contacts`.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
   /// Without contacts: fills `force` and `moment`.
@@ -107,7 +107,7 @@ class BodySystem {
   }
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;
-  /// Copies what elements and touching members remember. Steps begin with it; evaluations read it.
+  /// Copies what elements, anchors and touching members remember. Steps begin with it; evaluations read it.
   void load_memory(const State& state);
   /// What touching members remember, alone.
   void load_sticks(const State& state);
@@ -130,6 +130,14 @@ class BodySystem {
     const Load* load;
     int node;
   };
+  struct OwnAnchor {
+    int index;  ///< into Model::anchors
+    int node;
+    AnchorState state;
+    Vec3 arm(const Model& model, const BodyMotion& motion) const {
+      return motion.rotation[node] * model.anchors[index].arm;
+    }
+  };
 
   const Model& model;
   const std::vector<int> bodies;
@@ -148,8 +156,9 @@ class BodySystem {
   std::vector<OwnElement> own_elements;
   std::vector<ElementState> elements;  ///< per own element; elastic until loaded
   std::vector<OwnLoad> loads;
-  bool yields;             ///< some element can
-  bool ends_here = false;  ///< the latest evaluation is that of the motion with which the step ends
+  std::vector<OwnAnchor> anchors;  ///< as they were loaded
+  bool yields;                     ///< some element can
+  bool ends_here = false;          ///< the latest evaluation is that of the motion with which the step ends
   /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
@@ -173,6 +182,8 @@ class BodySystem {
   MemberPair member_pair(const ElementPair& pair) const;
   void start_forces(const Parameters& parameters, double t);
   void take_forces();
+  template <bool with_tangent>
+  void add_anchors(const BodyMotion& motion);
   template <bool with_tangent>
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);

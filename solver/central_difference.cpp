@@ -266,6 +266,13 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, int* busiest) {
       kv.segment<6>(6 * i) += f.head<6>();
       kv.segment<6>(6 * j) += f.tail<6>();
     }
+    for (const BodySystem::OwnAnchor& own : s.anchors) {
+      const Anchor& anchor = s.model.anchors[own.index];
+      const Vec3 shift = v.segment<3>(6 * own.node), spin = v.segment<3>(6 * own.node + 3);
+      const Vec3 pull = anchor.stiffness * (shift + spin.cross(anchor.arm));
+      kv.segment<3>(6 * own.node) += pull;
+      kv.segment<3>(6 * own.node + 3) += anchor.arm.cross(pull);
+    }
     for (int i = 0; i < n; ++i) {
       Vec3 translation =
           (kv.segment<3>(6 * i) + held[i] * v.segment<3>(6 * i)) / s.model.node_mass[s.node[i]];

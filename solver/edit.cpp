@@ -60,6 +60,8 @@ std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters) {
   }
   for (const Edit::Key key : {Edit::Key::alpha, Edit::Key::q, Edit::Key::friction}) keys.emplace_back(key, 0);
   if (parameters.contact.kind == ContactLawKind::coulomb) keys.emplace_back(Edit::Key::restitution, 0);
+  for (int i = 0; i < static_cast<int>(parameters.anchors.size()); ++i)
+    keys.emplace_back(Edit::Key::anchor, i);
   keys.emplace_back(Edit::Key::time_step, 0);
   return keys;
 }
@@ -83,6 +85,8 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake) {
       return number(parameters.contact.friction);
     case Edit::Key::restitution:
       return number(parameters.contact.restitution);
+    case Edit::Key::anchor:
+      return number(parameters.anchors[shake] ? 1 : 0);
     case Edit::Key::time_step:
       return number(parameters.time_step);
   }
@@ -113,6 +117,9 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& parameter
     case Edit::Key::scale:
       start_passage(parameters.shakes[edit.shake], t);
       parameters.shakes[edit.shake].scale = value;
+      return;
+    case Edit::Key::anchor:
+      parameters.anchors[edit.shake] = value != 0;
       return;
     case Edit::Key::time_step:
       parameters.time_step = value;

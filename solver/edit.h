@@ -10,18 +10,29 @@
 namespace topple {
 
 /// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, only `direction`
-/// uses all three.
+/// uses all three. anchor: 1 puts it in place, 0 takes it away.
 struct Edit {
-  enum class Key { frequency, amplitude, direction, scale, alpha, q, friction, restitution, time_step };
+  enum class Key {
+    frequency,
+    amplitude,
+    direction,
+    scale,
+    alpha,
+    q,
+    friction,
+    restitution,
+    anchor,
+    time_step
+  };
   Key key;
-  int shake = 0;  ///< of frequency, amplitude, direction and scale
+  int shake = 0;  ///< of frequency, amplitude, direction and scale; of anchor: its index
   Vec3 value = Vec3::Zero();
 };
 
-/// Every key, and shake that it is for, that can be edited.
+/// Every key, and shake or anchor that it is for, that can be edited.
 std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters);
 
-/// The value that an edit of this key and shake sets.
+/// The value that an edit of this key and shake or anchor sets.
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 
 /// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude, direction and

@@ -91,6 +91,20 @@ struct Plane {
 /// midpoint: both in the middle.
 enum class Scheme { asi_gauss, asi, midpoint };
 
+/// A spring along the line from a point fixed to the floor's frame to a point of a body (anchor.h).
+struct Anchor {
+  enum class Type { strap, bracket, pole };
+  std::string name;
+  int body;
+  int node;          ///< of the body, the nearest to the attached point, which is rigidly joined to it
+  Vec3 arm;          ///< m, from the node to the attached point, reference axes
+  Vec3 to;           ///< m, floor's frame
+  Type type;         ///< strap: pulls only; bracket: both ways; pole: pushes only
+  double stiffness;  ///< N/m
+  double strength = std::numeric_limits<double>::infinity();  ///< N, it breaks above
+  double length;                                              ///< m, natural: that at the start, > 0
+};
+
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
 /// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
 struct Model {
@@ -108,6 +122,7 @@ struct Model {
   std::vector<Load> loads;
   std::vector<ContactPoint> contact_points;
   std::vector<Plane> planes;
+  std::vector<Anchor> anchors;
 
   int node_total() const { return static_cast<int>(node_position.size()); }
   /// Bodies that are not ground: the first ones.

@@ -126,7 +126,7 @@ double slide(const Model& model, int index, const BodyPose& pose) {
 }
 
 Outcome::Outcome(const Model& model)
-    : formed_(model.elements.size(), 0), furniture_(model.furniture_total()) {
+    : anchors_(model.anchors.size()), formed_(model.elements.size(), 0), furniture_(model.furniture_total()) {
   for (const Section& section : model.sections) {
     const auto of = [&](const Vec3& normal, const Vec3& moment) {
       return equivalent_stress(section, {normal, moment});
@@ -260,6 +260,30 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     }
   }
   observe_sections(model, state, sections, events);
+  observe_anchors(model, state, events);
+}
+
+void Outcome::observe_anchors(const Model& model, const State& state, std::vector<Event>& events) {
+  for (int k = 0; k < static_cast<int>(anchors_.size()); ++k) {
+    const Anchor& anchor = model.anchors[k];
+    AnchorOutcome& o = anchors_[k];
+    AnchorState whole = state.anchors[k];
+    const bool first = !o.hold && state.step > 0;  // goes on from a checkpoint
+    const bool breaks = whole.hold == AnchorHold::broken && o.hold != AnchorHold::broken && !first;
+    if (breaks) whole.hold = AnchorHold::in_place;  // as it was when it broke
+    const double tension = anchor_force(anchor, whole, anchor_point(model, state, k).at).tension;
+    o.hold = state.anchors[k].hold;
+    o.tension = breaks ? 0 : tension;
+    o.peak_force = std::max(o.peak_force, std::abs(tension));
+    if (!breaks) continue;
+    o.broke = state.time;
+    events.push_back({.kind = Event::Kind::anchor,
+                      .step = state.step,
+                      .time = state.time,
+                      .body = anchor.body,
+                      .value = tension,
+                      .anchor = k});
+  }
 }
 
 void Outcome::observe_sections(const Model& model, const State& state,

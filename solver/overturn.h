@@ -46,14 +46,16 @@ double critical_angle(const Model& model, int body, const BodyPose& pose);
 double slide(const Model& model, int body, const BodyPose& pose);
 
 struct Event {
-  enum class Kind { uplift, impact, overturn, hinge, fracture, model };
+  enum class Kind { uplift, impact, overturn, hinge, fracture, model, anchor };
   Kind kind;
   std::int64_t step;
   double time;  ///< s
   int body;
-  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge; model: Rung
+  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge; model: Rung;
+                     ///< anchor: tension at which it broke, N
   int element = -1;  ///< hinge, fracture: index into Model::elements
   RungReason reason = RungReason::asked;  ///< model: why the body changed, or began there
+  int anchor = 0;                         ///< anchor: index into Model::anchors
 };
 
 /// A body began on a rung, or came there.
@@ -92,6 +94,14 @@ struct BodyOutcome {
   double time = 0;                       ///< of this observation
 };
 
+/// What happened to one anchor so far.
+struct AnchorOutcome {
+  double tension = 0;              ///< N, at this observation; negative: pushes
+  double peak_force = 0;           ///< N, of |tension|, that at which it broke included
+  std::optional<double> broke;     ///< s, when it broke last
+  std::optional<AnchorHold> hold;  ///< at this observation
+};
+
 /// Follows a run step by step.
 class Outcome {
  public:
@@ -101,6 +111,7 @@ class Outcome {
                const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                const std::vector<SectionForces>& sections, std::vector<Event>& events);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
+  const std::vector<AnchorOutcome>& anchors() const { return anchors_; }
   /// Members of which an element holds a hinge while its other end passes yield too, by
   /// k_beside (hinges.h): more elements would show both.
   const std::vector<int>& crowded_members() const { return crowded_; }
@@ -112,7 +123,10 @@ class Outcome {
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);
 
+  void observe_anchors(const Model& model, const State& state, std::vector<Event>& events);
+
   std::vector<BodyOutcome> bodies_;
+  std::vector<AnchorOutcome> anchors_;
   std::vector<std::uint8_t> formed_;          ///< per element, bit 1 << Hinge: seen with it
   int furniture_;                             ///< bodies
   std::vector<Eigen::Vector4d> unit_stress_;  ///< per section: Pa by N, Mx, My and Mz of one

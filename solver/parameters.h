@@ -72,6 +72,7 @@ struct Parameters {
   Passage contact_passage;    ///< from it to `contact`
   std::vector<Shake> shakes;
   std::vector<BodyModel> models;            ///< one per body; empty: all frame
+  std::vector<bool> anchors;                ///< one per anchor: it is in place; empty: all are
   bool want_stress = true;                  ///< what `automatic` goes by
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;

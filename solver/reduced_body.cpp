@@ -72,7 +72,8 @@ ReducedBody::ReducedBody(const Model& model, int body)
       inertia_(packed(model.bodies[body].inertia)),
       inverse_inertia_(packed(Mat3(model.bodies[body].inertia.inverse()))),
       basis_(model.bodies[body].elastic),
-      contacts_(model, body) {}
+      contacts_(model, body),
+      anchors_(model, body) {}
 
 Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
   const PackVec3 omega = packed(s.angular_velocity),
@@ -175,8 +176,8 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
 double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   const int m = modes(s), n = 6 + m;
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (!contacts_.any()) return swing;
-  const std::uint64_t touching = contacts_.hash();
+  if (!contacts_.any() && !anchors_.any()) return swing;
+  const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.rung == s.rung)
@@ -191,6 +192,14 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
     for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = contacts_.shape(touch, lane, k);
     stiffness += law.alpha / contacts_.length(touch, lane) * greatest_stiffness(law) * j.transpose() * j;
   });
+  for (const BodyAnchors::Tie& tie : anchors_.ties()) {
+    if (tie.state.hold != AnchorHold::in_place) continue;
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6 + k_modes> j(3, n);
+    j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
+    j.middleCols<3>(3) = -skew(tie.place) * root;
+    for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = tie.shape[k];
+    stiffness += model_.anchors[tie.index].stiffness * j.transpose() * j;
+  }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
@@ -207,6 +216,7 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
     out.strain = 0.5 * (basis_->frequency * s.amplitude).square().sum();
   }
   out.contact = contacts_.energy(law);
+  out.anchor = anchors_.energy();
   return out;
 }
 
@@ -231,6 +241,7 @@ BodyEnergy ReducedBody::find_contacts(const Instant& now, const BodyState& s, st
     contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
     respond_at(now.law, s);
   }
+  anchors_.find(s);
   return energy(now.law, s);
 }
 
@@ -244,6 +255,11 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
   contacts_.press_modes(modes(s), s.load);
   s.force = mass_ * (parameters.gravity - now.floor) + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
+  if (anchors_.any()) {
+    anchors_.press_modes(s, modes(s), s.load);
+    s.force += anchors_.force();
+    s.moment += anchors_.moment();
+  }
   return held;
 }
 
@@ -268,6 +284,11 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   const Vec3 shift = s.position - before.position, field = parameters.gravity - end.floor;
   contacts_.find(s, r, stick);
   contacts_.follow(before, r0, s, r);
+  anchors_.find(s);
+  const bool tied = anchors_.any();
+  const Vec3 pull = anchors_.force(), twist = anchors_.moment();
+  Amplitudes pressed = Amplitudes::Zero();
+  anchors_.press_modes(s, modes(s), pressed);
   ContactLoads loads{{0, 0, 0}, {0, 0, 0}, 0, 0};
   s.load.setZero();
   if (contacts_.any()) {
@@ -276,7 +297,12 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
     u.linear = mul_add(h / 2 / mass_, packed(before.force), u.linear);
     u.angular = u.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(before.moment)));
     if (bends) u.rate += h / 2 * kick_ * before.load;
-    const BodyVelocity free{mul_add(h / 2, packed(field), drifted.linear), drifted.angular, drifted.rate};
+    BodyVelocity free{mul_add(h / 2, packed(field), drifted.linear), drifted.angular, drifted.rate};
+    if (tied) {
+      free.linear = mul_add(h / 2 / mass_, packed(pull), free.linear);
+      free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
+      if (bends) free.rate += h / 2 * kick_ * pressed;
+    }
     if (!solve_velocity(end.law, inertia_at(r), h, free, u, loads, s.load, modes(s), w)) {
       s = before;
       contacts_.give_up_part();
@@ -285,8 +311,13 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
+  if (tied) {
+    s.force += pull;
+    s.moment += twist;
+    s.load += pressed;
+  }
   s.velocity += h / 2 / mass_ * s.force;
-  s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, loads.moment)));
+  s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
   if (bends) s.rate += h / 2 * kick_ * s.load;
 
   // As book_work, and what the method itself takes out, from its own kinematics.
@@ -316,7 +347,7 @@ double ReducedBody::stable_size(const Parameters& parameters, const ContactLaw& 
                                 const BodyState& s, std::span<const Vec3> stick) {
   const double now = stable_part(law, s) / parameters.finer_parts,
                size = now < h ? h / std::ceil(h / now - 1e-9) : h;
-  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * contacts_.stiffest()) <
+  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * contacts_.stiffest() + anchors_.stiffest()) <
       k_stable_turn / parameters.finer_parts)
     return size;
   BodyState ahead = s;
@@ -332,7 +363,7 @@ double ReducedBody::stable_size(const Parameters& parameters, const ContactLaw& 
 bool ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                           BodyState& s, std::span<Vec3> stick, StepEnergy& booked, BodyEnergy& held,
                           ReducedScratch& w) {
-  const bool touches = contacts_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
+  const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
   double size = !touches && s.rung == Rung::rigid ? h : stable_size(parameters, start.law, h, s, stick);
   if (s.rung == Rung::rigid && touches && (parameters.adaptive || size < h)) {
     if (!advance_stiffly(parameters, start, end, h, s, stick, booked)) return false;
@@ -363,7 +394,7 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const 
   if (s.rung == Rung::elastic) {
     limit = contacts_.look_ahead(law, s);
   } else {
-    if (contacts_.any() && s.part > 0) limit = std::min(limit, s.part);
+    if ((contacts_.any() || anchors_.any()) && s.part > 0) limit = std::min(limit, s.part);
     if (const double landing = next_landing(s, limit); landing < limit)
       limit = std::max(landing, std::min(limit, first_part(law)));
   }
@@ -384,6 +415,7 @@ void ReducedBody::each_force(const BodyState& s, F f) const {
   contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
     f(model_.contact_points[point].node - model_.bodies[body_].first_node, Vec3(back * lane(touch.force, k)));
   });
+  for (const BodyAnchors::Tie& tie : anchors_.ties()) f(tie.node, Vec3(back * tie.now.force));
 }
 
 void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>& sections) {

@@ -23,6 +23,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/body_anchors.h"
 #include "solver/body_contacts.h"
 #include "solver/body_system.h"
 #include "solver/elastic_basis.h"
@@ -50,6 +51,8 @@ class ReducedBody {
  public:
   ReducedBody(const Model& model, int body);
 
+  /// State::anchors hold from here on.
+  void remember(std::span<const AnchorState> anchors) { anchors_.remember(anchors); }
   /// Contacts of `s` with the springs `stick` (State::stick); returns what the body holds.
   BodyEnergy find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick);
   /// The same, and all that acts on the body into `s`.
@@ -127,6 +130,7 @@ class ReducedBody {
   const PackMat3 inertia_, inverse_inertia_;  // material axes
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
+  BodyAnchors anchors_;
   // The state at which contacts_ was pressed.
   std::optional<BodyState> found_at_;
   ContactLaw found_law_;

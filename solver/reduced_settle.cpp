@@ -32,6 +32,8 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
   double balanced = k_balanced * mass_ * parameters.gravity.norm();
   balanced += 8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * now.law.alpha *
               std::max(now.law.q, k_stick_stiffness) * contacts_.pairs() / contacts_.least_length();
+  balanced +=
+      8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * anchors_.greatest_stiffness();
   double sigma = k_first;
   for (int round = 0; round < k_rounds; ++round) {
     balance(still, now, s, stick);
@@ -64,6 +66,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
       stiffness -= j.transpose() * by_position * j;
       stiffness.block<3, 3>(3, 3) -= skew(out.force) * skew(arm);  // the arm turns with the body
     });
+    anchors_.add_stiffness(s, m, stiffness);
     double left = std::max(s.force.cwiseAbs().maxCoeff(), s.moment.cwiseAbs().maxCoeff() / reach_);
     if (m > 0) left = std::max(left, load.tail(m).cwiseAbs().maxCoeff() * std::sqrt(mass_));
     if (left < balanced && sigma > 1) {

@@ -59,7 +59,13 @@ ContactLoads ReducedBody::reach_stage(const StiffPart& part, const PreparedLaw& 
   r = rotation_matrix(q);
   contacts_.find(at, r, part.stick);
   contacts_.follow(part.start, part.r0, at, r);
-  return with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+  ContactLoads loads =
+      with_slope ? contacts_.press<true>(law, u, part.lever) : contacts_.press<false>(law, u, part.lever);
+  if (!anchors_.any()) return loads;
+  anchors_.find(at);
+  loads.force = loads.force + packed(anchors_.force());
+  loads.moment = loads.moment + packed(anchors_.moment());
+  return loads;
 }
 
 // Newton for the velocity of a stage:  M u = momentum of `from` + lever (field + contacts).
@@ -74,7 +80,9 @@ bool ReducedBody::solve_stage(StiffPart& part, const Instant& now, const PackVec
     PackVec3 x = mass_ * u.linear - from.momentum - part.lever * (loads.force + mass_ * field),
              y = spin() - from.spin - part.lever * loads.moment;
     if (part.fresh) {
-      part.solver = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.slope());
+      ContactSlope slope = contacts_.slope();
+      anchors_.add_slope(at, part.lever, slope);
+      part.solver = RigidSolver(mass_, inertia_at(r), part.lever, slope);
       part.sticks = RigidSolver(mass_, inertia_at(r), part.lever, contacts_.stick_slope());
     }
     part.solver.solve(x, y);
@@ -173,8 +181,10 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
 
 // A first guess at a part that follows a touch.
 double ReducedBody::first_part(const ContactLaw& law) const {
+  const double contact =
+      std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
   return k_resolved *
-         std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
+         (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness())) : contact);
 }
 
 double ReducedBody::next_landing(const BodyState& s, double within) const {

@@ -23,6 +23,7 @@ double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
     const Element& element = s.model.elements[own.element];
     stiffness = std::max(stiffness, element.normal_stiffness.x() / element.length);
   }
+  for (const auto& own : s.anchors) stiffness = std::max(stiffness, s.model.anchors[own.index].stiffness);
   for (const Vec3& x : position) reach = std::max(reach, x.norm());
   return 8 * std::numeric_limits<double>::epsilon() * reach * stiffness;
 }

@@ -72,6 +72,15 @@ void each_number(AnyState& s, F f) {
        {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction, &e.normal_damping, &e.numerical,
         &e.plastic, &e.model_switch, &e.start_total, &e.largest})
     f(*number);
+  if (s.anchors.empty()) return;  // a checkpoint of a model without anchors has no place for them
+  f(e.anchor);
+  f(e.released);
+  for (auto& anchor : s.anchors) {
+    f(anchor.length);
+    double hold = static_cast<double>(anchor.hold);
+    f(hold);
+    if constexpr (!std::is_const_v<AnyState>) anchor.hold = as<AnchorHold>(hold, AnchorHold::broken);
+  }
 }
 
 // Pairs of elements as numbers of eight bytes, as in a checkpoint.
@@ -134,6 +143,7 @@ void resize(const Model& model, State& state) {
   state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
   state.elements.assign(model.elements.size(), {});
   state.bodies.assign(model.bodies.size(), {});
+  for (const Anchor& anchor : model.anchors) state.anchors.push_back({.length = anchor.length});
 }
 
 }  // namespace
@@ -167,7 +177,7 @@ std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
                   (23 + 3 * k_modes) * state.bodies.size() + state.near.size() +
-                  5 * state.member_sticks.size() + 24);
+                  5 * state.member_sticks.size() + 2 * state.anchors.size() + 26);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
   each_touching(state, [&](double x) { numbers.push_back(x); });
@@ -232,10 +242,26 @@ bool is_finite(const State& s, bool nodes) {
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
   for (const MemberStick& stick : s.member_sticks) look(stick.stick.data(), 3);
   const EnergyLedger& e = s.energy;
-  for (const double x :
-       {s.time, s.floor_displacement.sum(), s.floor_velocity.sum(), s.step_size, s.load_factor, s.near_slack,
-        e.input, e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.normal_damping, e.numerical,
-        e.plastic, e.model_switch, e.start_total, e.largest})
+  for (const double x : {s.time,
+                         s.floor_displacement.sum(),
+                         s.floor_velocity.sum(),
+                         s.step_size,
+                         s.load_factor,
+                         s.near_slack,
+                         e.input,
+                         e.kinetic,
+                         e.strain,
+                         e.gravity,
+                         e.contact,
+                         e.friction,
+                         e.normal_damping,
+                         e.numerical,
+                         e.plastic,
+                         e.model_switch,
+                         e.anchor,
+                         e.released,
+                         e.start_total,
+                         e.largest})
     odd_one += x - x;
   return !any_above(odd, 0) && odd_one == 0;
 }
@@ -252,6 +278,7 @@ void copy(const State& from, State& to, bool nodes) {
   to.member_sticks = from.member_sticks;
   to.near = from.near;
   to.near_slack = from.near_slack;
+  to.anchors = from.anchors;
   to.floor_displacement = from.floor_displacement;
   to.floor_velocity = from.floor_velocity;
   to.step_size = from.step_size;

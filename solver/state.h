@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/anchor.h"
 #include "solver/body_state.h"
 #include "solver/element_state.h"
 #include "solver/member_contact.h"
@@ -14,8 +15,8 @@
 
 namespace topple {
 
-/// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity and contact are what is
-/// there or came in; dissipated is what went out.
+/// Energies since the start of the run, J. Signs: input, kinetic, strain, gravity, contact and anchor are
+/// what is there or came in; dissipated is what went out.
 struct EnergyLedger {
   double input =
       0;  ///< work of the floor's acceleration, loads and edits on the bodies, in the floor's frame
@@ -28,13 +29,15 @@ struct EnergyLedger {
   double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
   double plastic = 0;         ///< dissipated by hinges; moves of stress points and fracture are in it
   double model_switch = 0;    ///< came in when bodies changed their rung (ladder.h)
-  double start_total = 0;     ///< kinetic + strain + contact at the start
+  double anchor = 0;          ///< stored in anchors
+  double released = 0;        ///< what anchors held when they broke or were taken away: went out
+  double start_total = 0;     ///< kinetic + strain + contact + anchor at the start
   double largest = 0;         ///< largest energy exchanged so far
 
-  double dissipated() const { return friction + normal_damping + numerical + plastic; }
+  double dissipated() const { return friction + normal_damping + numerical + plastic + released; }
   /// Energy that nothing explains.
   double unexplained() const {
-    return kinetic + strain + gravity + contact - start_total - input - model_switch + dissipated();
+    return kinetic + strain + gravity + contact + anchor - start_total - input - model_switch + dissipated();
   }
   /// |unexplained| over the largest energy exchanged so far (input, kinetic, potential).
   double balance_error() const;
@@ -61,6 +64,7 @@ struct State {
   std::vector<ElementPair> near;           ///< that may touch before `near_slack` is used up, in order
   double near_slack = 0;                   ///< m, that bodies may still approach each other
   std::vector<ElementState> elements;      ///< index as Model::elements
+  std::vector<AnchorState> anchors;        ///< index as Model::anchors
   Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)
   Vec3 floor_velocity = Vec3::Zero();      ///< m/s, high-passed
   /// Step size in use, 0: not chosen yet. Adaptive runs: s, tried next; displacement control: m or rad per

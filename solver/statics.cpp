@@ -220,7 +220,7 @@ StepStatus LoadPath::balance(const Parameters& parameters, State& state, Target 
 // Every body is in balance: the one place where a trial becomes the state.
 void LoadPath::accept(const Parameters& still, double factor, State& state) {
   EnergyLedger& energy = state.energy;
-  energy.strain = energy.contact = 0;
+  energy.strain = energy.contact = energy.anchor = 0;
   for (auto& system : systems_) {
     BodySystem& s = *system;
     const BodyMotion &start = start_[s.index], &trial = trial_[s.index];
@@ -245,6 +245,7 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
     const BodyEnergy held = s.energy(still.contact, trial, s.contacts, sections_);
     energy.strain += held.strain;
     energy.contact += held.contact;
+    energy.anchor += held.anchor;
   }
   state.load_factor = factor;
 }
@@ -266,6 +267,8 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
 
 StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& state) {
   StepStatus status;
+  std::vector<bool> changed(model_->bodies.size());
+  switch_anchors(*model_, parameters, state, changed);
   IntegratorScratch scratch;
   for (auto& system : systems_)
     if (settled && status.ok()) status = settle_system(*system, parameters, state, scratch);
@@ -289,6 +292,8 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
   double done = 0, part = 1;
   int iterations = 0, rejected = 0;
   StepStatus status;
+  std::vector<bool> changed(model_->bodies.size());
+  switch_anchors(*model_, parameters, state, changed);
   while (done < 1) {
     const Target target = settings_.control ? Target{state.load_factor, part * state.step_size}
                                             : Target{(before + done + part) / steps};

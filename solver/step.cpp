@@ -66,6 +66,14 @@ void add(const BodyEnergy& part, BodyEnergy& sum) {
   sum.kinetic += part.kinetic;
   sum.strain += part.strain;
   sum.contact += part.contact;
+  sum.anchor += part.anchor;
+}
+
+void take(const BodyEnergy& held, EnergyLedger& energy) {
+  energy.kinetic = held.kinetic;
+  energy.strain = held.strain;
+  energy.contact = held.contact;
+  energy.anchor = held.anchor;
 }
 
 }  // namespace
@@ -81,8 +89,10 @@ struct Workspace::Impl {
     contact_forces.reserve(model.contact_points.size() * model.planes.size());
   }
   const std::vector<BodySystem*>& systems() const { return islands.systems(); }
-  ReducedBody& reduced(const Model& model, int body) {
+  // With the anchors of `state`.
+  ReducedBody& reduced(const Model& model, const State& state, int body) {
     if (!reduced_bodies[body]) reduced_bodies[body] = std::make_unique<ReducedBody>(model, body);
+    reduced_bodies[body]->remember(state.anchors);
     return *reduced_bodies[body];
   }
 
@@ -97,6 +107,7 @@ struct Workspace::Impl {
   double base_alpha = 0, base_q = 0;
   std::vector<bool> near;                       // per body: another is
   std::vector<bool> new_frames;                 // per body: since the last step
+  std::vector<bool> new_anchors;                // per body: one was switched or broke
   std::vector<IntegratorScratch> scratches{1};  // per worker
   ParallelFor parallel;
   Profile profile;
@@ -242,9 +253,11 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
   Workspace::Impl& w = workspace.impl();
   StepStatus status;
   start_rungs(model, parameters, state, w);
+  w.new_anchors.assign(model.bodies.size(), false);
+  switch_anchors(model, parameters, state, w.new_anchors);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (state.bodies[b].rung == Rung::frame) continue;
-    if (!w.reduced(model, b).settle(parameters, state.bodies[b], state.stick)) {
+    if (!w.reduced(model, state, b).settle(parameters, state.bodies[b], state.stick)) {
       status.kind = StepStatus::Kind::not_settled;
       status.time = state.time;
       status.body = b;
@@ -262,22 +275,22 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
   Workspace::Impl& w = workspace.impl();
   start_rungs(model, parameters, state, w);
   EnergyLedger& energy = state.energy;
-  energy.kinetic = energy.strain = energy.contact = 0;
-  const auto add = [&](const BodyEnergy& part) {
-    energy.kinetic += part.kinetic;
-    energy.strain += part.strain;
-    energy.contact += part.contact;
-  };
+  BodyEnergy held;
   const Instant now(parameters, state.time);
+  w.new_anchors.assign(model.bodies.size(), false);
+  switch_anchors(model, parameters, state, w.new_anchors);
+  break_anchors(model, state, w.new_anchors);
+  energy.released = 0;  // what settling left in them was never in the run
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     if (state.bodies[b].rung != Rung::frame)
-      add(w.reduced(model, b).balance(parameters, now, state.bodies[b], state.stick));
+      add(w.reduced(model, state, b).balance(parameters, now, state.bodies[b], state.stick), held);
   for (auto& system : w.systems()) {
     balance_accelerations(*system, parameters, state, w.motion);
-    add(system->energy(now.law, w.motion, system->contacts, w.sections));
+    add(system->energy(now.law, w.motion, system->contacts, w.sections), held);
   }
-  energy.start_total = energy.kinetic + energy.strain + energy.contact;
-  energy.largest = std::max(energy.kinetic, energy.strain + energy.contact);
+  take(held, energy);
+  energy.start_total = held.kinetic + held.strain + held.contact + held.anchor;
+  energy.largest = std::max(held.kinetic, held.strain + held.contact + held.anchor);
 }
 
 void resume(const Model& model, const State& state, Workspace& workspace) {
@@ -398,7 +411,7 @@ RungChoice choose_rung(const Model& model, const Parameters& parameters, State& 
   }
   const bool automatic = parameters.models[b] == BodyModel::automatic;
   if (s.rung == Rung::elastic && automatic) {
-    ReducedBody& body = w.reduced(model, b);
+    ReducedBody& body = w.reduced(model, state, b);
     if (body.rotation_bound(s) > k_small_rotation) return {Rung::frame, RungReason::deformation};
     if (body.yield_bound(s) > k_near_yield) {
       body.section_forces(s, w.sections);
@@ -412,7 +425,7 @@ RungChoice choose_rung(const Model& model, const Parameters& parameters, State& 
 void change_rung(const Model& model, const Parameters& parameters, const Instant& now, RungChoice choice,
                  int b, State& state, Workspace::Impl& w) {
   BodyState& s = state.bodies[b];
-  const auto total = [](const BodyEnergy& e) { return e.kinetic + e.strain + e.contact; };
+  const auto total = [](const BodyEnergy& e) { return e.kinetic + e.strain + e.contact + e.anchor; };
   const auto of_frame = [&] {
     BodySystem& system = *w.islands.alone(b);
     system.load(state, w.motion);
@@ -420,7 +433,7 @@ void change_rung(const Model& model, const Parameters& parameters, const Instant
     system.find_contacts(now.law, w.motion, state.stick, w.motion.position, system.contacts);
     return total(system.energy(now.law, w.motion, system.contacts, w.sections));
   };
-  ReducedBody& body = w.reduced(model, b);
+  ReducedBody& body = w.reduced(model, state, b);
   const double height = body_pose(model, state, b).centre.dot(parameters.gravity);
   const double before = s.rung == Rung::frame ? of_frame() : total(body.find_contacts(now, s, state.stick));
   if (choice.rung == Rung::frame) {
@@ -451,7 +464,7 @@ void change_rungs(const Model& model, const Parameters& parameters, const Instan
   w.new_frames.assign(model.bodies.size(), false);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodyState& s = state.bodies[b];
-    if (s.rung != Rung::frame) w.reduced(model, b).find_contacts(now, s, state.stick);
+    if (s.rung != Rung::frame) w.reduced(model, state, b).find_contacts(now, s, state.stick);
     const RungChoice choice = choose_rung(model, parameters, state, b, w);
     if (choice.rung == s.rung) {
       s.reason = choice.reason;
@@ -465,6 +478,17 @@ void change_rungs(const Model& model, const Parameters& parameters, const Instan
       balance_accelerations(*system, parameters, state, w.motion);
 }
 
+// Accelerations anew of bodies whose anchors changed.
+void balance_again(const Model& model, const Parameters& parameters, const Instant& now, State& state,
+                   Workspace::Impl& w) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (w.new_anchors[b] && state.bodies[b].rung != Rung::frame)
+      w.reduced(model, state, b).balance(parameters, now, state.bodies[b], state.stick);
+  for (BodySystem* system : w.systems())
+    if (std::any_of(system->bodies.begin(), system->bodies.end(), [&](int b) { return w.new_anchors[b]; }))
+      balance_accelerations(*system, parameters, state, w.motion);
+}
+
 // One step of size h from w.next, whose near elements are known, into w.next.
 StepStatus try_known(const Model& model, const Parameters& parameters, const State& state, double h,
                      int halvings, Workspace::Impl& w) {
@@ -473,6 +497,9 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   {
     const InPhase phase(&w.profile, Phase::ladder);
     change_rungs(model, parameters, start, w.next, w);
+    w.new_anchors.assign(model.bodies.size(), false);
+    if (switch_anchors(model, parameters, w.next, w.new_anchors))
+      balance_again(model, parameters, start, w.next, w);
   }
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
@@ -496,7 +523,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     exchanged.input = jump(model, floor, next);
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
       if (next.bodies[b].rung != Rung::frame)
-        w.reduced(model, b).balance(parameters, start, next.bodies[b], next.stick);
+        w.reduced(model, next, b).balance(parameters, start, next.bodies[b], next.stick);
     for (auto& system : w.systems()) balance_accelerations(*system, parameters, next, w.motion);
   }
 
@@ -512,8 +539,9 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
       BodyEnergy holds;
-      if (!w.reduced(model, b).advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
-                                       holds, w.reduced_scratch[worker])) {
+      if (!w.reduced(model, next, b)
+               .advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged, holds,
+                        w.reduced_scratch[worker])) {
         part.status.kind = StepStatus::Kind::newton_diverged;
         part.status.time = end.time;
         part.status.body = b;
@@ -585,10 +613,9 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   e.normal_damping += exchanged.normal_damping;
   e.numerical += exchanged.numerical;
   e.plastic += exchanged.plastic;
-  e.kinetic = held.kinetic;
-  e.strain = held.strain;
-  e.contact = held.contact;
-  e.largest = std::max({e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact});
+  take(held, e);
+  e.largest = std::max(
+      {e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact + e.anchor});
   // central differences have looked at the accelerations
   if (!is_finite(next, !w.systems().empty() && !is_explicit)) {
     status.kind = StepStatus::Kind::not_finite;
@@ -651,8 +678,16 @@ double next_limit(const Model& model, const Parameters& parameters, const State&
   const ContactLaw law = contact_law(parameters, state.time);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     if (state.bodies[b].rung != Rung::frame)
-      limit = std::min(limit, w.reduced(model, b).look_ahead(law, state.bodies[b]));
+      limit = std::min(limit, w.reduced(model, state, b).look_ahead(law, state.bodies[b]));
   return std::max(limit, 2 * k_least_step);
+}
+
+// The step in w.next is taken.
+void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
+  w.new_anchors.assign(model.bodies.size(), false);
+  if (break_anchors(model, w.next, w.new_anchors))
+    balance_again(model, parameters, Instant(parameters, w.next.time), w.next, w);
+  std::swap(state, w.next);
 }
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
@@ -675,7 +710,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
       const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
       w.next.step_size = h;
       if (!is_explicit) change_step(w.next, std::min(wanted, next_limit(model, parameters, w.next, w)));
-      std::swap(state, w.next);
+      accept(model, parameters, state, w);
       break;
     }
     if (is_explicit || h < 2 * k_least_step) {
@@ -698,7 +733,7 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   if (parameters.adaptive) return adaptive_step(model, parameters, state, w, until);
   const double h = parameters.time_step;
   const StepStatus status = try_step(model, parameters, state, h, k_halvings, w);
-  if (status.ok()) std::swap(state, w.next);
+  if (status.ok()) accept(model, parameters, state, w);
   return status;
 }
 
@@ -715,7 +750,7 @@ const std::vector<ContactForce>& contact_forces(const Model& model, const Parame
   const Instant now(parameters, state.time);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (state.bodies[b].rung == Rung::frame) continue;
-    ReducedBody& body = w.reduced(model, b);
+    ReducedBody& body = w.reduced(model, state, b);
     body.find_contacts(now, state.bodies[b], state.stick);
     body.section_forces(state.bodies[b], w.sections);
     body.list_contacts(w.contact_forces);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/anchor.h"
 #include "solver/contact_law.h"
 #include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
@@ -77,7 +78,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
   double limit = std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
-                           member_limit(model, law, state)});
+                           member_limit(model, law, state), anchor_look_ahead(model, state)});
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (state.bodies[b].rung != Rung::frame) continue;
     const Body& body = model.bodies[b];

@@ -15,8 +15,8 @@ inline constexpr double k_closing_part = 4;     ///< steps in which a closing co
 inline constexpr double k_turn = 0.1;           ///< rad per step
 
 /// What the motion at `state` allows, s: T_contact/20 of a body that touches, the time to touch or L/(4 v)
-/// where a contact closes, 0.1/|omega|, the time between
-/// two samples of a record that shakes the floor. Of frames, whose nodes are where `state` has them.
+/// where a contact closes, 0.1/|omega|, the time between two samples of a record that shakes the floor. Of
+/// frames, whose nodes are where `state` has them; and anchor_look_ahead of all bodies.
 double look_ahead(const Model& model, const Parameters& parameters, const State& state);
 
 /// Local error of a step of the implicit methods over what the tolerance allows it; at most 1 passes.

@@ -19,11 +19,15 @@ constexpr Name k_names[] = {
     {Edit::Key::direction, "shake", "direction"}, {Edit::Key::scale, "shake", "scale"},
     {Edit::Key::alpha, "contact", "alpha"},       {Edit::Key::q, "contact", "q"},
     {Edit::Key::friction, "contact", "friction"}, {Edit::Key::restitution, "contact", "restitution"},
-    {Edit::Key::time_step, "run", "time_step"},
+    {Edit::Key::anchor, "anchor", "on"},          {Edit::Key::time_step, "run", "time_step"},
 };
 
 bool of_shake(Edit::Key key) {
   return key_of(key).table == "shake";
+}
+
+bool is_numbered(Edit::Key key) {
+  return of_shake(key) || key == Edit::Key::anchor;
 }
 
 [[noreturn]] void fail(const Edit& edit, const std::string& message) {
@@ -55,7 +59,7 @@ const Key& key_of(Edit::Key key) {
 
 std::string edit_key(const Edit& edit) {
   const Name& name = k_names[static_cast<std::size_t>(edit.key)];
-  const std::string number = of_shake(edit.key) ? std::to_string(edit.shake + 1) + "." : "";
+  const std::string number = is_numbered(edit.key) ? std::to_string(edit.shake + 1) + "." : "";
   return std::string(name.table) + "." + number + name.name;
 }
 
@@ -65,7 +69,7 @@ std::optional<Edit> parse_edit_key(std::string_view text) {
   if (dot != std::string_view::npos)
     std::from_chars(text.data() + dot + 1, text.data() + text.size(), number);
   for (const Name& name : k_names) {
-    const Edit edit{.key = name.key, .shake = of_shake(name.key) ? number - 1 : 0};
+    const Edit edit{.key = name.key, .shake = is_numbered(name.key) ? number - 1 : 0};
     if (edit.shake >= 0 && edit_key(edit) == text) return edit;
   }
   return std::nullopt;
@@ -82,6 +86,8 @@ void check_edit_value(const Edit& edit) {
     if (value < key.least - slack * std::abs(key.least) || value > key.most + slack * std::abs(key.most))
       fail(edit, value_text(key, value) + " is outside " + range_text(key));
   }
+  if (key.type == KeyType::boolean && edit.value.x() != 0 && edit.value.x() != 1)
+    fail(edit, short_number(edit.value.x()) + " is neither 0 nor 1");
   if (edit.key == Edit::Key::direction && !(edit.value.stableNorm() > 0))
     fail(edit, "a zero vector has no direction");
 }
@@ -90,6 +96,9 @@ void check_edit(const Edit& edit, const Setup& setup) {
   const std::vector<Shake>& shakes = setup.parameters.shakes;
   if (of_shake(edit.key) && (edit.shake < 0 || edit.shake >= static_cast<int>(shakes.size())))
     fail(edit, "there is no such shake; the scene has " + std::to_string(shakes.size()));
+  const std::vector<Anchor>& anchors = setup.model.anchors;
+  if (edit.key == Edit::Key::anchor && (edit.shake < 0 || edit.shake >= static_cast<int>(anchors.size())))
+    fail(edit, "there is no such anchor; the scene has " + std::to_string(anchors.size()));
   check_edit_value(edit);
   const std::vector<std::string_view>& when = key_of(edit.key).when;
   if (edit.key == Edit::Key::frequency)

@@ -11,7 +11,8 @@
 
 namespace topple::io {
 
-/// "shake.1.amplitude", "contact.alpha", "run.time_step": the path in the scene; shakes count from 1.
+/// "shake.1.amplitude", "contact.alpha", "anchor.1.on", "run.time_step": the path in the scene; shakes and
+/// anchors count from 1.
 std::string edit_key(const Edit& edit);
 
 /// Inverse of edit_key, its value zero. Nothing when no edit is called so.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "solver/io/scene.h"
@@ -143,13 +144,21 @@ void energy_row(CsvFile& csv, const FrameRow& row) {
   csv.number(row.time).numbers(row.energy.data(), row.energy.size()).end_row();
 }
 
+void anchors_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t k = 0; k < model.anchors.size(); ++k) {
+    const float* values = row.anchor.data() + 4 * k;
+    csv.number(row.time).text(model.anchors[k].name).numbers(values, 3);
+    csv.text(anchor_word(values[3])).end_row();
+  }
+}
+
 void floor_row(CsvFile& csv, const FrameRow& row) {
   csv.number(row.time).numbers(row.floor_acceleration, 3).numbers(row.floor_displacement, 3).end_row();
 }
 
 void expect_same_model(const Model& model, const FrameRow& row) {
   if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
-      row.rung.size() != model.bodies.size())
+      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
     throw InputError(k_another_model);
 }
 
@@ -165,9 +174,14 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   CsvFile elements(base / "elements.csv",
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
   CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
+  const std::string energies =
+      "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
+      "plastic_J,model_switch_J,balance_error";
   CsvFile energy(base / "energy.csv",
-                 "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,"
-                 "numerical_J,plastic_J,model_switch_J,balance_error");
+                 (model.anchors.empty() ? energies : energies + ",anchor_J,released_J").c_str());
+  std::optional<CsvFile> anchors;
+  if (!model.anchors.empty())
+    anchors.emplace(base / "anchors.csv", "time_s,anchor,tension_N,energy_J,natural_length_m,state");
   for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
     const FrameRow row = recording.frame(i);
     expect_same_model(model, row);
@@ -176,8 +190,10 @@ void write_csv(const Recording& recording, const Model& model, const std::string
     elements_rows(elements, model, row);
     floor_row(floor, row);
     energy_row(energy, row);
+    if (anchors) anchors_rows(*anchors, model, row);
   }
-  CsvFile* const files[] = {&bodies, &nodes, &elements, &floor, &energy};
+  std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &floor, &energy};
+  if (anchors) files.push_back(&*anchors);
   for (CsvFile* file : files) file->close();
   for (CsvFile* file : files) file->publish();
 }

@@ -110,7 +110,31 @@ void fill_bodies(const Run& run, FrameRow& row) {
   }
 }
 
+void fill_anchors(const Run& run, FrameRow& row) {
+  const State& state = run.state();
+  const std::vector<AnchorForce> forces = anchor_forces(run.setup().model, state);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const AnchorState& anchor = state.anchors[k];
+    const float look = anchor.hold == AnchorHold::away     ? k_anchor_away
+                       : anchor.hold == AnchorHold::broken ? k_anchor_broken
+                       : forces[k].tension == 0            ? k_anchor_slack
+                                                           : k_anchor_holds;
+    const double values[3] = {forces[k].tension, forces[k].energy, anchor.length};
+    for (int i = 0; i < 3; ++i) row.anchor[4 * k + i] = static_cast<float>(values[i]);
+    row.anchor[4 * k + 3] = look;
+  }
+  if (forces.empty()) return;
+  row.energy[11] = state.energy.anchor;
+  row.energy[12] = state.energy.released;
+}
+
 }  // namespace
+
+const char* anchor_word(float state) {
+  if (state == k_anchor_away) return "away";
+  if (state == k_anchor_slack) return "slack";
+  return state == k_anchor_holds ? "holds" : "broken";
+}
 
 FrameRow frame_row(const Run& run) {
   const State& state = run.state();
@@ -122,8 +146,11 @@ FrameRow frame_row(const Run& run) {
   fill_contacts(run, row);
   fill_bodies(run, row);
   const EnergyLedger& e = state.energy;
-  row.energy = {e.input,          e.kinetic,   e.strain,  e.gravity,      e.contact,        e.friction,
-                e.normal_damping, e.numerical, e.plastic, e.model_switch, e.balance_error()};
+  const double energies[11] = {e.input,   e.kinetic,      e.strain,         e.gravity,
+                               e.contact, e.friction,     e.normal_damping, e.numerical,
+                               e.plastic, e.model_switch, e.balance_error()};
+  std::copy_n(energies, 11, row.energy.begin());
+  fill_anchors(run, row);
   row.load_factor = state.load_factor;
   const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
   for (int k = 0; k < 3; ++k) {

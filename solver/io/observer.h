@@ -12,7 +12,12 @@ namespace topple::io {
 
 inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
 
-/// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies.
+/// Of FrameRow::anchor. slack: in place, without force.
+inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
+/// "away", "slack", "holds", "broken".
+const char* anchor_word(float state);
+
+/// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies, a anchors.
 struct FrameRow {
   std::int32_t branch = 0;
   std::int64_t step = 0;
@@ -26,13 +31,16 @@ struct FrameRow {
   std::vector<float> contact_depth;  ///< c, 1 - l/L; 0: open
   std::vector<float> contact_force;  ///< c x 3, N
   std::vector<double> energy;        ///< input, kinetic, strain, gravity, contact, friction, normal damping,
-                                     ///< numerical, plastic, model switch, balance error; J, last -
+                                     ///< numerical, plastic, model switch, balance error; with anchors also
+                                     ///< anchor, released; J, balance error -
   std::vector<double> body;          ///< b x 11: centre x y z (m), quaternion w x y z, tilt (rad), slide (m),
                                      ///< energy (J), critical angle (rad, 0: none)
   std::vector<std::uint8_t> rung;    ///< b: 0 rigid, 1 elastic, 2 frame
   double floor_acceleration[3] = {};  ///< m/s^2
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs
+  std::vector<float> anchor;  ///< a x 4: tension (N, negative: pushes), energy (J), natural length (m),
+                              ///< state (k_anchor_away, ...)
 };
 
 /// A whole state, to go on from.

@@ -109,8 +109,8 @@ Scene recorded_scene(const Recording& recording);
 bool is_recording(const std::string& path);
 
 /// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
-/// run) into `folder` (created when missing), of the way to the newest branch. Each file appears whole or not
-/// at all. Throws WriteError, InputError.
+/// run), and anchors.csv where there are any, into `folder` (created when missing), of the way to the newest
+/// branch. Each file appears whole or not at all. Throws WriteError, InputError.
 void export_csv(const Recording& recording, const std::string& folder);
 
 }  // namespace topple::io

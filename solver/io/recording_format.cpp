@@ -20,7 +20,7 @@ Handle four_numbers() {
   return Handle(H5Tarray_create2(H5T_IEEE_F64LE, 1, &count), H5Tclose);
 }
 
-Handle event_kind() {
+Handle event_kind(bool anchors) {
   Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
   const auto insert = [&type](const char* name, Event::Kind kind) {
     const auto number = static_cast<std::int32_t>(kind);
@@ -32,6 +32,7 @@ Handle event_kind() {
   insert("hinge", Event::Kind::hinge);
   insert("fracture", Event::Kind::fracture);
   insert("model", Event::Kind::model);
+  if (anchors) insert("anchor", Event::Kind::anchor);
   return type;
 }
 
@@ -60,10 +61,9 @@ Handle record_type<CheckpointRecord>() {
                               {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
 }
 
-template <>
-Handle record_type<EventRecord>() {
+Handle event_type(bool anchors) {
   using R = EventRecord;
-  const Handle kind = event_kind();
+  const Handle kind = event_kind(anchors);
   const Handle value = four_numbers();
   return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
                               {"kind", offsetof(R, kind), kind},
@@ -111,7 +111,7 @@ Handle record_type<ResultRecord>() {
 }
 
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
-  const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, b = shape.bodies;
+  const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, b = shape.bodies, a = shape.anchors;
   const hid_t f32 = H5T_IEEE_F32LE, f64 = H5T_IEEE_F64LE, u8 = H5T_STD_U8LE;
   return {
       {{"position", f32, {n, 3}, "m", "x,y,z"},
@@ -127,15 +127,22 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"energy",
         f64,
-        {11},
-        "J,J,J,J,J,J,J,J,J,J,1",
-        "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,balance_"
-        "error"},
+        {a > 0 ? 13u : 11u},
+        a > 0 ? "J,J,J,J,J,J,J,J,J,J,1,J,J" : "J,J,J,J,J,J,J,J,J,J,1",
+        a > 0 ? "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,"
+                "balance_error,anchor,released"
+              : "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,"
+                "balance_error"},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
        {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},
        {"floor_displacement", f64, {3}, "m", "x,y,z"},
-       {"load_factor", f64, {}, "1", ""}}};
+       {"load_factor", f64, {}, "1", ""},
+       {"anchor",
+        f32,
+        {a, 4},
+        "N,J,m,0 away 1 slack 2 holds 3 broken",
+        "tension,energy,natural_length,state"}}};
 }
 
 std::size_t row_bytes(const FrameField& field) {
@@ -144,11 +151,16 @@ std::size_t row_bytes(const FrameField& field) {
   return bytes;
 }
 
+std::size_t field_count(const RowShape& shape) {
+  return shape.anchors > 0 ? k_field_count : k_field_count - 1;
+}
+
 RowShape row_shape(const Model& model) {
   return {.nodes = model.node_position.size(),
           .elements = model.elements.size(),
           .contacts = model.contact_points.size() * model.planes.size(),
-          .bodies = model.bodies.size()};
+          .bodies = model.bodies.size(),
+          .anchors = model.anchors.size()};
 }
 
 FrameRow blank_row(const RowShape& shape) {
@@ -160,9 +172,10 @@ FrameRow blank_row(const RowShape& shape) {
   row.hinge.resize(shape.elements);
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
-  row.energy.resize(11);
+  row.energy.resize(shape.anchors > 0 ? 13 : 11);
   row.body.resize(11 * shape.bodies);
   row.rung.resize(shape.bodies);
+  row.anchor.resize(4 * shape.anchors);
   return row;
 }
 

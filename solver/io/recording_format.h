@@ -7,6 +7,7 @@
 //   /frames/index  one FrameRecord a row, written last: its extent is the number of complete frames
 //   /frames/NAME   the fields of FrameRow, one row a frame (frame_fields)
 //   /checkpoints/index, /checkpoints/state     likewise; `state` holds pack(State), one after the other
+//                  /frames/anchor, /model/anchors and two columns of /frames/energy: with anchors only
 //   /events, /edits, /blobs, /branches, /result, /summary
 //
 // All data sets exist before SWMR writing starts and nothing is of variable length. Rows are only ever
@@ -34,7 +35,7 @@ inline constexpr hsize_t k_chunk_rows = 32;
 
 /// Sizes that all rows of one recording share.
 struct RowShape {
-  std::size_t nodes = 0, elements = 0, contacts = 0, bodies = 0;
+  std::size_t nodes = 0, elements = 0, contacts = 0, bodies = 0, anchors = 0;
 };
 /// Of a model's rows.
 RowShape row_shape(const Model& model);
@@ -58,7 +59,7 @@ struct CheckpointRecord {
 };
 struct EventRecord {
   std::int32_t branch = k_not_written;
-  std::int32_t kind = 0;  ///< Event::Kind
+  std::int32_t kind = 0;  ///< Event::Kind; `anchor` is in the HDF5 type when the model has any
   std::int64_t step = 0;
   double time = 0;
   std::int32_t body = 0, element = -1;
@@ -91,6 +92,8 @@ struct ResultRecord {
 /// HDF5 compound types of the records.
 template <typename Record>
 Handle record_type();
+/// Of EventRecord.
+Handle event_type(bool anchors);
 
 template <typename Record>
 std::uint32_t record_checksum(const Record& record) {
@@ -110,9 +113,11 @@ struct FrameField {
   const char* units;
   const char* columns;  ///< names along the last dimension, comma-separated
 };
-inline constexpr std::size_t k_field_count = 13;
+inline constexpr std::size_t k_field_count = 14;
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape);
 std::size_t row_bytes(const FrameField& field);
+/// Of the data sets that there are: the last, `anchor`, when the model has anchors.
+std::size_t field_count(const RowShape& shape);
 
 /// The fields of `row` as bytes, in the order of frame_fields. Row: FrameRow, const or not.
 template <typename Row>
@@ -137,7 +142,8 @@ auto field_bytes(Row& row) {
                                           bytes(row.rung),
                                           bytes(row.floor_acceleration),
                                           bytes(row.floor_displacement),
-                                          bytes(std::span(&row.load_factor, 1))};
+                                          bytes(std::span(&row.load_factor, 1)),
+                                          bytes(row.anchor)};
 }
 
 /// A row of zeros with arrays of the right sizes.

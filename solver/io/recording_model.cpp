@@ -182,6 +182,22 @@ void write_contacts(hid_t group, const Model& model) {
   planes.write(group, "planes");
 }
 
+void write_anchors(hid_t group, const Model& model) {
+  const auto& list = model.anchors;
+  if (list.empty()) return;
+  Table anchors(list.size());
+  anchors.text("name", [&](std::size_t i) -> const std::string& { return list[i].name; });
+  anchors.integer("body", [&](std::size_t i) { return list[i].body; });
+  anchors.integer("node", [&](std::size_t i) { return list[i].node; });
+  anchors.vector("arm", [&](std::size_t i) { return list[i].arm; });
+  anchors.vector("to", [&](std::size_t i) { return list[i].to; });
+  anchors.integer("type", [&](std::size_t i) { return static_cast<std::int32_t>(list[i].type); });
+  anchors.number("stiffness", [&](std::size_t i) { return list[i].stiffness; });
+  anchors.number("strength", [&](std::size_t i) { return list[i].strength; });
+  anchors.number("length", [&](std::size_t i) { return list[i].length; });
+  anchors.write(group, "anchors");
+}
+
 }  // namespace
 
 void write_model(hid_t file, const Model& model) {
@@ -192,6 +208,7 @@ void write_model(hid_t file, const Model& model) {
   write_bodies(group, model);
   write_sections(group, model);
   write_contacts(group, model);
+  write_anchors(group, model);
 }
 
 }  // namespace topple::io

@@ -132,7 +132,7 @@ struct Recording::Impl {
                            &branch_rows, &result_rows, &summary_bytes}) {
       *set = {};
     }
-    for (RowReader& field : fields) field = {};
+    fields.clear();
     file.reset();
   }
 
@@ -186,22 +186,24 @@ struct Recording::Impl {
          {"nodes", "elements", "members", "bodies", "sections", "materials", "contact_points", "planes"}) {
       read_fixed(group, table);
     }
+    if (checked(H5Lexists(group, "anchors", H5P_DEFAULT)) > 0) read_fixed(group, "anchors");
   }
 
   void open_rows() {
     const auto records = [this](const char* set, const Handle& type) { return RowReader(file, set, type); };
     frame_index = records("frames/index", record_type<FrameRecord>());
     checkpoint_index = records("checkpoints/index", record_type<CheckpointRecord>());
-    event_rows = records("events", record_type<EventRecord>());
+    const bool anchors = checked(H5Lexists(file, "frames/anchor", H5P_DEFAULT)) > 0;
+    event_rows = records("events", event_type(anchors));
     edit_rows = records("edits", record_type<EditRecord>());
     branch_rows = records("branches", record_type<BranchRecord>());
     result_rows = records("result", record_type<ResultRecord>());
     summary_bytes = records("summary", text_type(1));
     checkpoint_state = RowReader(file, "checkpoints/state", H5T_IEEE_F64LE);
     const auto descriptions = frame_fields({});
-    for (std::size_t i = 0; i < k_field_count; ++i) {
+    for (std::size_t i = 0; i < (anchors ? k_field_count : k_field_count - 1); ++i) {
       const std::string set = std::string("frames/") + descriptions[i].name;
-      fields[i] = RowReader(file, set.c_str(), descriptions[i].type);
+      fields.emplace_back(file, set.c_str(), descriptions[i].type);
     }
     const auto first = [](const RowReader& rows) {
       const auto dims = rows.row_dims();
@@ -210,9 +212,10 @@ struct Recording::Impl {
     shape = {.nodes = first(fields[0]),
              .elements = first(fields[2]),
              .contacts = first(fields[5]),
-             .bodies = first(fields[8])};
+             .bodies = first(fields[8]),
+             .anchors = anchors ? first(fields.back()) : 0};
     const auto expected = frame_fields(shape);
-    for (std::size_t i = 0; i < k_field_count; ++i) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
       if (fields[i].row_dims() != expected[i].dims) {
         throw Hdf5Error(std::string("frames/") + expected[i].name + " has another shape than expected");
       }
@@ -281,7 +284,7 @@ struct Recording::Impl {
     row.time = record.time;
     std::uint32_t checksum = 0;
     const auto bytes = field_bytes(row);
-    for (std::size_t i = 0; i < k_field_count; ++i) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
       fields[i].read(index, 1, bytes[i].data());
       checksum = crc32c(bytes[i], checksum);
     }
@@ -314,7 +317,7 @@ struct Recording::Impl {
   Handle file;
   RowReader frame_index, checkpoint_index, checkpoint_state, event_rows, edit_rows, branch_rows, result_rows,
       summary_bytes;
-  std::array<RowReader, k_field_count> fields;
+  std::vector<RowReader> fields;
   RowShape shape;
   std::string name, text, status, summary;
   std::vector<SceneFile> scene_files;
@@ -382,7 +385,8 @@ std::vector<RecordedEvent> Recording::events() const {
                       .body = record.body,
                       .value = record.value[0],
                       .element = record.element,
-                      .reason = static_cast<RungReason>(record.value[1])};
+                      .reason = static_cast<RungReason>(record.value[1]),
+                      .anchor = static_cast<int>(record.value[2])};
     events.push_back({.branch = record.branch, .step = record.step, .time = record.time, .event = event});
   }
   return events;

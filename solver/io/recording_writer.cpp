@@ -96,6 +96,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const std::string& sce
     guarded([&] {
       descriptions_ = frame_fields(shape);
       std::transform(descriptions_.begin(), descriptions_.end(), field_bytes_.begin(), row_bytes);
+      field_count_ = field_count(shape);
       create(scene_name, scene_text, model, files);
     });
   } catch (const WriteError&) {
@@ -173,7 +174,7 @@ void RecordingWriter::create_rows() {
   };
   const Handle frames = group("frames");
   frame_index_ = records(frames, "index", FrameRecord{});
-  for (std::size_t i = 0; i < k_field_count; ++i) {
+  for (std::size_t i = 0; i < field_count_; ++i) {
     const FrameField& field = descriptions_[i];
     fields_[i] = RowSet(frames, field.name, field.type, field.dims, k_chunk_rows);
     fields_[i].describe(field.units, field.columns);
@@ -181,7 +182,9 @@ void RecordingWriter::create_rows() {
   const Handle checkpoints = group("checkpoints");
   checkpoint_index_ = records(checkpoints, "index", CheckpointRecord{});
   checkpoint_state_ = RowSet(checkpoints, "state", H5T_IEEE_F64LE, {}, k_number_chunk);
-  events_ = records(file_, "events", EventRecord{});
+  const EventRecord no_event;
+  const Handle event = event_type(field_count_ == k_field_count);
+  events_ = RowSet(file_, "events", event, {}, k_index_chunk_rows, &no_event);
   edits_ = records(file_, "edits", EditRecord{});
   blobs_ = RowSet(file_, "blobs", H5T_STD_U8LE, {}, k_byte_chunk);
   branches_ = records(file_, "branches", BranchRecord{});
@@ -233,6 +236,7 @@ void RecordingWriter::append(const RecordedEvent& event) {
                      .element = event.event.element};
   record.value[0] = event.event.value;
   record.value[1] = static_cast<double>(event.event.reason);
+  record.value[2] = event.event.anchor;
   pending_events_.push_back(sealed(record));
 }
 
@@ -254,7 +258,7 @@ void RecordingWriter::append(const LoggedEdit& logged) {
 }
 
 void RecordingWriter::write_batch() {
-  for (std::size_t i = 0; i < k_field_count; ++i) {
+  for (std::size_t i = 0; i < field_count_; ++i) {
     fields_[i].append(batch_[i].data(), batch_rows_);
     batch_[i].clear();
   }

@@ -76,6 +76,7 @@ class RecordingWriter {
   std::string shown_path_;
   std::array<FrameField, k_field_count> descriptions_{};
   std::array<std::size_t, k_field_count> field_bytes_{};
+  std::size_t field_count_ = 0;
   std::optional<std::string> failure_;
   bool renamed_ = false, finished_ = false;
   std::chrono::steady_clock::time_point last_flush_{};  ///< long ago: the first frame is flushed at once

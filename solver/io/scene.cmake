@@ -25,6 +25,7 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/edit_text.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_anchors.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_difference.cpp

@@ -55,6 +55,7 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::v
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);
   read_bodies(entry, scene.setup);
+  read_anchors(entry, scene.setup);
   choose_alpha(entry, scene.setup);
   read_probes(entry, scene.setup);
   read_control(entry, scene.setup);

@@ -29,7 +29,7 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("section", T::tables, "cross-section of members");
   rows.plain("cabinet", T::tables, "a steel cabinet, built from members");
   rows.plain("frame", T::tables, "anything made of straight members");
-  rows.later("anchor", "ties a body to a wall or floor");
+  rows.plain("anchor", T::tables, "ties a body to a wall or floor").only_in({"dynamic", "static"});
   rows.plain("probe", T::tables, "motion reported in the summary");
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
 }
@@ -273,6 +273,25 @@ void add_section(std::vector<Key>& keys) {
       .only("shape", {"custom"});
 }
 
+void add_anchor(std::vector<Key>& keys) {
+  Rows rows(keys, "anchor");
+  rows.plain("name", T::text, "name in the summary").absent_means("anchor-1, ...");
+  rows.plain("body", T::text, "a cabinet, a frame, or a copy").required();
+  rows.numbers("point", 3, D::length, "m", -k_far, k_far,
+               "on the body where it starts; rigidly joined to the nearest node")
+      .required();
+  rows.numbers("to", 3, D::length, "m", -k_far, k_far, "on a wall or the floor: fixed to the floor's frame")
+      .required();
+  rows.word("type", {"strap", "bracket", "pole"},
+            "strap: pulls only; bracket: both ways; pole: pushes only (anchor.h)")
+      .absent(Anchor::Type::strap);
+  rows.number("stiffness", D::stiffness, "kN/m", 1, 1e12, "along the line from `to` to `point`").required();
+  rows.number("strength", D::force, "kN", 1e-3, 1e12, "breaks above it")
+      .absent_means("never breaks")
+      .only_in({"dynamic"});
+  rows.plain("on", T::boolean, "in place; one that is put in place later starts without force").absent(1);
+}
+
 void add_probe(std::vector<Key>& keys) {
   Rows rows(keys, "probe");
   rows.plain("name", T::text, "name in the summary").absent_means("probe-1, ...");
@@ -305,6 +324,7 @@ std::vector<Key> build_table() {
   add_material(keys);
   add_section(keys);
   add_body_keys(keys);
+  add_anchor(keys);
   add_probe(keys);
   add_expect(keys);
   return keys;

@@ -54,16 +54,6 @@ Section read_section(const Entry& entry) {
   return section;
 }
 
-int find_body(const Entry& entry, const Model& model) {
-  const std::string name = entry.text("body");
-  const auto& bodies = model.bodies;
-  const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
-  if (body != bodies.end()) return static_cast<int>(body - bodies.begin());
-  std::string known;
-  for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
-  entry.fail("body", "there is no body \"" + name + "\"; known: " + known);
-}
-
 // Index into the model of `node` of the entry, which counts within its frame.
 int find_node(const Entry& root, const Entry& entry, const Model& model, int body, const char* otherwise) {
   int nodes = 0;  // a copy has the nodes of its frame
@@ -194,6 +184,16 @@ void read_materials_and_sections(const Entry& root, Setup& setup) {
     }
     setup.model.sections.push_back(section);
   }
+}
+
+int find_body(const Entry& entry, const Model& model) {
+  const std::string name = entry.text("body");
+  const auto& bodies = model.bodies;
+  const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
+  if (body != bodies.end()) return static_cast<int>(body - bodies.begin());
+  std::string known;
+  for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
+  entry.fail("body", "there is no body \"" + name + "\"; known: " + known);
 }
 
 void read_probes(const Entry& root, Setup& setup) {

@@ -32,6 +32,12 @@ void read_bodies(const Entry& root, Setup& setup);
 /// contact.alpha where it is left out; after the bodies.
 void choose_alpha(const Entry& root, Setup& setup);
 
+/// Index of the body that the entry's key `body` names.
+int find_body(const Entry& entry, const Model& model);
+
+/// [[anchor]]; after the bodies.
+void read_anchors(const Entry& root, Setup& setup);
+
 /// [[probe]]; after the bodies.
 void read_probes(const Entry& root, Setup& setup);
 

@@ -56,6 +56,10 @@ const std::vector<Unit>& units() {
       {"kg m^2", D::inertia, 1},
       {"N m", D::moment, 1},
       {"kN m", D::moment, 1e3},
+      {"N/m", D::stiffness, 1},
+      {"kN/m", D::stiffness, 1e3},
+      {"MN/m", D::stiffness, 1e6},
+      {"N/mm", D::stiffness, 1e3},
   };
   return table;
 }
@@ -103,6 +107,8 @@ std::string_view dimension_name(Dimension dimension) {
       return "a moment of inertia";
     case Dimension::moment:
       return "a moment";
+    case Dimension::stiffness:
+      return "a stiffness";
   }
   return "";
 }

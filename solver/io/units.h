@@ -27,6 +27,7 @@ enum class Dimension {
   angular_velocity,
   inertia,
   moment,
+  stiffness,
 };
 
 /// A unit symbol. Symbols are unique within a dimension only: g is a gram where a mass is expected and the

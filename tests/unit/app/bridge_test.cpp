@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/words.h"
 #include "scenes.h"
 
 namespace topple::app {
@@ -73,6 +74,53 @@ TEST_F(BridgeTest, a_hinge_is_a_ring_at_its_end_and_a_broken_element_is_open) {
   const auto& end = broken.stations[one.first_station + one.station_count - 1].position;
   const auto& begin = broken.stations[other.first_station].position;
   EXPECT_NEAR(distance(end, Vec3(begin[0], begin[1], begin[2])), 0.2 * model().elements[3].length, 1e-4);
+}
+
+// What tells the states of an anchor apart is their shape: straight from end to end, hanging, or in two.
+TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  const Model& model = scene.setup.model;
+  const topple::Run run(scene.setup);
+  io::FrameRow row = io::frame_row(run);
+  RunExtent extent;
+  extent.add(model, scene.setup.parameters, row);
+  const auto drawn = [&](float state) {
+    row.anchor[7] = state;
+    render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
+    std::erase_if(frame.tubes,
+                  [&](const render::Tube& tube) { return tube.member != model.members.size() + 1; });
+    return frame;
+  };
+  const auto place = [](const render::SceneFrame& frame, const render::Tube& tube, std::uint32_t i) {
+    const Float3& x = frame.stations[tube.first_station + i].position;
+    return Vec3(x[0], x[1], x[2]);
+  };
+  const Vec3 to = model.anchors[1].to, at = anchor_point(model, run.state(), 1).at;
+  const render::SceneFrame holds = drawn(io::k_anchor_holds);
+  ASSERT_EQ(holds.tubes.size(), 3u);  // two end marks and the strap
+  const render::Tube& strap = holds.tubes[2];
+  EXPECT_LT((place(holds, strap, 0) - to).norm(), 1e-5);
+  EXPECT_LT((place(holds, strap, strap.station_count - 1) - at).norm(), 1e-5);
+
+  const render::SceneFrame slack = drawn(io::k_anchor_slack);
+  ASSERT_EQ(slack.tubes.size(), 3u);
+  const render::Tube& loose = slack.tubes[2];
+  const Vec3 middle = place(slack, loose, loose.station_count / 2);
+  EXPECT_GT((middle - (to + at) / 2).norm(), 0.1 * (at - to).norm());
+  EXPECT_NE(loose.colour, strap.colour);
+
+  const render::SceneFrame broken = drawn(io::k_anchor_broken);
+  ASSERT_EQ(broken.tubes.size(), 4u);
+  EXPECT_LT((place(broken, broken.tubes[2], 0) - to).norm(), 1e-5);
+  EXPECT_LT((place(broken, broken.tubes[3], 0) - at).norm(), 1e-5);
+  EXPECT_GT((place(broken, broken.tubes[2], 1) - place(broken, broken.tubes[3], 1)).norm(),
+            0.1 * (at - to).norm());
+
+  EXPECT_EQ(drawn(io::k_anchor_away).tubes.size(), 1u);
+  EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: taken away");
+  row.anchor[0] = 0.5f;
+  row.anchor[3] = io::k_anchor_holds;
+  EXPECT_EQ(anchor_in_words(model, row, 0), "strap weak: pulls 0 N, 50 % of its strength");
 }
 
 TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {

@@ -224,6 +224,24 @@ TEST_F(PlayerTest, undo_posts_the_inverse_and_redo_the_edit_again) {
   expect_repeatable("live.h5", 1);
 }
 
+TEST_F(PlayerTest, an_anchor_is_taken_away_and_put_back_and_the_run_repeats) {
+  start(k_rocking + k_straps);
+  run_to(0.2);
+  player().edit({Edit::Key::anchor, 1, Vec3(0, 0, 0)});
+  EXPECT_FALSE(player().parameters().anchors[1]);
+  run_to(0.4);
+  EXPECT_EQ(player().row()->anchor[7], io::k_anchor_away);
+  player().undo();
+  EXPECT_TRUE(player().parameters().anchors[1]);
+  run_to(0.6);
+  EXPECT_NE(player().row()->anchor[7], io::k_anchor_away);
+  player().scrub(0.3);
+  EXPECT_FALSE(player().parameters().anchors[1]);
+  EXPECT_EQ(player().row()->anchor[7], io::k_anchor_away);
+  run_->close("stopped");
+  expect_repeatable("live.h5", 1);
+}
+
 TEST_F(PlayerTest, a_branch_from_before_an_edit_knows_nothing_of_it_and_its_ghost_is_the_future_left) {
   start();
   run_to(0.2);

@@ -48,6 +48,23 @@ name = "middle"
 body = "free"
 )";
 
+/// The same held by a strap that breaks at its first pull, and one that does not. Appended to k_shaken.
+inline const std::string k_straps = R"(
+[[anchor]]
+name = "weak"
+body = "free"
+point = [-0.19, 0.44, 1.79]
+to = [-0.19, 0.44, 2.2]
+stiffness = "50 kN/m"
+strength = "1 N"
+[[anchor]]
+name = "strong"
+body = "free"
+point = [-0.19, -0.44, 1.79]
+to = [-0.19, -0.44, 2.2]
+stiffness = "50 kN/m"
+)";
+
 /// A clamped beam under a load that central-difference cannot step at 1 ms.
 inline const std::string k_beam = R"(topple = 1
 [run]

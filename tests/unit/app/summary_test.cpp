@@ -46,6 +46,33 @@ TEST_F(SummaryTest, energies_add_up_to_the_balance_error) {
   EXPECT_NEAR(std::abs(unexplained), energy("balance_error") * e.largest, 1e-9 * e.largest);
 }
 
+TEST(Summary, anchors_say_what_they_held_and_whether_they_broke) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  topple::Run run(scene.setup);
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(run.advance().ok());
+  const Json s = summary(scene, run, "interrupted", 0.5);
+  ASSERT_EQ(s["anchors"].size(), 2u);
+  const Json &weak = s["anchors"][0], &strong = s["anchors"][1];
+  EXPECT_EQ(weak["name"], "weak");
+  EXPECT_EQ(weak["body"], "free");
+  EXPECT_EQ(weak["type"], "strap");
+  EXPECT_EQ(weak["strength_N"], 1);
+  EXPECT_EQ(weak["broke"], true);
+  EXPECT_EQ(weak["in_place"], false);
+  EXPECT_GT(weak["peak_force_N"], 1);
+  EXPECT_EQ(weak["final_force_N"], 0);
+  EXPECT_EQ(weak["break_time_s"], *run.outcome().anchors()[0].broke);
+  EXPECT_TRUE(strong["strength_N"].is_null());
+  EXPECT_TRUE(strong["break_time_s"].is_null());
+  EXPECT_EQ(strong["broke"], false);
+  EXPECT_GT(strong["peak_force_N"], 1);
+  EXPECT_EQ(s["energy"]["anchor_J"], run.state().energy.anchor);
+  EXPECT_EQ(s["energy"]["released_J"], run.state().energy.released);
+  const std::string table = summary_table(s);
+  EXPECT_NE(table.find("anchor weak: greatest force"), std::string::npos) << table;
+  EXPECT_NE(table.find("broke at"), std::string::npos) << table;
+}
+
 TEST_F(SummaryTest, what_does_not_exist_is_null) {
   Json s = summary(scene_, run_, "completed", 0);
   EXPECT_TRUE(s["realtime_factor"].is_null());

@@ -138,6 +138,25 @@ class ViewerTest : public ::testing::Test {
   int frames_ = 0;
 };
 
+TEST_F(ViewerTest, a_box_takes_an_anchor_away) {
+  start(&topple::Run::advance, k_rocking + k_straps);
+  const ImGuiWindow* const side = ImGui::FindWindowByName("side");
+  const int index = 1;
+  const ImGuiID box = ImHashStr("strong", 0, ImHashData(&index, sizeof index, side->ID));
+  hover({2, 400});
+  ImVec2 at{-1, -1};
+  for (float y = side->Pos.y + 5; at.x < 0 && y < side->Pos.y + side->Size.y; y += 9) {
+    hover({side->Pos.x + 20, y});
+    if (ImGui::GetHoveredID() == box) at = ImGui::GetIO().MousePos;
+  }
+  ASSERT_GE(at.x, 0);
+  click(at);
+  EXPECT_FALSE(player_->parameters().anchors[1]);
+  EXPECT_TRUE(player_->parameters().anchors[0]);
+  click(at);
+  EXPECT_TRUE(player_->parameters().anchors[1]);
+}
+
 TEST_F(ViewerTest, space_plays_and_pauses) {
   start();
   EXPECT_FALSE(player_->playing());

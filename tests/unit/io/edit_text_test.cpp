@@ -66,6 +66,22 @@ TEST(EditText, every_name_reads_back_and_has_its_row_in_the_table_of_keys) {
   }
 }
 
+TEST(EditText, anchors_are_switched_by_number) {
+  topple::Setup setup;
+  setup.model.anchors.resize(2);
+  setup.parameters.anchors = {true, true};
+  EXPECT_EQ(edit_key(number(Edit::Key::anchor, 0, 1)), "anchor.2.on");
+  EXPECT_EQ(parse_edit_key("anchor.2.on")->shake, 1);
+  EXPECT_EQ(parse_edit_key("anchor.2.on")->key, Edit::Key::anchor);
+  EXPECT_FALSE(parse_edit_key("anchor.on"));
+  EXPECT_FALSE(parse_edit_key("anchor.2.strength"));
+  EXPECT_EQ(error_of(number(Edit::Key::anchor, 0, 1), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::anchor, 1, 1), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::anchor, 0.5), setup), "anchor.1.on: 0.5 is neither 0 nor 1");
+  EXPECT_EQ(error_of(number(Edit::Key::anchor, 1, 2), setup),
+            "anchor.3.on: there is no such anchor; the scene has 2");
+}
+
 TEST(EditText, other_names_are_none) {
   for (const char* text : {"",
                            ".",

@@ -111,6 +111,7 @@ inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) 
   fill(row.rung);
   fill(row.floor_acceleration);
   fill(row.floor_displacement);
+  fill(row.anchor);
   row.load_factor = value + 0.37;
   return row;
 }

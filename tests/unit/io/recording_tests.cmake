@@ -1,5 +1,6 @@
 add_executable(recording_test
   ${CMAKE_CURRENT_LIST_DIR}/recording_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/recording_anchor_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording_damage_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording_history_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording_plastic_test.cpp

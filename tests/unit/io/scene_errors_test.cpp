@@ -27,10 +27,10 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
             "restitution, slip_speed");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
-  EXPECT_EQ(
-      error_of("tople = 1\n" + k_scene),
-      "s.toml:1:1: tople: unknown key; known: cabinet, contact, expect, floor, frame, material, probe, run, "
-      "section, shake, title, topple, wall");
+  EXPECT_EQ(error_of("tople = 1\n" + k_scene),
+            "s.toml:1:1: tople: unknown key; known: anchor, cabinet, contact, expect, floor, frame, "
+            "material, probe, run, "
+            "section, shake, title, topple, wall");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
 }
@@ -38,8 +38,6 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
 TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
   EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"),
             "s.toml:18:1: contact.friction_static: is not supported by this version");
-  EXPECT_EQ(after_beam("[[anchor]]\nname = \"a\"\n"),
-            "s.toml:17:3: anchor: is not supported by this version");
   EXPECT_EQ(in_cabinet("damping = 0.01\n"),
             "s.toml:16:1: cabinet.free.damping: is not supported by this version");
 }
@@ -425,13 +423,63 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
             "s.toml:17:1: contact.restitution: belongs to law = coulomb, but law is paper");
 }
 
+/// An anchor of the cabinet, lines 16 to 20 of the file; `rest` from line 21 on.
+std::string of_anchor(const std::string& body, const std::string& point, const std::string& to,
+                      const std::string& rest = "") {
+  return in_cabinet("[[anchor]]\nbody = \"" + body + "\"\npoint = " + point + "\nto = " + to +
+                    "\nstiffness = 1e4\n" + rest);
+}
+
+TEST(SceneErrors, anchors_that_hold_nothing_are_refused) {
+  EXPECT_EQ(of_anchor("other", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]"),
+            "s.toml:17:8: anchor.1.body: there is no body \"other\"; known: free");
+  const std::string nowhere = of_anchor("free", "[-0.19, 0, 3]", "[-0.3, 0, 3]");
+  EXPECT_EQ(
+      nowhere.find("s.toml:18:9: anchor.1.point: an anchor to nowhere: the nearest member of \"free\", "), 0u)
+      << nowhere;
+  // the back is a sheet
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.1, 0.6]", "[-0.3, 0.1, 0.6]"), "no error");
+  EXPECT_NE(of_anchor("free", "[0, 0.1, 0.6]", "[-0.3, 0.1, 0.6]"), "no error");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.19, 0.44, 1.7]"),
+            "s.toml:19:6: anchor.1.to: is where `point` is: the anchor has no length");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]", "strength = 0\n"),
+            "s.toml:21:12: anchor.1.strength: 0 is outside 1e-06..1e+09 kN");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]", "type = \"rope\"\n"),
+            "s.toml:21:8: anchor.1.type: \"rope\" is not one of strap, bracket, pole");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]",
+                      "strength = 1e3\n[run]\nanalysis = \"static\"\n"),
+            "s.toml:21:1: anchor.1.strength: belongs to analysis = dynamic, but analysis is static");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]", "[run]\nanalysis = \"modes\"\n"),
+            "s.toml:16:3: anchor: belongs to analysis = dynamic or static, but analysis is modes");
+  EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]"), "no error");
+}
+
+TEST(SceneErrors, no_anchor_pulls_a_body_through_a_wall_or_the_floor) {
+  const std::string wall = "[floor]\n[[wall]]\nname = \"back\"\nat = [-0.3, 0]\nnormal = [1, 0, 0]\n";
+  const auto with = [&](const std::string& to, const std::string& rest = "") {
+    return of_anchor("free", "[-0.19, 0.44, 0.1]", to, rest + wall);
+  };
+  EXPECT_EQ(
+      with("[-0.55, 0.44, 0.1]"),
+      "s.toml:19:6: anchor.1.to: lies 250 mm behind the face of wall \"back\", into which it would pull the "
+      "body");
+  EXPECT_EQ(
+      with("[-0.19, 0.5, -0.2]"),
+      "s.toml:19:6: anchor.1.to: lies 200 mm behind the face of the floor, into which it would pull the "
+      "body");
+  EXPECT_EQ(with("[-0.32, 0.44, 0.1]"), "no error");  // less than a contact width
+  EXPECT_EQ(with("[-0.3, 0.44, 0]"), "no error");
+  EXPECT_EQ(with("[-0.55, 0.44, 0.1]", "type = \"pole\"\n"), "no error");  // pushes away from it
+}
+
 TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
   try {
     load_scene("no-such-scene");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "no-such-scene: no such file or built-in scene; built-in: beam-floor, breaking, cantilever, "
+                 "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, breaking, "
+                 "cantilever, "
                  "collide, dominoes, floor-long-period, free-rocking, near-fault, paper-a, paper-b, "
                  "portal-pushover, stack, tumble, wedged, yielding");
   }

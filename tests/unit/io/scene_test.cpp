@@ -440,6 +440,36 @@ TEST(Scene, a_file_wins_over_a_built_in_scene) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Scene, anchors_hold_the_nearest_node_at_the_end_of_an_arm) {
+  const std::string cabinet =
+      k_cabinet_scene +
+      "tilt = \"2 deg\"\n[run]\nsettle = false\n[[anchor]]\n"
+      "body = \"free\"\npoint = [-0.18, 0.4, 1.7]\nto = [-0.4, 0.4, \"170 cm\"]\n"
+      "stiffness = \"50 kN/m\"\n[[anchor]]\nname = \"strut\"\nbody = \"free\"\n"
+      "point = [0.2, -0.4, 1.7]\nto = [1, -0.4, 0]\ntype = \"pole\"\nstiffness = 1e4\n"
+      "strength = \"2 kN\"\non = false\n";
+  const Scene scene = parse_scene(cabinet, "s.toml", {"anchor.strut.strength=3 kN"});
+  const Model& model = scene.setup.model;
+  ASSERT_EQ(model.anchors.size(), 2u);
+  const State start = start_state(model, scene.setup.starts);
+  const Vec3 points[] = {{-0.18, 0.4, 1.7}, {0.2, -0.4, 1.7}};
+  for (int k = 0; k < 2; ++k) {
+    const Anchor& a = model.anchors[k];
+    EXPECT_LT((anchor_point(model, start, k).at - points[k]).norm(), 1e-12);
+    for (const Vec3& x : start.position)
+      EXPECT_GE((x - points[k]).norm(), (start.position[a.node] - points[k]).norm());
+    EXPECT_NEAR(a.length, (points[k] - a.to).norm(), 1e-12);
+  }
+  EXPECT_EQ(model.anchors[0].name, "anchor-1");
+  EXPECT_EQ(model.anchors[0].type, Anchor::Type::strap);
+  EXPECT_EQ(model.anchors[0].stiffness, 5e4);
+  EXPECT_FALSE(std::isfinite(model.anchors[0].strength));
+  EXPECT_EQ(model.anchors[0].to, Vec3(-0.4, 0.4, 1.7));
+  EXPECT_EQ(model.anchors[1].type, Anchor::Type::pole);
+  EXPECT_EQ(model.anchors[1].strength, 3e3);
+  EXPECT_EQ(scene.setup.parameters.anchors, (std::vector<bool>{true, false}));
+}
+
 TEST(Scene, built_in_scenes_are_read_and_have_titles) {
   std::vector<std::string> names;
   for (const BuiltinScene& builtin : builtin_scenes()) {
@@ -450,10 +480,10 @@ TEST(Scene, built_in_scenes_are_read_and_have_titles) {
     EXPECT_NE(scene.title, scene.name);
     EXPECT_EQ(scene.setup.starts.size(), scene.setup.model.bodies.size());
   }
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"beam-floor", "breaking", "cantilever", "collide", "dominoes",
-                                      "floor-long-period", "free-rocking", "near-fault", "paper-a", "paper-b",
-                                      "portal-pushover", "stack", "tumble", "wedged", "yielding"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"anchored", "beam-floor", "breaking", "cantilever", "collide",
+                                             "dominoes", "floor-long-period", "free-rocking", "near-fault",
+                                             "paper-a", "paper-b", "portal-pushover", "stack", "tumble",
+                                             "wedged", "yielding"}));
 }
 
 TEST(Scene, the_wall_of_the_paper_scenes_is_10_mm_behind_the_walled_cabinet_and_out_of_reach_of_the_other) {

@@ -129,6 +129,30 @@ TEST(Allocation, no_implicit_step_after_the_first_takes_memory) {
   EXPECT_EQ(allocations_of(setup, Integrator::generalized_alpha, 1e-3, 2000), 0);
 }
 
+TEST(Allocation, no_step_with_anchors_after_the_first_takes_memory) {
+  for (const BodyModel body : {BodyModel::frame, BodyModel::elastic, BodyModel::rigid}) {
+    topple::Setup setup = shaken(2);
+    for (const int side : {-1, 1}) {
+      Anchor anchor{.name = "strap",
+                    .body = 0,
+                    .node = 0,
+                    .arm = Vec3(0, 0, 1.7),
+                    .to = Vec3(side, 0, 1.7),
+                    .type = Anchor::Type::strap,
+                    .stiffness = 1e4,
+                    .length = 0};
+      anchor.length = (setup.model.node_position[0] + anchor.arm - anchor.to).norm();
+      if (side < 0) anchor.strength = 20;  // breaks on the way
+      setup.model.anchors.push_back(anchor);
+    }
+    setup.model.bodies[0].elastic = elastic_basis(setup.model, 0);
+    setup.parameters.models = {body};
+    setup.parameters.anchors = {true, true};
+    shake(setup, 7, 2);
+    EXPECT_EQ(allocations_of(setup, Integrator::generalized_alpha, 1e-3, 1500), 0) << static_cast<int>(body);
+  }
+}
+
 TEST(Allocation, no_step_in_which_hinges_form_takes_memory) {
   topple::Setup setup;
   setup.model = steel_model();

@@ -70,6 +70,31 @@ TEST(State, every_member_has_its_own_place_in_a_checkpoint) {
   EXPECT_EQ(pack(unpack(sim.model, numbers)), numbers);
 }
 
+TEST(State, anchors_add_their_own_to_a_checkpoint_and_none_add_nothing) {
+  Simulation without = rocking();
+  Model model = without.model;
+  model.anchors.assign(3, {.name = "strap",
+                           .body = 0,
+                           .node = 7,
+                           .arm = Vec3::Zero(),
+                           .to = Vec3(-1, 0, 2),
+                           .type = Anchor::Type::strap,
+                           .stiffness = 1e4,
+                           .length = 5});
+  Simulation sim(model, {BodyStart{}}, without.parameters);
+  ASSERT_TRUE(sim.advance(3));
+  sim.state.anchors[1] = {.length = 4, .hold = AnchorHold::broken};
+  sim.state.anchors[2].hold = AnchorHold::away;
+  const std::vector<double> numbers = pack(sim.state);
+  EXPECT_EQ(numbers.size(), pack(without.state).size() + 2 + 2 * 3);
+  const State back = unpack(model, numbers);
+  EXPECT_EQ(hash(back), hash(sim.state));
+  EXPECT_EQ(back.anchors[1].hold, AnchorHold::broken);
+  EXPECT_EQ(back.anchors[1].length, 4);
+  EXPECT_EQ(back.anchors[2].hold, AnchorHold::away);
+  EXPECT_THROW(unpack(without.model, numbers), std::invalid_argument);
+}
+
 TEST(State, checkpoint_of_another_model_is_refused) {
   const Simulation sim = rocking();
   std::vector<double> numbers = pack(sim.state);

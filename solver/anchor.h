@@ -1,0 +1,70 @@
+// Anchors: springs between a point that is fixed to the floor's frame and a point of a body.
+//
+//   d = at - to,  l = |d|,  N = k (l - l0),  F = -N d/l on the body at `at`,  U = k/2 (l - l0)^2
+//
+// N > 0 pulls. A strap holds where l > l0 only, a pole where l < l0 only, a bracket always. An anchor breaks
+// for good at the end of the first step that leaves |N| above its strength. What it holds when it breaks or
+// is taken away is EnergyLedger::released. One that is put in place has the length that it has room for: it
+// starts without force. Taking a broken one away and putting it in place again replaces it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/body_state.h"
+#include "solver/model.h"
+#include "solver/parameters.h"
+
+namespace topple {
+
+struct State;
+
+enum class AnchorHold : std::uint8_t { in_place, away, broken };
+
+/// Part of State, one per anchor.
+struct AnchorState {
+  double length = 0;  ///< m, natural
+  AnchorHold hold = AnchorHold::in_place;
+};
+
+struct AnchorForce {
+  double tension = 0;         ///< N, negative: pushes
+  double energy = 0;          ///< J
+  Vec3 force = Vec3::Zero();  ///< N, on the body
+};
+
+/// Of an anchor whose attached point is at `at`, m; nothing unless it is in place.
+AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at);
+
+/// d(force)/d(at), N/m.
+Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at);
+
+/// Derivative of a force at the end of `arm`, and of its moment about the beginning, by displacement and
+/// rotation of the beginning: `tangent` is that of the force by its place.
+Mat6 anchor_slope(const Mat3& tangent, const Vec3& arm, const Vec3& force);
+
+/// Displacement of the attached point in a mode of the rung elastic, reference axes, per amplitude.
+Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
+
+/// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's rung.
+struct AnchorPoint {
+  Vec3 at, velocity;
+};
+AnchorPoint anchor_point(const Model& model, const State& state, int anchor);
+
+/// Of every anchor at `state`, N and J.
+std::vector<AnchorForce> anchor_forces(const Model& model, const State& state);
+
+/// Puts anchors in place and takes them away as `parameters` say; sets `changed` of their bodies. False:
+/// nothing changed.
+bool switch_anchors(const Model& model, const Parameters& parameters, State& state,
+                    std::vector<bool>& changed);
+
+/// Breaks those that hold more than their strength. As switch_anchors.
+bool break_anchors(const Model& model, State& state, std::vector<bool>& changed);
+
+/// Longest step that resolves the anchors at `state`, s: a twentieth of the period of a body on one that
+/// holds, the time until one begins to hold.
+double anchor_look_ahead(const Model& model, const State& state);
+
+}  // namespace topple
