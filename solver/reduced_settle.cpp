@@ -16,6 +16,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
   using Vector = Eigen::VectorXd;
   constexpr int k_rounds = 400;
   constexpr double k_first = 1e-3, k_last = 1e3;           // s, sigma
+  constexpr double k_lever = 1;                            // s, beside which damping is nothing
   constexpr double k_balanced = 1e-10, k_furthest = 0.25;  // of the weight, of the reach
   Parameters still = parameters;
   still.shakes.clear();
@@ -49,22 +50,18 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
       inertia.bottomRightCorner(m, m).setIdentity();
       stiffness.bottomRightCorner(m, m).diagonal() = basis_->frequency.head(m).square();
     }
-    contacts_.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t at) {
-      Mat3 by_position, by_velocity;
-      const Vec3& normal = model_.planes[touch.plane].normal;
-      ContactLaw law = now.law;
-      law.alpha = touch.alpha[which];
-      const ContactOutput out = contact_force(law,
-                                              {normal, touch.depth[which], contacts_.length(touch, which),
-                                               Vec3::Zero(), stick[at], contacts_.share_of_mass()},
-                                              by_position, by_velocity);
+    contacts_.press<true>(now.law, {{0, 0, 0}, {0, 0, 0}, Amplitudes::Zero()}, k_lever);
+    contacts_.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t) {
+      Mat3 slope;
+      for (int row = 0; row < 3; ++row) slope.row(row) = lane(touch.slope.row[row], which);
       const Vec3 arm = lane(touch.arm, which);
       Matrix j(3, n);
       j.leftCols<3>().setIdentity();
       j.middleCols<3>(3) = -skew(arm);
       for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = r * contacts_.shape(touch, which, k);
-      stiffness -= j.transpose() * by_position * j;
-      stiffness.block<3, 3>(3, 3) -= skew(out.force) * skew(arm);  // the arm turns with the body
+      stiffness -= j.transpose() * slope * j / k_lever;
+      stiffness.block<3, 3>(3, 3) -=
+          skew(lane(touch.force, which)) * skew(arm);  // the arm turns with the body
     });
     anchors_.add_stiffness(s, m, stiffness);
     double left = std::max(s.force.cwiseAbs().maxCoeff(), s.moment.cwiseAbs().maxCoeff() / reach_);

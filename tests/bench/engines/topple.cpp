@@ -83,7 +83,7 @@ Engine topple_engine() {
     std::optional<double> spectral_radius;
   };
   for (const auto& [model, radius] : {Model{"rigid", {}}, Model{"frame", 0.8}, Model{"frame", 0.}})
-    for (const double alpha : {0., 5e4, 1.5e5, 5e5, 1e6})
+    for (const double alpha : {0., 1.5e5, 5e5, 1e6})
       for (const double speed : {1e-3, 1e-2}) {
         const std::string how = (radius ? fmt::format("{}, spectral_radius {:g}, ", model, *radius)
                                         : fmt::format("{}, ", model)) +
