@@ -201,7 +201,8 @@ ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& in, double im
     const double step = (impedance * (vn - free_n) - p + loss * direction) /
                         (impedance + loss * eps2 * inverse * inverse * inverse);
     vn -= step;
-    if (!(std::abs(step) > 1e-12 * (1 + std::abs(vn)))) break;
+    // what is left after a step is its square over that of the smoothing
+    if (!(step * step > 1e-12 * (1 + std::abs(vn)) * law.normal_speed)) break;
   }
   out.normal = std::max(impedance * (vn - free_n), 0.);  // rounding may be more than is left of it
 
