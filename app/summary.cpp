@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/words.h"
+#include "solver/accelerogram.h"
 #include "solver/ladder.h"
 
 namespace topple::app {
@@ -140,6 +141,8 @@ ordered_json peak_load_factor(const Run& run) {
   return number(peak);
 }
 
+constexpr double k_same_interval = 1 + 1e-9;  // of a step and a sample interval, both rounded
+
 ordered_json warnings(const Run& run) {
   ordered_json list = ordered_json::array();
   const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
@@ -164,6 +167,14 @@ ordered_json warnings(const Run& run) {
     list.push_back("both ends of an element pass yield, which holds one hinge, in " + names +
                    "; more elements or divisions show it");
   }
+  const Parameters& parameters = run.setup().parameters;
+  for (const Shake& shake : parameters.shakes)
+    if (shake.kind == Shake::Kind::record && !parameters.adaptive &&
+        parameters.time_step > k_same_interval * shake.record->interval)
+      list.push_back(fmt::format(
+          "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
+          "steps is not seen",
+          1e3 * parameters.time_step, 1e3 * shake.record->interval));
   const double balance = run.state().energy.balance_error();
   if (!is_static(run.setup()) && balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",

@@ -300,7 +300,8 @@ ContactSlope BodyContacts::sum_slopes(F slope_of) const {
   const Points none = in_all_lanes(Vec3::Zero());
   PackMatrix<Four> a{{none, none, none}}, b = a, c = a, d = a;
   for (const Touch& touch : now_.list()) {
-    const PackMatrix<Four> slope = slope_of(touch), turned = times_skew(slope, touch.arm);
+    const PackMatrix<Four>& slope = slope_of(touch);
+    const PackMatrix<Four> turned = times_skew(slope, touch.arm);
     a = a + slope;
     b = b - turned;
     c = c + skew_times(touch.arm, slope);
@@ -310,7 +311,7 @@ ContactSlope BodyContacts::sum_slopes(F slope_of) const {
 }
 
 ContactSlope BodyContacts::slope() const {
-  return sum_slopes([](const Touch& touch) { return touch.slope; });
+  return sum_slopes([](const Touch& touch) -> const PackMatrix<Four>& { return touch.slope; });
 }
 
 ContactSlope BodyContacts::stick_slope() const {

@@ -116,6 +116,20 @@ TEST_F(SummaryTest, bodies_that_may_meet_have_a_speed_up_to_which_no_step_is_cut
   EXPECT_DOUBLE_EQ(summary(two, run, "completed", 1)["safe_closing_speed_m_s"], thinnest / 2 / 1e-3);
 }
 
+TEST(Summary, a_step_longer_than_the_samples_of_a_record_is_told) {
+  const auto warnings = [](const char* step) {
+    const io::Scene scene = io::load_scene("near-fault", {step});
+    topple::Run run(scene.setup);
+    EXPECT_TRUE(run.advance().ok());
+    return summary(scene, run, "stopped", 0.5)["warnings"].dump();
+  };
+  EXPECT_NE(warnings("run.time_step=25 ms").find("time_step 25 ms is longer than the 10 ms"),
+            std::string::npos)
+      << warnings("run.time_step=25 ms");
+  EXPECT_EQ(warnings("run.time_step=10 ms").find("time_step"), std::string::npos);
+  EXPECT_EQ(warnings("run.time_step=auto").find("time_step"), std::string::npos);
+}
+
 TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
   const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
   EXPECT_NE(table.find("\nfree "), std::string::npos) << table;
