@@ -121,6 +121,11 @@ class BodyContacts {
     each_of(now_, f);
   }
   double length(const Touch& touch, int lane) const { return side(touch).L[lane]; }
+  /// Of the contact alone, without what gives way behind it.
+  double own_depth(const Touch& touch, int lane) const {
+    return touch.depth[lane] -
+           (gives_ ? touch.give[lane] * touch.conservative[lane] / length(touch, lane) : 0);
+  }
   /// m, from the centre of gravity, reference axes, and N of one that touches; its k-th mode.
   Vec3 place(const Touch& touch, int lane) const { return topple::lane(groups_[touch.group].place, lane); }
   Vec3 shape(const Touch& touch, int lane, int k) const {

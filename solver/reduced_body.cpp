@@ -404,7 +404,8 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const 
 
 void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {
   contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
-    forces.push_back({point, touch.plane, touch.depth[k], touch.normal[k], lane(touch.force, k)});
+    forces.push_back(
+        {point, touch.plane, contacts_.own_depth(touch, k), touch.normal[k], lane(touch.force, k)});
   });
 }
 
