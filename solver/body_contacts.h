@@ -112,7 +112,6 @@ class BodyContacts {
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
   bool any() const { return now_.count > 0; }
-  std::size_t count() const { return now_.count; }
   /// The same for the same points on the same planes.
   std::uint64_t hash() const;
   /// Calls f(touch, lane, point, index into State::stick).
