@@ -104,15 +104,16 @@ ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
           {"strain_J", e[2]},
           {"gravity_J", e[3]},
           {"contact_J", e[4]},
-          {"dissipated_J", e[5] + e[6] + e[7] + e[8] + (e.size() > 12 ? e[12] : 0)},
+          {"dissipated_J", e[5] + e[6] + e[7] + e[8] + e[9] + (e.size() > 13 ? e[13] : 0)},
           {"friction_J", e[5]},
           {"normal_damping_J", e[6]},
           {"numerical_J", e[7]},
           {"plastic_J", e[8]},
-          {"model_switch_J", e[9]},
-          {"anchor_J", e.size() > 12 ? e[11] : 0},
-          {"released_J", e.size() > 12 ? e[12] : 0},
-          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[10])}};
+          {"damping_J", e[9]},
+          {"model_switch_J", e[10]},
+          {"anchor_J", e.size() > 13 ? e[12] : 0},
+          {"released_J", e.size() > 13 ? e[13] : 0},
+          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[11])}};
 }
 
 ordered_json describe(const io::Recording& recording) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "app/panels.h"
 #include "app/words.h"
@@ -22,18 +23,27 @@ struct Slider {
   const char* format;
   double low, high;
   bool relative = false, logarithmic = false;
+  int component = 0;  ///< of Edit::value
 };
 
 constexpr Slider k_sliders[] = {
     {Edit::Key::frequency, "frequency", "Hz", "%.3g Hz", 0.1, 10, false, true},
     {Edit::Key::amplitude, "amplitude", "gal", "%.0f gal", 0, 1000},
     {Edit::Key::direction, "direction", "", "%.0f°", -180, 180},
+    {Edit::Key::duration, "duration", "s", "%.3g s", 0.05, 60, false, true},
     {Edit::Key::scale, "scale", "", "× %.2f", 0, 3},
     {Edit::Key::alpha, "α", "kgf", "%.4g kgf", 1. / 50, 50, true, true},
     {Edit::Key::q, "q", "", "%.2f", 0.5, 4},
     {Edit::Key::friction, "μ", "", "%.2f", 0, 1.5},
+    {Edit::Key::friction_static, "static μ", "", "%.2f", 0, 1.5},
     {Edit::Key::restitution, "restitution", "", "%.2f", 0, 1},
+    {Edit::Key::damping, "damping", "", "%.3f", 0, 0.2},
     {Edit::Key::time_step, "time step", "ms", "%.3g ms", 0.05, 20, false, true},
+};
+// Of a sweep, whose frequency has two values.
+constexpr Slider k_sweep[] = {
+    {Edit::Key::frequency, "from", "Hz", "%.3g Hz", 0.1, 10, false, true},
+    {Edit::Key::frequency, "to", "Hz", "%.3g Hz", 0.1, 10, false, true, 1},
 };
 
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
@@ -48,160 +58,232 @@ Vec3 turned(const Vec3& direction, double degrees) {
   return {across * std::cos(a), across * std::sin(a), direction.z()};
 }
 
+/// One parameter: its label, what sets it, and the way back to the scene's value.
 class Row {
  public:
-  Row(Player& player, const Slider& slider, int shake)
+  Row(Player& player, Edit::Key key, int index, std::string& refused)
       : player_(player),
-        slider_(slider),
-        shake_(shake),
-        key_(io::key_of(slider.key)),
-        unit_(io::unit_value(slider.unit, key_.dimension)),
-        scene_value_(edited_value(player.scene().setup.parameters, slider.key, shake)),
-        value_(edited_value(player.parameters(), slider.key, shake)) {}
+        key_(io::key_of(key)),
+        edit_{key, index, edited_value(player.parameters(), key, index)},
+        scene_value_(edited_value(player.scene().setup.parameters, key, index)),
+        refused_(refused) {}
 
-  void draw(std::string& refused) {
-    ImGui::PushID(slider_.label);
-    ImGui::PushID(shake_);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(slider_.label);
-    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+  void slider(const Slider& look) {
+    begin(look.label);
+    const double unit = io::unit_value(look.unit, key_.dimension);
+    const auto shown = [&](const Vec3& value) {
+      return look.key == Edit::Key::direction ? azimuth(value) : value[look.component] / unit;
+    };
+    const auto from_shown = [&](double number) {
+      if (look.key == Edit::Key::direction) return turned(edit_.value, number);
+      Vec3 value = edit_.value;
+      value[look.component] = number * unit;
+      return value;
+    };
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
-    float number = static_cast<float>(shown(value_));
-    const auto [low, high] = range(number);
-    const ImGuiSliderFlags flags = slider_.logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
+    float number = static_cast<float>(shown(edit_.value));
+    const auto [low, high] = range(look, number, shown(scene_value_), unit);
+    const ImGuiSliderFlags flags = look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
     const bool changed =
-        ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, slider_.format, flags);
+        ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, look.format, flags);
     if (ImGui::IsItemActivated()) player_.begin_edit();
-    if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%s", about().c_str());
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+      ImGui::SetTooltip("%s", about(look, shown(scene_value_)).c_str());
     // While somebody types, what stands there so far is no value yet.
     ImGuiStorage& typed = *ImGui::GetStateStorage();
     const ImGuiID item = ImGui::GetID("typed");
     if (changed && ImGui::GetIO().WantTextInput)
       typed.SetFloat(item, number);
     else if (changed)
-      post(from_shown(number), refused);
+      post(from_shown(number));
     if (ImGui::IsItemDeactivated()) {
       const float last = typed.GetFloat(item, k_nothing);
       typed.SetFloat(item, k_nothing);
-      if (last != k_nothing) post(from_shown(last), refused);
+      if (last != k_nothing) post(from_shown(last));
     }
+    end();
+  }
+
+  /// One of the first `count` choices of the key but those that `legal` does not have.
+  template <class F>
+  void choice(const char* label, int count, F&& legal) {
+    begin(label);
+    ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
+    const int now = static_cast<int>(edit_.value.x());
+    const auto word = [&](int k) { return std::string(key_.choices[static_cast<std::size_t>(k)]); };
+    if (ImGui::BeginCombo("##value", word(now).c_str())) {
+      for (int k = 0; k < count; ++k)
+        if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
+      ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+      ImGui::SetTooltip("%s", fmt::format("{}: {}", io::edit_key(edit_), key_.about).c_str());
+    }
+    end();
+  }
+
+  void tick(const char* label, const std::string& tooltip) {
+    bool on = edit_.value.x() != 0;
+    ImGui::PushID(label);
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    if (ImGui::Checkbox(label, &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", fmt::format("{}: {}", io::edit_key(edit_), tooltip).c_str());
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight());
+    end();
+  }
+
+  void button(const char* label, double value, const char* tooltip) {
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    if (ImGui::Button(label)) post_anew(Vec3(value, 0, 0));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
+    ImGui::PopID();
+  }
+
+ private:
+  void begin(const char* label) {
+    ImGui::PushID(label);
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label);
+    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+  }
+  // What slider() covers: the usual within the legal, and the value itself.
+  std::pair<float, float> range(const Slider& look, float number, double in_scene, double unit) const {
+    const double scale = look.relative ? in_scene : 1;
+    double low = look.low * scale, high = look.high * scale;
+    if (look.key != Edit::Key::direction) {
+      low = std::max(low, key_.least / unit);
+      high = std::min(high, key_.most / unit);
+    }
+    return {std::min(static_cast<float>(low), number), std::max(static_cast<float>(high), number)};
+  }
+  std::string about(const Slider& look, double in_scene) const {
+    const std::string name = io::edit_key(edit_);
+    if (look.key == Edit::Key::direction)
+      return name + ": of the acceleration, counter-clockwise from x (a cabinet's depth)";
+    return fmt::format("{}: {}\nallowed {}, in the scene {:.4g}{}{}\nCtrl+click to type", name, key_.about,
+                       io::range_text(key_), in_scene, *look.unit ? " " : "", look.unit);
+  }
+  void end() {
     ImGui::SameLine();
-    ImGui::BeginDisabled(value_ == scene_value_);
-    if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) {
-      player_.begin_edit();
-      post(scene_value_, refused);
-    }
+    ImGui::BeginDisabled(edit_.value == scene_value_);
+    if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post_anew(scene_value_);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the scene's value");
     ImGui::PopID();
     ImGui::PopID();
   }
-
- private:
-  double shown(const Vec3& value) const {
-    return slider_.key == Edit::Key::direction ? azimuth(value) : value.x() / unit_;
+  void post_anew(const Vec3& value) {
+    player_.begin_edit();
+    post(value);
   }
-  Vec3 from_shown(double number) const {
-    return slider_.key == Edit::Key::direction ? turned(value_, number) : Vec3(number * unit_, 0, 0);
-  }
-  /// What the slider covers: the usual within the legal, and the value itself.
-  std::pair<float, float> range(float number) const {
-    const double scale = slider_.relative ? shown(scene_value_) : 1;
-    double low = slider_.low * scale, high = slider_.high * scale;
-    if (slider_.key != Edit::Key::direction) {
-      low = std::max(low, key_.least / unit_);
-      high = std::min(high, key_.most / unit_);
-    }
-    return {std::min(static_cast<float>(low), number), std::max(static_cast<float>(high), number)};
-  }
-  std::string about() const {
-    const std::string name = io::edit_key({slider_.key, shake_});
-    if (slider_.key == Edit::Key::direction)
-      return name + ": of the acceleration, counter-clockwise from x (a cabinet's depth)";
-    return fmt::format("{}: {}\nallowed {}, in the scene {:.4g}{}{}\nCtrl+click to type", name, key_.about,
-                       io::range_text(key_), shown(scene_value_), *slider_.unit ? " " : "", slider_.unit);
-  }
-  void post(const Vec3& value, std::string& refused) {
-    const Edit edit{slider_.key, shake_, value};
+  void post(const Vec3& value) {
+    const Edit edit{edit_.key, edit_.shake, value};
     try {
-      io::check_edit(edit, player_.scene().setup);
       player_.edit(edit);
-      refused.clear();
+      refused_.clear();
     } catch (const io::InputError& error) {
-      refused = error.what();
+      refused_ = error.what();
     }
   }
 
   Player& player_;
-  const Slider& slider_;
-  const int shake_;
   const io::Key& key_;
-  const double unit_;
-  const Vec3 scene_value_, value_;
+  const Edit edit_;
+  const Vec3 scene_value_;
+  std::string& refused_;
 };
 
-/// Ticked: in place.
-void draw_anchor(Player& player, int index, std::string& refused) {
-  const Model& model = player.scene().setup.model;
-  const bool scene_value = edited_value(player.scene().setup.parameters, Edit::Key::anchor, index).x() != 0;
-  bool on = edited_value(player.parameters(), Edit::Key::anchor, index).x() != 0;
-  const auto post = [&](bool value) {
-    player.begin_edit();
-    player.edit({Edit::Key::anchor, index, Vec3(value ? 1 : 0, 0, 0)});
-    refused.clear();
-  };
-  ImGui::PushID(index);
-  const Anchor& anchor = model.anchors[static_cast<std::size_t>(index)];
-  if (ImGui::Checkbox(anchor.name.c_str(), &on)) post(on);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("%s", fmt::format("{}: ties {} to the wall or floor. One that is put in place starts "
-                                        "without force",
-                                        io::edit_key({Edit::Key::anchor, index}),
-                                        model.bodies[static_cast<std::size_t>(anchor.body)].name)
-                                .c_str());
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
-                  ImGui::GetStyle().ItemSpacing.x);
-  ImGui::BeginDisabled(on == scene_value);
-  if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post(scene_value);
-  ImGui::EndDisabled();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the scene's value");
-  ImGui::PopID();
+constexpr auto k_any = [](int) { return true; };
+
+void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
+  const Setup& setup = player.scene().setup;
+  Row row(player, key, index, refused);
+  switch (key) {
+    case Edit::Key::on:
+      return row.tick("on", "shakes the floor; switched over a quarter of a period");
+    case Edit::Key::type:
+      row.choice("type", static_cast<int>(Shake::Kind::record), k_any);
+      return row.button("Shake once", static_cast<double>(Shake::Kind::pulse),
+                        "A pulse from now on; of a sine, half of one period");
+    case Edit::Key::law:
+      return row.choice("law", 3, k_any);
+    case Edit::Key::integrator:
+      return row.choice("integrator", 4, [](int k) { return k > 0; });
+    case Edit::Key::want:
+      return row.tick("stresses", "what bodies with model \"auto\" are to answer besides motion");
+    case Edit::Key::model:
+      ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
+      return row.choice("model", 4,
+                        [&](int k) { return can_be(setup.model, index, static_cast<BodyModel>(k)); });
+    case Edit::Key::anchor: {
+      const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];
+      return row.tick(anchor.name.c_str(),
+                      fmt::format("ties {} to the wall or floor. One that is put in place starts without "
+                                  "force",
+                                  setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
+    }
+    case Edit::Key::frequency:
+      if (player.parameters().shakes[static_cast<std::size_t>(index)].kind == Shake::Kind::sweep) {
+        for (const Slider& look : k_sweep) Row(player, key, index, refused).slider(look);
+        return;
+      }
+      [[fallthrough]];
+    default:
+      row.slider(*std::find_if(std::begin(k_sliders), std::end(k_sliders),
+                               [key](const Slider& look) { return look.key == key; }));
+  }
+}
+
+enum class Group { floor, contact, bodies, anchors, integration };
+
+Group group_of(Edit::Key key) {
+  if (key <= Edit::Key::scale) return Group::floor;
+  if (key <= Edit::Key::restitution) return Group::contact;
+  if (key <= Edit::Key::damping) return Group::bodies;
+  return key == Edit::Key::anchor ? Group::anchors : Group::integration;
+}
+
+/// False: what stands below it is folded away.
+bool draw_heading(Group group, int index, const Parameters& parameters) {
+  constexpr std::size_t k_few = 2;  // bodies, whose rows need no folding
+  switch (group) {
+    case Group::floor:
+      ImGui::TextDisabled(
+          "%s", parameters.shakes.size() == 1 ? "Floor" : fmt::format("Floor, shake {}", index + 1).c_str());
+      return true;
+    case Group::bodies:
+      return ImGui::CollapsingHeader("Bodies",
+                                     parameters.models.size() <= k_few ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    default:
+      ImGui::TextDisabled("%s", group == Group::contact   ? "Contact"
+                                : group == Group::anchors ? "Anchors"
+                                                          : "Integration");
+      return true;
+  }
+}
+
+/// Statics have no time.
+bool is_dynamic(Edit::Key key) {
+  return key == Edit::Key::law || key == Edit::Key::friction_static || key == Edit::Key::restitution ||
+         group_of(key) == Group::bodies || group_of(key) == Group::integration;
 }
 
 }  // namespace
 
 void draw_parameters(Player& player, std::string& refused) {
   const Parameters& parameters = player.parameters();
-  const bool loads = is_static(player.scene().setup);
+  const Setup& setup = player.scene().setup;
   ImGui::BeginDisabled(!player.can_edit());
-  int heading = -2;
-  for (const auto& [key, shake] : editable(parameters)) {
-    if (loads && (key == Edit::Key::time_step || key == Edit::Key::restitution)) continue;
-    const auto slider = std::find_if(std::begin(k_sliders), std::end(k_sliders),
-                                     [k = key](const Slider& s) { return s.key == k; });
-    const bool of_shake = key == Edit::Key::frequency || key == Edit::Key::amplitude ||
-                          key == Edit::Key::direction || key == Edit::Key::scale;
-    const int group = of_shake                      ? shake
-                      : key == Edit::Key::time_step ? 1000
-                      : key == Edit::Key::anchor    ? 999
-                                                    : -1;
-    if (group != heading) {
-      if (group == 1000)
-        ImGui::TextDisabled("Integration");
-      else if (group == 999)
-        ImGui::TextDisabled("Anchors");
-      else if (group < 0)
-        ImGui::TextDisabled("Contact");
-      else
-        ImGui::TextDisabled("%s", parameters.shakes.size() == 1
-                                      ? "Floor"
-                                      : fmt::format("Floor, shake {}", shake + 1).c_str());
-      heading = group;
-    }
-    if (key == Edit::Key::anchor)
-      draw_anchor(player, shake, refused);
-    else
-      Row(player, *slider, shake).draw(refused);
+  std::optional<std::pair<Group, int>> heading;
+  bool open = true;
+  for (const auto& [key, index] : editable(setup.model, parameters)) {
+    if (is_static(setup) && is_dynamic(key)) continue;
+    const Group group = group_of(key);
+    const std::pair<Group, int> of{group, group == Group::floor ? index : 0};
+    if (heading != of) open = draw_heading(group, index, parameters);
+    heading = of;
+    if (open) draw_row(player, key, index, refused);
   }
   ImGui::EndDisabled();
   if (!player.can_edit() && !player.way().empty())

@@ -237,7 +237,7 @@ void Player::restart() {
   const io::FrameRow& first = *way_.front();
   const Parameters there = parameters_at(scene_->setup, history_, first.branch, first.step);
   std::vector<Edit> edits;
-  for (const auto& [key, shake] : editable(there)) {
+  for (const auto& [key, shake] : editable(scene_->setup.model, parameters_)) {
     const Vec3 value = edited_value(parameters_, key, shake);
     if (value != edited_value(there, key, shake)) edits.push_back({key, shake, value});
   }
@@ -278,7 +278,7 @@ void Player::post(const Edit& edit) {
 
 void Player::edit(const Edit& edit) {
   if (!can_edit()) return;
-  io::check_edit(edit, scene_->setup);
+  io::check_edit(edit, parameters_, scene_->setup.model);
   if (new_undo_ || undo_.empty())
     undo_.push_back({{edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)}, edit});
   else

@@ -302,6 +302,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"normal_damping_J", number(e.normal_damping)},
       {"numerical_J", number(e.numerical)},
       {"plastic_J", number(e.plastic)},
+      {"damping_J", number(e.damping)},
       {"released_J", number(e.released)},
       {"model_switch_J", number(e.model_switch)},
       {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};

@@ -168,6 +168,31 @@ template <class P>
           times(beam.bending_stiffness, s.kappa - beam.offset_kappa)};
 }
 
+/// Velocities of the ends, world axes.
+template <class P>
+struct PackEndRates {
+  PackVector<P> v1, v2;  ///< m/s
+  PackVector<P> w1, w2;  ///< rad/s
+};
+
+/// Viscous section forces, `time` (s) times D and the rates of the strains. With the rotation's rate of the
+/// integration point, w = w1 + r1 t T(t psi) dpsi/dt:
+///   dpsi/dt = T(psi)^-1 r1^T (w2 - w1),  dgamma/dt = rs^T (v2 - v1 - w x (x2 - x1))/L
+template <class P>
+[[gnu::always_inline]] inline PackSection<P> viscous_section(const PackBeam<P>& beam, const PackStrain<P>& s,
+                                                             const PackEndRates<P>& rates, P time) {
+  const PackVector<P> turn = rotate(conjugate(s.e1), rates.w2 - rates.w1);
+  const PackVector<P> t1 = cross(s.psi, turn), t2 = cross(s.psi, t1);
+  const PackVector<P> psi_rate = mul_add(s.angle.g, t2, mul_add(P(-0.5), t1, turn));
+  const PackVector<P> p1 = cross(s.psi, psi_rate), p2 = cross(s.psi, p1);
+  const PackVector<P> lead =
+      rotate(s.e1, beam.t * mul_add(s.angle.left2, p2, mul_add(s.angle.left1, p1, psi_rate)));
+  const PackVector<P> apart =
+      transposed_times(s.rs, rates.v2 - rates.v1) - cross(transposed_times(s.rs, rates.w1 + lead), s.d);
+  const P factor = time * beam.inverse_length;
+  return {factor * times(beam.normal_stiffness, apart), factor * times(beam.bending_stiffness, psi_rate)};
+}
+
 /// BeamGradient: the second node's, and the first node's moment; the forces are opposite.
 template <class P>
 struct PackGradient {

@@ -1,5 +1,6 @@
 #include "solver/beam_pack.h"
 
+#include <algorithm>
 #include <new>
 
 #include "solver/plasticity.h"
@@ -13,6 +14,20 @@ namespace {
                                                      const std::array<int, 4>& j) {
   return {gather(position.data(), i), gather(position.data(), j), gather(rotation.data(), i),
           gather(rotation.data(), j)};
+}
+
+[[gnu::always_inline]] inline PackEndRates<Four> rates_of(const NodeMotion& motion,
+                                                          const PackEnds<Four>& ends,
+                                                          const std::array<int, 4>& i,
+                                                          const std::array<int, 4>& j) {
+  return {gather(motion.velocity.data(), i), gather(motion.velocity.data(), j),
+          rotate(ends.q1, gather(motion.angular_velocity.data(), i)),
+          rotate(ends.q2, gather(motion.angular_velocity.data(), j))};
+}
+
+[[gnu::always_inline]] inline PackSection<Four> sum_of(const PackSection<Four>& a,
+                                                       const PackSection<Four>& b) {
+  return {a.normal + b.normal, a.moment + b.moment};
 }
 
 void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& bending) {
@@ -50,6 +65,7 @@ BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const 
     pack.block[3][k] = lu.index(from.j, from.j);
     pack.element[k] = real ? from.element : -1;
     pack.hinged = false;
+    pack.damping.set(k, 0);
     PackBeam<Four>& beam = pack.beam;
     const Quat triad(element.triad);
     set_lane(beam.triad.v, k, triad.vec());
@@ -93,13 +109,27 @@ void BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n
   }
 }
 
-void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
-                                  std::span<const Quat> rotation, std::span<NodeForce> forces) {
+void BeamPacks::damp(std::size_t first, std::size_t last, double time) {
+  for (std::size_t n = first; n < last; ++n) packs_[n / 4].damping.set(n % 4, time);
+  damped_ =
+      std::any_of(packs_.begin(), packs_.end(), [](const Pack& pack) { return any_above(pack.damping, 0); });
+}
+
+// None where there is a hinge.
+Four BeamPacks::damping(std::span<const ElementState> elements, std::size_t n) const {
+  Four time = packs_[n].damping;
+  for (int k = 0; packs_[n].hinged && k < 4 && packs_[n].element[k] >= 0; ++k)
+    if (elements[4 * n + k].hinge != Hinge::none) time.set(k, 0);
+  return time;
+}
+
+void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
+                                  std::span<NodeForce> forces) {
   // in two passes: the way through one pack is long, and the processor looks no further than one ahead;
   // strains are made in place, not copied there
   for (std::size_t n = 0; n < packs_.size(); ++n)
-    new (&strains_[n])
-        PackStrain<Four>(pack_strain(packs_[n].beam, ends_of(position, rotation, packs_[n].i, packs_[n].j)));
+    new (&strains_[n]) PackStrain<Four>(
+        pack_strain(packs_[n].beam, ends_of(motion.position, motion.rotation, packs_[n].i, packs_[n].j)));
   Four total(0);
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];
@@ -107,29 +137,45 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::s
     PackSection<Four> section = elastic_section(pack.beam, strain);
     if (pack.hinged) respond_to(elements, n, strain, section);
     total = total + pack_energy(pack.beam, strain, section);
-    subtract(pack_gradient(pack.beam, strain, section), pack.i, pack.j, forces);
     pack.section = section;
+    if (damped_) section = sum_of(section, viscous(elements, motion, n, strain));
+    subtract(pack_gradient(pack.beam, strain, section), pack.i, pack.j, forces);
   }
   latest_energy_ = sum(total);
 }
 
-void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
-                                  std::span<const Quat> rotation, std::span<NodeForce> forces, BlockLu& lu) {
+PackSection<Four> BeamPacks::viscous(std::span<const ElementState> elements, const NodeMotion& motion,
+                                     std::size_t n, const PackStrain<Four>& strain) const {
+  const Pack& pack = packs_[n];
+  const PackEnds<Four> ends = ends_of(motion.position, motion.rotation, pack.i, pack.j);
+  return viscous_section(pack.beam, strain, rates_of(motion, ends, pack.i, pack.j), damping(elements, n));
+}
+
+void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
+                                  double velocity_factor, std::span<NodeForce> forces, BlockLu& lu) {
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     const Pack& pack = packs_[n];
-    const PackStrain<Four> strain = pack_strain(pack.beam, ends_of(position, rotation, pack.i, pack.j));
+    const PackStrain<Four> strain =
+        pack_strain(pack.beam, ends_of(motion.position, motion.rotation, pack.i, pack.j));
     PackSection<Four> section = elastic_section(pack.beam, strain);
     if (pack.hinged) respond_to(elements, n, strain, section);
-    const PackGradient<Four> gradient = pack_gradient(pack.beam, strain, section);
+    PackBeam<Four> beam = pack.beam;
+    if (damped_) {
+      section = sum_of(section, viscous(elements, motion, n, strain));
+      const Four stiffer = Four(1) + Four(velocity_factor) * pack.damping;
+      beam.normal_stiffness = stiffer * beam.normal_stiffness;
+      beam.bending_stiffness = stiffer * beam.bending_stiffness;
+    }
+    const PackGradient<Four> gradient = pack_gradient(beam, strain, section);
     subtract(gradient, pack.i, pack.j, forces);
     if (pack.hinged) {
-      add_hinged_tangent(elements, position, rotation, n, lu);
+      add_hinged_tangent(elements, motion, velocity_factor, n, lu);
       continue;
     }
     const PackAngleSlope<Four> slope = any_above(strain.angle.x, k_small_angle)
                                            ? any_angle_slope(strain.angle.x, pack.beam.t)
                                            : small_angle_slope(strain.angle.x, pack.beam.t);
-    const PackTangent<Four> t = pack_tangent(pack.beam, strain, section, gradient, slope);
+    const PackTangent<Four> t = pack_tangent(beam, strain, section, gradient, slope);
     lu.add(pack.block[0], t.force_x2, -t.force_spin1, -t.moment1_x2, t.moment1_spin1);
     lu.add(pack.block[1], -t.force_x2, -t.force_spin2, t.moment1_x2, t.moment1_spin2);
     lu.add(pack.block[2], -t.force_x2, t.force_spin1, -t.moment2_x2, t.moment2_spin1);
@@ -137,21 +183,47 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, std::s
   }
 }
 
-void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, std::span<const Vec3> position,
-                                   std::span<const Quat> rotation, std::size_t n, BlockLu& lu) const {
+void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, const NodeMotion& motion,
+                                   double velocity_factor, std::size_t n, BlockLu& lu) const {
   const Pack& pack = packs_[n];
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-    const Element& element = model_->elements[pack.element[k]];
+    Element element = model_->elements[pack.element[k]];
+    if (elements[4 * n + k].hinge == Hinge::none) {
+      const double stiffer = 1 + velocity_factor * pack.damping[k];
+      element.normal_stiffness *= stiffer;
+      element.bending_stiffness *= stiffer;
+    }
     const int i = pack.i[k], j = pack.j[k];
     BeamGradient gradient;
     Mat12 tangent;
-    beam_tangent(element, elements[4 * n + k],
-                 beam_ends(element, position[i], rotation[i], position[j], rotation[j]), gradient, tangent);
+    beam_tangent(
+        element, elements[4 * n + k],
+        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]),
+        gradient, tangent);
     lu.add(i, i, tangent.block<6, 6>(0, 0));
     lu.add(i, j, tangent.block<6, 6>(0, 6));
     lu.add(j, i, tangent.block<6, 6>(6, 0));
     lu.add(j, j, tangent.block<6, 6>(6, 6));
   }
+}
+
+double BeamPacks::viscous_work(std::span<const ElementState> elements, const NodeMotion& start,
+                               const NodeMotion& end) const {
+  if (!damped_) return 0;
+  Four total(0);
+  for (std::size_t n = 0; n < packs_.size(); ++n) {
+    const Pack& pack = packs_[n];
+    const auto strain_at = [&](const NodeMotion& motion) {
+      return pack_strain(pack.beam, ends_of(motion.position, motion.rotation, pack.i, pack.j));
+    };
+    const PackStrain<Four> strain0 = strain_at(start), strain1 = strain_at(end);
+    const PackSection<Four> both =
+        sum_of(viscous(elements, start, n, strain0), viscous(elements, end, n, strain1));
+    total = total + Four(0.5) * pack.beam.length *
+                        (dot(both.normal, strain1.gamma - strain0.gamma) +
+                         dot(both.moment, strain1.kappa - strain0.kappa));
+  }
+  return sum(total);
 }
 
 double BeamPacks::latest_energy(std::vector<SectionForces>& sections) const {

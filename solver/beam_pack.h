@@ -23,6 +23,13 @@ struct NodeForce {
   double force[4], moment[4];
 };
 
+/// Of the nodes of a system.
+struct NodeMotion {
+  std::span<const Vec3> position, velocity;  ///< m, m/s
+  std::span<const Quat> rotation;
+  std::span<const Vec3> angular_velocity;  ///< rad/s, material axes
+};
+
 /// The elements of a system in their order; what fills the last pack has no stiffness.
 class BeamPacks {
  public:
@@ -30,13 +37,18 @@ class BeamPacks {
 
   /// Copies hinges and offsets, one per element.
   void remember(std::span<const ElementState> elements);
-  /// Subtracts the gradient of the energy (BeamGradient) from `forces`, one per node of the system, in the
-  /// order of the elements.
-  void subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
-                         std::span<const Quat> rotation, std::span<NodeForce> forces);
-  /// The same, and adds the tangent (beam_tangent) to `lu`.
-  void subtract_gradient(std::span<const ElementState> elements, std::span<const Vec3> position,
-                         std::span<const Quat> rotation, std::span<NodeForce> forces, BlockLu& lu);
+  /// Damping of the elements of some own ones, `first` to `last` (not itself): damping_time, s.
+  void damp(std::size_t first, std::size_t last, double time);
+  /// Subtracts the gradient of the energy (BeamGradient), and viscous forces, from `forces`, one per node of
+  /// the system, in the order of the elements.
+  void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
+                         std::span<NodeForce> forces);
+  /// The same, and adds the tangent (beam_tangent; by velocities times `velocity_factor`, 1/s) to `lu`.
+  void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
+                         double velocity_factor, std::span<NodeForce> forces, BlockLu& lu);
+  /// Work that viscous forces take from one motion to another, by the trapezoidal rule, J.
+  double viscous_work(std::span<const ElementState> elements, const NodeMotion& start,
+                      const NodeMotion& end) const;
   /// As energy() where subtract_gradient was called last; for elements without hinges.
   double latest_energy(std::vector<SectionForces>& sections) const;
   /// Elastic energy, J; also fills the elements' part of `sections`, one per element of the model.
@@ -50,13 +62,17 @@ class BeamPacks {
     std::array<std::array<int, 4>, 4> block;  ///< numbers of (i, i), (i, j), (j, i), (j, j)
     std::array<int, 4> element;               ///< index into Model::elements; -1: none
     bool hinged;                              ///< some of them
+    Four damping;                             ///< s, damping_time
     PackSection<Four> section;                ///< of the latest gradient
   };
 
   void respond_to(std::span<const ElementState> elements, std::size_t pack, const PackStrain<Four>& strain,
                   PackSection<Four>& section) const;
-  void add_hinged_tangent(std::span<const ElementState> elements, std::span<const Vec3> position,
-                          std::span<const Quat> rotation, std::size_t pack, BlockLu& lu) const;
+  PackSection<Four> viscous(std::span<const ElementState> elements, const NodeMotion& motion,
+                            std::size_t pack, const PackStrain<Four>& strain) const;
+  Four damping(std::span<const ElementState> elements, std::size_t pack) const;
+  void add_hinged_tangent(std::span<const ElementState> elements, const NodeMotion& motion,
+                          double velocity_factor, std::size_t pack, BlockLu& lu) const;
   static void store_sections(const Pack& pack, const PackSection<Four>& section,
                              std::vector<SectionForces>& sections);
 
@@ -64,6 +80,7 @@ class BeamPacks {
   std::vector<Pack> packs_;
   std::vector<PackStrain<Four>> strains_;  // scratch
   double latest_energy_ = 0;
+  bool damped_ = false;
 };
 
 }  // namespace topple

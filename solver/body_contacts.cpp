@@ -28,7 +28,10 @@ double mean_width(const ContactPoint& point, const Plane& plane) {
 }  // namespace
 
 PreparedLaw::PreparedLaw(const ContactLaw& law)
-    : ContactLaw(law), root_alpha(std::sqrt(law.alpha)), loss(normal_loss(law.restitution)) {}
+    : ContactLaw(law),
+      root_alpha(std::sqrt(law.alpha)),
+      loss(normal_loss(law.restitution)),
+      bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed) {}
 
 BodyContacts::BodyContacts(const Model& model, int body)
     : model_(model),
@@ -195,8 +198,10 @@ template <bool with_slope>
 
   const Four k = touch.stick_stiffness, c = law.root_alpha * here.damping;
   const Points stick = mul_add(-dot(n, touch.stick), n, touch.stick);
-  const Points trial = mul_add(c, mul_add(-vn, n, v), k * stick);
-  const Four limit = law.friction * touch.normal, size2 = dot(trial, trial);
+  const bool static_friction = law.excess() > 0;
+  const Points slip = mul_add(-vn, n, v), trial = mul_add(c, slip, k * stick);
+  const Four mu = static_friction ? friction_coefficient(law, dot(slip, slip)) : Four(law.friction);
+  const Four limit = touch.limit = mu * touch.normal, size2 = dot(trial, trial);
   const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
   Four scale = Four(1), inverse_size = zero;
   if (bits(sticks | ~touch.touching) != k_all_lanes) {
@@ -220,7 +225,13 @@ template <bool with_slope>
     across = across * scale;
     touch.drag = choose(sticks, across, zero);
     const Points along = inverse_size * trial;
-    const Points lead = (slope + across) * n, side_way = mul_add(across, along, -(law.friction * slope) * n);
+    const Points lead = (slope + across) * n;
+    Points side_way = mul_add(across, along, -(mu * slope) * n);
+    if (static_friction) {
+      const Four above = mu - law.friction;
+      side_way = mul_add(2 * above * above / (law.excess() * law.slip_speed * law.slip_speed) * touch.normal,
+                         slip, side_way);
+    }
     const Four n_of[3] = {n.x, n.y, n.z}, along_of[3] = {along.x, along.y, along.z};
     for (int i = 0; i < 3; ++i) touch.slope.row[i] = mul_add(n_of[i], lead, along_of[i] * side_way);
     touch.slope.row[0].x -= across;
@@ -362,7 +373,7 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
 BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law, const Touch& touch) const {
   if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
   const Points n = normal(touch), stick = mul_add(-dot(n, touch.stick), n, touch.stick);
-  const Four limit = law.friction * touch.normal / touch.stick_stiffness;
+  const Four limit = touch.limit / touch.stick_stiffness;
   const Four size2 = dot(stick, stick);
   const Four::Mask sticks = size2 <= limit * limit;
   if (bits(sticks | ~touch.touching) == k_all_lanes) return choose(touch.touching, Four(1), Four(0)) * stick;

@@ -26,6 +26,7 @@ using PackMat3 = PackMatrix<double>;
 /// A contact law with what is the same at all contacts.
 struct PreparedLaw : ContactLaw {
   double root_alpha, loss;  ///< normal_loss
+  double bend;              ///< m/s, the least speed over which forces leave their tangent
   explicit PreparedLaw(const ContactLaw& law);
 };
 
@@ -61,6 +62,7 @@ class BodyContacts {
     Points stick;   // m, travel since sticking began
     Points travel;  // m, in the part of a step that led here
     Four conservative, normal;
+    Four limit;  // N, of the tangential force (coulomb law)
     Points tangential, force;
     Four give, give_across;  // m/N, what the body gives way where it is pushed, less what its modes do
     Four alpha;              // N, of the spring with what gives way behind it

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "solver/beam.h"
+#include "solver/damping.h"
 #include "solver/excitation.h"
 
 namespace topple {
@@ -189,6 +190,17 @@ int BodySystem::local(int global) const {
   return held == node.end() ? -1 : static_cast<int>(held - node.begin());
 }
 
+void BodySystem::damp(const Parameters& parameters) {
+  if (damping_ == parameters.damping) return;
+  damping_ = parameters.damping;
+  std::size_t begin = 0;
+  for (const int b : bodies) {
+    const std::size_t end = begin + model.bodies[b].element_count;
+    beams_.damp(begin, end, damping_time(model, parameters, b));
+    begin = end;
+  }
+}
+
 void BodySystem::start_forces(const Parameters& parameters, double t) {
   const Vec3 field = parameters.gravity - floor_acceleration(parameters.shakes, t);
   for (int i = 0; i < count; ++i) {
@@ -203,6 +215,7 @@ void BodySystem::start_forces(const Parameters& parameters, double t) {
     }
   }
   if (yields) beams_.remember(elements);
+  damp(parameters);
   ends_here = false;
 }
 
@@ -295,7 +308,7 @@ void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMoti
 
 void BodySystem::evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion) {
   start_forces(parameters, t);
-  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_);
+  beams_.subtract_gradient(elements, motion, node_force_);
   take_forces();
   add_anchors<false>(motion);
 }
@@ -304,7 +317,7 @@ void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, c
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start,
                                        double velocity_factor) {
   start_forces(parameters, t);
-  beams_.subtract_gradient(elements, motion.position, motion.rotation, node_force_, lu);
+  beams_.subtract_gradient(elements, motion, velocity_factor, node_force_, lu);
   take_forces();
   add_anchors<true>(motion);
   add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);

@@ -39,6 +39,8 @@ struct BodyMotion {
   std::vector<Quat> rotation;
   std::vector<Vec3> angular_velocity;  ///< rad/s, material axes
 
+  operator NodeMotion() const { return {position, velocity, rotation, angular_velocity}; }
+
   void resize(int nodes);
 };
 
@@ -91,6 +93,10 @@ class BodySystem {
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
                     std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
+  /// Work of viscous stresses from one motion to another, J.
+  double viscous_work(const BodyMotion& start, const BodyMotion& end) const {
+    return beams_.viscous_work(elements, start, end);
+  }
   /// Of the elements' elastic strain, J; also fills this system's part of `sections`: forces without flow.
   double elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections);
   /// Copies this system's part of an array over the model's nodes into one over its own, and back.
@@ -180,6 +186,7 @@ class BodySystem {
   void add_nodes();
   void add_packs();
   MemberPair member_pair(const ElementPair& pair) const;
+  void damp(const Parameters& parameters);
   void start_forces(const Parameters& parameters, double t);
   void take_forces();
   template <bool with_tangent>
@@ -206,6 +213,7 @@ class BodySystem {
   std::vector<MemberStick> own_sticks_, new_sticks_;
   bool keeps_sticks_ = false;
   BeamPacks beams_;
+  std::vector<double> damping_;        // Parameters::damping of beams_
   std::vector<NodeForce> node_force_;  // applied less those of the beams
 };
 

@@ -236,7 +236,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   return status;
 }
 
-double explicit_limit(BodySystem& s, const ContactLaw* law, int* busiest) {
+double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int* busiest) {
   const int n = s.count;
   const std::size_t count = s.own_elements.size();
   std::vector<Mat12> tangents(count);
@@ -295,7 +295,7 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, int* busiest) {
       *busiest = g;
     }
   }
-  return 2 / std::sqrt(value);
+  return std::sqrt(damping * damping + 4 / value) - damping;
 }
 
 }  // namespace topple

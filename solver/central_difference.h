@@ -19,7 +19,10 @@ StepStatus advance_central_difference(BodySystem& system, const Parameters& para
 /// pose, by power iteration on M^-1 K. With a law every contact point holds on to every plane: Eq. 2 at
 /// 1 - l/L = 1 (below q = 1: at 0.01, where it is stiffer) along the normal, the stick spring across it;
 /// where there are more bodies every node holds on to one member likewise, before hardening.
+/// `damping`: damping_time a of the bodies, s; it acts at the velocity half a step before, which makes the
+/// limit sqrt(a^2 + 4/w^2) - a.
 /// `busiest`: index into the model of the node that has most of the kinetic energy of that mode.
-double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr, int* busiest = nullptr);
+double explicit_limit(BodySystem& system, const ContactLaw* law = nullptr, double damping = 0,
+                      int* busiest = nullptr);
 
 }  // namespace topple

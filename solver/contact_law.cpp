@@ -67,6 +67,12 @@ Vec3 across(const Vec3& n, const Vec3& v) {
   return v - n.dot(v) * n;
 }
 
+// -d mu/d v_t over v_t, s^2/m^2.
+double weakening(const ContactLaw& law, double speed2) {
+  const double scale = 1 / (law.slip_speed * law.slip_speed), share = 1 / (1 + speed2 * scale);
+  return 2 * law.excess() * scale * share * share;
+}
+
 // What is left of the spring's travel when its force is capped.
 void take_stick(double k, const Vec3& stick, double limit, ContactOutput& out) {
   const double spring = k * stick.norm();
@@ -86,8 +92,10 @@ void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp,
 
   const auto [k, c] = Stick(law, in);
   const Vec3 stick = across(n, in.stick);
-  const Vec3 trial = k * stick + c * (in.velocity - vn * n);
-  const double size = trial.norm(), limit = law.friction * out.normal;
+  const Vec3 slip = in.velocity - vn * n;
+  const Vec3 trial = k * stick + c * slip;
+  const double mu = friction_coefficient(law, slip.squaredNorm());
+  const double size = trial.norm(), limit = mu * out.normal;
   const bool slips = !(size <= limit);  // a NaN must not pass for sticking
   out.tangential = slips ? Vec3(-limit / size * trial) : Vec3(-trial);
   take_stick(k, stick, limit, out);
@@ -104,8 +112,11 @@ void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp,
   }
   const Vec3 direction = trial / size;
   const Mat3 turning = limit / size * (tangent_plane - direction * direction.transpose());
-  *derivatives.by_position -= law.friction * dp * factor * direction * n.transpose() + k * turning;
-  *derivatives.by_velocity -= law.friction * p * dfactor * direction * n.transpose() + c * turning;
+  *derivatives.by_position -= mu * dp * factor * direction * n.transpose() + k * turning;
+  *derivatives.by_velocity -= mu * p * dfactor * direction * n.transpose() + c * turning;
+  if (law.excess() > 0)
+    *derivatives.by_velocity +=
+        out.normal * weakening(law, slip.squaredNorm()) * direction * slip.transpose();
 }
 
 ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivatives derivatives) {
@@ -148,6 +159,7 @@ ContactLaw contact_law(const Parameters& parameters, double t) {
   const auto mix = [share](double a, double b) { return (1 - share) * a + share * b; };
   law.alpha = before.alpha * std::pow(law.alpha / before.alpha, share);
   law.q = mix(before.q, law.q);
+  law.friction_static = mix(before.friction + before.excess(), law.friction + law.excess());
   law.friction = mix(before.friction, law.friction);
   law.restitution = mix(before.restitution, law.restitution);
   return law;
@@ -209,12 +221,20 @@ ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& in, double im
   // sticking and slipping forces alike lie along k stick + c free
   const auto [k, c] = Stick(law, in);
   const Vec3 stick = across(n, in.stick), free_t = free - free_n * n, pull = k * stick + c * free_t;
-  const double size = pull.norm(), limit = law.friction * out.normal;
-  const bool sticks = size * impedance <= limit * (impedance + c);
-  out.tangential = -(sticks ? impedance / (impedance + c) : limit / size) * pull;
+  const double size = pull.norm();
+  double limit = 0;
+  Vec3 slip = Vec3::Zero();  // static friction holds what was at rest
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    limit = friction_coefficient(law, slip.squaredNorm()) * out.normal;
+    const bool sticks = size * impedance <= limit * (impedance + c);
+    out.tangential = -(sticks ? impedance / (impedance + c) : limit / size) * pull;
+    const Vec3 before = slip;
+    slip = free_t + out.tangential / impedance;
+    if (law.excess() == 0 || !((slip - before).squaredNorm() > 1e-24 * (1 + slip.squaredNorm()))) break;
+  }
   take_stick(k, stick, limit, out);
   out.force = out.normal * n + out.tangential;
-  in.velocity = free_t + out.tangential / impedance + vn * n;
+  in.velocity = slip + vn * n;
   return out;
 }
 

@@ -31,6 +31,14 @@ double penalty_stiffness(const ContactLaw& law, double depth, double L, bool bet
 /// Energy stored by penalty_force at `depth`, J: alpha L / (q + 1) depth^(q + 1), and that of the hardening.
 double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members = false);
 
+/// mu of the coulomb law at a slip speed whose square is `speed2`, m^2/s^2, between static and kinetic
+/// friction:
+///   mu + (mu_s - mu)/(1 + (v/slip_speed)^2)
+template <class T>
+T friction_coefficient(const ContactLaw& law, T speed2) {
+  return law.friction + law.excess() / (1 + speed2 * (1 / (law.slip_speed * law.slip_speed)));
+}
+
 /// m_n = (1 - e^2)/(1 + e^2): share of the normal force that depends on the direction of motion so that an
 /// impact returns with restitution e.
 double normal_loss(double restitution);
@@ -56,7 +64,8 @@ struct ContactOutput {
   double stick_energy;  ///< J
 };
 
-/// coulomb: N = P (1 - m_n v_n/sqrt(v_n^2 + eps_n^2)); stick spring with damping, capped at mu N.
+/// coulomb: N = P (1 - m_n v_n/sqrt(v_n^2 + eps_n^2)); stick spring with damping, capped at mu N, mu of
+/// friction_coefficient at the tangential velocity.
 /// paper:   P n - mu P v/sqrt(v^2 + eps^2).
 /// printed: -P v_n/sqrt(v_n^2 + eps^2) n - mu P v/sqrt(v^2 + eps^2).
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input);

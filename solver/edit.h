@@ -9,36 +9,52 @@
 
 namespace topple {
 
-/// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, only `direction`
-/// uses all three. anchor: 1 puts it in place, 0 takes it away.
+/// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, `direction` uses
+/// all three, the frequency of a sweep two (first, last). Choices are numbers of those of the scene's
+/// key, from 0; want: 1 motion and stress, 0 motion alone; on and anchor: 1 or 0.
 struct Edit {
   enum class Key {
+    on,
+    type,
     frequency,
     amplitude,
     direction,
+    duration,
     scale,
+    law,
     alpha,
     q,
     friction,
+    friction_static,
     restitution,
+    model,
+    damping,
     anchor,
+    integrator,
+    want,
     time_step
   };
   Key key;
-  int shake = 0;  ///< of frequency, amplitude, direction and scale; of anchor: its index
+  int shake = 0;  ///< of on .. scale; of model and damping: the body's index; of anchor: its index
   Vec3 value = Vec3::Zero();
 };
 
-/// Every key, and shake or anchor that it is for, that can be edited.
-std::vector<std::pair<Edit::Key, int>> editable(const Parameters& parameters);
+/// Every key, and shake, body or anchor that it is for, that can be edited.
+std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parameters& parameters);
 
-/// The value that an edit of this key and shake or anchor sets.
+/// Whether a body can be computed as `model`: rigid and frame always, but for one that stands on supports or
+/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
+bool can_be(const Model& model, int body, BodyModel asked);
+
+/// The value that an edit of this key and shake, body or anchor sets.
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 
-/// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase, amplitude, direction and
-/// scale change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),
-/// numbers of the contact law over two of contact_period. The result depends on nothing but the arguments, so
-/// that edits can be repeated.
+/// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase; amplitude, direction, scale,
+/// on and off change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),
+/// numbers of the contact law over two of contact_period. A type, and the frequencies of a sweep, begin the
+/// shake anew, with acceleration 0 but for a rectangle; a sine becomes a pulse of half its period, or a sweep
+/// to ten times its frequency in 10 s. What another contact law holds in its springs the next step books. The
+/// result depends on nothing but the arguments, so that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 
 /// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with

@@ -55,6 +55,7 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
     const Vec3 spin = start.rotation[i] * log_quaternion(start.rotation[i].conjugate() * end.rotation[i]);
     energy.input += factor * (load->force.dot(end.position[i] - start.position[i]) + load->moment.dot(spin));
   }
+  energy.damping += s.viscous_work(start, end);
   const auto book = [&](const Contacts& contacts, double sign) {
     for (const TouchingPair& pair : contacts.planes)
       book_contact(pair.out, s.model.planes[pair.plane].normal,

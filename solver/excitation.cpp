@@ -45,21 +45,23 @@ double Passage::share(double t) const {
 }
 
 Vec3 shake_amplitude(const Shake& shake, double t) {
-  const Vec3 now = shake.amplitude * shake.direction;
+  const Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
   if (shake.passage.over == 0) return now;
   const double share = shake.passage.share(t);
   return (1 - share) * shake.amplitude_before + share * now;
 }
 
 double shake_scale(const Shake& shake, double t) {
-  if (shake.passage.over == 0) return shake.scale;
+  const double now = shake.on ? shake.scale : 0;
+  if (shake.passage.over == 0) return now;
   const double share = shake.passage.share(t);
-  return (1 - share) * shake.scale_before + share * shake.scale;
+  return (1 - share) * shake.scale_before + share * now;
 }
 
 double shake_turns(const Shake& shake, double t) {
   if (shake.kind == Shake::Kind::sweep) {
     const double octaves = std::log(shake.last_frequency / shake.frequency);
+    if (octaves == 0) return shake.frequency * (t - shake.start);
     return shake.frequency * shake.duration / octaves *
            std::expm1(octaves * (t - shake.start) / shake.duration);
   }
@@ -117,7 +119,7 @@ Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1) {
   Vec3 sum = Vec3::Zero();
   for (const Shake& shake : shakes)
-    if (shake.kind == Shake::Kind::sine && shake.initial_velocity == Shake::Start::jump &&
+    if (shake.on && shake.kind == Shake::Kind::sine && shake.initial_velocity == Shake::Start::jump &&
         shake.start >= t0 && shake.start < t1)
       sum -= shake.amplitude / (2 * k_pi * shake.frequency) * shake.direction;
   return sum;

@@ -7,17 +7,6 @@
 #include "solver/rotation.h"
 
 namespace topple {
-namespace {
-
-// Supports and loads act on nodes.
-bool only_frame(const Model& model, int body) {
-  const auto its = [&](const auto& at) { return model.node_body[at.node] == body; };
-  return model.bodies[body].ground || std::any_of(model.supports.begin(), model.supports.end(), its) ||
-         std::any_of(model.loads.begin(), model.loads.end(), its);
-}
-
-}  // namespace
-
 const char* name(Rung rung) {
   return rung == Rung::rigid ? "rigid" : rung == Rung::elastic ? "elastic" : "frame";
 }
@@ -47,7 +36,8 @@ const char* name(RungReason reason) {
 RungChoice base_rung(const Model& model, const Parameters& parameters, int body) {
   const BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
   const ElasticBasis* const basis = model.bodies[body].elastic.get();
-  if (asked == BodyModel::frame || only_frame(model, body)) return {Rung::frame, RungReason::asked};
+  if (asked == BodyModel::frame || model.bodies[body].ground || !can_be(model, body, BodyModel::rigid))
+    return {Rung::frame, RungReason::asked};
   if (asked == BodyModel::rigid) return {Rung::rigid, RungReason::asked};
   if (!basis) return {Rung::frame, RungReason::asked};
   if (asked == BodyModel::elastic) return {Rung::elastic, RungReason::asked};

@@ -75,6 +75,8 @@ struct Body {
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
   std::vector<std::array<int, 4>> panels;       ///< nodes of flat sheets, for pictures only
   std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the rung elastic
+  double first_frequency =
+      0;                ///< rad/s, of its first elastic mode (damping.h); 0: not known, it has no damping
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
 };
 

@@ -17,11 +17,16 @@ struct ContactLaw {
   ContactLawKind kind = ContactLawKind::coulomb;
   double alpha = 50 * k_standard_gravity;  ///< N, penalty coefficient
   double q = 1;                            ///< penalty index
-  double friction = 0.6;                   ///< mu
+  double friction = 0.6;                   ///< mu, kinetic
+  double friction_static = 0;  ///< coulomb law: of what sticks (friction_coefficient); not above mu: mu
   double restitution = 0;      ///< coulomb law; a body that rocks lands without bouncing (Housner)
   double normal_speed = 0.01;  ///< m/s, eps_n of the coulomb law
-  double slip_speed = 0.01;    ///< m/s, smoothing of the direction v/|v| of the paper and printed laws
+  /// m/s; paper and printed law: smoothing of the direction v/|v|; coulomb law: at which half of the
+  /// difference between static and kinetic friction is gone
+  double slip_speed = 0.01;
   bool operator==(const ContactLaw&) const = default;
+  /// What static friction has more than kinetic.
+  double excess() const { return friction_static > friction ? friction_static - friction : 0; }
 };
 
 /// The way from earlier values to those edited while it runs: what jumped would put energy in.
@@ -43,8 +48,9 @@ struct Shake {
   double last_frequency = 1;       ///< Hz, sweep: at its end
   Vec3 direction = Vec3::UnitX();  ///< unit; record: of its strongest component
   double start = 0;                ///< s
-  double cycles = 0;               ///< sine: 0 = until the end
-  double taper = 0;                ///< sine, sweep: cycles of smooth rise and fall
+  bool on = true;
+  double cycles = 0;  ///< sine: 0 = until the end
+  double taper = 0;   ///< sine, sweep: cycles of smooth rise and fall
   Start initial_velocity = Start::rest;
   Shape shape = Shape::half_sine;              ///< pulse
   double duration = 1;                         ///< s, pulse, sweep
@@ -62,7 +68,12 @@ struct Shake {
 /// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.
 enum class BodyModel { automatic, rigid, elastic, frame };
 
-enum class Integrator { central_difference, generalized_alpha, newmark };
+enum class Integrator { generalized_alpha, central_difference, newmark };
+
+/// Of the number of a choice of `run.integrator`, whose first is auto.
+inline Integrator chosen_integrator(int choice) {
+  return static_cast<Integrator>(choice > 0 ? choice - 1 : 0);
+}
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene_keys.h, one table for scene files,
 /// sliders and fuzzers.
@@ -71,9 +82,10 @@ struct Parameters {
   ContactLaw contact_before;  ///< until an edit
   Passage contact_passage;    ///< from it to `contact`
   std::vector<Shake> shakes;
-  std::vector<BodyModel> models;            ///< one per body; empty: all frame
-  std::vector<bool> anchors;                ///< one per anchor: it is in place; empty: all are
-  bool want_stress = true;                  ///< what `automatic` goes by
+  std::vector<BodyModel> models;  ///< one per body; empty: all frame
+  std::vector<double> damping;    ///< one per body: ratio to critical at its first elastic mode; empty: 0
+  std::vector<bool> anchors;      ///< one per anchor: it is in place; empty: all are
+  bool want_stress = true;        ///< what `automatic` goes by
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1

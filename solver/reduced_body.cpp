@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/damping.h"
 #include "solver/excitation.h"
 #include "solver/rigid_solver.h"
 #include "solver/rotation.h"
@@ -131,7 +132,7 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
     size += sum_of(x) + reach_ * sum_of(y);
     const double speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
     // what is left after the correction: its rate, or its square over that of the smoothing
-    const double rate = fresh ? std::min(1., size / law.normal_speed) : size / last;
+    const double rate = fresh ? std::min(1., size / law.bend) : size / last;
     if (size * rate <= k_velocity_error * speed) return true;
     fresh = iteration > 0 && rate > k_good_rate;
     last = size;
@@ -268,6 +269,9 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
                              BodyState& s, std::span<Vec3> stick, StepEnergy& booked, ReducedScratch& w) {
   contacts_.begin_part();
   const BodyState before = s;
+  const double damping = damping_time(model_, parameters, body_);
+  if (damping > 0 && s.rung == Rung::elastic) s.rate *= (-damping * h * basis_->frequency.square()).exp();
+  const Amplitudes rate0 = s.rate;
   const PackQuaternion<double> q0 = packed(before.rotation);
   const PackMat3 r0 = rotation_matrix(q0);
   const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(r0, packed(before.moment)));
@@ -330,12 +334,14 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       0.5 * mass_ * (s.velocity + before.velocity).dot(s.velocity - before.velocity) +
       0.5 * dot(packed(Vec3(before.moment + s.moment)), r0 * packed(spin)) -
       0.5 * dot(packed(Vec3(s.angular_velocity + before.angular_velocity)), inertia_ * packed(faster));
-  if (bends)
+  if (bends) {
+    booked.damping += 0.5 * (before.rate.square() - rate0.square()).sum();
     booked.numerical +=
         (0.5 * (before.load + s.load) * (s.amplitude - before.amplitude) -
-         0.5 * (s.rate.square() - before.rate.square()) -
+         0.5 * (s.rate.square() - rate0.square()) -
          0.5 * basis_->frequency.square() * (s.amplitude.square() - before.amplitude.square()))
             .sum();
+  }
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
   respond_at(end.law, s);

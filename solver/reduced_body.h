@@ -8,6 +8,8 @@
 // free motion (exact for X and q; R keeps the angular momentum and is of second order), half an impulse of
 // what acts at the end, with contacts taken at the velocity that they leave:
 //   u1 = u_free + (h/2) M^-1 (G1 + sum_c J_c^T f_c(x1, J_c u1))
+// Damped modes lose exp(-2 zeta w h) of their rate at the start of a part, so that what is at rest stays so
+// and an amplitude decays by exp(-zeta w h).
 //
 // Stiff, for a rigid body on contacts that would make those parts short: two implicit stages of second order
 // that damp what is too fast for the part (SDIRK2, gamma = 1 - 1/sqrt 2; Alexander 1977), on the rotation

@@ -92,7 +92,7 @@ bool ReducedBody::solve_stage(StiffPart& part, const Instant& now, const PackVec
     const double size = sum_of(x) + reach_ * sum_of(y),
                  speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
     // what is left after the correction: its rate, or its square over that of the smoothing
-    const double rate = part.fresh ? std::min(1., size / now.law.normal_speed) : size / last;
+    const double rate = part.fresh ? std::min(1., size / now.law.bend) : size / last;
     if (size * rate <= k_stage_error * speed) {
       part.fresh = false;
       stage.spin = spin();

@@ -67,10 +67,13 @@ void each_number(AnyState& s, F f) {
   f(s.step_size);
   f(s.load_factor);
   f(s.near_slack);
+  double law = static_cast<double>(s.law);
+  f(law);
+  if constexpr (!std::is_const_v<AnyState>) s.law = as<ContactLawKind>(law, ContactLawKind::printed);
   auto& e = s.energy;
   for (auto* number :
        {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction, &e.normal_damping, &e.numerical,
-        &e.plastic, &e.model_switch, &e.start_total, &e.largest})
+        &e.plastic, &e.damping, &e.model_switch, &e.start_total, &e.largest})
     f(*number);
   if (s.anchors.empty()) return;  // a checkpoint of a model without anchors has no place for them
   f(e.anchor);
@@ -257,6 +260,7 @@ bool is_finite(const State& s, bool nodes) {
                          e.normal_damping,
                          e.numerical,
                          e.plastic,
+                         e.damping,
                          e.model_switch,
                          e.anchor,
                          e.released,
@@ -283,6 +287,7 @@ void copy(const State& from, State& to, bool nodes) {
   to.floor_velocity = from.floor_velocity;
   to.step_size = from.step_size;
   to.load_factor = from.load_factor;
+  to.law = from.law;
   to.energy = from.energy;
 }
 

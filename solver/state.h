@@ -28,13 +28,14 @@ struct EnergyLedger {
   double normal_damping = 0;  ///< dissipated by normal contact forces
   double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
   double plastic = 0;         ///< dissipated by hinges; moves of stress points and fracture are in it
+  double damping = 0;         ///< dissipated by viscous stresses (damping.h)
   double model_switch = 0;    ///< came in when bodies changed their rung (ladder.h)
   double anchor = 0;          ///< stored in anchors
   double released = 0;        ///< what anchors held when they broke or were taken away: went out
   double start_total = 0;     ///< kinetic + strain + contact + anchor at the start
   double largest = 0;         ///< largest energy exchanged so far
 
-  double dissipated() const { return friction + normal_damping + numerical + plastic + released; }
+  double dissipated() const { return friction + normal_damping + numerical + plastic + damping + released; }
   /// Energy that nothing explains.
   double unexplained() const {
     return kinetic + strain + gravity + contact + anchor - start_total - input - model_switch + dissipated();
@@ -70,7 +71,8 @@ struct State {
   /// Step size in use, 0: not chosen yet. Adaptive runs: s, tried next; displacement control: m or rad per
   /// load step.
   double step_size = 0;
-  double load_factor = 0;  ///< static runs
+  double load_factor = 0;                        ///< static runs
+  ContactLawKind law = ContactLawKind::coulomb;  ///< with which accelerations and energies were found
   EnergyLedger energy;
 };
 

@@ -10,6 +10,7 @@
 
 #include "solver/body_system.h"
 #include "solver/central_difference.h"
+#include "solver/damping.h"
 #include "solver/energy.h"
 #include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
@@ -123,6 +124,7 @@ struct Workspace::Impl {
   std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
   int limiting_body = -1, limiting_node = -1;
   double limit_alpha = 0, limit_q = 0;
+  std::vector<double> limit_damping;
 };
 
 Workspace::Workspace(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
@@ -271,23 +273,42 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
   return status;
 }
 
+namespace {
+
+// Accelerations and contacts of all bodies; returns what they hold.
+BodyEnergy balance_all(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
+  BodyEnergy held;
+  const Instant now(parameters, state.time);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (state.bodies[b].rung != Rung::frame)
+      add(w.reduced(model, state, b).balance(parameters, now, state.bodies[b], state.stick), held);
+  for (BodySystem* system : w.systems()) {
+    balance_accelerations(*system, parameters, state, w.motion);
+    add(system->energy(now.law, w.motion, system->contacts, w.sections), held);
+  }
+  return held;
+}
+
+// Another law took hold: what contacts hold more with it is input.
+void change_law(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
+  const double before = state.energy.contact;
+  state.law = parameters.contact.kind;
+  state.energy.contact = balance_all(model, parameters, state, w).contact;
+  state.energy.input += state.energy.contact - before;
+}
+
+}  // namespace
+
 void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
   Workspace::Impl& w = workspace.impl();
   start_rungs(model, parameters, state, w);
   EnergyLedger& energy = state.energy;
-  BodyEnergy held;
-  const Instant now(parameters, state.time);
   w.new_anchors.assign(model.bodies.size(), false);
   switch_anchors(model, parameters, state, w.new_anchors);
   break_anchors(model, state, w.new_anchors);
   energy.released = 0;  // what settling left in them was never in the run
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    if (state.bodies[b].rung != Rung::frame)
-      add(w.reduced(model, state, b).balance(parameters, now, state.bodies[b], state.stick), held);
-  for (auto& system : w.systems()) {
-    balance_accelerations(*system, parameters, state, w.motion);
-    add(system->energy(now.law, w.motion, system->contacts, w.sections), held);
-  }
+  const BodyEnergy held = balance_all(model, parameters, state, w);
+  state.law = parameters.contact.kind;
   take(held, energy);
   energy.start_total = held.kinetic + held.strain + held.contact + held.anchor;
   energy.largest = std::max(held.kinetic, held.strain + held.contact + held.anchor);
@@ -316,15 +337,18 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, const
     law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
     law.q = std::max(law.q, parameters.contact_before.q);
   }
-  if (w.explicit_limit && w.limit_alpha == law.alpha && w.limit_q == law.q) return;
+  if (w.explicit_limit && w.limit_alpha == law.alpha && w.limit_q == law.q &&
+      w.limit_damping == parameters.damping)
+    return;
   w.explicit_limit.reset();
   w.limit_alpha = law.alpha;
   w.limit_q = law.q;
+  w.limit_damping = parameters.damping;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodySystem* const system = state.bodies[b].rung == Rung::frame ? w.islands.alone(b) : nullptr;
     if (!system) continue;
     int node = -1;
-    const double limit = explicit_limit(*system, &law, &node);
+    const double limit = explicit_limit(*system, &law, damping_time(model, parameters, b), &node);
     if (limit >= w.explicit_limit.value_or(1e300)) continue;
     w.explicit_limit = limit;
     w.limiting_body = b;
@@ -500,6 +524,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     w.new_anchors.assign(model.bodies.size(), false);
     if (switch_anchors(model, parameters, w.next, w.new_anchors))
       balance_again(model, parameters, start, w.next, w);
+    if (w.next.law != parameters.contact.kind) change_law(model, parameters, w.next, w);
   }
   const bool is_explicit = parameters.integrator == Integrator::central_difference;
   StepStatus status;
@@ -598,6 +623,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     exchanged.normal_damping += part.exchanged.normal_damping;
     exchanged.numerical += part.exchanged.numerical;
     exchanged.plastic += part.exchanged.plastic;
+    exchanged.damping += part.exchanged.damping;
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;
@@ -613,6 +639,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   e.normal_damping += exchanged.normal_damping;
   e.numerical += exchanged.numerical;
   e.plastic += exchanged.plastic;
+  e.damping += exchanged.damping;
   take(held, e);
   e.largest = std::max(
       {e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact + e.anchor});

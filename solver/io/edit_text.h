@@ -7,12 +7,12 @@
 
 #include "solver/edit.h"
 #include "solver/io/scene_keys.h"
-#include "solver/run.h"
 
 namespace topple::io {
 
 /// "shake.1.amplitude", "contact.alpha", "anchor.1.on", "run.time_step": the path in the scene; shakes and
-/// anchors count from 1.
+/// anchors count from 1. "body.1.model", "body.1.damping": of a cabinet, a frame or a copy of one, in the
+/// order of Model::bodies.
 std::string edit_key(const Edit& edit);
 
 /// Inverse of edit_key, its value zero. Nothing when no edit is called so.
@@ -21,12 +21,13 @@ std::optional<Edit> parse_edit_key(std::string_view text);
 /// The row of the table of keys: range, unit and default.
 const Key& key_of(Edit::Key key);
 
-/// Refuses a value that is not finite, out of range, or no direction. Throws InputError with one line
+/// Refuses a value that is not finite, out of range, no choice or no direction. Throws InputError with one
+/// line
 /// ("contact.friction: 2.4 is outside 0..1.5").
 void check_edit_value(const Edit& edit);
 
-/// Refuses also what `setup` has no place for, such as a shake that does not exist. An edit that passes can
-/// be applied.
-void check_edit(const Edit& edit, const Setup& setup);
+/// Refuses also what a run with these parameters has no place for, such as a shake that does not exist. An
+/// edit that passes can be applied.
+void check_edit(const Edit& edit, const Parameters& parameters, const Model& model);
 
 }  // namespace topple::io

@@ -176,7 +176,7 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
   const std::string energies =
       "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
-      "plastic_J,model_switch_J,balance_error";
+      "plastic_J,damping_J,model_switch_J,balance_error";
   CsvFile energy(base / "energy.csv",
                  (model.anchors.empty() ? energies : energies + ",anchor_J,released_J").c_str());
   std::optional<CsvFile> anchors;

@@ -124,8 +124,8 @@ void fill_anchors(const Run& run, FrameRow& row) {
     row.anchor[4 * k + 3] = look;
   }
   if (forces.empty()) return;
-  row.energy[11] = state.energy.anchor;
-  row.energy[12] = state.energy.released;
+  row.energy[12] = state.energy.anchor;
+  row.energy[13] = state.energy.released;
 }
 
 }  // namespace
@@ -146,10 +146,10 @@ FrameRow frame_row(const Run& run) {
   fill_contacts(run, row);
   fill_bodies(run, row);
   const EnergyLedger& e = state.energy;
-  const double energies[11] = {e.input,   e.kinetic,      e.strain,         e.gravity,
-                               e.contact, e.friction,     e.normal_damping, e.numerical,
-                               e.plastic, e.model_switch, e.balance_error()};
-  std::copy_n(energies, 11, row.energy.begin());
+  const double energies[] = {e.input,   e.kinetic,  e.strain,         e.gravity,
+                             e.contact, e.friction, e.normal_damping, e.numerical,
+                             e.plastic, e.damping,  e.model_switch,   e.balance_error()};
+  std::copy(std::begin(energies), std::end(energies), row.energy.begin());
   fill_anchors(run, row);
   row.load_factor = state.load_factor;
   const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);

@@ -31,8 +31,8 @@ struct FrameRow {
   std::vector<float> contact_depth;  ///< c, 1 - l/L; 0: open
   std::vector<float> contact_force;  ///< c x 3, N
   std::vector<double> energy;        ///< input, kinetic, strain, gravity, contact, friction, normal damping,
-                                     ///< numerical, plastic, model switch, balance error; with anchors also
-                                     ///< anchor, released; J, balance error -
+                                     ///< numerical, plastic, damping, model switch, balance error; with
+                                     ///< anchors also anchor, released; J, balance error -
   std::vector<double> body;          ///< b x 11: centre x y z (m), quaternion w x y z, tilt (rad), slide (m),
                                      ///< energy (J), critical angle (rad, 0: none)
   std::vector<std::uint8_t> rung;    ///< b: 0 rigid, 1 elastic, 2 frame

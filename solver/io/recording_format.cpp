@@ -127,11 +127,13 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"energy",
         f64,
-        {a > 0 ? 13u : 11u},
-        a > 0 ? "J,J,J,J,J,J,J,J,J,J,1,J,J" : "J,J,J,J,J,J,J,J,J,J,1",
-        a > 0 ? "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,"
+        {a > 0 ? 14u : 12u},
+        a > 0 ? "J,J,J,J,J,J,J,J,J,J,J,1,J,J" : "J,J,J,J,J,J,J,J,J,J,J,1",
+        a > 0 ? "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,damping,"
+                "model_switch,"
                 "balance_error,anchor,released"
-              : "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,model_switch,"
+              : "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,damping,"
+                "model_switch,"
                 "balance_error"},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
@@ -172,7 +174,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.hinge.resize(shape.elements);
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
-  row.energy.resize(shape.anchors > 0 ? 13 : 11);
+  row.energy.resize(shape.anchors > 0 ? 14 : 12);
   row.body.resize(11 * shape.bodies);
   row.rung.resize(shape.bodies);
   row.anchor.resize(4 * shape.anchors);

@@ -27,7 +27,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 5;
+inline constexpr std::int32_t k_format_version = 6;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// Rows per chunk of the frame fields, and rows gathered before they are handed to HDF5.

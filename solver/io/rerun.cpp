@@ -51,12 +51,18 @@ std::optional<topple::Run> start(const Recording& recording, const Setup& setup,
 }  // namespace
 
 void check_edits(const History& history, const Setup& setup) {
-  for (const LoggedEdit& logged : history.edits) {
-    try {
-      check_edit(logged.edit, setup);
-    } catch (const InputError& error) {
-      throw InputError(std::string("the recording has an edit that its scene has no place for: ") +
-                       error.what());
+  for (const Branch& branch : history.branches) {
+    Parameters parameters =
+        branch.parent < 0 ? setup.parameters : parameters_at(setup, history, branch.parent, branch.fork_step);
+    for (const LoggedEdit& logged : history.edits) {
+      if (logged.branch != branch.id) continue;
+      try {
+        check_edit(logged.edit, parameters, setup.model);
+      } catch (const InputError& error) {
+        throw InputError(std::string("the recording has an edit that its scene has no place for: ") +
+                         error.what());
+      }
+      apply(logged.edit, setup.model, logged.time, parameters);
     }
   }
 }

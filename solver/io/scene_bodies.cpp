@@ -4,6 +4,7 @@
 #include <set>
 
 #include "solver/cabinet.h"
+#include "solver/damping.h"
 #include "solver/elastic_basis.h"
 #include "solver/io/scene_read.h"
 #include "solver/proximity.h"
@@ -290,13 +291,20 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
         std::any_of(model.loads.begin(), model.loads.end(), its))
       entry.fail("model", "a body with supports or loads is computed as \"frame\"");
   }
+  const double damping = entry.number("damping");
   for (int b = static_cast<int>(model.bodies.size()) - count; b < static_cast<int>(model.bodies.size());
        ++b) {
     setup.parameters.models.push_back(asked);
-    if (asked == BodyModel::frame || asked == BodyModel::rigid) continue;
-    model.bodies[b].elastic = elastic_basis(model, b);
-    if (asked == BodyModel::elastic && !model.bodies[b].elastic)
-      entry.fail("model", "no elastic body: a part of it moves without strain or has no mass");
+    setup.parameters.damping.push_back(damping);
+    Body& body = model.bodies[b];
+    if (asked == BodyModel::automatic || asked == BodyModel::elastic) {
+      body.elastic = elastic_basis(model, b);
+      if (asked == BodyModel::elastic && !body.elastic)
+        entry.fail("model", "no elastic body: a part of it moves without strain or has no mass");
+    }
+    if (body.elastic || damping > 0) body.first_frequency = first_frequency(model, b);
+    if (damping > 0 && body.first_frequency == 0)
+      entry.fail("damping", "the body has no elastic mode: a part of it has no mass");
   }
 }
 
@@ -331,6 +339,7 @@ void read_bodies(const Entry& root, Setup& setup) {
   }
   read_grids(root, library, setup);
   setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);
+  setup.parameters.damping.resize(model.bodies.size(), 0);
   check_overlap(root, setup);
 }
 

@@ -9,8 +9,6 @@
 namespace topple::io {
 namespace {
 
-constexpr std::string_view k_unsupported = "is not supported by this version";
-
 bool contains(const std::vector<std::string_view>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -69,12 +67,11 @@ class Checker {
     if (!key) {
       std::vector<std::string_view> names;
       for (const Key& other : scene_keys()) {
-        if (other.table == table && other.supported) names.push_back(other.name);
+        if (other.table == table) names.push_back(other.name);
       }
       std::sort(names.begin(), names.end());
       fail(item.key_place, below(path, item.key), "unknown key; known: " + joined(names));
     }
-    if (!key->supported) fail(item.key_place, below(path, item.key), std::string(k_unsupported));
     return *key;
   }
 

@@ -93,11 +93,6 @@ class Rows {
     key.about = about;
     return Row(key);
   }
-  /// A key of the contract that this version refuses.
-  void later(std::string_view name, std::string_view about) {
-    plain(name, KeyType::number, about);
-    keys_.back().supported = false;
-  }
 
  private:
   Row add(std::string_view name, KeyType type, std::string_view about, Dimension dimension,

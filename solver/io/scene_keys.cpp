@@ -124,6 +124,7 @@ void add_shake(std::vector<Key>& keys) {
       .absent(shake.direction)
       .only("type", {"sine", "sweep", "pulse"});
   rows.number("start", D::time, "s", 0, 3600, "begin").absent(shake.start);
+  rows.plain("on", T::boolean, "false: it does not shake the floor until switched on").absent(1);
   rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", {"sine"});
   rows.number("taper", 0, 1e6, "periods of smooth rise and fall")
       .absent(shake.taper)
@@ -176,7 +177,12 @@ void add_contact(std::vector<Key>& keys) {
           "(contact_default.h); 50 kgf when none stands on a floor");
   rows.number("q", 0.5, 4, "penalty index of Eq. 2").absent(law.q);
   rows.number("friction", 0, 1.5, "coefficient of friction").absent(law.friction);
-  rows.later("friction_static", "coefficient of static friction");
+  rows.number("friction_static", 0, 1.5,
+              "coefficient of static friction, not below `friction`; falls to it with the slip speed "
+              "(contact_law.h)")
+      .absent_means("`friction`")
+      .only("law", {"coulomb"})
+      .only_in({"dynamic"});
   rows.number("restitution", 0, 1, "coefficient of restitution")
       .absent(law.restitution)
       .only("law", {"coulomb"})
@@ -185,9 +191,11 @@ void add_contact(std::vector<Key>& keys) {
       .absent(law.normal_speed)
       .only("law", {"coulomb"})
       .only_in({"dynamic"});
-  rows.number("slip_speed", D::velocity, "m/s", 1e-6, 10, "smooths the direction of slip")
+  rows.number(
+          "slip_speed", D::velocity, "m/s", 1e-6, 10,
+          "paper and printed law: smooths the direction of slip; coulomb law: half of the way from static to "
+          "kinetic friction")
       .absent(law.slip_speed)
-      .only("law", {"paper", "printed"})
       .only_in({"dynamic"});
 }
 

@@ -45,7 +45,6 @@ struct Key {
   std::string_view of = {};                     ///< the key whose choice it belongs to
   std::vector<std::string_view> when = {};      ///< the choices of `of` that it belongs to
   std::vector<std::string_view> analyses = {};  ///< of run.analysis that it belongs to; empty: all
-  bool supported = true;                        ///< false: a key of the contract that this version refuses
   std::string_view about = {};
 };
 

@@ -22,6 +22,13 @@ void add_model(Rows& rows, BodyModel absent) {
       .only_in({"dynamic"});
 }
 
+void add_damping(Rows& rows) {
+  rows.number("damping", 0, 1,
+              "ratio to critical at the first elastic mode, proportional to stiffness (damping.h)")
+      .absent(0)
+      .only_in({"dynamic"});
+}
+
 void add_cabinet(std::vector<Key>& keys) {
   Rows rows(keys, "cabinet");
   const CabinetSpec cabinet{};
@@ -62,7 +69,7 @@ void add_cabinet(std::vector<Key>& keys) {
       .absent(cabinet.panel_thickness)
       .only("bracing", {"panels"});
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
-  rows.later("damping", "ratio to critical at the first mode");
+  add_damping(rows);
   add_model(rows, BodyModel::automatic);
 }
 
@@ -89,6 +96,7 @@ void add_frame(std::vector<Key>& keys) {
   rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
       .absent(frame.angular_velocity)
       .only_in({"dynamic"});
+  add_damping(rows);
   add_model(rows, BodyModel::frame);
 }
 

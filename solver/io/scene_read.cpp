@@ -9,10 +9,6 @@
 namespace topple::io {
 namespace {
 
-// In the order of the choices of run.integrator.
-constexpr Integrator k_integrators[] = {Integrator::generalized_alpha, Integrator::generalized_alpha,
-                                        Integrator::central_difference, Integrator::newmark};
-
 // A section's walls against its sides: complete_section() asks for it.
 void check_wall(const Entry& entry, const Section& section) {
   const double smaller = std::min(section.size_y, section.size_z);
@@ -109,7 +105,7 @@ void read_run(const Entry& root, Setup& setup) {
   setup.run.stop_when = run.choice_as<StopWhen>("stop_when");
   setup.parameters.want_stress = !run.has("want") || run.names("want", "stress");
   setup.parameters.gravity = run.vector("gravity");
-  setup.parameters.integrator = k_integrators[run.choice("integrator")];
+  setup.parameters.integrator = chosen_integrator(run.choice("integrator"));
   setup.parameters.spectral_radius = run.number("spectral_radius");
   setup.parameters.beta = run.number("beta");
   setup.parameters.gamma = run.number("gamma");
@@ -139,6 +135,15 @@ void read_contact(const Entry& root, Setup& setup) {
   law.alpha = contact.number("alpha");
   law.q = contact.number("q");
   law.friction = contact.number("friction");
+  if (contact.has("friction_static")) {
+    law.friction_static = contact.number("friction_static");
+    if (law.friction_static < law.friction)
+      contact.fail("friction_static", short_number(law.friction_static) +
+                                          " is below contact.friction, which is " +
+                                          short_number(law.friction));
+  }
+  if (contact.has("slip_speed") && law.kind == ContactLawKind::coulomb && !contact.has("friction_static"))
+    contact.fail("slip_speed", "belongs to law = paper or printed, or to a friction_static");
   law.restitution = contact.number("restitution");
   law.normal_speed = contact.number("normal_speed");
   law.slip_speed = contact.number("slip_speed");

@@ -130,10 +130,7 @@ std::string scene_reference() {
       "# Keys of a scene file\n\n"
       "Generated from the table in `solver/io/scene_keys.cpp`. A physical value is a number in SI or a "
       "string of a\n"
-      "number and a unit, such as `\"190 gal\"`. Errors name file, line and column; keys that are listed as "
-      "later\n"
-      "are refused by this version.\n";
-  std::string later;
+      "number and a unit, such as `\"190 gal\"`. Errors name file, line and column.\n";
   const Key* before = nullptr;
   for (const Key& key : scene_keys()) {
     if (!before || before->table != key.table) {
@@ -141,11 +138,6 @@ std::string scene_reference() {
               "\n\n| key | value | allowed | when absent | meaning |\n|---|---|---|---|---|\n";
     }
     before = &key;
-    const std::string path = (key.table.empty() ? "" : std::string(key.table) + ".") + std::string(key.name);
-    if (!key.supported) {
-      later += "- `" + path + "`\n";
-      continue;
-    }
     text += "| `" + std::string(key.name) + "` | " + type_text(key) + " | " + allowed_text(key) + " | " +
             absent_text(key) + " | " + meaning_text(key) + " |\n";
   }
@@ -154,7 +146,7 @@ std::string scene_reference() {
     if (unit != units().data() && unit->dimension == (unit - 1)->dimension) continue;
     text += "| " + std::string(dimension_name(unit->dimension)) + " | " + unit_list(unit->dimension) + " |\n";
   }
-  return text + "\n## Later\n\n" + later;
+  return text;
 }
 
 }  // namespace topple::io

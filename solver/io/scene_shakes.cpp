@@ -119,6 +119,7 @@ void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene) {
     Shake shake;
     shake.kind = entry.choice_as<Shake::Kind>("type");
     shake.start = entry.number("start");
+    shake.on = entry.flag("on");
     if (shake.kind == Shake::Kind::record) {
       read_record(entry, read, scene, shake);
     } else {

@@ -178,7 +178,6 @@ TEST_F(UsageTest, overrides_that_do_not_fit_are_refused) {
   expect("run.duration=1 m", "run.duration: \"1 m\" is a length, expected a time");
   expect("contact.friction=-1", "contact.friction: -1 is outside 0..1.5");
   expect("cabinet.other.mass=1", "cabinet.other: no such entry; known: free");
-  expect("contact.friction_static=1", "not supported by this version");
 }
 
 TEST_F(UsageTest, a_line_break_in_a_name_does_not_break_the_line) {

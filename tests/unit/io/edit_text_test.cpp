@@ -12,7 +12,7 @@ namespace {
 
 std::string error_of(const Edit& edit, const Setup& setup) {
   try {
-    check_edit(edit, setup);
+    check_edit(edit, setup.parameters, setup.model);
     return {};
   } catch (const InputError& error) {
     return error.what();
@@ -31,12 +31,14 @@ topple::Setup two_shakes() {
   return setup;
 }
 
-/// One of each kind: a sine, a pulse, a record and a sweep.
+/// A sine, a pulse, a record and a sweep; two bodies.
 topple::Setup all_shakes() {
   topple::Setup setup = two_shakes();
   setup.parameters.shakes.resize(4);
   setup.parameters.shakes[2].kind = Shake::Kind::record;
   setup.parameters.shakes[3].kind = Shake::Kind::sweep;
+  setup.model.bodies.resize(2);
+  for (Body& body : setup.model.bodies) body.first_frequency = 100;
   return setup;
 }
 
@@ -52,16 +54,16 @@ TEST(EditText, names_are_the_paths_of_the_scene) {
 }
 
 TEST(EditText, every_name_reads_back_and_has_its_row_in_the_table_of_keys) {
-  for (const auto& [key, shake] : editable(all_shakes().parameters)) {
+  const topple::Setup setup = all_shakes();
+  for (const auto& [key, shake] : editable(setup.model, setup.parameters)) {
     const Edit edit{.key = key, .shake = shake};
     const std::optional<Edit> read = parse_edit_key(edit_key(edit));
     ASSERT_TRUE(read) << edit_key(edit);
     EXPECT_EQ(read->key, key);
     EXPECT_EQ(read->shake, shake);
     const Key& row = key_of(key);
-    EXPECT_TRUE(row.supported);
     EXPECT_TRUE(edit_key(edit).ends_with(row.name));
-    EXPECT_TRUE(edit_key(edit).starts_with(row.table));
+    EXPECT_TRUE(edit_key(edit).starts_with(row.table == "cabinet" ? "body" : row.table));
     EXPECT_LT(row.least, row.most);
   }
 }
@@ -89,7 +91,8 @@ TEST(EditText, other_names_are_none) {
                            "contact",
                            "contact.",
                            "contact.1.alpha",
-                           "contact.law",
+                           "contact.normal_speed",
+                           "cabinet.1.model",
                            "contact.alpha ",
                            "Contact.alpha",
                            "shake.amplitude",
@@ -111,9 +114,10 @@ TEST(EditText, other_names_are_none) {
 
 TEST(EditText, values_at_the_ends_of_a_range_pass_and_beyond_them_not) {
   const topple::Setup setup = all_shakes();
-  for (const auto& [key, shake] : editable(setup.parameters)) {
-    if (key == Edit::Key::direction) continue;
+  for (const auto& [key, shake] : editable(setup.model, setup.parameters)) {
     const Key& row = key_of(key);
+    if (key == Edit::Key::direction || row.type != KeyType::number) continue;
+    if (key == Edit::Key::frequency && shake == 3) continue;  // it has two
     for (const double end : {row.least, row.most}) {
       EXPECT_EQ(error_of(number(key, end, shake), setup), "") << row.name;
       EXPECT_EQ(error_of(number(key, std::nextafter(end, 2 * end), shake), setup), "")
@@ -139,13 +143,42 @@ TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
   EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, -1), setup),
             "shake.0.frequency: there is no such shake; the scene has 2");
   EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 1), setup),
-            "shake.2.frequency: belongs to type = sine, but type is pulse");
+            "shake.2.frequency: belongs to type = sine or sweep, but type is pulse");
   EXPECT_EQ(error_of(number(Edit::Key::scale, 2, 1), setup),
             "shake.2.scale: belongs to type = record, but type is pulse");
   EXPECT_EQ(error_of(number(Edit::Key::amplitude, 2, 2), all_shakes()),
             "shake.3.amplitude: belongs to type = sine or sweep or pulse, but type is record");
   EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 3), all_shakes()),
-            "shake.4.frequency: belongs to type = sine, but type is sweep");
+            "shake.4.frequency: 0 Hz is outside 0.001..1000 Hz");  // the last one of the sweep
+  EXPECT_EQ(error_of({.key = Edit::Key::frequency, .shake = 3, .value = Vec3(2, 5, 0)}, all_shakes()), "");
+}
+
+TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
+  topple::Setup setup = all_shakes();
+  EXPECT_EQ(error_of(number(Edit::Key::law, 2), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::law, 3), setup), "contact.law: 3 is not the number of a choice, 0..2");
+  EXPECT_EQ(error_of(number(Edit::Key::law, 0.5), setup),
+            "contact.law: 0.5 is not the number of a choice, 0..2");
+  EXPECT_EQ(error_of(number(Edit::Key::law, std::nan("")), setup), "contact.law: nan is not a finite number");
+  EXPECT_EQ(error_of(number(Edit::Key::integrator, 3), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::want, 2), setup), "run.want: 2 is neither 0 nor 1");
+  EXPECT_EQ(error_of(number(Edit::Key::on, -1), setup), "shake.1.on: -1 is neither 0 nor 1");
+  EXPECT_EQ(error_of(number(Edit::Key::type, 1), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::type, 3), setup),
+            "shake.1.type: a record stays one, and nothing else becomes one");
+  EXPECT_EQ(error_of(number(Edit::Key::type, 0, 2), setup),
+            "shake.3.type: a record stays one, and nothing else becomes one");
+  setup.model.bodies[1].name = "desk";
+  setup.model.bodies[1].first_frequency = 0;
+  EXPECT_EQ(edit_key(number(Edit::Key::model, 1, 1)), "body.2.model");
+  EXPECT_EQ(error_of(number(Edit::Key::model, 1, 1), setup), "");
+  EXPECT_EQ(error_of(number(Edit::Key::model, 2, 1), setup),
+            "body.2.model: \"desk\" cannot be elastic; supports and loads take a frame, elastic and auto a "
+            "scene that says so");
+  EXPECT_EQ(error_of(number(Edit::Key::damping, 0.1, 1), setup),
+            "body.2.damping: \"desk\" has no known elastic mode; give it a damping in the scene");
+  EXPECT_EQ(error_of(number(Edit::Key::damping, 0.1, 2), setup),
+            "body.3.damping: there is no such body; the scene has 2");
 }
 
 TEST(EditText, a_direction_needs_a_length) {
@@ -161,12 +194,14 @@ TEST(EditText, a_direction_needs_a_length) {
   EXPECT_EQ(parameters.shakes[0].direction, Vec3::UnitZ());
 }
 
-TEST(EditText, restitution_belongs_to_one_law) {
+TEST(EditText, restitution_and_static_friction_belong_to_one_law) {
   topple::Setup setup = two_shakes();
   EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup), "");
   setup.parameters.contact.kind = ContactLawKind::printed;
   EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup),
             "contact.restitution: belongs to law = coulomb, but law is printed");
+  EXPECT_EQ(error_of(number(Edit::Key::friction_static, 0.7), setup),
+            "contact.friction_static: belongs to law = coulomb, but law is printed");
 }
 
 }  // namespace

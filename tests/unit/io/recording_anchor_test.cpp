@@ -56,12 +56,12 @@ TEST_F(AnchorRecordingTest, forces_states_and_breaking_read_back_and_the_run_rep
       const double stretch = row.anchor[4 * k] / scene_.setup.model.anchors[k].stiffness;
       EXPECT_NEAR(row.anchor[4 * k + 1], row.anchor[4 * k] * stretch / 2, 1e-6);
     }
-    EXPECT_NEAR(row.energy[11], double(row.anchor[1]) + double(row.anchor[5]), 1e-6);
+    EXPECT_NEAR(row.energy[12], double(row.anchor[1]) + double(row.anchor[5]), 1e-6);
   }
   EXPECT_EQ(states[0], (std::set<float>{k_anchor_slack, k_anchor_holds, k_anchor_broken}));
   EXPECT_EQ(states[1], (std::set<float>{k_anchor_away, k_anchor_slack, k_anchor_holds}));
   EXPECT_GT(energy_.released, 0);
-  EXPECT_EQ(rows_.back().energy[12], energy_.released);
+  EXPECT_EQ(rows_.back().energy[13], energy_.released);
 
   const auto broken = [](const auto& events) {
     return std::ranges::count_if(events, [](const Event& e) { return e.kind == Event::Kind::anchor; });

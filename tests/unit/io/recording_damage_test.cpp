@@ -41,7 +41,7 @@ TEST_F(RecordingTest, an_unknown_version_is_named) {
       write_attribute(file, "version", version);
     }
     EXPECT_EQ(read_error(path("a.h5")), path("a.h5") + ": recording format " + std::to_string(version) +
-                                            " is not supported by this version, which reads format 5");
+                                            " is not supported by this version, which reads format 6");
   }
 }
 

@@ -109,15 +109,16 @@ TEST_F(PlasticRecordingTest, energies_are_exported_with_their_names) {
   std::getline(text, line);
   EXPECT_EQ(line,
             "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
-            "plastic_J,model_switch_J,balance_error");
+            "plastic_J,damping_J,model_switch_J,balance_error");
   while (std::getline(text, line)) newest = line;
   std::vector<double> values;
   std::istringstream fields(newest);
   for (std::string field; std::getline(fields, field, ',');)
     values.push_back(std::strtod(field.c_str(), nullptr));
-  EXPECT_EQ(values, (std::vector<double>{state.time, last.input, last.kinetic, last.strain, last.gravity,
-                                         last.contact, last.friction, last.normal_damping, last.numerical,
-                                         last.plastic, last.model_switch, last.balance_error()}));
+  EXPECT_EQ(values,
+            (std::vector<double>{state.time, last.input, last.kinetic, last.strain, last.gravity,
+                                 last.contact, last.friction, last.normal_damping, last.numerical,
+                                 last.plastic, last.damping, last.model_switch, last.balance_error()}));
 }
 
 TEST_F(PlasticRecordingTest, hinge_and_fracture_events_come_back_and_are_those_that_the_outcome_counts) {

@@ -22,9 +22,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(SceneErrors, unknown_keys_list_the_known_ones) {
-  EXPECT_EQ(after_beam("[contact]\n  foo = 1\n"),
-            "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, law, normal_speed, q, "
-            "restitution, slip_speed");
+  EXPECT_EQ(
+      after_beam("[contact]\n  foo = 1\n"),
+      "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, friction_static, law, normal_speed, q, "
+      "restitution, slip_speed");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(error_of("tople = 1\n" + k_scene),
@@ -35,11 +36,18 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
 }
 
-TEST(SceneErrors, keys_of_later_versions_are_refused_by_name) {
-  EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"),
-            "s.toml:18:1: contact.friction_static: is not supported by this version");
-  EXPECT_EQ(in_cabinet("damping = 0.01\n"),
-            "s.toml:16:1: cabinet.free.damping: is not supported by this version");
+TEST(SceneErrors, static_friction_is_not_below_the_kinetic_and_damping_is_a_ratio) {
+  EXPECT_EQ(after_beam("[contact]\nfriction_static = 1\n"), "no error");
+  EXPECT_EQ(after_beam("[contact]\nfriction_static = 0.5\n"),
+            "s.toml:18:19: contact.friction_static: 0.5 is below contact.friction, which is 0.6");
+  EXPECT_EQ(after_beam("[contact]\nfriction_static = 2\n"),
+            "s.toml:18:19: contact.friction_static: 2 is outside 0..1.5");
+  EXPECT_EQ(after_beam("[contact]\nlaw = \"paper\"\nfriction_static = 1\n"),
+            "s.toml:19:1: contact.friction_static: belongs to law = coulomb, but law is paper");
+  EXPECT_EQ(in_cabinet("damping = 0.01\n"), "no error");
+  EXPECT_EQ(in_cabinet("damping = 1.5\n"), "s.toml:16:11: cabinet.free.damping: 1.5 is outside 0..1");
+  EXPECT_EQ(in_cabinet("damping = true\n"),
+            "s.toml:16:11: cabinet.free.damping: expected a plain number, found true");
 }
 
 TEST(SceneErrors, floors_of_beams_and_of_planes_have_their_own_keys) {
@@ -138,7 +146,7 @@ TEST(SceneErrors, keys_of_a_choice_not_made_are_refused) {
   EXPECT_EQ(after_beam("[contact]\nlaw = \"paper\"\nrestitution = 0.5\n"),
             "s.toml:19:1: contact.restitution: belongs to law = coulomb, but law is paper");
   EXPECT_EQ(after_beam("[contact]\nslip_speed = 0.5\n"),
-            "s.toml:18:1: contact.slip_speed: belongs to law = paper or printed, but law is coulomb");
+            "s.toml:18:14: contact.slip_speed: belongs to law = paper or printed, or to a friction_static");
   EXPECT_EQ(after_beam("[run]\nspectral_radius = 0.5\nintegrator = \"central-difference\"\n"),
             "s.toml:18:1: run.spectral_radius: belongs to integrator = auto or generalized-alpha, but "
             "integrator is "
@@ -406,7 +414,8 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
   EXPECT_EQ(error("cabinet.walled.mass=30"),
             "--set cabinet.walled.mass=30: cabinet.walled: no such entry; known: free");
   EXPECT_EQ(error("contact.foo=30"),
-            "--set contact.foo=30: contact.foo: unknown key; known: alpha, friction, law, normal_speed, q, "
+            "--set contact.foo=30: contact.foo: unknown key; known: alpha, friction, friction_static, law, "
+            "normal_speed, q, "
             "restitution, "
             "slip_speed");
   EXPECT_EQ(error("shake.1.amplitude=3"),

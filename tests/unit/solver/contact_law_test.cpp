@@ -16,6 +16,7 @@ ContactLaw random_law(std::mt19937& rng, ContactLawKind kind, double q) {
   law.q = q;
   law.alpha = 100 + 900 * u(rng);
   law.friction = 0.2 + 0.6 * u(rng);
+  if (kind == ContactLawKind::coulomb && u(rng) < 0.5) law.friction_static = law.friction + 0.5 * u(rng);
   law.restitution = 0.1 + 0.8 * u(rng);
   law.normal_speed = law.slip_speed = 0.05;
   return law;
@@ -158,6 +159,35 @@ TEST(ContactLaw, normal_force_of_coulomb_takes_1_plus_m_coming_in_and_1_minus_m_
   EXPECT_DOUBLE_EQ(normal_loss(0), 1);
 }
 
+TEST(ContactLaw, friction_falls_from_static_to_kinetic_with_the_slip_speed) {
+  ContactLaw law;
+  law.friction = 0.4;
+  law.friction_static = 0.6;
+  law.slip_speed = 0.02;
+  EXPECT_DOUBLE_EQ(friction_coefficient(law, 0.), 0.6);
+  EXPECT_DOUBLE_EQ(friction_coefficient(law, 0.02 * 0.02), 0.5);
+  EXPECT_NEAR(friction_coefficient(law, 1.), 0.4, 0.2 * 0.02 * 0.02);
+  ContactInput in{Vec3::UnitZ(), 0.2, 0.06, Vec3(0.02, 0, 0), Vec3(1, 0, 0), 1};
+  EXPECT_NEAR(contact_force(law, in).tangential.x(), -0.5 * contact_force(law, in).normal, 1e-10);
+  law.friction_static = 0.3;  // below the kinetic one: none of its own
+  EXPECT_EQ(friction_coefficient(law, 0.), 0.4);
+}
+
+TEST(ContactLaw, coulomb_contact_is_contact_force_at_the_velocity_that_it_finds) {
+  std::mt19937 rng(36);
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    const ContactLaw law = random_law(rng, ContactLawKind::coulomb, 1);
+    ContactInput in = random_input(rng, 2e-3);
+    const double impedance = 2e4;
+    const Vec3 free = in.velocity;
+    const ContactOutput out = coulomb_contact(law, in, impedance, free);
+    const ContactOutput at_it = contact_force(law, in);
+    EXPECT_LT((impedance * (in.velocity - free) - out.force).norm(), 1e-9 * (1 + out.force.norm()));
+    EXPECT_LT((at_it.force - out.force).norm(), 1e-7 * (1 + out.force.norm()));
+  }
+}
+
 TEST(ContactLaw, stick_spring_breaks_away_at_mu_N) {
   std::mt19937 rng(33);
   for (int trial = 0; trial < 50; ++trial) {
@@ -166,7 +196,7 @@ TEST(ContactLaw, stick_spring_breaks_away_at_mu_N) {
     in.velocity.setZero();
     const Vec3 along = in.normal.cross(random_direction(rng)).normalized();
     const double k = k_stick_stiffness * law.alpha / in.L;
-    const double limit = law.friction * penalty_force(law, in.depth);
+    const double limit = (law.friction + law.excess()) * penalty_force(law, in.depth);
     SCOPED_TRACE(trial);
     for (double share : {0.2, 0.999, 1.001, 3.}) {
       in.stick = share * limit / k * along;
@@ -199,7 +229,7 @@ TEST(ContactLaw, friction_never_adds_energy) {
       in.velocity = travel / h;
       in.stick = stick + travel;
       const ContactOutput out = contact_force(law, in);
-      ASSERT_LE(out.tangential.norm(), law.friction * out.normal * (1 + 1e-12));
+      ASSERT_LE(out.tangential.norm(), (law.friction + law.excess()) * out.normal * (1 + 1e-12));
       const double lost = -out.tangential.dot(travel) - (out.stick_energy - stored);
       ASSERT_GE(lost, -1e-12 * (std::abs(out.tangential.dot(travel)) + stored))
           << "history " << history << ", step " << i;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "solver/accelerogram.h"
 #include "solver/contact_law.h"
+#include "solver/elastic_basis.h"
 #include "solver/excitation.h"
 #include "unit/solver/fixtures.h"
 
@@ -137,9 +140,10 @@ TEST(Edit, of_the_scale_of_a_record_takes_a_quarter_of_a_second_without_a_jump) 
 TEST(Edit, of_a_record_is_of_its_scale_alone) {
   Parameters p;
   p.shakes.emplace_back().kind = Shake::Kind::record;
-  for (const auto& [key, shake] : editable(p))
+  for (const auto& [key, shake] : editable({}, p))
     EXPECT_TRUE(key != Edit::Key::amplitude && key != Edit::Key::frequency && key != Edit::Key::direction);
-  EXPECT_EQ(editable(p).front().first, Edit::Key::scale);
+  EXPECT_EQ(editable({}, p)[0].first, Edit::Key::on);
+  EXPECT_EQ(editable({}, p)[1].first, Edit::Key::scale);
 }
 
 TEST(Edit, within_the_passage_of_another_goes_on_without_a_jump) {
@@ -197,14 +201,120 @@ TEST(Edit, of_the_contact_law_passes_over_two_periods_of_the_slowest_bounce) {
 }
 
 TEST(Edit, sets_the_value_that_is_read_back) {
-  const Model model = shaken(1).model;
+  Model model = shaken(1).model;
+  model.bodies[0].first_frequency = 100;
   Parameters p = shaken_parameters(2, 0.5);
-  for (const auto& [key, shake] : editable(p)) {
+  p.shakes.resize(4);
+  p.shakes[1].kind = Shake::Kind::sweep;
+  p.shakes[2].kind = Shake::Kind::pulse;
+  p.shakes[3].kind = Shake::Kind::record;
+  p.shakes[3].record = make_accelerogram({{Vec3::UnitX(), 100, {2, 2}}});
+  p.models = {BodyModel::frame};
+  p.damping = {0.1};
+  p.anchors = {true};
+  std::set<Edit::Key> seen;
+  for (const auto& [key, shake] : editable(model, p)) {
     Edit edit{.key = key, .shake = shake, .value = edited_value(p, key, shake)};
-    edit.value = key == Edit::Key::direction ? Vec3(0, 0, 1) : Vec3(1.25 * edit.value);
-    apply(edit, model, 1, p);
-    EXPECT_EQ(edited_value(p, key, shake), edit.value) << static_cast<int>(key);
+    switch (key) {
+      case Edit::Key::direction:
+        edit.value = Vec3(0, 0, 1);
+        break;
+      case Edit::Key::on:
+      case Edit::Key::anchor:
+      case Edit::Key::want:
+        edit.value.x() = 1 - edit.value.x();
+        break;
+      case Edit::Key::type:
+        edit.value.x() = 2 - edit.value.x();
+        break;
+      case Edit::Key::law:
+        continue;  // decides what can be edited
+      case Edit::Key::model:
+        edit.value.x() = 1;
+        break;
+      case Edit::Key::integrator:
+        edit.value.x() = 3;
+        break;
+      default:
+        edit.value *= 1.25;
+    }
+    if (key == Edit::Key::friction_static) edit.value.x() = 1;
+    Parameters edited = p;
+    apply(edit, model, 1, edited);
+    EXPECT_EQ(edited_value(edited, key, shake), edit.value) << static_cast<int>(key);
+    seen.insert(key);
   }
+  EXPECT_EQ(seen.size(), static_cast<std::size_t>(Edit::Key::time_step));  // all but the law
+}
+
+TEST(Edit, of_the_type_begins_the_shake_anew_from_no_acceleration) {
+  Parameters p = shaken_parameters(2, 0.5);
+  p.shakes[0].cycles = 40;
+  for (const Shake::Kind kind : {Shake::Kind::pulse, Shake::Kind::sine, Shake::Kind::sweep}) {
+    apply(set(Edit::Key::type, static_cast<int>(kind)), {}, 3.3, p);
+    EXPECT_EQ(shake_acceleration(p.shakes[0], 3.3), Vec3(Vec3::Zero()));
+    EXPECT_GT(shake_acceleration(p.shakes[0], 3.4).x(), 0);
+  }
+  // a pulse of half the sine's period
+  p = shaken_parameters(2, 0.5);
+  apply(set(Edit::Key::type, 2), {}, 1, p);
+  EXPECT_EQ(shake_end(p.shakes[0]), 2);
+  EXPECT_NEAR(shake_acceleration(p.shakes[0], 1.5).x(), 2, 1e-15);
+  // both frequencies of a sweep, from its new start on
+  p = shaken_parameters(2, 0.5);
+  apply(set(Edit::Key::type, 1), {}, 1, p);
+  EXPECT_EQ(shake_frequency(p.shakes[0], 11), 5);
+  apply({.key = Edit::Key::frequency, .value = Vec3(2, 2, 0)}, {}, 4, p);
+  EXPECT_EQ(shake_turns(p.shakes[0], 7), 6);
+}
+
+TEST(Edit, switches_a_shake_off_and_on_again_without_a_jump) {
+  Parameters p = shaken_parameters(2, 0.5);
+  const double smooth = roughest(p, 0, 0.01);
+  apply(set(Edit::Key::on, 0), {}, 0.6, p);
+  EXPECT_LT(roughest(p, 0.55, 1.2), 1e-6 * (k_pi / 2 * 2 / 0.5) + 3 * smooth);
+  EXPECT_EQ(floor_acceleration(p.shakes, 1.1).x(), 0);
+  apply(set(Edit::Key::on, 1), {}, 1.3, p);
+  EXPECT_LT(roughest(p, 1.25, 2), 1e-6 * (k_pi / 2 * 2 / 0.5) + 3 * smooth);
+  EXPECT_NEAR(floor_acceleration(p.shakes, 2.3).x(), 2 * std::sin(2 * k_pi * 0.5 * 2.3), 1e-12);
+}
+
+TEST(Edit, of_model_law_and_integrator_keeps_the_energy_in_the_middle_of_a_run) {
+  topple::Setup setup = shaken(2, 0.05);
+  setup.model.bodies[0].elastic = elastic_basis(setup.model, 0);
+  setup.parameters.models = {BodyModel::rigid};
+  setup.parameters.time_step = 2e-4;
+  topple::Run run(setup);
+  const auto go_on = [&](Edit::Key key, double value) {
+    run.edit(set(key, value));
+    for (int i = 0; i < 1000; ++i) {
+      ASSERT_TRUE(run.advance().ok());
+      ASSERT_LT(run.state().energy.balance_error(), 2e-3);
+    }
+  };
+  const auto rung = [&] { return run.state().bodies[0].rung; };
+  go_on(Edit::Key::law, static_cast<int>(ContactLawKind::paper));
+  EXPECT_EQ(run.state().law, ContactLawKind::paper);
+  go_on(Edit::Key::law, static_cast<int>(ContactLawKind::coulomb));
+  EXPECT_EQ(rung(), Rung::rigid);
+  go_on(Edit::Key::model, static_cast<int>(BodyModel::elastic));
+  EXPECT_EQ(rung(), Rung::elastic);
+  go_on(Edit::Key::model, static_cast<int>(BodyModel::frame));
+  EXPECT_EQ(rung(), Rung::frame);
+  go_on(Edit::Key::integrator, 3);  // newmark
+  go_on(Edit::Key::law, static_cast<int>(ContactLawKind::printed));
+}
+
+TEST(Edit, can_ask_for_no_model_that_a_body_cannot_be) {
+  topple::Setup setup = shaken(1);
+  EXPECT_TRUE(can_be(setup.model, 0, BodyModel::rigid));
+  EXPECT_TRUE(can_be(setup.model, 0, BodyModel::frame));
+  EXPECT_FALSE(can_be(setup.model, 0, BodyModel::elastic));
+  setup.model.bodies[0].elastic = elastic_basis(setup.model, 0);
+  EXPECT_TRUE(can_be(setup.model, 0, BodyModel::elastic));
+  setup.model.loads.push_back({0, Vec3::UnitX(), Vec3::Zero(), {}});
+  EXPECT_FALSE(can_be(setup.model, 0, BodyModel::rigid));
+  EXPECT_TRUE(can_be(setup.model, 0, BodyModel::frame));
 }
 
 TEST(Edit, depends_on_its_arguments_only) {
