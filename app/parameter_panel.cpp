@@ -128,8 +128,8 @@ class Row {
     if (ImGui::Checkbox(label, &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s", fmt::format("{}: {}", io::edit_key(edit_), tooltip).c_str());
-    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight());
-    end();
+    end(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
+        ImGui::GetStyle().ItemSpacing.x);
   }
 
   void button(const char* label, double value, const char* tooltip) {
@@ -164,8 +164,8 @@ class Row {
     return fmt::format("{}: {}\nallowed {}, in the scene {:.4g}{}{}\nCtrl+click to type", name, key_.about,
                        io::range_text(key_), in_scene, *look.unit ? " " : "", look.unit);
   }
-  void end() {
-    ImGui::SameLine();
+  void end(float at = 0) {
+    ImGui::SameLine(at);
     ImGui::BeginDisabled(edit_.value == scene_value_);
     if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post_anew(scene_value_);
     ImGui::EndDisabled();
@@ -211,7 +211,7 @@ void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
     case Edit::Key::integrator:
       return row.choice("integrator", 4, [](int k) { return k > 0; });
     case Edit::Key::want:
-      return row.tick("stresses", "what bodies with model \"auto\" are to answer besides motion");
+      return row.tick("stresses are wanted", "what bodies with model \"auto\" are to answer besides motion");
     case Edit::Key::model:
       ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
       return row.choice("model", 4,

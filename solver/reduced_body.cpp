@@ -358,6 +358,7 @@ double ReducedBody::stable_size(const Parameters& parameters, const ContactLaw& 
     return size;
   BodyState ahead = s;
   ahead.velocity += size / 2 / mass_ * s.force;
+  if (s.rung == Rung::elastic) find_swing(size);
   drift(size, ahead);
   contacts_.begin_part();
   contacts_.find(ahead, rotation_matrix(packed(ahead.rotation)), stick);

@@ -84,16 +84,14 @@ class ViewerTest : public ::testing::Test {
   }
   void click(ImVec2 at) { drag(at, at); }
 
-  /// Where the item of that name is in a panel, found by moving the mouse over it. `shake`: of a slider.
-  ImVec2 find(const char* panel, const char* name, bool slider = false) {
+  /// Where the item of that name is in a panel, found by moving the mouse over it; of a slider, that for the
+  /// edits called `of`.
+  ImVec2 find(const char* panel, const char* name, const char* of = nullptr) {
     const ImGuiWindow* const window = ImGui::FindWindowByName(panel);
     if (!window) return {-1, -1};
     ImGuiID id = ImHashStr(name, 0, window->ID);
-    if (slider) {
-      const int shake = 0;
-      id = ImHashStr("##value", 0, ImHashData(&shake, sizeof shake, id));
-    }
-    const float across = slider ? 60.f : 9.f;
+    if (of) id = ImHashStr("##value", 0, ImHashStr(of, 0, id));
+    const float across = of ? 60.f : 9.f;
     hover({2, 400});  // what was hovered in the frame before still counts
     for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
       for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += across) {
@@ -141,8 +139,7 @@ class ViewerTest : public ::testing::Test {
 TEST_F(ViewerTest, a_box_takes_an_anchor_away) {
   start(&topple::Run::advance, k_rocking + k_straps);
   const ImGuiWindow* const side = ImGui::FindWindowByName("side");
-  const int index = 1;
-  const ImGuiID box = ImHashStr("strong", 0, ImHashData(&index, sizeof index, side->ID));
+  const ImGuiID box = ImHashStr("strong", 0, ImHashStr("anchor.2.on", 0, ImHashStr("strong", 0, side->ID)));
   hover({2, 400});
   ImVec2 at{-1, -1};
   for (float y = side->Pos.y + 5; at.x < 0 && y < side->Pos.y + side->Size.y; y += 9) {
@@ -196,7 +193,7 @@ TEST_F(ViewerTest, buttons_do_what_keys_do) {
 
 TEST_F(ViewerTest, dragging_the_amplitude_slider_shakes_harder_while_it_runs_and_undo_takes_it_back) {
   start();
-  const ImVec2 slider = find("side", "amplitude", true);
+  const ImVec2 slider = find("side", "amplitude", "shake.1.amplitude");
   ASSERT_GE(slider.x, 0);
   press(k_space);
   ASSERT_TRUE(until([&] { return player_->time() > 0; }));
@@ -221,7 +218,7 @@ TEST_F(ViewerTest, the_timeline_scrubs_and_a_branch_continues_from_there) {
   click(on_timeline(0.5));
   EXPECT_NEAR(player_->time(), 0.5, 0.011);  // a pixel and a recorded instant
   EXPECT_FALSE(player_->at_head());
-  const ImVec2 slider = find("side", "amplitude", true);
+  const ImVec2 slider = find("side", "amplitude", "shake.1.amplitude");
   drag(slider, {slider.x + 40, slider.y});
   EXPECT_EQ(amplitude_gal(), 300);  // the past is not edited
   press('C');
@@ -279,7 +276,7 @@ TEST_F(ViewerTest, a_window_is_drawn_before_there_is_anything_to_show) {
 
 TEST_F(ViewerTest, typing_applies_the_whole_number_once) {
   start();
-  const ImVec2 slider = find("side", "amplitude", true);
+  const ImVec2 slider = find("side", "amplitude", "shake.1.amplitude");
   hover(slider);
   ImGuiIO& io = ImGui::GetIO();
   io.KeyCtrl = true;

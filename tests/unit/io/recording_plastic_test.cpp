@@ -86,12 +86,12 @@ TEST_F(PlasticRecordingTest, plastic_energy_is_a_column_and_the_ledger_adds_up_r
   double before = 0;
   for (std::size_t i = 0; i < ledger.size(); ++i) {
     const std::vector<double> e = recording.frame(static_cast<std::int64_t>(i)).energy;
-    ASSERT_EQ(e.size(), 11u);
+    ASSERT_EQ(e.size(), 12u);
     EXPECT_EQ(e[8], ledger[i].plastic) << i;
-    const double dissipated = e[5] + e[6] + e[7] + e[8];
-    EXPECT_EQ(e[9], 0) << i;
+    const double dissipated = e[5] + e[6] + e[7] + e[8] + e[9];
+    EXPECT_EQ(e[10], 0) << i;
     EXPECT_NEAR(std::abs(e[1] + e[2] + e[3] + e[4] + dissipated - e[0] - ledger[i].start_total),
-                e[10] * ledger[i].largest, 1e-12 * (1 + ledger[i].largest))
+                e[11] * ledger[i].largest, 1e-12 * (1 + ledger[i].largest))
         << i;
     EXPECT_GE(e[8], before - 1e-12) << i;
     before = e[8];
