@@ -97,6 +97,9 @@ struct GridSpec {
 /// BuildError.
 BodyStart add_grid(Model& model, const GridSpec& spec);
 
+/// Name of copy `index`, from 0, of what is called `name`: the first keeps it, the others add -2, -3, ...
+std::string copy_name(const std::string& name, std::size_t index);
+
 /// Adds a cabinet whose members' surface touches the height of `at`. Throws BuildError.
 BodyStart add_cabinet(Model& model, const CabinetSpec& spec);
 

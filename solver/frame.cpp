@@ -85,12 +85,16 @@ Vec3 tilt_pivot(const Model& model, double tilt) {
 
 }  // namespace
 
+std::string copy_name(const std::string& name, std::size_t index) {
+  return index == 0 ? name : name + "-" + std::to_string(index + 1);
+}
+
 std::vector<BodyStart> add_frame(Model& model, const FrameSpec& spec) {
   std::vector<Vec3> copies = spec.copies;
   if (copies.empty()) copies.push_back(Vec3::Zero());
   std::vector<BodyStart> starts;
   for (std::size_t c = 0; c < copies.size(); ++c) {
-    add_one(model, spec, c == 0 ? spec.name : spec.name + "-" + std::to_string(c + 1), copies[c]);
+    add_one(model, spec, copy_name(spec.name, c), copies[c]);
     BodyStart start;
     start.velocity = spec.velocity;
     start.angular_velocity = spec.angular_velocity;

@@ -88,7 +88,8 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
                                  const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads,
                                  Amplitudes& load, int m, ReducedScratch& w) {
   RigidSolver rigid;
-  bool fresh = true;
+  const std::uint64_t touching = m > 0 ? contacts_.hash() : 0;
+  bool fresh = m == 0 || w.part != h || w.touching != touching;
   double last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
     loads = fresh ? contacts_.press<true>(law, u, 0) : contacts_.press<false>(law, u, 0);
@@ -113,6 +114,8 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
         }
         contacts_.add_slope_of_modes(-h / 2, m, w.matrix);
         factor(w.matrix, 6 + m);
+        w.part = h;
+        w.touching = touching;
       }
       contacts_.press_modes(m, load);
       double* const side = w.side;
@@ -132,7 +135,7 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
     size += sum_of(x) + reach_ * sum_of(y);
     const double speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
     // what is left after the correction: its rate, or its square over that of the smoothing
-    const double rate = fresh ? std::min(1., size / law.bend) : size / last;
+    const double rate = fresh ? std::min(1., size / law.bend) : last > 0 ? size / last : 1;
     if (size * rate <= k_velocity_error * speed) return true;
     fresh = iteration > 0 && rate > k_good_rate;
     last = size;
@@ -379,6 +382,7 @@ bool ReducedBody::advance(const Parameters& parameters, const Instant& start, co
   }
   Instant from = start;
   double left = h, most = h;
+  w.part = 0;
   for (;;) {
     const bool last = size >= left;
     const Instant to = last ? end : Instant(parameters, from.time + size);

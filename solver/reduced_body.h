@@ -42,9 +42,12 @@ struct Instant {
   Instant(const Parameters& parameters, double t);
 };
 
-/// Scratch of a step, for one body after the other: Newton's matrix or its factors, and a right side.
+/// Scratch of a step, for one body after the other: Newton's matrix or its factors, and a right side. Factors
+/// serve the parts of one step, no longer: a run that goes on from a state starts without.
 struct ReducedScratch {
   ModeMatrix matrix;
+  double part = 0;             ///< s, of which the factors are; 0: none
+  std::uint64_t touching = 0;  ///< what touched
   double side[6 + k_modes];
 };
 

@@ -201,6 +201,19 @@ void build(const Entry& entry, F&& builder) {
   }
 }
 
+// One, or its copies.
+void add_cabinets(const Entry& entry, const CabinetSpec& spec, Setup& setup) {
+  std::vector<Vec3> copies = entry.vectors("copies");
+  if (copies.empty()) copies.push_back(Vec3::Zero());
+  for (std::size_t c = 0; c < copies.size(); ++c) {
+    CabinetSpec copy = spec;
+    copy.name = copy_name(spec.name, c);
+    copy.at += copies[c];
+    build(entry, [&] { setup.starts.push_back(add_cabinet(setup.model, copy)); });
+    check_size(entry, setup.model.elements.size());
+  }
+}
+
 using Box = Eigen::AlignedBox3d;
 
 Box starting_box(const Setup& setup) {
@@ -317,9 +330,10 @@ void read_bodies(const Entry& root, Setup& setup) {
     const CabinetSpec spec = read_cabinet(entry, library);
     check_start(entry, setup);
     check_tilt(entry, setup, spec.tilt);
-    build(entry, [&] { setup.starts.push_back(add_cabinet(model, spec)); });
-    check_size(entry, model.elements.size());
-    read_model(root, entry, 1, setup);
+    const std::size_t first = model.bodies.size();
+    add_cabinets(entry, spec, setup);
+    check_copies(entry, model, first);
+    read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
   }
   for (const Entry& entry : root.entries("frame")) {
     const FrameSpec spec = read_frame(entry, library);

@@ -29,10 +29,15 @@ void add_damping(Rows& rows) {
       .only_in({"dynamic"});
 }
 
+void add_copies(Rows& rows) {
+  rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
+      .absent_means("one, where it is");
+}
+
 void add_cabinet(std::vector<Key>& keys) {
   Rows rows(keys, "cabinet");
   const CabinetSpec cabinet{};
-  rows.plain("name", T::text, "name of the body").absent_means("cabinet-1, ...");
+  rows.plain("name", T::text, "name of the body; copies add -2, -3, ...").absent_means("cabinet-1, ...");
   rows.numbers("size", 3, D::length, "mm", 0.01, k_large,
                "depth, width and height between the centre lines of its edges")
       .absent(cabinet.size);
@@ -70,6 +75,7 @@ void add_cabinet(std::vector<Key>& keys) {
       .only("bracing", {"panels"});
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
   add_damping(rows);
+  add_copies(rows);
   add_model(rows, BodyModel::automatic);
 }
 
@@ -84,8 +90,7 @@ void add_frame(std::vector<Key>& keys) {
   rows.plain("masses", T::tables, "masses on nodes").absent_means("none");
   rows.number("mass", D::mass, "kg", 1e-6, 1e7, "mass; densities are adjusted to it")
       .absent_means("from the densities");
-  rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
-      .absent_means("one, where it is");
+  add_copies(rows);
   rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
               "about the +x side of its lowest nodes, along y; negative: the -x side")
       .absent(frame.tilt)

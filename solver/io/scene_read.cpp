@@ -50,12 +50,23 @@ Section read_section(const Entry& entry) {
   return section;
 }
 
+// Of a cabinet or frame.
+int bodies_of(const Entry& entry) {
+  return std::max<int>(1, static_cast<int>(entry.vectors("copies").size()));
+}
+
+int cabinet_total(const Entry& root) {
+  int count = 0;
+  for (const Entry& cabinet : root.entries("cabinet")) count += bodies_of(cabinet);
+  return count;
+}
+
 // Index into the model of `node` of the entry, which counts within its frame.
 int find_node(const Entry& root, const Entry& entry, const Model& model, int body, const char* otherwise) {
   int nodes = 0;  // a copy has the nodes of its frame
-  int first = static_cast<int>(root.entries("cabinet").size());
+  int first = cabinet_total(root);
   for (const Entry& frame : root.entries("frame")) {
-    const int copies = std::max<int>(1, static_cast<int>(frame.vectors("copies").size()));
+    const int copies = bodies_of(frame);
     if (body >= first && body < first + copies) nodes = static_cast<int>(frame.vectors("nodes").size());
     first += copies;
   }
@@ -215,8 +226,7 @@ void read_control(const Entry& root, Setup& setup) {
   const Entry entry = root.entry("run").entry("control");
   if (!entry.present()) return;
   const Model& model = setup.model;
-  const int cabinets = static_cast<int>(root.entries("cabinet").size());
-  const int body = entry.has("body") ? find_body(entry, model) : cabinets;
+  const int body = entry.has("body") ? find_body(entry, model) : cabinet_total(root);
   if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
   DisplacementControl control;
   control.node = find_node(root, entry, model, body, "; control takes a frame");

@@ -310,6 +310,9 @@ TEST(SceneErrors, names_used_twice_are_refused_within_a_kind) {
   EXPECT_EQ(error_of(replaced(k_scene, "supports", "copies = [[0, 0, 0], [0, 1, 0]]\nsupports") +
                      replaced(k_beam, "\"beam\"", "\"beam-2\"")),
             "s.toml:19:8: frame.beam-2.name: \"beam-2\" is also the name of a copy");
+  EXPECT_EQ(in_cabinet("copies = [[0, 0, 0], [0, 5, 0]]\n" + replaced(k_beam, "\"beam\"", "\"free-2\"")),
+            "s.toml:18:8: frame.free-2.name: \"free-2\" is also the name of a copy");
+  EXPECT_NE(in_cabinet("copies = [[0, 0, 0], [0.1, 0.2, 0]]\n").find("\"free-2\""), std::string::npos);
 }
 
 TEST(SceneErrors, references_to_nothing_list_what_there_is) {
@@ -487,10 +490,10 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, breaking, "
-                 "cantilever, "
-                 "collide, dominoes, floor-long-period, free-rocking, near-fault, paper-a, paper-b, "
-                 "portal-pushover, stack, tumble, wedged, yielding");
+                 "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, bookshelf, "
+                 "breaking, cabinet, cantilever, chair, classroom, collide, desk, dominoes, "
+                 "floor-long-period, free-rocking, near-fault, office, paper-a, paper-b, portal-pushover, "
+                 "refrigerator, stack, tumble, wardrobe, wedged, yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

@@ -378,6 +378,27 @@ TEST(Scene, frames_carry_supports_loads_masses_and_copies) {
   EXPECT_EQ(setup.probes[1].node, -1);
 }
 
+TEST(Scene, cabinets_have_copies_that_probes_find_and_that_do_not_shift_the_nodes_of_frames) {
+  const std::string text = k_cabinet_scene + "copies = [[0, 0, 0], [2, \"1 m\", 0.5]]\nyaw = 1\n" + k_beam +
+                           "[[probe]]\nbody = \"free-2\"\n[[probe]]\nbody = \"beam\"\nnode = 1\n";
+  const topple::Setup setup = parse_scene(text, "s.toml").setup;
+  const Model& model = setup.model;
+  ASSERT_EQ(model.bodies.size(), 3u);
+  EXPECT_EQ(model.bodies[0].name, "free");
+  EXPECT_EQ(model.bodies[1].name, "free-2");
+  EXPECT_EQ(setup.starts.size(), 3u);
+  EXPECT_EQ(setup.parameters.models.size(), 3u);
+  ASSERT_EQ(model.bodies[1].node_count, model.bodies[0].node_count);
+  for (int i = 0; i < model.bodies[0].node_count; ++i) {
+    const int a = model.bodies[0].first_node + i, b = model.bodies[1].first_node + i;
+    EXPECT_LT((model.node_position[b] - model.node_position[a] - Vec3(2, 1, 0.5)).norm(), 1e-12);
+    EXPECT_NEAR(model.node_mass[b], model.node_mass[a], 1e-9);
+  }
+  ASSERT_EQ(setup.probes.size(), 2u);
+  EXPECT_EQ(setup.probes[0].body, 1);
+  EXPECT_EQ(setup.probes[1].node, model.bodies[2].first_node + 1);
+}
+
 TEST(Scene, overrides_set_what_the_file_says_and_what_it_does_not) {
   const std::string text =
       k_cabinet_scene + "mass = 40\n[[shake]]\nfrequency = 1\namplitude = 1\n[run]\ngravity = [0, 0, -9]\n";
@@ -480,10 +501,11 @@ TEST(Scene, built_in_scenes_are_read_and_have_titles) {
     EXPECT_NE(scene.title, scene.name);
     EXPECT_EQ(scene.setup.starts.size(), scene.setup.model.bodies.size());
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"anchored", "beam-floor", "breaking", "cantilever", "collide",
-                                             "dominoes", "floor-long-period", "free-rocking", "near-fault",
-                                             "paper-a", "paper-b", "portal-pushover", "stack", "tumble",
-                                             "wedged", "yielding"}));
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "anchored", "beam-floor", "bookshelf", "breaking", "cabinet", "cantilever", "chair",
+                       "classroom", "collide", "desk", "dominoes", "floor-long-period", "free-rocking",
+                       "near-fault", "office", "paper-a", "paper-b", "portal-pushover", "refrigerator", "stack",
+                       "tumble", "wardrobe", "wedged", "yielding"}));
 }
 
 TEST(Scene, the_wall_of_the_paper_scenes_is_10_mm_behind_the_walled_cabinet_and_out_of_reach_of_the_other) {
