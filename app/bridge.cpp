@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "app/anchor_picture.h"
+#include "app/annotations.h"
+#include "app/row.h"
 #include "app/words.h"
 
 namespace topple::app {
@@ -16,45 +18,15 @@ constexpr double k_floor_margin = 2.2;  // m, floor beyond where bodies go
 constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
-constexpr double k_mega = 1e-6;
-constexpr std::uint8_t k_broken = 3;      // FrameRow::hinge
-constexpr double k_ring = 1.3;            // radius of a hinge's ring, of the section
-constexpr double k_least_section = 0.02;  // m, of a section without sides
-constexpr render::Float4 k_flowed_colour = {0.93f, 0.70f, 0.55f, 1};
 constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1};
-constexpr render::Float4 k_hinge_colour = {0.90f, 0.33f, 0.04f, 1};
-constexpr double k_colour_share = 0.95;  // of the instants lie within the colour scale
-
-render::Float3 to_float(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-Vec3 position(const io::FrameRow& row, int node) {
-  return {row.position[3 * node], row.position[3 * node + 1], row.position[3 * node + 2]};
-}
-
-Quat rotation(const io::FrameRow& row, int node) {
-  const float* q = &row.rotation[4 * node];
-  return Quat(q[0], q[1], q[2], q[3]).normalized();
-}
-
-Vec3 floor_shift(const io::FrameRow& row) {
-  return Vec3(row.floor_displacement);
-}
+constexpr double k_tear = 0.6;          // depth of the teeth of a broken end, of the section
+constexpr double k_least_range = 1e-3;  // of a colour scale, in its unit
 
 render::Station station(const Vec3& x, const Quat& q) {
   return {to_float(x),
           {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
            static_cast<float>(q.z())},
           0};
-}
-
-void expect_same_model(const Model& model, const io::FrameRow& row) {
-  const std::size_t nodes = model.node_position.size(), elements = model.elements.size();
-  if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
-      row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
-      row.body.size() != 11 * model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
-    throw io::InputError(io::k_another_model);
 }
 
 render::Profile profile(const Section& section) {
@@ -75,68 +47,6 @@ render::Profile profile(const Section& section) {
 }
 
 }  // namespace
-
-/// An element between its nodes, in the picture's frame.
-struct Curve {
-  Vec3 x1, x2;
-  Quat q1, q2;    ///< local axes at the nodes
-  double length;  ///< m, reference
-
-  render::Station at(double t) const {
-    const double span = (x2 - x1).norm(), t2 = t * t, t3 = t2 * t;
-    const Vec3 d1 = span * (q1 * Vec3::UnitX()), d2 = span * (q2 * Vec3::UnitX());
-    return station(
-        (2 * t3 - 3 * t2 + 1) * x1 + (t3 - 2 * t2 + t) * d1 + (3 * t2 - 2 * t3) * x2 + (t3 - t2) * d2,
-        q1.slerp(t, q2));
-  }
-  /// The halves of a broken one.
-  render::Station stump(double t) const {
-    return t < 0.5 ? station(x1 + t * length * (q1 * Vec3::UnitX()), q1)
-                   : station(x2 - (1 - t) * length * (q2 * Vec3::UnitX()), q2);
-  }
-};
-
-SectionForces forces_at(const Model& model, const io::FrameRow& row, std::size_t e, double xi) {
-  const float* f = &row.section_force[6 * e];
-  return forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, model.elements[e].length, row.s[e], xi);
-}
-
-void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
-  expect_same_model(model, row);
-  const Vec3 shift = floor_shift(row);
-  for (int i = 0; i < model.node_total(); ++i) {
-    if (model.bodies[model.node_body[i]].ground) continue;
-    low = low.cwiseMin(position(row, i) + shift);
-    high = high.cwiseMax(position(row, i) + shift);
-  }
-  for (const Anchor& anchor : model.anchors) {
-    low = low.cwiseMin(anchor.to + shift);
-    high = high.cwiseMax(anchor.to + shift);
-  }
-  double peak = 0;
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    const Element& element = model.elements[e];
-    for (double xi : {-1., 1.})
-      peak = std::max(peak, equivalent_stress(model.sections[model.members[element.member].section],
-                                              forces_at(model, row, e, xi)));
-  }
-  peak_stress_.push_back(peak);
-  way.push_back(static_cast<float>(row.time));
-  load_factor.push_back(static_cast<float>(row.load_factor));
-  if (parameters.shakes.empty()) return;
-  time_s.push_back(static_cast<float>(row.time));
-  acceleration_gal.push_back(
-      static_cast<float>(Vec3(row.floor_acceleration).dot(parameters.shakes.front().direction) / k_gal));
-}
-
-double RunExtent::colour_top() const {
-  if (peak_stress_.empty()) return 0;
-  std::vector<double> sorted = peak_stress_;
-  const auto place =
-      sorted.begin() + static_cast<std::ptrdiff_t>(k_colour_share * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), place, sorted.end());
-  return *place;
-}
 
 io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   if (!(b.time > a.time)) return a;
@@ -180,77 +90,151 @@ Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene),
   for (int count : members_at) joint_.push_back(count > 1);
 }
 
-render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& parameters) const {
+render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& parameters,
+                                 const PictureSettings& settings) const {
+  const Model& model = scene_.setup.model;
   render::SceneFrame out;
   out.profiles = profiles_;
   const Vec3 shift = floor_shift(row);
-  add_tubes(row, out.stations, out.tubes);
-  add_hinges(row, out);
-  add_anchors(scene_.setup.model, row, shift, out);
-  out.legend.quantity = "equivalent stress";
-  out.legend.unit = "MPa";
-  out.legend.range_policy = "covers 95 % of the run";
-  out.legend.minimum = 0;
-  out.legend.square_root = true;
-  out.legend.maximum = static_cast<float>(std::max(extent_.colour_top() * k_mega, 1e-3));
-  for (const Body& body : scene_.setup.model.bodies)
-    for (const auto& corners : body.panels) {
-      render::Panel panel;
-      for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(row, corners[k]) + shift);
-      out.panels.push_back(panel);
-    }
+  const RigidFit fit = rigid_fit(model, row);
+  io::FrameRow drawn = row;
+  exaggerate(model, fit, settings.exaggeration, drawn);
+  add_tubes(drawn, colours(row, fit, settings.colour), out.stations, out.tubes);
+  add_hinges(model, drawn, out);
+  add_anchors(model, drawn, shift, out);
+  out.legend = legend(row, settings);
+  if (settings.panels)
+    for (const Body& body : model.bodies)
+      for (const auto& corners : body.panels) {
+        render::Panel panel;
+        for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(drawn, corners[k]) + shift);
+        out.panels.push_back(panel);
+      }
+  if (settings.contact_forces) {
+    const double newtons = newtons_per_decimetre(extent_);
+    add_contact_forces(model, drawn, newtons, out);
+    out.legend.notes.push_back(fmt::format("arrows: {:g} N per 0.1 m", newtons));
+  }
+  if (settings.trails != Trails::none)
+    add_trails(model, extent_, row, settings.trails == Trails::run || is_static(scene_.setup), out);
+  if (settings.diagram) add_diagram(model, drawn, *settings.diagram, out);
   add_grounds(shift, out);
-  add_captions(row, parameters, out);
-  const Vec3 skin = Vec3::Constant(0.05);
-  out.bounds_min = to_float(extent_.low - skin);
-  out.bounds_max = to_float(extent_.high + skin);
+  add_captions(row, parameters, settings, out);
+  const double skin = 0.05 + (settings.exaggeration - 1) * extent_.top(BeamQuantity::displacement);
+  out.bounds_min = to_float(extent_.low - Vec3::Constant(skin));
+  out.bounds_max = to_float(extent_.high + Vec3::Constant(skin));
   return out;
 }
 
-void Bridge::add_ghost(const io::FrameRow& row, render::SceneFrame& out) const {
-  add_tubes(row, out.ghost_stations, out.ghost_tubes);
+void Bridge::add_ghost(const io::FrameRow& row, const PictureSettings& settings,
+                       render::SceneFrame& out) const {
+  io::FrameRow drawn = row;
+  exaggerate(scene_.setup.model, rigid_fit(scene_.setup.model, row), settings.exaggeration, drawn);
+  add_tubes(
+      drawn, [](std::size_t, double) { return 0.f; }, out.ghost_stations, out.ghost_tubes);
 }
 
-// Between its nodes an element is a cubic in space with the nodes' directions at its ends, its section
-// turning evenly. A broken one is two stumps, each as its node stands.
-void Bridge::add_tubes(const io::FrameRow& row, std::vector<render::Station>& stations,
-                       std::vector<render::Tube>& tubes) const {
+Bridge::ColourAt Bridge::colours(const io::FrameRow& row, const RigidFit& fit, BeamQuantity quantity) const {
+  const Model& model = scene_.setup.model;
+  const double unit = name_of(quantity).per_unit;
+  if (quantity != BeamQuantity::displacement)
+    return [&model, &row, quantity, unit](std::size_t e, double t) {
+      return static_cast<float>(value_of(quantity, model, e, forces_at(model, row, e, 2 * t - 1)) / unit);
+    };
+  return [&model, &row, &fit, unit](std::size_t e, double t) {
+    const int* const node = model.elements[e].node;
+    const Vec3 reference = (1 - t) * model.node_position[node[0]] + t * model.node_position[node[1]];
+    const Vec3 rigid = fit.of(node[t < 0.5 ? 0 : 1]) * reference;
+    const Vec3 now = row.hinge[e] == k_broken
+                         ? Vec3(rigid + displacement(model, row, fit, node[t < 0.5 ? 0 : 1]))
+                         : Vec3(element_curve(model, row, e).place(t) - floor_shift(row));
+    return static_cast<float>((now - rigid).norm() / unit);
+  };
+}
+
+double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& settings) const {
+  if (settings.range == RangePolicy::fixed) return settings.maximum;
+  const double top = settings.range == RangePolicy::run
+                         ? extent_.top(settings.colour)
+                         : peaks_of(scene_.setup.model, row)[static_cast<std::size_t>(settings.colour)];
+  return std::max(top / name_of(settings.colour).per_unit, k_least_range);
+}
+
+render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& settings) const {
+  const QuantityName& name = name_of(settings.colour);
+  render::Legend out;
+  out.quantity = name.name;
+  out.unit = name.unit;
+  out.range_policy = settings.range == RangePolicy::run     ? "covers 95 % of the run"
+                     : settings.range == RangePolicy::fixed ? "fixed range"
+                                                            : "range of this instant";
+  out.maximum = static_cast<float>(colour_maximum(row, settings));
+  out.minimum = name.is_signed ? -out.maximum : 0;
+  out.is_signed = name.is_signed;
+  out.square_root = !name.is_signed;
+  const std::optional<double> yield = least_yield(scene_.setup.model);
+  if (settings.colour == BeamQuantity::stress && yield) {
+    out.mark = static_cast<float>(*yield / name.per_unit);
+    out.mark_label = fmt::format("yield {:g} MPa", out.mark);
+  } else if (settings.colour == BeamQuantity::yield_ratio) {
+    out.mark = 1;
+    if (yield)
+      out.mark_label = "yield";
+    else
+      out.notes.emplace_back("nothing here can yield");
+  }
+  if (settings.exaggeration != 1)
+    out.notes.push_back(fmt::format("deformation ×{:g}", settings.exaggeration));
+  return out;
+}
+
+// A broken element is two stumps, each as its node stands.
+void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
+                       std::vector<render::Station>& stations, std::vector<render::Tube>& tubes) const {
   const Model& model = scene_.setup.model;
   for (std::size_t m = 0; m < model.members.size(); ++m) {
     const Member& member = model.members[m];
+    const Section& section = model.sections[member.section];
+    const float tear = static_cast<float>(k_tear * std::min(section.size_y, section.size_z));
     render::Tube tube;
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
-    if (model.bodies[static_cast<std::size_t>(member.body)].ground) tube.colour = k_ground_colour;
-    const auto begin = [&](float lead) {
+    if (model.bodies[member.body].ground) tube.colour = k_ground_colour;
+    const auto begin = [&](float lead, float torn) {
       tube.first_station = static_cast<std::uint32_t>(stations.size());
       tube.lead = lead;
+      tube.torn_first = torn;
     };
-    const auto end = [&](float trail) {
+    const auto end = [&](float trail, float torn) {
       tube.station_count = static_cast<std::uint32_t>(stations.size()) - tube.first_station;
       tube.trail = trail;
+      tube.torn_last = torn;
       tubes.push_back(tube);
     };
-    const std::size_t first = static_cast<std::size_t>(member.first_element);
-    const std::size_t last = first + static_cast<std::size_t>(member.element_count) - 1;
-    begin(closing(member, model.elements[first].node[0]));
+    const std::size_t first = member.first_element;
+    const std::size_t last = first + member.element_count - 1;
+    begin(closing(member, model.elements[first].node[0]), 0);
     for (std::size_t e = first; e <= last; ++e) {
       const bool broken = row.hinge[e] == k_broken;
-      const Curve curve = curve_of(row, e, floor_shift(row));
+      const ElementCurve curve = element_curve(model, row, e);
       for (int i = e == first ? 0 : 1; i < k_stations; ++i) {
         const double t = static_cast<double>(i) / (k_stations - 1);
         if (broken && i == k_stations / 2) {
-          end(0);
-          begin(0);
+          end(0, tear);
+          begin(0, tear);
         }
-        stations.push_back(broken ? curve.stump(t) : curve.at(t));
-        stations.back().value = static_cast<float>(
-            k_mega * equivalent_stress(model.sections[static_cast<std::size_t>(member.section)],
-                                       forces_at(model, row, e, 2 * t - 1)));
+        if (!broken)
+          stations.push_back(station(curve.place(t), curve.axes(t)));
+        else if (t < 0.5)
+          stations.push_back(station(curve.x1 + t * curve.length * (curve.q1 * Vec3::UnitX()), curve.q1));
+        else
+          stations.push_back(
+              station(curve.x2 - (1 - t) * curve.length * (curve.q2 * Vec3::UnitX()), curve.q2));
+        stations.back().value = colour(e, t);
       }
     }
-    end(closing(member, model.elements[last].node[1]));
+    end(closing(member, model.elements[last].node[1]), 0);
   }
 }
 
@@ -259,36 +243,6 @@ float Bridge::closing(const Member& member, int node) const {
   const Section& section = scene_.setup.model.sections[static_cast<std::size_t>(member.section)];
   if (section.shape == Section::Shape::custom || !joint_[static_cast<std::size_t>(node)]) return 0;
   return static_cast<float>(std::min(section.size_y, section.size_z) / 2);
-}
-
-Curve Bridge::curve_of(const io::FrameRow& row, std::size_t e, const Vec3& shift) const {
-  const Element& element = scene_.setup.model.elements[e];
-  const Quat triad(element.triad);
-  return {.x1 = position(row, element.node[0]) + shift,
-          .x2 = position(row, element.node[1]) + shift,
-          .q1 = rotation(row, element.node[0]) * triad,
-          .q2 = rotation(row, element.node[1]) * triad,
-          .length = element.length};
-}
-
-// A hinge is a ring in the plane in which it bends; one that has come to rest is pale.
-void Bridge::add_hinges(const io::FrameRow& row, render::SceneFrame& out) const {
-  const Model& model = scene_.setup.model;
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    const std::uint8_t code = row.hinge[e];
-    if (code == 0 || code == k_broken) continue;
-    const bool flowed = code == io::k_flowed_first || code == io::k_flowed_second;
-    const Section& section = model.sections[static_cast<std::size_t>(
-        model.members[static_cast<std::size_t>(model.elements[e].member)].section)];
-    const bool at_first = code == 1 || code == io::k_flowed_first;
-    const Curve curve = curve_of(row, e, floor_shift(row));
-    const SectionForces forces = forces_at(model, row, e, at_first ? -1 : 1);
-    const Quat& turned = at_first ? curve.q1 : curve.q2;
-    const double size = std::max({section.size_y, section.size_z, k_least_section});
-    out.rings.push_back({to_float(at_first ? curve.x1 : curve.x2),
-                         to_float(turned * Vec3(0, forces.moment.y(), forces.moment.z())),
-                         static_cast<float>(k_ring * size), flowed ? k_flowed_colour : k_hinge_colour});
-  }
 }
 
 void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
@@ -336,7 +290,7 @@ void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
 }
 
 void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
-                          render::SceneFrame& out) const {
+                          const PictureSettings& settings, render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
   out.caption.title = scene_.title;
   out.caption.lines.push_back(instant_in_words(setup, row));
@@ -369,8 +323,8 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     contact = fmt::format(" · contact α = {:g} kgf, q = {:g}, μ = {:g}",
                           parameters.contact.alpha / k_standard_gravity, parameters.contact.q,
                           parameters.contact.friction);
-  out.caption.note =
-      fmt::format("topple {} · scene {}{} · deformation ×1", TOPPLE_VERSION, scene_.name, contact);
+  out.caption.note = fmt::format("topple {} · scene {}{} · deformation ×{:g}", TOPPLE_VERSION, scene_.name,
+                                 contact, settings.exaggeration);
 }
 
 }  // namespace topple::app

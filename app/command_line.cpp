@@ -196,16 +196,71 @@ class CommandLine {
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
     command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
+    add_picture(command);
     command.callback([this, at, from, to] {
       read_size(size_, render_);
       const auto view = render::view_named(camera_);
       if (!view) throw BadInput("--camera: \"" + camera_ + "\" is not one of front, side, top, iso");
       render_.view = *view;
+      read_picture();
       if (*at) render_.at = at_;
       if (*from) render_.from = from_;
       if (*to) render_.to = to_;
       action_ = [this] { return render_command(render_); };
     });
+  }
+
+  void add_picture(CLI::App& command) {
+    command
+        .add_option("--colour", colour_,
+                    "stress (default), yield-ratio, axial, moment, torsion or displacement: what beams are "
+                    "coloured by")
+        ->type_name("QUANTITY");
+    command.add_option("--map", map_, "viridis (default) or cividis: colours of what has no sign")
+        ->type_name("NAME");
+    command
+        .add_option("--range", range_,
+                    "run (default), instant, or the greatest value in the legend's unit: where colours end")
+        ->type_name("RANGE");
+    command.add_option("--exaggerate", exaggerate_, "deformation drawn so many times as large, 1 to 200")
+        ->type_name("FACTOR");
+    command.add_flag("--forces", render_.picture.contact_forces,
+                     "arrows of what floors and walls do to bodies");
+    command.add_flag("!--no-panels", render_.picture.panels, "without the sheets of cabinets");
+    command
+        .add_option("--trails", trails_,
+                    "second or run: paths of centres of gravity and tops of bodies since then")
+        ->type_name("SPAN");
+    add_path(command, "--inspect", render_.inspect, "BODY[/MEMBER]",
+             "look closely at a body or member: forces along the member; all values with --ui");
+  }
+  void read_picture() {
+    PictureSettings& picture = render_.picture;
+    const auto quantity = beam_quantity_named(colour_);
+    if (!quantity)
+      throw BadInput("--colour: \"" + colour_ +
+                     "\" is not one of stress, yield-ratio, axial, moment, torsion, displacement");
+    picture.colour = *quantity;
+    const auto map = render::colour_map_named(map_);
+    if (!map || *map == render::ColourMap::diverging)
+      throw BadInput("--map: \"" + map_ + "\" is not one of viridis, cividis");
+    picture.map = *map;
+    picture.range = range_ == "run"       ? RangePolicy::run
+                    : range_ == "instant" ? RangePolicy::instant
+                                          : RangePolicy::fixed;
+    if (picture.range == RangePolicy::fixed) {
+      const auto number = whole_number<double>(range_);
+      if (!number || !(*number >= k_least_maximum && *number <= k_most_maximum))
+        throw BadInput("--range: \"" + range_ + "\" is not run, instant or a number from 1e-6 to 1e12");
+      picture.maximum = *number;
+    }
+    const auto factor = whole_number<double>(exaggerate_);
+    if (!factor || !(*factor >= 1 && *factor <= k_most_exaggeration))
+      throw BadInput("--exaggerate: \"" + exaggerate_ + "\" is not a number from 1 to 200");
+    picture.exaggeration = *factor;
+    if (!trails_.empty() && trails_ != "second" && trails_ != "run")
+      throw BadInput("--trails: \"" + trails_ + "\" is not one of second, run");
+    picture.trails = trails_.empty() ? Trails::none : trails_ == "run" ? Trails::run : Trails::second;
   }
 
   void add_export() {
@@ -383,6 +438,7 @@ class CommandLine {
   RenderOptions render_;
   ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
+  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;
   std::vector<std::string> scenes_, check_overrides_;

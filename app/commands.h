@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/picture_settings.h"
 #include "render/camera.h"
 
 namespace topple::app {
@@ -43,6 +44,8 @@ struct RenderOptions {
   render::NamedView view = render::NamedView::iso;
   std::optional<double> from, to;  ///< s
   bool ui = false;                 ///< with the panels of the window
+  PictureSettings picture;         ///< all but `diagram`
+  std::string inspect;             ///< BODY or BODY/MEMBER, looked at closely; empty: none
   bool quiet = false;
 };
 int render_command(const RenderOptions& options);

@@ -5,92 +5,317 @@
 #include <cmath>
 
 #include "app/anchor_picture.h"
+#include "app/annotations.h"
+#include "app/lane.h"
 #include "app/panels.h"
+#include "app/row.h"
 #include "app/words.h"
+#include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
 
-constexpr double k_mega = 1e-6;
+constexpr ImU32 k_sheet = IM_COL32(255, 255, 255, 255), k_frame = IM_COL32(60, 74, 88, 70);
+constexpr ImU32 k_chosen = IM_COL32(219, 13, 115, 255);  // as the outline of what is picked
+constexpr ImU32 k_positive = IM_COL32(199, 33, 41, 255), k_negative = IM_COL32(41, 84, 191, 255);
+constexpr ImU32 k_line = IM_COL32(0, 114, 178, 255), k_hinge = IM_COL32(230, 84, 10, 255);
+constexpr ImU32 k_quiet = IM_COL32(96, 108, 120, 255);
+constexpr int k_samples = 12;  // of a small diagram, per element
 
-/// Section forces at a place along a member.
-struct Place {
-  std::size_t element;
-  double xi;
-};
-
-void cell(const std::string& text) {
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(text.c_str());
+ImU32 translucent(ImU32 colour) {
+  return (colour & ~IM_COL32_A_MASK) | (90u << IM_COL32_A_SHIFT);
 }
 
-void draw_anchor(const Model& model, const io::FrameRow& row, std::size_t k) {
-  const Anchor& anchor = model.anchors[k];
-  const float* const values = &row.anchor[4 * k];
-  const Vec3 span = attached_point(model, row, Vec3::Zero(), k) - anchor.to;
-  ImGui::Text("%s", fmt::format("{} of {}", anchor.name, model.bodies[anchor.body].name).c_str());
-  ImGui::TextDisabled("%s", fmt::format("{}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
-                                        anchor.stiffness / 1e3, 1e3 * values[2])
-                                .c_str());
-  if (!ImGui::BeginTable("anchor", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg)) return;
-  const auto line = [](const char* name, const std::string& value) {
-    cell(name);
-    cell(value);
-  };
-  const bool limited = std::isfinite(anchor.strength);
-  line("state", io::anchor_word(values[3]));
-  line("force, N", fmt::format("{:.4g}", values[0]));
-  line("strength, N", limited ? fmt::format("{:.4g}", anchor.strength) : "never breaks");
-  line("share of strength",
-       limited ? fmt::format("{:.1f} %", 100 * std::abs(values[0]) / anchor.strength) : "-");
-  line("stretch, mm", fmt::format("{:.3g}", 1e3 * (span.norm() - values[2])));
-  line("energy, J", fmt::format("{:.3g}", values[1]));
+/// What the inspector is drawn from.
+struct Inspected {
+  const Player& player;
+  const io::FrameRow& row;
+  Histories& histories;
+  Inspection& inspection;
+  const Instant now;
+  const Model& model;
+
+  double value(const Subject& subject, std::size_t k) const {
+    return values_of(subject.kind)[k].at(now, subject.index);
+  }
+  double run_peak(const Subject& subject, std::size_t k) const {
+    double most = 0;
+    for (const float sample : histories.of(player, subject, k))
+      if (std::isfinite(sample)) most = std::max<double>(most, std::abs(sample));
+    return most;
+  }
+};
+
+bool is_plotted(const Inspection& inspection, const PlottedValue& plot) {
+  return std::ranges::find(inspection.plots, plot) != inspection.plots.end();
+}
+
+void toggle_plot(Inspection& inspection, const PlottedValue& plot) {
+  if (std::erase(inspection.plots, plot) == 0) inspection.plots.push_back(plot);
+}
+
+/// A small curve; filled while the value is plotted.
+void add_plot_icon(ImDrawList& list, ImVec2 low, float side, bool on, bool hovered) {
+  const ImVec2 high{low.x + side, low.y + side};
+  if (on || hovered)
+    list.AddRectFilled(low, high, on ? k_line : ImGui::GetColorU32(ImGuiCol_ButtonHovered), 2);
+  const auto at = [&](float x, float y) { return ImVec2(low.x + x * side, low.y + y * side); };
+  const ImVec2 curve[] = {at(0.15f, 0.75f), at(0.38f, 0.3f), at(0.6f, 0.6f), at(0.85f, 0.2f)};
+  list.AddPolyline(curve, 4, on ? k_sheet : k_quiet, 0, 1.5f);
+}
+
+void draw_plot_button(Inspection& inspection, const PlottedValue& plot) {
+  const float side = ImGui::GetTextLineHeight();
+  if (ImGui::InvisibleButton("plot", {side, side})) toggle_plot(inspection, plot);
+  const bool on = is_plotted(inspection, plot);
+  add_plot_icon(*ImGui::GetWindowDrawList(), ImGui::GetItemRectMin(), side, on, ImGui::IsItemHovered());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip(on ? "Take it off the plots" : "Plot it over time");
+}
+
+void draw_values(const Inspected& at, const Subject& subject, std::size_t count) {
+  if (!ImGui::BeginTable("values", 3, ImGuiTableFlags_RowBg)) return;
+  const float line = ImGui::GetTextLineHeight();
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1.3f);
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1);
+  ImGui::TableSetupColumn("plot", ImGuiTableColumnFlags_WidthFixed, line);
+  const auto values = values_of(subject.kind);
+  for (std::size_t k = 0; k < std::min(count, values.size()); ++k) {
+    ImGui::PushID(static_cast<int>(k));
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(values[k].name);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted((value_text(at.value(subject, k)) + " " + values[k].unit).c_str());
+    ImGui::TableNextColumn();
+    draw_plot_button(at.inspection, {subject, k});
+    ImGui::PopID();
+  }
   ImGui::EndTable();
+}
+
+/// One component along a member, with its greatest value; chosen: it is the one drawn in the scene. True when
+/// it was clicked to be.
+bool draw_component(const Inspected& at, const Subject& subject, std::size_t component, bool chosen,
+                    ImVec2 size) {
+  ImGui::PushID(static_cast<int>(component));
+  const bool pressed = ImGui::InvisibleButton("component", size);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), mouse = ImGui::GetIO().MousePos;
+  const float line = ImGui::GetTextLineHeight();
+  const bool hovered = ImGui::IsItemHovered();
+  const bool on_icon = mouse.x > high.x - line - 4 && mouse.y < low.y + line + 4;
+  ImGui::PopID();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, k_sheet, 3);
+  list.AddRect(low, high, chosen ? k_chosen : k_frame, 3, 0, chosen ? 2.f : 1.f);
+  const std::size_t value = k_first_component_value + component;
+  add_text(list, low.x + 5, low.y + 3, k_chart_text,
+           fmt::format("{} {} {}", component_name(component), value_text(at.value(subject, value)),
+                       component_unit(component)));
+  add_plot_icon(list, {high.x - line - 2, low.y + 3}, line, is_plotted(at.inspection, {subject, value}),
+                hovered && on_icon);
+  if (hovered) ImGui::SetTooltip(on_icon ? "Plot it over time" : "Draw it along the member in the scene");
+
+  const Member& member = at.model.members[subject.index];
+  const float left = low.x + 8, right = high.x - 8, top = low.y + line + 8, bottom = high.y - 5;
+  std::vector<double> ordinates;
+  double most = 0;
+  for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
+    for (int i = 0; i <= k_samples; ++i) {
+      const double xi = 2. * i / k_samples - 1;
+      ordinates.push_back(component_of(forces_at(at.model, at.row, e, xi), component));
+      most = std::max(most, std::abs(ordinates.back()));
+    }
+  const float zero = (top + bottom) / 2;
+  const auto place = [&](std::size_t i) {
+    const std::size_t element = i / (k_samples + 1), step = i % (k_samples + 1);
+    const float t = (static_cast<float>(element) + static_cast<float>(step) / k_samples) /
+                    static_cast<float>(member.element_count);
+    const float y = most > 0 ? static_cast<float>(ordinates[i] / most) * (bottom - top) / 2 : 0;
+    return ImVec2(left + t * (right - left), zero - y);
+  };
+  for (std::size_t i = 0; i + 1 < ordinates.size(); ++i) {
+    const ImVec2 a = place(i), b = place(i + 1);
+    const ImU32 colour = ordinates[i] + ordinates[i + 1] >= 0 ? k_positive : k_negative;
+    if (b.x > a.x) list.AddQuadFilled({a.x, zero}, a, b, {b.x, zero}, translucent(colour));
+    list.AddLine(a, b, colour, 1.4f);
+  }
+  list.AddLine({left, zero}, {right, zero}, k_axis);
+  if (pressed && on_icon) toggle_plot(at.inspection, {subject, value});
+  return pressed && !on_icon;
+}
+
+/// Where elements are integrated, where their stresses are taken, and their hinges.
+void draw_integration_points(const Inspected& at, const Member& member) {
+  const float line = ImGui::GetTextLineHeight(), r = 0.28f * line;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const float left = low.x + 8, width = ImGui::GetContentRegionAvail().x - 16, y = low.y + 0.8f * line;
+  const auto x = [&](int element, double xi) {
+    return left + width * (static_cast<float>(element) + static_cast<float>(xi + 1) / 2) /
+                      static_cast<float>(member.element_count);
+  };
+  const auto diamond = [&](float px, float py) { list.AddNgonFilled({px, py}, 1.25f * r, k_line, 4); };
+  const auto circle = [&](float px, float py, ImU32 colour) {
+    list.AddCircle({px, py}, r, colour, 16, 1.6f);
+  };
+  list.AddLine({left, y}, {left + width, y}, k_quiet, 2);
+  std::string places;
+  for (int k = 0; k < member.element_count; ++k) {
+    const std::size_t e = member.first_element + k;
+    for (const double end : {-1., 1.}) list.AddCircleFilled({x(k, end), y}, 0.6f * r, k_quiet);
+    places += fmt::format("{}{:+.3f}", k > 0 ? ", " : "", at.row.s[e] + 0.f);
+    const std::uint8_t code = at.row.hinge[e];
+    if (code == k_broken) {
+      list.AddLine({x(k, 0) - r, y - r}, {x(k, 0) + r, y + r}, k_hinge, 2);
+      list.AddLine({x(k, 0) - r, y + r}, {x(k, 0) + r, y - r}, k_hinge, 2);
+      continue;
+    }
+    diamond(x(k, at.row.s[e]), y);
+    const bool flows = code == 1 || code == 2 || code == 4;
+    circle(x(k, -at.row.s[e]), y, flows ? k_hinge : k_chart_text);
+  }
+  const float words = y + 0.65f * line;
+  diamond(left + r, words + line / 2);
+  add_text(list, left + 3.2f * r, words, k_chart_text, "integrated");
+  const float second = left + 7.2f * line;
+  circle(second, words + line / 2, k_chart_text);
+  add_text(list, second + 2.2f * r, words, k_chart_text, "stresses (hinge: orange)");
+  ImGui::Dummy({width, 2.6f * line});
+  ImGui::TextWrapped("s of its elements: %s", places.c_str());
+}
+
+void draw_history(const Inspected& at, const Subject& subject, std::size_t value) {
+  const std::vector<float>& samples = at.histories.of(at.player, subject, value);
+  const SubjectValue& what = values_of(subject.kind)[value];
+  const float line = ImGui::GetTextLineHeight();
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = 4.6f * line;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  Lane lane{low.x + 6, low.x + width - 6,          low.y + line + 8, low.y + height - 5, at.player.length(),
+            0,         at.run_peak(subject, value)};
+  list.AddRectFilled(low, {low.x + width, low.y + height}, k_sheet, 3);
+  list.AddRect(low, {low.x + width, low.y + height}, k_frame, 3);
+  add_text(list, low.x + 5, low.y + 3, k_chart_text,
+           fmt::format("{} over the run, peak {} {}", what.name, value_text(lane.high), what.unit));
+  if (lane.high > 0)
+    add_curve(
+        list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, k_line, 1.4f);
+  list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, k_cursor, 1.5f);
+  ImGui::Dummy({width, height});
+}
+
+/// Name, what it is, and a pin. True when the pin was pressed.
+bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
+  ImGui::TextUnformatted(name_of(at.model, subject).c_str());
+  const char* const words = pinned ? "Unpin" : "Pin";
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(words).x -
+                  2 * ImGui::GetStyle().FramePadding.x);
+  const bool pressed = ImGui::SmallButton(words);
+  if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("Keep it here while another one is looked at");
+  if (subject.kind == Subject::Kind::member) {
+    const Member& member = at.model.members[subject.index];
+    double length = 0;
+    for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
+      length += at.model.elements[e].length;
+    ImGui::TextDisabled("%s", fmt::format("{}, {}, {:.0f} mm long", at.model.sections[member.section].name,
+                                          at.model.materials[member.material].name, 1e3 * length)
+                                  .c_str());
+  } else if (subject.kind == Subject::Kind::body) {
+    const Body& body = at.model.bodies[subject.index];
+    ImGui::TextDisabled("%s", fmt::format("{:.4g} kg, {} members, {}", body.mass, body.member_count,
+                                          name(static_cast<Rung>(at.row.rung[subject.index])))
+                                  .c_str());
+  } else {
+    const Anchor& anchor = at.model.anchors[subject.index];
+    const float* const values = &at.row.anchor[4 * subject.index];
+    ImGui::TextDisabled(
+        "%s", fmt::format("{} of {}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
+                          at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
+                  .c_str());
+    ImGui::TextUnformatted(anchor_in_words(at.model, at.row, subject.index).c_str());
+  }
+  return pressed;
+}
+
+/// True when another component is to be drawn in the scene.
+bool draw_member(const Inspected& at, const Subject& subject) {
+  draw_values(at, subject, k_first_component_value);
+  if (is_approximate(at.model, at.row, subject.index))
+    ImGui::TextWrapped("A contact presses on its middle node: its own bending is approximate.");
+  const auto diagram = diagram_of(at.player, at.histories, at.inspection);
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size{(ImGui::GetContentRegionAvail().x - gap) / 2, 4.3f * ImGui::GetTextLineHeight()};
+  bool changed = false;
+  for (std::size_t component = 0; component < k_components; ++component) {
+    if (draw_component(at, subject, component, diagram && diagram->component == component, size)) {
+      at.inspection.component = component;
+      changed = true;
+    }
+    if (component % 2 == 0) ImGui::SameLine();
+  }
+  draw_history(at, subject, k_stress_value);
+  draw_integration_points(at, at.model.members[subject.index]);
+  return changed;
 }
 
 }  // namespace
 
-void draw_inspector(const Model& model, const io::FrameRow& row, std::size_t member_index) {
-  if (member_index >= model.members.size())
-    return draw_anchor(model, row, member_index - model.members.size());
-  const Member& member = model.members[member_index];
-  const Section& section = model.sections[static_cast<std::size_t>(member.section)];
-  const auto first = static_cast<std::size_t>(member.first_element);
-  const std::size_t last = first + static_cast<std::size_t>(member.element_count) - 1;
-  double length = 0, peak = 0;
-  for (std::size_t e = first; e <= last; ++e) {
-    length += model.elements[e].length;
-    for (const double xi : {-1., 1.})
-      peak = std::max(peak, equivalent_stress(section, forces_at(model, row, e, xi)));
-  }
-  ImGui::Text(
-      "%s",
-      fmt::format("{} of {}", member.name, model.bodies[static_cast<std::size_t>(member.body)].name).c_str());
-  ImGui::TextDisabled(
-      "%s", fmt::format("{}, {}, {:.0f} mm long", section.name,
-                        model.materials[static_cast<std::size_t>(member.material)].name, 1e3 * length)
-                .c_str());
-  ImGui::Text("%s", fmt::format("greatest stress now {:.3g} MPa", peak * k_mega).c_str());
-
-  // A member of two elements has its middle at their common node.
-  const std::size_t middle = first + (last - first) / 2;
-  const Place places[] = {{first, -1}, {middle, last == first ? 0. : 1.}, {last, 1}};
-  SectionForces forces[3];
-  for (int k = 0; k < 3; ++k) forces[k] = forces_at(model, row, places[k].element, places[k].xi);
-  if (!ImGui::BeginTable("forces", 4, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg)) return;
-  for (const char* heading : {"", "start", "middle", "end"}) cell(heading);
-  const auto line = [&](const char* name, auto value) {
-    cell(name);
-    for (const SectionForces& f : forces) cell(fmt::format("{:.3g}", value(f)));
+std::optional<Diagram> diagram_of(const Player& player, Histories& histories, const Inspection& inspection) {
+  if (!inspection.picked || inspection.picked->kind != Subject::Kind::member) return std::nullopt;
+  const auto peak = [&](std::size_t component) {
+    double most = 0;
+    for (const float sample : histories.of(player, *inspection.picked, k_first_component_value + component))
+      most = std::max<double>(most, std::abs(sample));
+    return most;
   };
-  line("stress, MPa", [&](const SectionForces& f) { return equivalent_stress(section, f) * k_mega; });
-  line("N, N", [](const SectionForces& f) { return f.normal.x(); });
-  line("Vy, N", [](const SectionForces& f) { return f.normal.y(); });
-  line("Vz, N", [](const SectionForces& f) { return f.normal.z(); });
-  line("T, N m", [](const SectionForces& f) { return f.moment.x(); });
-  line("My, N m", [](const SectionForces& f) { return f.moment.y(); });
-  line("Mz, N m", [](const SectionForces& f) { return f.moment.z(); });
-  ImGui::EndTable();
+  constexpr std::size_t k_my = 4, k_mz = 5;
+  const std::size_t component = inspection.component.value_or(peak(k_my) >= peak(k_mz) ? k_my : k_mz);
+  return Diagram{inspection.picked->index, component, peak(component)};
+}
+
+bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,
+                    Inspection& inspection) {
+  const Model& model = player.scene().setup.model;
+  const Inspected at{player, row, histories, inspection, instant_of(player, row), model};
+  bool changed = false;
+  ImGui::BeginChild("inspector");
+  if (inspection.picked) {
+    const Subject subject = *inspection.picked;
+    const bool pinned = std::ranges::find(inspection.pinned, subject) != inspection.pinned.end();
+    if (draw_heading(at, subject, pinned)) {
+      if (std::erase(inspection.pinned, subject) == 0) inspection.pinned.push_back(subject);
+    }
+    if (subject.kind == Subject::Kind::member) {
+      changed = draw_member(at, subject);
+      const auto body = static_cast<std::size_t>(model.members[subject.index].body);
+      if (ImGui::Button(("All of " + model.bodies[body].name).c_str())) {
+        inspection.picked = Subject{Subject::Kind::body, body};
+        changed = true;
+      }
+    } else {
+      draw_values(at, subject, values_of(subject.kind).size());
+      draw_history(at, subject, 0);
+    }
+  } else {
+    ImGui::TextWrapped("Click a member or an anchor; click a member again for its body. Bodies:");
+    for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
+      if (ImGui::Selectable(model.bodies[b].name.c_str())) {
+        inspection.picked = Subject{Subject::Kind::body, b};
+        changed = true;
+      }
+  }
+  std::size_t unpinned = inspection.pinned.size();
+  for (std::size_t i = 0; i < inspection.pinned.size(); ++i) {
+    if (inspection.pinned[i] == inspection.picked) continue;
+    ImGui::Separator();
+    ImGui::PushID(static_cast<int>(i));
+    if (draw_heading(at, inspection.pinned[i], true)) unpinned = i;
+    draw_values(at, inspection.pinned[i], values_of(inspection.pinned[i].kind).size());
+    ImGui::PopID();
+  }
+  if (unpinned < inspection.pinned.size())
+    inspection.pinned.erase(inspection.pinned.begin() + static_cast<std::ptrdiff_t>(unpinned));
+  ImGui::EndChild();
+  return changed;
 }
 
 }  // namespace topple::app

@@ -3,9 +3,13 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/picture_settings.h"
 #include "app/player.h"
-#include "render/scene_frame.h"
+#include "app/subject.h"
+
+struct ImDrawList;
 
 namespace topple::app {
 
@@ -30,7 +34,44 @@ void draw_timeline(Player& player, const Box& box);
 /// Sliders of what may be edited. What was refused, and why, is left in `refused`.
 void draw_parameters(Player& player, std::string& refused);
 
-/// Stress and section forces of `member` in `row`; beyond the last member those of an anchor (Tube::member).
-void draw_inspector(const Model& model, const io::FrameRow& row, std::size_t member);
+/// Colours, deformation and what is shown beside bodies. `maximum`: where the colours end now, in the
+/// quantity's unit. True when anything changed.
+bool draw_picture_settings(PictureSettings& settings, double maximum);
+
+/// A value that is plotted over time.
+struct PlottedValue {
+  Subject subject;
+  std::size_t value;  ///< of values_of(subject.kind)
+  bool operator==(const PlottedValue&) const = default;
+};
+
+/// What a person looks at closely.
+struct Inspection {
+  std::optional<Subject> picked;
+  std::vector<Subject> pinned;
+  std::optional<std::size_t> component;  ///< drawn along the member; absent: the moment that gets greatest
+  std::vector<PlottedValue> plots;
+};
+
+/// What is drawn along the member that is picked, if one is.
+std::optional<Diagram> diagram_of(const Player& player, Histories& histories, const Inspection& inspection);
+
+/// What is picked and what is pinned, at `row`. True when what the picture shows of it has changed.
+bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,
+                    Inspection& inspection);
+
+/// What a person asks of the plots.
+enum class PlotRequest { none, csv, png };
+
+/// Plotted values over the timeline's time, in a box as high as plots_height; dragging scrubs.
+PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspection, const Box& box);
+/// Of all plots, in lines of text.
+float plots_height(const Inspection& inspection);
+
+/// Only the lanes of the plots, with their axis, for a picture.
+void draw_plot_lanes(ImDrawList& list, const Player& player, Histories& histories,
+                     const Inspection& inspection, const Box& box);
+/// A line for each recorded instant: time and plotted values, as they are shown.
+std::string plots_csv(const Player& player, Histories& histories, const Inspection& inspection);
 
 }  // namespace topple::app

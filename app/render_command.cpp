@@ -15,6 +15,7 @@
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
+#include "app/subject.h"
 #include "app/window_picture.h"
 #include "app/words.h"
 #include "render/osmesa_context.h"
@@ -54,11 +55,22 @@ void check_outputs(const RenderOptions& o) {
   require_writable_folder(o.png, o.png);
 }
 
+std::optional<Subject> inspected_by(const RenderOptions& o, const Model& model) {
+  if (o.inspect.empty()) return std::nullopt;
+  try {
+    return subject_named(model, o.inspect);
+  } catch (const io::InputError& error) {
+    throw BadInput(std::string("--inspect: ") + error.what());
+  }
+}
+
 /// Draws one instant after the other.
 class Drawing {
  public:
-  Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene)
+  Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene,
+          const std::optional<Subject>& inspected)
       : options_(o),
+        inspected_(inspected),
         extent_(extent_of(replay, scene)),
         scene_(scene),
         bridge_(scene, extent_),
@@ -68,12 +80,18 @@ class Drawing {
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
-    const render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row));
-    return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()));
+    render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), options_.picture);
+    if (inspected_ && inspected_->kind == Subject::Kind::body)
+      frame.highlighted_body = static_cast<std::int64_t>(inspected_->index);
+    else if (inspected_)
+      frame.highlighted_member = static_cast<std::int64_t>(inspected_->index);
+    return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()),
+                         {.map = options_.picture.map});
   }
 
  private:
   const RenderOptions& options_;
+  const std::optional<Subject> inspected_;
   const RunExtent extent_;
   const io::Scene& scene_;
   const Bridge bridge_;
@@ -125,14 +143,15 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   check_times(o, is_static(scene->setup), first, last, "the recording");
   defer_interrupts();
   check_outputs(o);
+  const auto inspected = inspected_by(o, scene->setup.model);
   int code = k_done;
   try {
     std::optional<Drawing> drawing;
     std::optional<WindowPicture> window;
     if (o.ui)
-      window.emplace(scene, path, o.view, o.width, o.height);
+      window.emplace(scene, path, o.view, o.picture, inspected, o.width, o.height);
     else
-      drawing.emplace(o, replay, *scene);
+      drawing.emplace(o, replay, *scene, inspected);
     const DrawAt draw_at = [&](double time) { return window ? window->at(time) : drawing->at(time); };
     code = o.still.empty() ? draw_sequence(o, draw_at, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))
@@ -158,6 +177,7 @@ int render_command(const RenderOptions& options) {
   }
   const auto scene = std::make_shared<const io::Scene>(io::load_scene(options.source, options.overrides));
   check_times(options, is_static(scene->setup), 0, scene->setup.run.duration, "the scene");
+  inspected_by(options, scene->setup.model);
   defer_interrupts();
   check_outputs(options);
   const TemporaryFile file;

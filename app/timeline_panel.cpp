@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "app/body_colour.h"
+#include "app/lane.h"
 #include "app/panels.h"
 #include "app/words.h"
 #include "render/overlay.h"
@@ -18,68 +20,27 @@ constexpr double k_degrees = 180 / k_pi;
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 
-// Okabe and Ito's colours, told apart by everybody.
-constexpr ImU32 k_colours[] = {IM_COL32(0, 114, 178, 255),  IM_COL32(213, 94, 0, 255),
-                               IM_COL32(0, 158, 115, 255),  IM_COL32(204, 121, 167, 255),
-                               IM_COL32(86, 180, 233, 255), IM_COL32(230, 159, 0, 255)};
-constexpr ImU32 k_axis = IM_COL32(60, 74, 88, 110), k_faint = IM_COL32(60, 74, 88, 45);
-constexpr ImU32 k_text = IM_COL32(52, 62, 72, 255), k_ghost = IM_COL32(120, 128, 136, 150);
+constexpr ImU32 k_ghost = IM_COL32(120, 128, 136, 150);
 constexpr ImU32 k_floor_colours[] = {IM_COL32(70, 82, 94, 255), IM_COL32(140, 90, 60, 255),
                                      IM_COL32(110, 110, 170, 255)};
 
-ImU32 body_colour(std::size_t body) {
-  return k_colours[body % std::size(k_colours)];
+ImU32 line_colour(std::size_t body) {
+  const auto& [red, green, blue] = body_colour(body);
+  return IM_COL32(red, green, blue, 255);
 }
-
-/// Time, or the way through the loads, to the right; one quantity upwards.
-struct Lane {
-  float left, right, top, bottom;
-  double length;     // s; statics: of the whole way
-  double low, high;  // of the quantity
-  float x(double t) const { return left + static_cast<float>(t / length) * (right - left); }
-  float y(double value) const {
-    return bottom - static_cast<float>((value - low) / (high - low)) * (bottom - top);
-  }
-};
 
 using Value = std::function<double(const io::FrameRow&)>;
 
-// No more than the least and greatest value of each pixel column.
 void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const Value& value,
                ImU32 colour, float thickness) {
-  std::vector<ImVec2> points;
-  for (std::size_t i = 0; i < rows.size();) {
-    const float column = std::floor(lane.x(rows[i]->time));
-    double least = 1e300, greatest = -1e300;
-    std::size_t next = i;
-    for (; next < rows.size() && std::floor(lane.x(rows[next]->time)) == column; ++next) {
-      const double v = value(*rows[next]);
-      least = std::min(least, v);
-      greatest = std::max(greatest, v);
-    }
-    const bool rises = value(*rows[next - 1]) >= value(*rows[i]);
-    points.emplace_back(lane.x(rows[i]->time), lane.y(rises ? least : greatest));
-    if (least != greatest)
-      points.emplace_back(lane.x(rows[next - 1]->time), lane.y(rises ? greatest : least));
-    i = next;
-  }
-  list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);
-  list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
-  list.PopClipRect();
+  add_curve(
+      list, lane, rows, [&](std::size_t i) { return value(*rows[i]); }, colour, thickness);
 }
 
 double peak(const std::vector<RowPtr>& rows, const Value& value) {
   double most = 0;
   for (const RowPtr& row : rows) most = std::max(most, std::abs(value(*row)));
   return most;
-}
-
-void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text) {
-  list.AddText({std::round(x), std::round(y)}, colour, text.c_str());
-}
-
-float text_width(const std::string& text) {
-  return ImGui::CalcTextSize(text.c_str()).x;
 }
 
 void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
@@ -98,10 +59,10 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
     moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
   }
   const float line = ImGui::GetTextLineHeight();
-  add_text(list, label_left, lane.top, k_text, "floor, gal");
-  if (!moving.empty()) add_text(list, label_left, lane.top + line, k_text, moving);
+  add_text(list, label_left, lane.top, k_chart_text, "floor, gal");
+  if (!moving.empty()) add_text(list, label_left, lane.top + line, k_chart_text, moving);
   const std::string top = fmt::format("{:.0f}", most);
-  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_text, top);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_chart_text, top);
 }
 
 void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
@@ -115,8 +76,8 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   lane.high = greatest > least ? 1.08 * greatest : 1;
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
   add_curve(list, lane, rows, factor, k_floor_colours[0], 1.3f);
-  add_text(list, label_left, lane.top, k_text, "load factor");
-  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_text,
+  add_text(list, label_left, lane.top, k_chart_text, "load factor");
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_chart_text,
            fmt::format("up to {:.4g}", greatest));
 }
 
@@ -140,20 +101,20 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
       list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, k_axis);
     const std::string label = fmt::format("{:.1f}°", critical);
     add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
-             k_text, label);
+             k_chart_text, label);
   }
   for (std::size_t b = 0; b < furniture; ++b) {
     add_curve(list, lane, player.ghost_way(), tilt(b), k_ghost, 1);
-    add_curve(list, lane, rows, tilt(b), body_colour(b), 1.6f);
+    add_curve(list, lane, rows, tilt(b), line_colour(b), 1.6f);
   }
   const float line = ImGui::GetTextLineHeight();
   float y = lane.top - 2;
-  add_text(list, label_left, y, k_text, critical > 0 ? "tilt" : "tilt, °");
+  add_text(list, label_left, y, k_chart_text, critical > 0 ? "tilt" : "tilt, °");
   for (std::size_t b = 0; b < furniture && y + 2 * line < lane.bottom + line; ++b) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
-                       body_colour(b));
-    add_text(list, label_left + 14, y, k_text, bodies[b].name);
+                       line_colour(b));
+    add_text(list, label_left + 14, y, k_chart_text, bodies[b].name);
   }
 }
 
@@ -211,7 +172,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   };
   const float y = lane.bottom + k_size + 2;
   for (const io::RecordedEvent& event : player.events()) {
-    const ImU32 colour = body_colour(static_cast<std::size_t>(event.event.body));
+    const ImU32 colour = line_colour(static_cast<std::size_t>(event.event.body));
     mark(
         event.time, y, [&] { return event_text(player, event); },
         [&](ImVec2 p) {
@@ -248,24 +209,6 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
 }
 
-/// Seconds; of a static run the load factor, or where displacements are controlled the load step.
-void add_axis(ImDrawList& list, const Lane& lane, const Player& player, float label_left) {
-  const Setup& setup = player.scene().setup;
-  const bool loads = is_static(setup), steps = loads && setup.run.statics.control;
-  const double scale = steps ? setup.run.statics.load_steps : 1;
-  const render::Ticks ticks = render::nice_ticks(
-      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
-  for (double t : ticks.values) {
-    t += 0.;  // makes 0 of -0
-    if (steps && t != std::round(t)) continue;
-    const float x = lane.x(t / scale);
-    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
-    const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
-    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_text, label);
-  }
-  if (loads) add_text(list, label_left, lane.bottom + 11, k_text, steps ? "load step" : "load factor");
-}
-
 }  // namespace
 
 void draw_timeline(Player& player, const Box& box) {
@@ -289,12 +232,11 @@ void draw_timeline(Player& player, const Box& box) {
   else
     add_acceleration(list, upper, player.way(), label_left);
   add_tilts(list, lower, player, label_left);
-  add_axis(list, lower, player, label_left);
+  add_axis(list, lower, player.scene().setup, label_left);
 
   const float x = lane.x(player.time());
-  list.AddLine({x, lane.top}, {x, lane.bottom}, IM_COL32(200, 40, 40, 255), 1.5f);
-  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3},
-                         IM_COL32(200, 40, 40, 255));
+  list.AddLine({x, lane.top}, {x, lane.bottom}, k_cursor, 1.5f);
+  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, k_cursor);
   ImGui::SetCursorScreenPos({lane.left, lane.top});
   ImGui::InvisibleButton("scrub", {lane.right - lane.left, height + line});
   if (ImGui::IsItemActive())

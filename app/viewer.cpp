@@ -6,11 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/words.h"
-#include "render/overlay.h"
-#include "render/pick.h"
-#include "solver/io/edit_text.h"
-
 namespace topple::app {
 namespace {
 
@@ -18,7 +13,7 @@ constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
-constexpr ImU32 k_text = IM_COL32(40, 50, 60, 255), k_quiet_text = IM_COL32(80, 92, 104, 255);
+constexpr float k_most_plots = 0.55f;    // of the height above the timeline
 
 void set_style(float scale) {
   ImGui::StyleColorsLight();
@@ -60,8 +55,14 @@ void begin_panel(const char* name, const Box& box) {
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
 }
 
-Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view)
-    : player_(player), stage_(stage), scale_(scale), bridge_(player.scene(), player.extent()), view_(view) {
+Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view,
+               const PictureSettings& settings)
+    : player_(player),
+      stage_(stage),
+      scale_(scale),
+      bridge_(player.scene(), player.extent()),
+      settings_(settings),
+      view_(view) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
@@ -86,12 +87,18 @@ void Viewer::lay_out() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float side = std::min(300 * scale_, 0.45f * size.x), status = 26 * scale_, bar = 38 * scale_;
   const float timeline = std::min(165 * scale_, 0.3f * size.y);
-  const float scene = std::max(size.y - status - bar - timeline, 16.f);
+  const float upper = std::max(size.y - status - bar - timeline, 16.f), line = fonts_.small->FontSize;
+  const float heading = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y;
+  const float plots = inspection_.plots.empty()
+                          ? 0
+                          : std::min(heading + line * plots_height(inspection_), k_most_plots * upper);
+  const float scene = std::max(upper - plots, 16.f);
   scene_ = {0, 0, std::max(size.x - side, 16.f), scene};
-  side_ = {scene_.width, 0, side, scene + timeline};
-  timeline_ = {0, scene, scene_.width, timeline};
-  transport_ = {0, scene + timeline, size.x, bar};
-  status_ = {0, scene + bar + timeline, size.x, status};
+  plots_ = {0, scene, scene_.width, plots};
+  side_ = {scene_.width, 0, side, upper + timeline};
+  timeline_ = {0, upper, scene_.width, timeline};
+  transport_ = {0, upper + timeline, size.x, bar};
+  status_ = {0, upper + bar + timeline, size.x, status};
 }
 
 render::Surface Viewer::surface() const {
@@ -113,7 +120,10 @@ void Viewer::build() {
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
   handle_characters();
   for (int button = 0; button < 3; ++button)
-    if (ImGui::IsMouseClicked(button)) refused_.clear();
+    if (ImGui::IsMouseClicked(button)) {
+      refused_.clear();
+      told_.clear();
+    }
   std::optional<io::FrameRow> row = player_.row();
   if (!same_instant(row, row_)) scene_changed_ = true;
   row_ = std::move(row);
@@ -122,6 +132,7 @@ void Viewer::build() {
   draw_side_panel(row_);
   draw_transport_bar(player_, transport_);
   draw_timeline(player_, timeline_);
+  if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
   if (keys_shown_) draw_key_table();
   ImGui::Render();
@@ -133,14 +144,21 @@ void Viewer::draw_scene() {
   const bool changed = scene_changed_ || camera_changed_;
   if (!changed && (drawn_still_ || quiet_ <= k_quiet || player_.playing())) return;
   if (scene_changed_) {
-    frame_ = bridge_.frame(*row_, player_.parameters());
+    settings_.diagram = diagram_of(player_, histories_, inspection_);
+    frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
     const LiveStatus& status = player_.status();
-    if (picked_)
-      frame_.highlighted_member = static_cast<std::int64_t>(*picked_);
+    const auto& picked = inspection_.picked;
+    if (picked && picked->kind == Subject::Kind::body)
+      frame_.highlighted_body = static_cast<std::int64_t>(picked->index);
+    else if (picked)
+      frame_.highlighted_member = static_cast<std::int64_t>(
+          picked->index +
+          (picked->kind == Subject::Kind::anchor ? player_.scene().setup.model.members.size() : 0));
     else if (status.kind == LiveStatus::Kind::failed && status.element >= 0)
       frame_.highlighted_member =
           player_.scene().setup.model.elements[static_cast<std::size_t>(status.element)].member;
-    if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt) bridge_.add_ghost(*ghost, frame_);
+    if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
+      bridge_.add_ghost(*ghost, settings_, frame_);
   }
   if (!fitted_) {
     look(view_);
@@ -152,7 +170,7 @@ void Viewer::draw_scene() {
   drawn_still_ = !changed;
   const render::Surface surface = this->surface();
   const ImVec2 pixel = ImGui::GetIO().DisplayFramebufferScale;
-  stage_.draw_scene(frame_, orbit_.camera(aspect()), render::ColourMap::viridis,
+  stage_.draw_scene(frame_, orbit_.camera(aspect()), settings_.map,
                     std::min(static_cast<int>(std::lround(scene_.width * pixel.x)), surface.width),
                     std::min(static_cast<int>(std::lround(scene_.height * pixel.y)), surface.height),
                     drawn_still_ ? render::Quality::still : render::Quality::interactive);
@@ -207,8 +225,7 @@ void Viewer::handle_mouse() {
   if (dragging_ && !dragged_ && ImGui::IsMouseReleased(0)) {
     const auto found = render::pick(frame_, orbit_.camera(aspect()), static_cast<int>(scene_.width),
                                     static_cast<int>(scene_.height), x, y);
-    picked_ = found ? std::optional<std::size_t>(found->member) : std::nullopt;
-    scene_changed_ = true;
+    pick(found);
   }
   if (!ImGui::IsAnyMouseDown()) dragging_ = false;
   if (inside && io.MouseWheel != 0) {
@@ -218,88 +235,23 @@ void Viewer::handle_mouse() {
   }
 }
 
-void Viewer::draw_words(const io::FrameRow& row) {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.PushClipRect({scene_.left, scene_.top}, {scene_.left + scene_.width, scene_.top + scene_.height});
-  const float margin = 14 * scale_;
-  float y = scene_.top + margin;
-  const auto line = [&](ImFont* font, ImU32 colour, const std::string& text) {
-    list.AddText(font, font->FontSize, {scene_.left + margin, y}, colour, text.c_str());
-    y += std::round(1.3f * font->FontSize);
-  };
-  line(fonts_.text, k_text, player_.scene().title);
-  line(fonts_.small, k_quiet_text,
-       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
-  const Model& model = player_.scene().setup.model;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
-    line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
-  for (const std::string& words : anchors_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
-  render::LeftOut left_out;
-  const float legend = 190 * scale_;
-  // Here the scene may lie behind it.
-  const ImU32 clear = IM_COL32(244, 246, 248, 0), veil = IM_COL32(244, 246, 248, 215);
-  list.AddRectFilledMultiColor({scene_.left + scene_.width - legend, scene_.top},
-                               {scene_.left + scene_.width, scene_.top + scene_.height}, clear, veil, veil,
-                               clear);
-  render::draw_legend_in(list, fonts_, frame_.legend, render::ColourMap::viridis,
-                         {"", scene_.left + scene_.width - legend, scene_.top + margin,
-                          scene_.left + scene_.width - margin, scene_.top + scene_.height - margin},
-                         left_out);
-  list.PopClipRect();
+// A member that is picked again gives way to its body.
+void Viewer::pick(const std::optional<render::Pick>& found) {
+  const std::size_t members = player_.scene().setup.model.members.size();
+  if (!found) {
+    inspect(std::nullopt);
+  } else if (found->member >= members) {
+    inspect(Subject{Subject::Kind::anchor, found->member - members});
+  } else {
+    const Subject member{Subject::Kind::member, found->member};
+    inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
+  }
 }
 
-void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
-  begin_panel("side", side_);
-  ImGui::TextUnformatted("Parameters");
-  draw_parameters(player_, refused_);
-  ImGui::Separator();
-  const std::pair<const char*, render::NamedView> views[] = {{"Front", render::NamedView::front},
-                                                             {"Side", render::NamedView::side},
-                                                             {"Top", render::NamedView::top},
-                                                             {"Iso", render::NamedView::iso}};
-  const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) /
-                      static_cast<float>(std::size(views));
-  for (const auto& [name, view] : views) {
-    if (ImGui::Button(name, {width, 0})) look(view);
-    if (view != render::NamedView::iso) ImGui::SameLine();
-  }
-  if (!player_.ghost_way().empty() && ImGui::Checkbox("ghost of the branch left", &ghost_shown_))
-    scene_changed_ = true;
-  ImGui::Separator();
-  if (picked_ && row)
-    draw_inspector(player_.scene().setup.model, *row, *picked_);
-  else
-    ImGui::TextDisabled("Click a member or an anchor to inspect it.");
-  ImGui::End();
-}
-
-void Viewer::draw_status() {
-  begin_panel("status", status_);
-  const LiveStatus& status = player_.status();
-  std::string words = status_in_words(player_);
-  const bool failed = status.kind == LiveStatus::Kind::failed && player_.at_head();
-  if (!refused_.empty()) words = "Refused: " + refused_;
-  if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
-  const double least_step = io::key_of(Edit::Key::time_step).least;
-  if (failed && player_.can_edit() && !is_static(player_.scene().setup) &&
-      player_.parameters().time_step >= 2 * least_step) {
-    if (ImGui::SmallButton("Halve the step and retry")) {
-      player_.begin_edit();
-      player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});
-      player_.play();
-    }
-    ImGui::SameLine();
-  }
-  ImGui::TextUnformatted(words.c_str());
-  const std::string pace =
-      frame_ms_ > 0 ? fmt::format("{:.0f} ms a frame   F1: keys", frame_ms_) : "F1: keys";
-  const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(pace.c_str()).x;
-  ImGui::SameLine();
-  if (right > ImGui::GetCursorPosX()) {
-    ImGui::SetCursorPosX(right);
-    ImGui::TextDisabled("%s", pace.c_str());
-  }
-  ImGui::End();
+void Viewer::inspect(const std::optional<Subject>& subject) {
+  inspection_.picked = subject;
+  if (subject) tab_ = Tab::inspect;
+  scene_changed_ = true;
 }
 
 }  // namespace topple::app

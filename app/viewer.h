@@ -11,6 +11,7 @@
 #include "render/font.h"
 #include "render/key_press.h"
 #include "render/orbit.h"
+#include "render/pick.h"
 #include "render/stage.h"
 
 namespace topple::app {
@@ -19,7 +20,11 @@ class Viewer {
  public:
   /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
   /// and panels, 1 for 720 lines. Throws std::runtime_error without the font.
-  Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso);
+  Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso,
+         const PictureSettings& settings = {});
+
+  /// Looks closely at it; nothing: at none.
+  void inspect(const std::optional<Subject>& subject);
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
@@ -35,22 +40,31 @@ class Viewer {
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
-  std::optional<std::size_t> picked_member() const { return picked_; }
+  const Inspection& inspection() const { return inspection_; }
+  const PictureSettings& settings() const { return settings_; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
  private:
+  enum class Tab { parameters, picture, inspect };
   struct KeyAction;
   static std::span<const KeyAction> key_actions();
   void let_go();
+  void next_colour();
+  void turn(bool& on);
   void lay_out();
   void handle_characters();
   void handle_mouse();
+  void pick(const std::optional<render::Pick>& found);
   void look(render::NamedView view);
   void move_camera(double wall_s);
   void draw_scene();
   void draw_words(const io::FrameRow& row);
   void draw_side_panel(const std::optional<io::FrameRow>& row);
+  void draw_tabs();
+  void draw_plots_strip();
+  void write_plots(PlotRequest request);
+  render::Image picture_of_plots();
   void draw_status();
   void draw_key_table();
   float aspect() const { return scene_.width / scene_.height; }
@@ -60,14 +74,17 @@ class Viewer {
   const float scale_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
-  Box scene_, timeline_, transport_, side_, status_;
+  Box scene_, plots_, timeline_, transport_, side_, status_;
+  PictureSettings settings_;
   render::SceneFrame frame_;
   std::optional<io::FrameRow> row_;
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;  // of the camera from one place to the other, 0..1
   bool fitted_ = false;
   render::NamedView view_;
-  std::optional<std::size_t> picked_;
+  Inspection inspection_;
+  Histories histories_;
+  Tab tab_ = Tab::parameters;
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
@@ -75,6 +92,7 @@ class Viewer {
   bool wants_to_close_ = false;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
+  std::string told_;  // what was written, or why it was not
   double frame_ms_ = 0;
 };
 

@@ -44,9 +44,13 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {"3", "from the top", '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
       {"4", "from a corner", '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
       {"F", "fit that view", 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
+      {"Q", "colour by the next quantity", 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
+      {"A", "arrows of contact forces", 'A', false, false,
+       [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
+      {"P", "panels of cabinets", 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
       {"drag", "turn the view; with Shift or the right button: move it"},
       {"wheel", "nearer, farther"},
-      {"click", "inspect a member"},
+      {"click", "inspect a member; once more: its body"},
       {"Esc", "let go of it", render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
       {"F1", "this table", render::key::f1, false, false, [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
       {"Ctrl+Q", "close the recording and the window", 'Q', true, false,
@@ -64,10 +68,21 @@ void Viewer::press(const render::KeyPress& press) {
       action.act(*this);
 }
 
+void Viewer::next_colour() {
+  const auto next = static_cast<std::size_t>(settings_.colour) + 1;
+  settings_.colour = static_cast<BeamQuantity>(next % k_beam_quantities);
+  if (settings_.range == RangePolicy::fixed) settings_.range = RangePolicy::run;  // it had another unit
+  scene_changed_ = true;
+}
+
+void Viewer::turn(bool& on) {
+  on = !on;
+  scene_changed_ = true;
+}
+
 void Viewer::let_go() {
   keys_shown_ = false;
-  picked_.reset();
-  scene_changed_ = true;
+  inspect(std::nullopt);
 }
 
 // These repeat while they are held down, and stand on different keys of different keyboards.

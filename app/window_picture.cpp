@@ -10,7 +10,8 @@
 namespace topple::app {
 
 WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording,
-                             render::NamedView view, int width, int height)
+                             render::NamedView view, const PictureSettings& settings,
+                             const std::optional<Subject>& inspected, int width, int height)
     : context_(render::make_osmesa_context()),
       interface_(ImGui::CreateContext()),
       stage_(context_->get_proc()),
@@ -19,7 +20,8 @@ WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = 1.f / 60;
-  viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view);
+  viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view, settings);
+  if (inspected) viewer_->inspect(inspected);
   const auto waiting = [this] {
     player_.update(0);
     const LiveStatus::Kind kind = player_.status().kind;

@@ -18,7 +18,8 @@ class WindowPicture {
  public:
   /// Throws io::InputError, and std::runtime_error when it cannot draw.
   WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording, render::NamedView view,
-                int width, int height);
+                const PictureSettings& settings, const std::optional<Subject>& inspected, int width,
+                int height);
   ~WindowPicture();
   WindowPicture(const WindowPicture&) = delete;
   WindowPicture& operator=(const WindowPicture&) = delete;

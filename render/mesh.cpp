@@ -66,12 +66,29 @@ Section section_of(const Profile& profile) {
   return section;
 }
 
+constexpr Float4 k_torn_colour{0.86f, 0.22f, 0.10f, 1};
+
+std::uint32_t packed(const Float4& colour) {
+  std::uint32_t rgba = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    rgba |= static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[i], 0.0f, 1.0f))) << (8 * i);
+  }
+  return rgba;
+}
+
+std::uint32_t opaque(const Float4& colour) {
+  return packed(colour) | 0xff000000u;
+}
+
 /// A station's cross-section plane in the picture's frame.
 struct Ring {
   Vector3f centre, axis, y, z;
   float at;
+  float torn = 0;  // m, how far every other corner stands back along the axis
 
-  Vector3f place(const Vector2f& p) const { return centre + p.x() * y + p.y() * z; }
+  Vector3f place(const Vector2f& p, std::size_t corner) const {
+    return centre + p.x() * y + p.y() * z + (corner % 2 == 0 ? 0.f : torn) * axis;
+  }
   Vector3f direct(const Vector2f& n) const { return n.x() * y + n.y() * z; }
 };
 
@@ -84,8 +101,9 @@ bool drawable_station(const Station& s) {
 void push_cap(Mesh& mesh, const Section& section, const Ring& ring, bool first) {
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
   const Vector3f normal = first ? Vector3f(-ring.axis) : ring.axis;
-  for (const Vector2f& corner : section.corners) {
-    mesh.vertices.push_back({ring.place(corner), normal, ring.at, 0});
+  for (std::size_t i = 0; i < section.corners.size(); ++i) {
+    mesh.vertices.push_back(
+        {ring.place(section.corners[i], i), normal, ring.at, ring.torn != 0 ? packed(k_torn_colour) : 0});
   }
   for (std::size_t i = 0; i + 2 < section.cap.size(); i += 3) {
     mesh.indices.push_back(base + section.cap[i]);
@@ -98,10 +116,13 @@ void push_tube(Mesh& mesh, const Section& section, const std::vector<Ring>& ring
   for (std::size_t r = 0; r + 1 <= rings.size(); ++r) {
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
     const auto ring_size = static_cast<std::uint32_t>(2 * section.facets.size());
-    for (const Section::Facet& facet : section.facets) {
+    for (std::size_t i = 0; i < section.facets.size(); ++i) {
+      const Section::Facet& facet = section.facets[i];
+      const std::size_t next = (i + 1) % section.facets.size();
       mesh.vertices.push_back(
-          {rings[r].place(facet.from), rings[r].direct(facet.from_normal), rings[r].at, 0});
-      mesh.vertices.push_back({rings[r].place(facet.to), rings[r].direct(facet.to_normal), rings[r].at, 0});
+          {rings[r].place(facet.from, i), rings[r].direct(facet.from_normal), rings[r].at, 0});
+      mesh.vertices.push_back(
+          {rings[r].place(facet.to, next), rings[r].direct(facet.to_normal), rings[r].at, 0});
     }
     if (r + 1 == rings.size()) break;
     for (std::uint32_t v = base; v < base + ring_size; v += 2) {
@@ -113,14 +134,6 @@ void push_tube(Mesh& mesh, const Section& section, const std::vector<Ring>& ring
   push_cap(mesh, section, rings.back(), false);
 }
 
-std::uint32_t packed(const Float4& colour) {
-  std::uint32_t rgba = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    rgba |= static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[i], 0.0f, 1.0f))) << (8 * i);
-  }
-  return rgba | 0xff000000u;
-}
-
 /// `stations` are the frame's or those of its ghosts.
 bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& stations,
                const std::vector<Section>& sections, const Tube& tube) {
@@ -128,7 +141,7 @@ bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& 
   const std::size_t count = tube.station_count;
   if (tube.profile >= sections.size() || sections[tube.profile].corners.empty() || count < 2 ||
       first + count > stations.size() || !drawable(tube.lead) || !drawable(tube.trail) ||
-      !drawable(tube.colour)) {
+      !drawable(tube.torn_first) || !drawable(tube.torn_last) || !drawable(tube.colour)) {
     return false;
   }
   std::vector<Ring> rings;
@@ -144,10 +157,12 @@ bool push_tube(Mesh& mesh, const SceneFrame& frame, const std::vector<Station>& 
   }
   rings.front().centre -= tube.lead * rings.front().axis;
   rings.back().centre += tube.trail * rings.back().axis;
+  rings.front().torn = tube.torn_first;
+  rings.back().torn = -tube.torn_last;
   const std::size_t before = mesh.vertices.size();
   push_tube(mesh, sections[tube.profile], rings);
-  const std::uint32_t rgba = tube.colour[3] > 0 ? packed(tube.colour) : 0;
-  for (std::size_t i = before; i < mesh.vertices.size(); ++i) mesh.vertices[i].rgba = rgba;
+  if (tube.colour[3] > 0)
+    for (std::size_t i = before; i < mesh.vertices.size(); ++i) mesh.vertices[i].rgba = opaque(tube.colour);
   return true;
 }
 
@@ -207,15 +222,16 @@ bool push_arrow(Mesh& mesh, const Arrow& arrow, float scene_size) {
   if (length < 1e-6f) return true;  // a force of zero has no direction to show
   const float radius = std::min(0.0030f * scene_size, 0.08f * length);
   const Vector3f neck = to - std::min(7.5f * radius, 0.6f * length) / length * (to - from);
-  const std::uint32_t rgba = packed(arrow.colour);
+  const std::uint32_t rgba = opaque(arrow.colour);
   push_cone(mesh, from, neck, radius, radius, rgba);
   push_cone(mesh, neck, to, 2.8f * radius, 0, rgba);
   return true;
 }
 
 bool push_ring(Mesh& mesh, const render::Ring& ring) {
-  constexpr std::uint32_t k_around = 32, k_across = 10;
-  constexpr float k_thickness = 0.16f;  // of the radius
+  constexpr std::uint32_t k_around = 40, k_across = 10;
+  constexpr float k_thickness = 0.14f, k_head = 0.75f;  // of the radius
+  constexpr float k_turn = 2 * std::numbers::pi_v<float>;
   if (!drawable(ring.centre) || !drawable(ring.axis) || !drawable(ring.colour) || !drawable(ring.radius) ||
       ring.radius <= 0)
     return false;
@@ -224,26 +240,58 @@ bool push_ring(Mesh& mesh, const render::Ring& ring) {
   if (!(axis.norm() > 0.5f)) return false;
   const Vector3f y = axis.unitOrthogonal();
   const Vector3f z = axis.cross(y);
-  const std::uint32_t rgba = packed(ring.colour);
+  const std::uint32_t rgba = opaque(ring.colour);
+  const auto out = [&](float angle) { return Vector3f(std::cos(angle) * y + std::sin(angle) * z); };
+  const float arc = ring.turns ? 0.80f * k_turn : k_turn;
+  const std::uint32_t last = ring.turns ? k_around : k_around - 1;  // a closed one ends where it began
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-  const auto angle = [](std::uint32_t i, std::uint32_t n) {
-    return 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(n);
-  };
-  for (std::uint32_t i = 0; i < k_around; ++i) {
-    const Vector3f out = std::cos(angle(i, k_around)) * y + std::sin(angle(i, k_around)) * z;
+  for (std::uint32_t i = 0; i <= last; ++i) {
+    const Vector3f o = out(arc * static_cast<float>(i) / k_around);
     for (std::uint32_t j = 0; j < k_across; ++j) {
-      const Vector3f normal = std::cos(angle(j, k_across)) * out + std::sin(angle(j, k_across)) * axis;
-      mesh.vertices.push_back({centre + ring.radius * (out + k_thickness * normal), normal, 0, rgba});
+      const float across = k_turn * static_cast<float>(j) / k_across;
+      const Vector3f normal = std::cos(across) * o + std::sin(across) * axis;
+      mesh.vertices.push_back({centre + ring.radius * (o + k_thickness * normal), normal, 0, rgba});
     }
   }
   for (std::uint32_t i = 0; i < k_around; ++i) {
     for (std::uint32_t j = 0; j < k_across; ++j) {
-      const std::uint32_t a = base + k_across * i, b = base + k_across * ((i + 1) % k_around);
+      const std::uint32_t a = base + k_across * i, b = base + k_across * ((i + 1) % (last + 1));
       const std::uint32_t k = (j + 1) % k_across;
       mesh.indices.insert(mesh.indices.end(), {a + j, b + j, b + k, a + j, b + k, a + k});
     }
   }
+  if (!ring.turns) return true;
+  for (std::uint32_t j = 1; j + 1 < k_across; ++j)
+    mesh.indices.insert(mesh.indices.end(), {base, base + j, base + j + 1});
+  const Vector3f neck = centre + ring.radius * out(arc);
+  push_cone(mesh, neck, neck + k_head * ring.radius * axis.cross(out(arc + 0.3f)),
+            2.6f * k_thickness * ring.radius, 0, rgba);
   return true;
+}
+
+/// A ribbon through `points` that faces the eye. alpha: of the colour, at each point.
+void push_line(Mesh& mesh, const std::vector<Float3>& points, const Float4& colour,
+               const std::vector<float>* alpha, const Vector3f& eye, float thickness) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto at = [&](std::size_t i) { return Vector3f(points[i].data()); };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3f along = at(std::min(i + 1, points.size() - 1)) - at(i > 0 ? i - 1 : 0);
+    const Vector3f to_eye = eye - at(i);
+    Vector3f side = along.cross(to_eye).stableNormalized();
+    if (!side.allFinite()) side.setZero();
+    Float4 here = colour;
+    if (alpha) here[3] *= (*alpha)[i];
+    for (const float sign : {-0.5f, 0.5f})
+      mesh.vertices.push_back({at(i) + sign * thickness * to_eye.norm() * side, to_eye, 0, packed(here)});
+  }
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
+    const std::uint32_t v = base + 2 * i;
+    mesh.indices.insert(mesh.indices.end(), {v, v + 1, v + 2, v + 1, v + 3, v + 2});
+  }
+}
+
+bool drawable(const std::vector<Float3>& points) {
+  return std::ranges::all_of(points, [](const Float3& p) { return render::drawable(p); });
 }
 
 }  // namespace
@@ -284,12 +332,58 @@ Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out) {
     if (!push_tube(mesh, frame, frame.stations, sections, tube)) ++left_out.tubes;
     mesh.tubes.push_back({first, static_cast<std::uint32_t>(mesh.indices.size()) - first});
   }
+  for (const render::Ring& ring : frame.rings) {
+    if (!push_ring(mesh, ring)) ++left_out.rings;
+  }
+  return mesh;
+}
+
+Mesh arrow_mesh(const SceneFrame& frame, LeftOut& left_out) {
+  Mesh mesh;
   const auto [low, high] = drawable_bounds(frame);
   for (const Arrow& arrow : frame.arrows) {
     if (!push_arrow(mesh, arrow, (high - low).norm())) ++left_out.arrows;
   }
-  for (const render::Ring& ring : frame.rings) {
-    if (!push_ring(mesh, ring)) ++left_out.rings;
+  return mesh;
+}
+
+Mesh trail_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, LeftOut& left_out) {
+  Mesh mesh;
+  for (const Trail& trail : frame.trails) {
+    if (trail.points.size() < 2 || trail.strength.size() != trail.points.size() || !drawable(trail.points) ||
+        !drawable(trail.colour) ||
+        !std::ranges::all_of(trail.strength, [](float s) { return std::isfinite(s); })) {
+      ++left_out.trails;
+      continue;
+    }
+    push_line(mesh, trail.points, trail.colour, &trail.strength, eye, thickness);
+  }
+  return mesh;
+}
+
+Mesh band_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, LeftOut& left_out) {
+  constexpr float k_fill = 0.42f;  // of the colour's alpha
+  Mesh mesh;
+  for (const Band& band : frame.bands) {
+    if (band.base.size() < 2 || band.base.size() != band.edge.size() || !drawable(band.base) ||
+        !drawable(band.edge) || !drawable(band.colour)) {
+      ++left_out.bands;
+      continue;
+    }
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    Float4 fill = band.colour;
+    fill[3] *= k_fill;
+    for (std::size_t i = 0; i < band.base.size(); ++i)
+      for (const Float3& p : {band.base[i], band.edge[i]})
+        mesh.vertices.push_back({Vector3f(p.data()), Vector3f::UnitZ(), 0, packed(fill)});
+    for (std::uint32_t i = 0; i + 1 < band.base.size(); ++i) {
+      const std::uint32_t v = base + 2 * i;
+      mesh.indices.insert(mesh.indices.end(), {v, v + 1, v + 2, v + 1, v + 3, v + 2});
+    }
+    std::vector<Float3> outline = band.edge;
+    outline.insert(outline.begin(), band.base.front());
+    outline.push_back(band.base.back());
+    push_line(mesh, outline, band.colour, nullptr, eye, thickness);
   }
   return mesh;
 }
@@ -306,7 +400,8 @@ Mesh ghost_mesh(const SceneFrame& frame, LeftOut& left_out) {
 Mesh shell_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, const Float4& colour) {
   Mesh mesh;
   for (Tube tube : frame.tubes) {
-    if (tube.member != frame.highlighted_member || tube.profile >= frame.profiles.size() ||
+    if ((tube.member != frame.highlighted_member && tube.body != frame.highlighted_body) ||
+        tube.profile >= frame.profiles.size() ||
         tube.first_station + std::size_t{tube.station_count} > frame.stations.size() ||
         tube.station_count < 2) {
       continue;
@@ -321,7 +416,7 @@ Mesh shell_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, c
     push_tube(mesh, frame, frame.stations, sections, tube);
   }
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
-  for (Vertex& vertex : mesh.vertices) vertex.rgba = packed(colour);
+  for (Vertex& vertex : mesh.vertices) vertex.rgba = opaque(colour);
   return mesh;
 }
 

@@ -1,4 +1,4 @@
-// Triangles of a SceneFrame's beams, arrows and panels.
+// Triangles of a SceneFrame's beams, arrows, lines and panels.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,13 @@ struct LeftOut {
   int grounds = 0;
   int arrows = 0;
   int rings = 0;
+  int trails = 0;
+  int bands = 0;
   int trace_points = 0;
   int legends = 0;
-  int total() const { return tubes + panels + grounds + arrows + rings + trace_points + legends; }
+  int total() const {
+    return tubes + panels + grounds + arrows + rings + trails + bands + trace_points + legends;
+  }
 };
 
 struct Vertex {
@@ -42,15 +46,23 @@ struct Mesh {
   std::vector<IndexRange> tubes;       ///< of each of the frame's tubes; empty where it is left out
 };
 
-/// Beams as swept sections with end caps, arrows as shafts with heads, and rings. Counts what it leaves out
-/// in `left_out`.
+/// Beams as swept sections with end caps, and rings. Counts what it leaves out in `left_out`.
 Mesh solid_mesh(const SceneFrame& frame, LeftOut& left_out);
+
+/// The frame's arrows as shafts with heads.
+Mesh arrow_mesh(const SceneFrame& frame, LeftOut& left_out);
+
+/// The frame's trails as ribbons that face `eye`. thickness: m for each metre from it.
+Mesh trail_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickness, LeftOut& left_out);
+
+/// The frame's bands, translucent, with outlines as trails have them. Seen from both sides.
+Mesh band_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickness, LeftOut& left_out);
 
 /// The frame's ghosts, as solid_mesh sweeps its tubes.
 Mesh ghost_mesh(const SceneFrame& frame, LeftOut& left_out);
 
-/// The insides of a shell about the highlighted member, for an outline: what of them the member does
-/// not cover is seen around it. thickness: m for each metre from `eye`.
+/// The insides of a shell about what is highlighted, for an outline: what of them the members do not cover is
+/// seen around them. thickness: m for each metre from `eye`.
 Mesh shell_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickness, const Float4& colour);
 
 /// Corner of a panel: `normal` is the panel's, `uv` runs over 0..1 along its edges.

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "render/drawable.h"
 #include "render/text_layout.h"
 
@@ -165,7 +167,10 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
   const float small_line = at.line(at.fonts.small);
   const float bar_top = y + static_cast<float>(heading.size()) * at.line(at.fonts.text) +
                         (legend.unit.empty() ? 0 : small_line) + std::round(12 * at.unit);
-  const float below_bar = legend.range_policy.empty() ? small_line / 2 : 1.9f * small_line;
+  std::vector<std::string> below;
+  if (!legend.range_policy.empty()) below.push_back(legend.range_policy);
+  below.insert(below.end(), legend.notes.begin(), legend.notes.end());
+  const float below_bar = small_line * (below.empty() ? 0.5f : 0.9f + static_cast<float>(below.size()));
   const float bar_bottom = std::round(std::min(bar_top + longest, lowest - below_bar));
   if (bar_bottom - bar_top < 4 * small_line) return;
 
@@ -200,8 +205,8 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
     draw_mark(at, legend, column_left, bar_left, bar_right, bar_top, bar_bottom);
   }
   y = bar_bottom + 0.9f * small_line;
-  add_line(at.fonts.small, k_quiet_colour,
-           shortened(*at.fonts.small, legend.range_policy, right - column_left));
+  for (const std::string& line : below)
+    add_line(at.fonts.small, k_quiet_colour, shortened(*at.fonts.small, line, right - column_left));
   boxes.push_back({"legend", column_left, top, right, std::max(y, bar_bottom + small_line / 2)});
 }
 
@@ -211,6 +216,15 @@ bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
   const bool drawn = has_value_range(legend);
   if (!drawn) ++left_out.legends;
   return drawn;
+}
+
+// ---- labels
+
+/// px from the upper left corner of a picture of width x height; nothing behind the eye.
+std::optional<ImVec2> seen_at(const Camera& camera, const Float3& at, float width, float height) {
+  const Eigen::Vector4f clip = camera.projection * camera.view * Eigen::Vector3f(at.data()).homogeneous();
+  if (!(clip.w() > 0) || !clip.allFinite()) return std::nullopt;
+  return ImVec2(width * (0.5f + 0.5f * clip.x() / clip.w()), height * (0.5f - 0.5f * clip.y() / clip.w()));
 }
 
 // ---- trace
@@ -375,6 +389,33 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                 {column_left, at.margin, width - at.margin, note_top - 8 * unit, 0.44f * height}, boxes);
   }
   return boxes;
+}
+
+void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
+                 const OverlayBox& room) {
+  const float unit = fonts.text->FontSize / 17, pad = 3 * unit, away = 9 * unit;
+  const ImFont& font = *fonts.small;
+  std::vector<OverlayBox> placed;
+  for (const Label& label : frame.labels) {
+    const auto at = seen_at(camera, label.at, room.right - room.left, room.bottom - room.top);
+    if (!at || label.words.empty()) continue;
+    const float width = text_width(font, label.words) + 2 * pad, height = font.FontSize + 2 * pad;
+    if (width > room.right - room.left || height > room.bottom - room.top) continue;
+    OverlayBox box{"label", room.left + at->x + away, room.top + at->y - height / 2, 0, 0};
+    box.left = std::round(std::clamp(box.left, room.left, room.right - width));
+    box.top = std::round(std::clamp(box.top, room.top, room.bottom - height));
+    for (const OverlayBox& other : placed)  // below those before it
+      if (box.left < other.right && box.left + width > other.left && box.top < other.bottom &&
+          box.top + height > other.top)
+        box.top = other.bottom + 1;
+    box.right = box.left + width;
+    box.bottom = box.top + height;
+    if (box.bottom > room.bottom) continue;
+    list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, k_sheet_colour, pad);
+    list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, k_title_colour,
+                 label.words.c_str());
+    placed.push_back(box);
+  }
 }
 
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,

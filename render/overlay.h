@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/camera.h"
 #include "render/colour_map.h"
 #include "render/font.h"
 #include "render/mesh.h"
@@ -37,6 +38,11 @@ Ticks root_ticks(double maximum);
 /// shortened; a part without room is not drawn. Returns the parts drawn; they do not overlap.
 std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
                                      ColourMap map, float width, float height, LeftOut& left_out);
+
+/// Adds the frame's labels beside their places, as `camera` sees them in a picture that fills `room` (px; its
+/// name does not count). They stay inside and do not overlap; those without room are left out.
+void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
+                 const OverlayBox& room);
 
 /// Adds only the legend of draw_overlay, as large as `room` allows (px; its name does not count).
 /// Returns where it lies; nothing when there is no room or no legend.

@@ -67,9 +67,12 @@ struct Picture::Parts {
     check_gl(gl, "the set-up of a picture");
   }
 
-  void draw_words(const SceneFrame& frame, ColourMap map) {
+  void draw_words(const SceneFrame& frame, const Camera& camera, ColourMap map) {
     words.with([&] {
       ImGui::NewFrame();
+      if (finite(camera))
+        draw_labels(*ImGui::GetBackgroundDrawList(), fonts, frame, camera,
+                    {"", 0, 0, static_cast<float>(width), static_cast<float>(height)});
       boxes = draw_overlay(*ImGui::GetBackgroundDrawList(), fonts, frame, map, static_cast<float>(width),
                            static_cast<float>(height), left_out);
       ImGui::Render();
@@ -108,7 +111,7 @@ Image Picture::draw(const SceneFrame& frame, const Camera& camera, const Picture
   p.left_out = {};
   p.boxes.clear();
   p.canvas.draw(p.scene, frame, camera, options.map, Quality::still, p.left_out);
-  if (options.overlay) p.draw_words(frame, colour_map_for(frame.legend, options.map));
+  if (options.overlay) p.draw_words(frame, camera, colour_map_for(frame.legend, options.map));
   Image image = p.canvas.read();
   check_gl(p.gl, "drawing a picture");
   return image;

@@ -33,8 +33,10 @@ struct Tube {
   std::uint32_t profile = 0;  ///< index into SceneFrame::profiles
   std::uint32_t member = 0;   ///< what picking reports
   std::uint32_t body = 0;
-  float lead = 0;   ///< m, how far the section is drawn on before its first station: closes a corner
-  float trail = 0;  ///< m, the same after its last station
+  float lead = 0;        ///< m, how far the section is drawn on before its first station: closes a corner
+  float trail = 0;       ///< m, the same after its last station
+  float torn_first = 0;  ///< m, depth of the teeth where it broke off before its first station; 0: whole
+  float torn_last = 0;   ///< m, the same after its last station
   Float4 colour = {0, 0, 0, 0};  ///< its own; alpha 0: by the value of its stations
 };
 
@@ -54,7 +56,7 @@ struct Ground {
   bool is_floor = false;
 };
 
-/// An arrow, m.
+/// An arrow, m. Seen through everything else, and without a shadow.
 struct Arrow {
   Float3 from;
   Float3 to;
@@ -67,6 +69,27 @@ struct Ring {
   Float3 axis;  ///< need not be a unit
   float radius = 0;
   Float4 colour;
+  bool turns = false;  ///< open, with an arrow head: right-handed about `axis`
+};
+
+/// A path, m, drawn as a line that is seen from everywhere.
+struct Trail {
+  std::vector<Float3> points;
+  std::vector<float> strength;  ///< of each point, 0 (not seen) to 1
+  Float4 colour;
+};
+
+/// A translucent band between two lines with as many points, m, such as a diagram of forces along a member.
+/// Seen through everything else.
+struct Band {
+  std::vector<Float3> base, edge;
+  Float4 colour;
+};
+
+/// Words at a place, beside which they are written.
+struct Label {
+  Float3 at;
+  std::string words;
 };
 
 /// Colour scale of Station::value.
@@ -80,6 +103,7 @@ struct Legend {
   float mark = 0;            ///< value of the mark (yield); drawn when mark_label is not empty
   std::string mark_label;    ///< "yield 235 MPa"
   bool square_root = false;  ///< colours go with the root of the share of the range: small values stay apart
+  std::vector<std::string> notes;  ///< below the range policy: what else is to be known of the picture
 };
 
 /// A trace of one quantity over the run, drawn small in a corner with a cursor.
@@ -108,7 +132,11 @@ struct SceneFrame {
   std::vector<Ground> grounds;
   std::vector<Arrow> arrows;
   std::vector<Ring> rings;
+  std::vector<Trail> trails;
+  std::vector<Band> bands;
+  std::vector<Label> labels;
   std::int64_t highlighted_member = -1;  ///< Tube::member that is outlined; -1: none
+  std::int64_t highlighted_body = -1;    ///< Tube::body likewise
   std::vector<Station> ghost_stations;   ///< of another run, for comparison; their value does not count
   std::vector<Tube> ghost_tubes;         ///< drawn translucent grey, without a shadow
   Legend legend;

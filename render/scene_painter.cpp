@@ -25,6 +25,7 @@ constexpr GLuint k_colour_unit = 0;
 // so that one of them stands out from any colour of a map.
 constexpr float k_inner_outline = 1.5f;
 constexpr float k_outer_outline = 4;
+constexpr float k_trail = 2.2f, k_band_outline = 1.6f;  // px likewise, wide
 constexpr Float4 k_inner_colour{1, 1, 1, 1};
 constexpr Float4 k_outer_colour{0.86f, 0.05f, 0.45f, 1};
 
@@ -159,13 +160,23 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   use_lit(look.solid, look, camera);
   look.solid.set("u_colour_map", static_cast<int>(k_colour_unit));
   draw(solids_);
-  outline_.use();
-  outline_.set("u_view_projection", view_projection_);
-  draw(shells_);
+  draw_flat(shells_);
   gl_.Enable(GL_BLEND);
   draw_ghosts(camera);
   gl_.Disable(GL_CULL_FACE);
   draw_panels(camera);
+  gl_.DepthMask(GL_FALSE);
+  draw_flat(trails_);
+  gl_.DepthMask(GL_TRUE);
+  // Forces begin inside of members: what follows is seen through all that was drawn.
+  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  draw_flat(bands_);
+  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  gl_.Disable(GL_BLEND);
+  gl_.Enable(GL_CULL_FACE);
+  use_lit(look.solid, look, camera);
+  draw(arrows_);
+  gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BindVertexArray(0);
 }
@@ -184,6 +195,9 @@ void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int hei
   shells_ = append(mesh, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
   shells_.count +=
       append(mesh, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
+  trails_ = append(mesh, trail_mesh(frame, camera.eye, k_trail * unit * pixel, left_out));
+  bands_ = append(mesh, band_mesh(frame, camera.eye, k_band_outline * unit * pixel, left_out));
+  arrows_ = append(mesh, arrow_mesh(frame, left_out));
   gl_.BindVertexArray(mesh_array_.id());
   gl_.BindBuffer(GL_ARRAY_BUFFER, mesh_vertices_.id());
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
@@ -262,6 +276,13 @@ void ScenePainter::draw(const IndexRange& part) {
   gl_.BindVertexArray(mesh_array_.id());
   gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.count), GL_UNSIGNED_INT,
                    offset(part.first * sizeof(std::uint32_t)));
+}
+
+/// In the vertices' own colours, without light.
+void ScenePainter::draw_flat(const IndexRange& part) {
+  outline_.use();
+  outline_.set("u_view_projection", view_projection_);
+  draw(part);
 }
 
 void ScenePainter::draw_ghosts(const Camera& camera) {

@@ -53,6 +53,7 @@ class ScenePainter {
   void draw(const IndexRange& part);
   void draw_ghosts(const Camera& camera);
   void draw_panels(const Camera& camera);
+  void draw_flat(const IndexRange& part);
   void use_lit(const Program& program, const Look& look, const Camera& camera);
   void bind(GLuint unit, const GlObject& texture);
 
@@ -61,7 +62,7 @@ class ScenePainter {
   std::array<std::unique_ptr<Look>, 2> looks_;  // made when first drawn with
   GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
   std::array<GlObject, 3> colour_maps_;
-  IndexRange solids_, ghosts_, shells_;
+  IndexRange solids_, ghosts_, shells_, trails_, bands_, arrows_;
   GLsizei panel_vertex_count_ = 0;
   Eigen::Vector3f low_, high_;  // box around bounds and everything solid
   Eigen::Matrix4f view_projection_;

@@ -59,6 +59,17 @@ Image Stage::shot(const Surface& surface, const ImDrawData& interface_lists) {
   return canvas.read();
 }
 
+Image Stage::sheet(int width, int height, const ImDrawData& interface_lists) {
+  const Canvas& canvas = fitting(shot_, gl_, width, height, 0);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, canvas.target().framebuffer);
+  gl_.ClearColor(1, 1, 1, 1);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+  interface_.draw(interface_lists, canvas.target());
+  check_gl(gl_, "drawing a sheet");
+  return canvas.read();
+}
+
 void Stage::present(const Surface& surface, const ImDrawData& interface_lists, GLuint framebuffer) {
   gl_.Disable(GL_SCISSOR_TEST);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);

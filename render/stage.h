@@ -52,6 +52,9 @@ class Stage {
   /// What present would show, without a window.
   Image shot(const Surface& surface, const ImDrawData& interface_lists);
 
+  /// The interface alone, on white.
+  Image sheet(int width, int height, const ImDrawData& interface_lists);
+
   /// What the last scene lacks.
   const LeftOut& left_out() const { return left_out_; }
 

@@ -98,10 +98,15 @@ BodyMomentum body_momentum(const Model& model, const State& state, int index) {
   return out;
 }
 
-double critical_angle(const Model& model, int index, const BodyPose& pose) {
+namespace {
+
+/// From the centre of gravity to the edge in the direction of the tilt, m, of an upright body.
+struct EdgeAhead {
+  double distance, height;
+};
+std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
-  if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index))
-    return std::numeric_limits<double>::infinity();
+  if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index)) return std::nullopt;
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = std::hypot(up.x(), up.y());
@@ -116,7 +121,26 @@ double critical_angle(const Model& model, int index, const BodyPose& pose) {
       distance = std::min(distance, outward.dot(body.support_polygon[i] - body.centre_of_gravity));
     }
   }
-  return std::atan2(distance, height);
+  return EdgeAhead{distance, height};
+}
+
+}  // namespace
+
+double critical_angle(const Model& model, int index, const BodyPose& pose) {
+  const auto edge = edge_ahead(model, index, pose);
+  return edge ? std::atan2(edge->distance, edge->height) : std::numeric_limits<double>::infinity();
+}
+
+OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, double gravity) {
+  const auto edge = edge_ahead(model, index, pose);
+  constexpr double k_never = std::numeric_limits<double>::infinity();
+  if (!edge) return {k_never, k_never};
+  const double critical = std::atan2(edge->distance, edge->height);
+  const auto barrier = [&](double angle) {
+    return model.bodies[index].mass * gravity * std::hypot(edge->distance, edge->height) *
+           (1 - std::cos(critical - std::min(angle, critical)));
+  };
+  return {barrier(tilt(pose)), barrier(0)};
 }
 
 double slide(const Model& model, int index, const BodyPose& pose) {

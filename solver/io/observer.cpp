@@ -136,6 +136,24 @@ const char* anchor_word(float state) {
   return state == k_anchor_holds ? "holds" : "broken";
 }
 
+double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {
+  const Body& body = model.bodies[static_cast<std::size_t>(index)];
+  double energy = row.body[11 * static_cast<std::size_t>(index) + 9];
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vec3 x(row.position[3 * k], row.position[3 * k + 1], row.position[3 * k + 2]);
+    energy += model.node_mass[k] * gravity.dot(x - model.node_position[k]);
+  }
+  for (int i = body.first_element; i < body.first_element + body.element_count; ++i) {
+    const auto e = static_cast<std::size_t>(i);
+    const Element& element = model.elements[e];
+    const float* f = &row.section_force[6 * e];
+    energy -= section_energy(element, forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, element.length,
+                                                   row.s[e], -element.s));
+  }
+  return std::max(energy, 0.);
+}
+
 FrameRow frame_row(const Run& run) {
   const State& state = run.state();
   FrameRow row = blank_row(row_shape(run.setup().model));

@@ -68,6 +68,10 @@ struct Observation {
   bool empty() const { return !frame && !checkpoint && events.empty(); }
 };
 
+/// Of a body, relative to the floor, J: what is left of its energy without that of strain and gravity. To the
+/// rounding of the row's places, 1e-7 of the body's weight times their size.
+double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int body);
+
 /// The newest state of `run` as a row of branch 0.
 FrameRow frame_row(const Run& run);
 

@@ -1,0 +1,39 @@
+// What a picture shows beside the bodies: hinges, forces at contacts, paths, and a diagram of forces.
+#pragma once
+
+#include <vector>
+
+#include "app/picture_settings.h"
+#include "app/run_extent.h"
+#include "render/scene_frame.h"
+
+namespace topple::app {
+
+/// One of N, Vy, Vz, T, My, Mz.
+inline constexpr std::size_t k_components = 6;
+const char* component_name(std::size_t component);
+const char* component_unit(std::size_t component);
+double component_of(const SectionForces& forces, std::size_t component);
+
+/// A hinge that flows is a ring in the plane in which it bends, with an arrow head: the part of the member
+/// towards its second end turns that way about the part before it. One that has come to rest is pale and has
+/// no head. `row`: as it is drawn.
+void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame& out);
+
+/// Arrows of what floors and walls do to bodies, from the points of contact on, at `newtons` for each 0.1 m.
+void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons, render::SceneFrame& out);
+
+/// N for each 0.1 m of an arrow, a round number, so that most forces of the run are a third as long as what
+/// the run moves through is high.
+double newtons_per_decimetre(const RunExtent& extent);
+
+/// Where centres of gravity and tops of bodies have been, fading with age.
+void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow& row, bool whole_run,
+                render::SceneFrame& out);
+
+/// A band along a member, red where positive and blue where negative, with its values at the ends or where
+/// they are greatest. In the plane in which the force acts, moments on the side that they stretch.
+void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& diagram,
+                 render::SceneFrame& out);
+
+}  // namespace topple::app

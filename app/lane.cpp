@@ -1,0 +1,70 @@
+#include "app/lane.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/words.h"
+#include "render/overlay.h"
+
+namespace topple::app {
+
+void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
+               ImU32 colour, float thickness) {
+  std::vector<ImVec2> points;
+  const auto draw = [&] {
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+    points.clear();
+  };
+  list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);
+  for (std::size_t i = 0; i < rows.size();) {
+    if (std::isnan(value(i))) {
+      draw();
+      ++i;
+      continue;
+    }
+    const float column = std::floor(lane.x(rows[i]->time));
+    double least = 1e300, greatest = -1e300;
+    std::size_t next = i;
+    for (; next < rows.size() && std::floor(lane.x(rows[next]->time)) == column; ++next) {
+      const double v = value(next);
+      if (std::isnan(v)) break;
+      least = std::min(least, v);
+      greatest = std::max(greatest, v);
+    }
+    const bool rises = value(next - 1) >= value(i);
+    points.emplace_back(lane.x(rows[i]->time), lane.y(rises ? least : greatest));
+    if (least != greatest)
+      points.emplace_back(lane.x(rows[next - 1]->time), lane.y(rises ? greatest : least));
+    i = next;
+  }
+  draw();
+  list.PopClipRect();
+}
+
+void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text) {
+  list.AddText({std::round(x), std::round(y)}, colour, text.c_str());
+}
+
+float text_width(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float label_left) {
+  const bool loads = is_static(setup), steps = loads && setup.run.statics.control;
+  const double scale = steps ? setup.run.statics.load_steps : 1;
+  const render::Ticks ticks = render::nice_ticks(
+      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
+  for (double t : ticks.values) {
+    t += 0.;  // makes 0 of -0
+    if (steps && t != std::round(t)) continue;
+    const float x = lane.x(t / scale);
+    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
+    const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
+    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_chart_text, label);
+  }
+  if (loads) add_text(list, label_left, lane.bottom + 11, k_chart_text, steps ? "load step" : "load factor");
+}
+
+}  // namespace topple::app

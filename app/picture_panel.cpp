@@ -1,0 +1,100 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/panels.h"
+
+namespace topple::app {
+namespace {
+
+float label_width() {
+  return 6.1f * ImGui::GetTextLineHeight();
+}
+
+/// A label, and room for what follows up to the panel's edge.
+void label(const char* text) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  ImGui::SameLine(label_width());
+  ImGui::SetNextItemWidth(-1);
+}
+
+/// True when another one was chosen.
+bool choose(const char* id, const char* const* names, std::size_t count, std::size_t& chosen) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(id, names[chosen])) return false;
+  for (std::size_t i = 0; i < count; ++i)
+    if (ImGui::Selectable(names[i], i == chosen) && i != chosen) {
+      chosen = i;
+      changed = true;
+    }
+  ImGui::EndCombo();
+  return changed;
+}
+
+template <typename Choice, std::size_t n>
+bool choose(const char* id, const char* const (&names)[n], Choice& choice) {
+  auto chosen = static_cast<std::size_t>(choice);
+  const bool changed = choose(id, names, n, chosen);
+  choice = static_cast<Choice>(chosen);
+  return changed;
+}
+
+}  // namespace
+
+bool draw_picture_settings(PictureSettings& settings, double maximum) {
+  bool changed = false;
+  label("colour");
+  const char* names[k_beam_quantities];
+  for (std::size_t i = 0; i < k_beam_quantities; ++i) names[i] = name_of(static_cast<BeamQuantity>(i)).name;
+  if (choose("##colour", names, settings.colour)) {
+    if (settings.range == RangePolicy::fixed) settings.range = RangePolicy::run;  // it had another unit
+    changed = true;
+  }
+  label("map");
+  ImGui::BeginDisabled(name_of(settings.colour).is_signed);
+  if (name_of(settings.colour).is_signed) {
+    const char* const only[] = {"diverging, for signs"};
+    std::size_t first = 0;
+    choose("##map", only, 1, first);
+  } else {
+    static constexpr const char* k_maps[] = {"viridis", "cividis"};
+    changed |= choose("##map", k_maps, settings.map);
+  }
+  ImGui::EndDisabled();
+  label("range");
+  static constexpr const char* k_ranges[] = {"this instant", "whole run", "fixed"};
+  if (choose("##range", k_ranges, settings.range)) {
+    settings.maximum = std::clamp(maximum, k_least_maximum, k_most_maximum);
+    changed = true;
+  }
+  if (settings.range == RangePolicy::fixed) {
+    label("up to");
+    double typed = settings.maximum;
+    if (ImGui::InputDouble("##maximum", &typed, 0, 0, "%.4g", ImGuiInputTextFlags_EnterReturnsTrue) &&
+        typed >= k_least_maximum && typed <= k_most_maximum) {
+      settings.maximum = typed;
+      changed = true;
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s; Enter takes it", name_of(settings.colour).unit);
+  }
+  label("deformation");
+  const double one = 1;
+  double factor = settings.exaggeration;
+  if (ImGui::SliderScalar("##exaggeration", ImGuiDataType_Double, &factor, &one, &k_most_exaggeration,
+                          "×%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    settings.exaggeration = factor;
+    changed = true;
+  }
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("About the pose that fits each body best: rigid motion stays\nCtrl+click to type");
+  label("trails");
+  static constexpr const char* k_trails[] = {"none", "last second", "since the start"};
+  changed |= choose("##trails", k_trails, settings.trails);
+  changed |= ImGui::Checkbox("contact forces", &settings.contact_forces);
+  ImGui::SameLine(0, 2 * ImGui::GetStyle().ItemSpacing.x);
+  changed |= ImGui::Checkbox("panels", &settings.panels);
+  return changed;
+}
+
+}  // namespace topple::app
