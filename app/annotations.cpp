@@ -13,7 +13,7 @@ namespace {
 
 constexpr render::Float4 k_flowed_colour = {0.93f, 0.70f, 0.55f, 1};
 constexpr render::Float4 k_hinge_colour = {0.90f, 0.33f, 0.04f, 1};
-constexpr double k_ring = 1.5;            // radius of a hinge's ring, of the section
+constexpr double k_ring = 1.9;            // radius of a hinge's ring, of the section
 constexpr double k_least_section = 0.02;  // m, of a section without sides
 
 constexpr render::Float4 k_force_colour = {0.96f, 0.56f, 0.05f, 1};
@@ -24,6 +24,7 @@ constexpr double k_trail = 1;  // s
 constexpr std::size_t k_trail_points = 240;
 constexpr float k_least_strength = 0.15f;  // of what is oldest in a whole run
 
+constexpr std::size_t k_my = 4, k_mz = 5;  // components
 constexpr int k_samples = 12;              // of a diagram, per element
 constexpr double k_diagram = 0.2;          // of the member's length, the height of its greatest value
 constexpr double k_highest_diagram = 0.3;  // m
@@ -154,14 +155,28 @@ void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow&
     }
 }
 
+std::size_t component_of(const Model& model, const io::FrameRow& row, const Diagram& diagram) {
+  if (diagram.component) return *diagram.component;
+  const Member& member = model.members[diagram.member];
+  double most[2] = {};
+  for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
+    for (const double xi : {-1., 1.})
+      for (std::size_t k = 0; k < 2; ++k)
+        most[k] = std::max(most[k], std::abs(component_of(forces_at(model, row, e, xi), k_my + k)));
+  return most[1] > most[0] ? k_mz : k_my;
+}
+
 void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& diagram,
                  render::SceneFrame& out) {
   const Member& member = model.members[diagram.member];
+  const std::size_t component = component_of(model, row, diagram);
   double length = 0;
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
     length += model.elements[e].length;
-  const std::vector<Ordinate> all = ordinates(model, row, member, diagram.component);
-  const double scale = diagram.top > 0 ? std::min(k_diagram * length, k_highest_diagram) / diagram.top : 0;
+  const std::vector<Ordinate> all = ordinates(model, row, member, component);
+  const auto [least, most] = std::ranges::minmax_element(all, {}, &Ordinate::value);
+  const double greatest = std::max(std::abs(least->value), std::abs(most->value));
+  const double scale = greatest > 0 ? std::min(k_diagram * length, k_highest_diagram) / greatest : 0;
   const auto begin_band = [&](const Ordinate& from, bool positive) {
     out.bands.push_back(
         {{to_float(from.base)}, {to_float(from.edge(scale))}, positive ? k_positive : k_negative});
@@ -182,12 +197,10 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
     add(b.base, b.edge(scale));
   }
   // One that is the same all along is told once, in the middle.
-  const auto [least, most] = std::ranges::minmax_element(all, {}, &Ordinate::value);
-  const double slack = 1e-3 * std::max(std::abs(least->value), std::abs(most->value));
   const auto label = [&](const Ordinate& at) {
-    out.labels.push_back({to_float(at.edge(scale)), value_text(diagram.component, at.value)});
+    out.labels.push_back({to_float(at.edge(scale)), value_text(component, at.value)});
   };
-  if (most->value - least->value <= slack) {
+  if (most->value - least->value <= 1e-3 * greatest) {
     label(all[all.size() / 2]);
     return;
   }

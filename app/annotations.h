@@ -31,8 +31,11 @@ double newtons_per_decimetre(const RunExtent& extent);
 void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow& row, bool whole_run,
                 render::SceneFrame& out);
 
-/// A band along a member, red where positive and blue where negative, with its values at the ends or where
-/// they are greatest. In the plane in which the force acts, moments on the side that they stretch.
+/// That of a diagram at this row.
+std::size_t component_of(const Model& model, const io::FrameRow& row, const Diagram& diagram);
+
+/// A band along a member, red where positive and blue where negative, with its least and greatest value; as
+/// high at every instant. In the plane in which the force acts, moments on the side that they stretch.
 void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& diagram,
                  render::SceneFrame& out);
 

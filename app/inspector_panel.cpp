@@ -132,12 +132,15 @@ bool draw_component(const Inspected& at, const Subject& subject, std::size_t com
     const float y = most > 0 ? static_cast<float>(ordinates[i] / most) * (bottom - top) / 2 : 0;
     return ImVec2(left + t * (right - left), zero - y);
   };
+  const ImDrawListFlags flags = list.Flags;
+  list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // else there are seams between the pieces
   for (std::size_t i = 0; i + 1 < ordinates.size(); ++i) {
     const ImVec2 a = place(i), b = place(i + 1);
     const ImU32 colour = ordinates[i] + ordinates[i + 1] >= 0 ? k_positive : k_negative;
     if (b.x > a.x) list.AddQuadFilled({a.x, zero}, a, b, {b.x, zero}, translucent(colour));
     list.AddLine(a, b, colour, 1.4f);
   }
+  list.Flags = flags;
   list.AddLine({left, zero}, {right, zero}, k_axis);
   if (pressed && on_icon) toggle_plot(at.inspection, {subject, value});
   return pressed && !on_icon;
@@ -241,12 +244,12 @@ bool draw_member(const Inspected& at, const Subject& subject) {
   draw_values(at, subject, k_first_component_value);
   if (is_approximate(at.model, at.row, subject.index))
     ImGui::TextWrapped("A contact presses on its middle node: its own bending is approximate.");
-  const auto diagram = diagram_of(at.player, at.histories, at.inspection);
+  const std::size_t drawn = component_of(at.model, at.row, {subject.index, at.inspection.component});
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size{(ImGui::GetContentRegionAvail().x - gap) / 2, 4.3f * ImGui::GetTextLineHeight()};
   bool changed = false;
   for (std::size_t component = 0; component < k_components; ++component) {
-    if (draw_component(at, subject, component, diagram && diagram->component == component, size)) {
+    if (draw_component(at, subject, component, component == drawn, size)) {
       at.inspection.component = component;
       changed = true;
     }
@@ -258,19 +261,6 @@ bool draw_member(const Inspected& at, const Subject& subject) {
 }
 
 }  // namespace
-
-std::optional<Diagram> diagram_of(const Player& player, Histories& histories, const Inspection& inspection) {
-  if (!inspection.picked || inspection.picked->kind != Subject::Kind::member) return std::nullopt;
-  const auto peak = [&](std::size_t component) {
-    double most = 0;
-    for (const float sample : histories.of(player, *inspection.picked, k_first_component_value + component))
-      most = std::max<double>(most, std::abs(sample));
-    return most;
-  };
-  constexpr std::size_t k_my = 4, k_mz = 5;
-  const std::size_t component = inspection.component.value_or(peak(k_my) >= peak(k_mz) ? k_my : k_mz);
-  return Diagram{inspection.picked->index, component, peak(component)};
-}
 
 bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,
                     Inspection& inspection) {

@@ -49,12 +49,9 @@ struct PlottedValue {
 struct Inspection {
   std::optional<Subject> picked;
   std::vector<Subject> pinned;
-  std::optional<std::size_t> component;  ///< drawn along the member; absent: the moment that gets greatest
+  std::optional<std::size_t> component;  ///< as Diagram::component
   std::vector<PlottedValue> plots;
 };
-
-/// What is drawn along the member that is picked, if one is.
-std::optional<Diagram> diagram_of(const Player& player, Histories& histories, const Inspection& inspection);
 
 /// What is picked and what is pinned, at `row`. True when what the picture shows of it has changed.
 bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,

@@ -19,8 +19,7 @@ enum class Trails { none, second, run };
 /// A section force drawn along a member.
 struct Diagram {
   std::size_t member;
-  std::size_t component;  ///< N, Vy, Vz, T, My, Mz
-  double top;             ///< N or N m, drawn as high as a diagram may be
+  std::optional<std::size_t> component;  ///< N, Vy, Vz, T, My, Mz; absent: the moment that is greatest now
 };
 
 inline constexpr double k_most_exaggeration = 200;

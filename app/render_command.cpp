@@ -80,7 +80,10 @@ class Drawing {
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
-    render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), options_.picture);
+    PictureSettings settings = options_.picture;
+    if (inspected_ && inspected_->kind == Subject::Kind::member)
+      settings.diagram = Diagram{inspected_->index, std::nullopt};
+    render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (inspected_ && inspected_->kind == Subject::Kind::body)
       frame.highlighted_body = static_cast<std::int64_t>(inspected_->index);
     else if (inspected_)

@@ -144,10 +144,12 @@ void Viewer::draw_scene() {
   const bool changed = scene_changed_ || camera_changed_;
   if (!changed && (drawn_still_ || quiet_ <= k_quiet || player_.playing())) return;
   if (scene_changed_) {
-    settings_.diagram = diagram_of(player_, histories_, inspection_);
+    const auto& picked = inspection_.picked;
+    settings_.diagram.reset();
+    if (picked && picked->kind == Subject::Kind::member)
+      settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
     const LiveStatus& status = player_.status();
-    const auto& picked = inspection_.picked;
     if (picked && picked->kind == Subject::Kind::body)
       frame_.highlighted_body = static_cast<std::int64_t>(picked->index);
     else if (picked)

@@ -230,7 +230,7 @@ bool push_arrow(Mesh& mesh, const Arrow& arrow, float scene_size) {
 
 bool push_ring(Mesh& mesh, const render::Ring& ring) {
   constexpr std::uint32_t k_around = 40, k_across = 10;
-  constexpr float k_thickness = 0.14f, k_head = 0.75f;  // of the radius
+  constexpr float k_thickness = 0.13f, k_head = 0.85f;  // of the radius
   constexpr float k_turn = 2 * std::numbers::pi_v<float>;
   if (!drawable(ring.centre) || !drawable(ring.axis) || !drawable(ring.colour) || !drawable(ring.radius) ||
       ring.radius <= 0)
@@ -265,7 +265,7 @@ bool push_ring(Mesh& mesh, const render::Ring& ring) {
     mesh.indices.insert(mesh.indices.end(), {base, base + j, base + j + 1});
   const Vector3f neck = centre + ring.radius * out(arc);
   push_cone(mesh, neck, neck + k_head * ring.radius * axis.cross(out(arc + 0.3f)),
-            2.6f * k_thickness * ring.radius, 0, rgba);
+            2.9f * k_thickness * ring.radius, 0, rgba);
   return true;
 }
 

@@ -40,10 +40,11 @@ float contact_shade(vec3 p) {
     float angle = 6.283184 / float(k_contact_taps) * float(i);
     vec2 direction = vec2(cos(angle), sin(angle));
     if (k_fine) {
-      tight += nearness(at, 0.007 * direction, 0.008).r;
+      // As far as it can be seen from low above the floor, where depth is foreshortened.
+      tight += 0.4 * nearness(at, 0.014 * direction, 0.014).r + 0.6 * nearness(at, 0.050 * direction, 0.042).r;
       wide += 0.6 * nearness(at, 0.030 * direction, 0.030).g + 0.4 * nearness(at, 0.075 * direction, 0.060).g;
     } else {
-      vec2 near = nearness(at, 0.018 * direction, 0.018);
+      vec2 near = nearness(at, 0.036 * direction, 0.036);
       tight += near.r;
       wide += near.g;
     }
@@ -51,9 +52,9 @@ float contact_shade(vec3 p) {
   tight /= float(k_contact_taps);
   wide /= float(k_contact_taps);
   // A beam covers little of its surroundings, and yet its foot must be seen: small covers count more.
-  tight = 1.0 - (1.0 - tight) * (1.0 - tight);
+  tight = 1.0 - pow(1.0 - tight, 5.0);
   wide = 1.0 - (1.0 - wide) * (1.0 - wide);
-  return (1.0 - 0.66 * tight) * (1.0 - 0.36 * wide);
+  return (1.0 - 0.82 * tight) * (1.0 - 0.26 * wide);
 }
 
 // A colour in less light.
