@@ -129,7 +129,7 @@ constexpr SubjectValue k_body_values[] = {{"tilt", "°", tilt_value},
                                           {"angular velocity", "rad/s", angular_velocity},
                                           {"kinetic energy", "J", kinetic_value},
                                           {"left to overturn", "J", margin_value},
-                                          {"left of it", "%", margin_share},
+                                          {"share left", "%", margin_share},
                                           {"elastic displacement", "mm", displacement_value}};
 constexpr SubjectValue k_anchor_values[] = {
     {"force", "N", anchor_value<0>}, {"stretch", "mm", stretch_value}, {"energy", "J", anchor_value<1>}};

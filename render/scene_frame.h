@@ -103,7 +103,7 @@ struct Legend {
   float mark = 0;            ///< value of the mark (yield); drawn when mark_label is not empty
   std::string mark_label;    ///< "yield 235 MPa"
   bool square_root = false;  ///< colours go with the root of the share of the range: small values stay apart
-  std::vector<std::string> notes;  ///< below the range policy: what else is to be known of the picture
+  std::vector<std::string> notes{};  ///< below the range policy: what else is to be known of the picture
 };
 
 /// A trace of one quantity over the run, drawn small in a corner with a cursor.

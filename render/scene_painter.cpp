@@ -25,6 +25,7 @@ constexpr GLuint k_colour_unit = 0;
 // so that one of them stands out from any colour of a map.
 constexpr float k_inner_outline = 1.5f;
 constexpr float k_outer_outline = 4;
+constexpr float k_body_outline = 1.6f;                  // of all members of a body, magenta alone
 constexpr float k_trail = 2.2f, k_band_outline = 1.6f;  // px likewise, wide
 constexpr Float4 k_inner_colour{1, 1, 1, 1};
 constexpr Float4 k_outer_colour{0.86f, 0.05f, 0.45f, 1};
@@ -192,9 +193,13 @@ void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int hei
   ghosts_ = append(mesh, ghost_mesh(frame, left_out));
   const float pixel = 2 / (camera.projection(1, 1) * static_cast<float>(height));  // m at a metre
   const float unit = std::max(1.0f, static_cast<float>(height) / 720);
-  shells_ = append(mesh, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
-  shells_.count +=
-      append(mesh, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
+  if (frame.highlighted_body >= 0) {
+    shells_ = append(mesh, shell_mesh(frame, camera.eye, k_body_outline * unit * pixel, k_outer_colour));
+  } else {
+    shells_ = append(mesh, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
+    shells_.count +=
+        append(mesh, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
+  }
   trails_ = append(mesh, trail_mesh(frame, camera.eye, k_trail * unit * pixel, left_out));
   bands_ = append(mesh, band_mesh(frame, camera.eye, k_band_outline * unit * pixel, left_out));
   arrows_ = append(mesh, arrow_mesh(frame, left_out));

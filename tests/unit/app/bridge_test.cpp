@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "app/annotations.h"
 #include "app/words.h"
 #include "scenes.h"
 
@@ -62,6 +64,10 @@ TEST_F(BridgeTest, a_hinge_is_a_ring_at_its_end_and_a_broken_element_is_open) {
   EXPECT_LT(distance(hinged.rings[0].centre, seen(row, model().elements[0].node[0])), 1e-6);
   EXPECT_LT(distance(hinged.rings[1].centre, seen(row, model().elements[3].node[1])), 1e-6);
   EXPECT_EQ(hinged.tubes.size(), whole);
+  EXPECT_TRUE(hinged.rings[0].turns);
+  row.hinge[0] = io::k_flowed_first;
+  EXPECT_FALSE(Bridge(scene_, extent_).frame(row, scene_.setup.parameters).rings[0].turns);
+  row.hinge[0] = 1;
 
   row.hinge[3] = 3;
   const render::SceneFrame broken = Bridge(scene_, extent_).frame(row, scene_.setup.parameters);
@@ -74,6 +80,10 @@ TEST_F(BridgeTest, a_hinge_is_a_ring_at_its_end_and_a_broken_element_is_open) {
   const auto& end = broken.stations[one.first_station + one.station_count - 1].position;
   const auto& begin = broken.stations[other.first_station].position;
   EXPECT_NEAR(distance(end, Vec3(begin[0], begin[1], begin[2])), 0.2 * model().elements[3].length, 1e-4);
+  EXPECT_GT(one.torn_last, 0);
+  EXPECT_GT(other.torn_first, 0);
+  EXPECT_EQ(one.torn_first, 0);
+  EXPECT_EQ(other.torn_last, 0);
 }
 
 // What tells the states of an anchor apart is their shape: straight from end to end, hanging, or in two.
@@ -211,12 +221,100 @@ TEST_F(BridgeTest, blends_begin_and_end_in_their_rows_and_stay_between_them) {
 TEST_F(BridgeTest, the_colour_scale_ends_below_a_rare_peak) {
   RunExtent extent;
   for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
-  const double usual = extent.colour_top();
+  const double usual = extent.top(BeamQuantity::stress);
   io::FrameRow peak = start_;
   for (float& force : peak.section_force) force = 1e6f;
   extent.add(model(), scene_.setup.parameters, peak);
-  EXPECT_EQ(extent.colour_top(), usual);
-  EXPECT_EQ(RunExtent().colour_top(), 0);
+  EXPECT_EQ(extent.top(BeamQuantity::stress), usual);
+  EXPECT_EQ(RunExtent().top(BeamQuantity::stress), 0);
+}
+
+TEST_F(BridgeTest, ranges_end_at_this_instant_at_the_run_or_at_a_number) {
+  const Bridge bridge(scene_, extent_);
+  const auto legend = [&](const io::FrameRow& row, const PictureSettings& settings) {
+    return bridge.frame(row, scene_.setup.parameters, settings).legend;
+  };
+  for (std::size_t q = 0; q < k_beam_quantities; ++q) {
+    const auto quantity = static_cast<BeamQuantity>(q);
+    const double unit = name_of(quantity).per_unit;
+    SCOPED_TRACE(name_of(quantity).option);
+    PictureSettings settings{.colour = quantity, .range = RangePolicy::run};
+    EXPECT_FLOAT_EQ(legend(end_, settings).maximum,
+                    static_cast<float>(std::max(extent_.top(quantity) / unit, 1e-3)));
+    EXPECT_EQ(legend(start_, settings).maximum, legend(end_, settings).maximum);
+    settings.range = RangePolicy::instant;
+    const render::SceneFrame frame = bridge.frame(end_, scene_.setup.parameters, settings);
+    float most = 0;
+    for (const render::Station& station : frame.stations) most = std::max(most, std::abs(station.value));
+    // stresses are greatest at element ends, where stations lie; displacements at nodes, or a little beyond
+    EXPECT_NEAR(frame.legend.maximum, std::max(most, 1e-3f), 0.15 * frame.legend.maximum + 1e-6);
+    settings.range = RangePolicy::fixed;
+    settings.maximum = 7.5;
+    EXPECT_EQ(legend(end_, settings).maximum, 7.5f);
+    EXPECT_EQ(legend(end_, settings).minimum, name_of(quantity).is_signed ? -7.5f : 0.f);
+    EXPECT_EQ(legend(end_, settings).is_signed, name_of(quantity).is_signed);
+  }
+}
+
+TEST_F(BridgeTest, legends_mark_yield_and_say_what_else_is_not_as_it_is) {
+  const auto notes = [](const io::Scene& scene, const RunExtent& extent, const io::FrameRow& row,
+                        const PictureSettings& settings) {
+    return Bridge(scene, extent).frame(row, scene.setup.parameters, settings).legend;
+  };
+  EXPECT_TRUE(notes(scene_, extent_, end_, {}).notes.empty());
+  EXPECT_EQ(notes(scene_, extent_, end_, {}).mark_label, "");
+  EXPECT_EQ(notes(scene_, extent_, end_, {.exaggeration = 20}).notes.at(0), "deformation ×20");
+  EXPECT_EQ(notes(scene_, extent_, end_, {.colour = BeamQuantity::yield_ratio}).notes.at(0),
+            "nothing here can yield");
+  EXPECT_TRUE(notes(scene_, extent_, end_, {.contact_forces = true}).notes.at(0).starts_with("arrows: "));
+  const io::Scene yields = io::load_scene("yielding");
+  const io::FrameRow row = io::frame_row(topple::Run(yields.setup));
+  RunExtent extent;
+  extent.add(yields.setup.model, yields.setup.parameters, row);
+  EXPECT_EQ(notes(yields, extent, row, {}).mark_label, "yield 235 MPa");
+  EXPECT_FLOAT_EQ(notes(yields, extent, row, {}).mark, 235);
+  EXPECT_EQ(notes(yields, extent, row, {.colour = BeamQuantity::yield_ratio}).mark, 1);
+}
+
+// The sum of what the floor does to a body at rest is its weight; forces too small to be seen are left out.
+TEST_F(BridgeTest, arrows_of_a_resting_body_add_up_to_its_weight) {
+  const Bridge bridge(scene_, extent_);
+  const render::SceneFrame frame = bridge.frame(start_, scene_.setup.parameters, {.contact_forces = true});
+  ASSERT_FALSE(frame.arrows.empty());
+  double sum = 0;
+  for (const render::Arrow& arrow : frame.arrows) sum += arrow.to[2] - arrow.from[2];
+  const double weight = model().bodies[0].mass * scene_.setup.parameters.gravity.norm();
+  EXPECT_NEAR(sum * newtons_per_decimetre(extent_) / 0.1, weight, 0.01 * weight);
+  EXPECT_TRUE(bridge.frame(start_, scene_.setup.parameters).arrows.empty());
+}
+
+TEST_F(BridgeTest, panels_are_left_out_when_they_are_switched_off) {
+  const Bridge bridge(scene_, extent_);
+  EXPECT_EQ(bridge.frame(end_, scene_.setup.parameters).panels.size(), model().bodies[0].panels.size());
+  EXPECT_TRUE(bridge.frame(end_, scene_.setup.parameters, {.panels = false}).panels.empty());
+}
+
+TEST_F(BridgeTest, trails_lead_to_the_centre_of_gravity_and_grow_stronger) {
+  RunExtent extent;
+  std::vector<io::FrameRow> rows;
+  for (int i = 0; i <= 30; ++i) {
+    rows.push_back(start_);
+    rows.back().time = 0.1 * i;
+    rows.back().body[0] = 0.01 * i;
+    extent.add(model(), scene_.setup.parameters, rows.back());
+  }
+  const Bridge bridge(scene_, extent);
+  for (const Trails trails : {Trails::second, Trails::run}) {
+    const render::SceneFrame frame = bridge.frame(rows[20], scene_.setup.parameters, {.trails = trails});
+    ASSERT_EQ(frame.trails.size(), 2u);
+    const render::Trail& centre = frame.trails[0];
+    EXPECT_EQ(centre.points.size(), trails == Trails::second ? 11u : 21u);
+    EXPECT_LT(distance(centre.points.back(), Vec3(rows[20].body.data()) + Vec3(start_.floor_displacement)),
+              1e-6);
+    EXPECT_TRUE(std::ranges::is_sorted(centre.strength));
+    EXPECT_EQ(centre.strength.back(), 1);
+    EXPECT_GT(frame.trails[1].points[0][2], centre.points[0][2] + 0.5f);  // the top
+  }
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 #include <imgui_internal.h>
 
 #include <condition_variable>
+#include <filesystem>
+#include <fstream>
 #include <future>
 #include <mutex>
 
 #include "live.h"
 #include "unit/render/off_screen.h"
+#include "unit/render/read_png.h"
 #include "unit/render/scratch.h"
 
 namespace topple::app {
@@ -299,17 +302,132 @@ TEST_F(ViewerTest, typing_applies_the_whole_number_once) {
   EXPECT_EQ(player_->edits().size(), 1u);
 }
 
-TEST_F(ViewerTest, picking_a_member_shows_it_and_escape_lets_go) {
+/// Where a member is seen, found by clicking across the scene until one is picked.
+class InspectorTest : public ViewerTest {
+ protected:
+  void pick_some_member() {
+    start();
+    for (int i = 0; i < 30; ++i) frame();
+    const Box& box = viewer_->scene_box();
+    for (float x = 0.3f; x < 0.7f && !viewer_->inspection().picked; x += 0.005f) {
+      member_at_ = {box.left + x * box.width, box.top + 0.5f * box.height};
+      click(member_at_);
+    }
+    ASSERT_TRUE(viewer_->inspection().picked.has_value());
+  }
+  /// Buttons at the right edge of the inspector, from above: the pin, then those that plot.
+  std::vector<ImVec2> right_buttons() {
+    const ImGuiWindow* inspector = nullptr;
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+      if (std::string(window->Name).starts_with("side/inspector")) inspector = window;
+    std::vector<ImVec2> found;
+    if (!inspector) return found;
+    ImGuiID last = 0;
+    hover({2, 400});
+    for (float y = inspector->Pos.y + 2; y < inspector->Pos.y + inspector->Size.y; y += 5) {
+      ImGui::GetIO().MousePos = {inspector->Pos.x + inspector->Size.x - 8, y};
+      frame();
+      const ImGuiID now = ImGui::GetHoveredID();
+      if (now != 0 && now != last) found.push_back(ImGui::GetIO().MousePos);
+      last = now;
+    }
+    return found;
+  }
+  ImVec2 member_at_{};
+};
+
+TEST_F(InspectorTest, a_member_picked_again_gives_way_to_its_body_and_escape_lets_go) {
+  pick_some_member();
+  EXPECT_EQ(viewer_->inspection().picked->kind, Subject::Kind::member);
+  EXPECT_LT(viewer_->inspection().picked->index, player_->scene().setup.model.members.size());
+  click(member_at_);
+  EXPECT_EQ(viewer_->inspection().picked, (Subject{Subject::Kind::body, 0}));
+  press(render::key::escape);
+  EXPECT_FALSE(viewer_->inspection().picked.has_value());
+}
+
+TEST_F(InspectorTest, pins_stay_while_another_is_looked_at) {
+  pick_some_member();
+  const Subject member = *viewer_->inspection().picked;
+  const std::vector<ImVec2> buttons = right_buttons();
+  ASSERT_GE(buttons.size(), 3u);
+  click(buttons[0]);
+  click(member_at_);
+  EXPECT_EQ(viewer_->inspection().picked->kind, Subject::Kind::body);
+  EXPECT_EQ(viewer_->inspection().pinned, std::vector<Subject>{member});
+  press(render::key::escape);
+  EXPECT_EQ(viewer_->inspection().pinned, std::vector<Subject>{member});
+}
+
+TEST_F(InspectorTest, values_are_plotted_scrubbed_and_written) {
+  pick_some_member();
+  for (int i = 0; i < 3; ++i) type(']');
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::over; }));
+  const std::vector<ImVec2> buttons = right_buttons();
+  ASSERT_GE(buttons.size(), 3u);
+  const float before = viewer_->scene_box().height;
+  click(buttons[1]);
+  click(buttons[2]);
+  const Subject member = *viewer_->inspection().picked;
+  EXPECT_EQ(viewer_->inspection().plots, (std::vector<PlottedValue>{{member, 0}, {member, 1}}));
+  EXPECT_LT(viewer_->scene_box().height, before);
+  click(buttons[2]);
+  EXPECT_EQ(viewer_->inspection().plots.size(), 1u);
+
+  const Box& scene = viewer_->scene_box();
+  click({scene.left + 0.5f * scene.width, scene.top + scene.height + 60});
+  EXPECT_FALSE(player_->at_head());
+  EXPECT_GT(player_->time(), 0.2);
+
+  press_button("plots", "CSV");
+  press_button("plots", "PNG");
+  const auto csv = std::filesystem::path(scratch_ / "view-plots-1.csv");
+  std::ifstream file(csv);
+  std::string line;
+  ASSERT_TRUE(std::getline(file, line));
+  EXPECT_EQ(line, "time_s,\"" + name_of(player_->scene().setup.model, member) + " stress, MPa\"");
+  std::size_t lines = 0;
+  while (std::getline(file, line)) ++lines;
+  EXPECT_EQ(lines, player_->way().size());
+  const render::Image png = render::read_png(scratch_ / "view-plots-1.png");
+  EXPECT_EQ(png.width, 1280);
+  EXPECT_EQ(png.rgba[0], 255);  // white paper, and something on it
+  EXPECT_TRUE(std::ranges::any_of(png.rgba, [](std::uint8_t byte) { return byte < 60; }));
+  press_button("plots", "Close all");
+  EXPECT_TRUE(viewer_->inspection().plots.empty());
+  EXPECT_EQ(viewer_->scene_box().height, before);
+}
+
+TEST_F(ViewerTest, keys_and_sliders_change_the_picture) {
   start();
   for (int i = 0; i < 30; ++i) frame();
-  const Box& box = viewer_->scene_box();
-  EXPECT_FALSE(viewer_->picked_member().has_value());
-  for (float x = 0.3f; x < 0.7f && !viewer_->picked_member(); x += 0.005f)
-    click({box.left + x * box.width, box.top + 0.5f * box.height});
-  ASSERT_TRUE(viewer_->picked_member().has_value());
-  EXPECT_LT(*viewer_->picked_member(), player_->scene().setup.model.members.size());
-  press(render::key::escape);
-  EXPECT_FALSE(viewer_->picked_member().has_value());
+  frame();
+  render::Image last = shot();
+  const auto expect_change = [&] {
+    frame();
+    const render::Image now = shot();
+    EXPECT_NE(now.rgba, last.rgba);
+    last = now;
+  };
+  press('Q');
+  EXPECT_EQ(viewer_->settings().colour, BeamQuantity::yield_ratio);
+  expect_change();
+  press('P');
+  EXPECT_FALSE(viewer_->settings().panels);
+  expect_change();
+  press('A');
+  EXPECT_TRUE(viewer_->settings().contact_forces);
+  expect_change();
+  press_button("side", "Picture");
+  const ImVec2 slider = find("side", "##exaggeration");
+  ASSERT_GE(slider.x, 0);
+  drag(slider, {slider.x + 80, slider.y});
+  EXPECT_GT(viewer_->settings().exaggeration, 1);
+  EXPECT_LE(viewer_->settings().exaggeration, k_most_exaggeration);
+  expect_change();
+  for (std::size_t i = 1; i < k_beam_quantities; ++i) press('Q');
+  EXPECT_EQ(viewer_->settings().colour, BeamQuantity::stress);
 }
 
 TEST_F(ViewerTest, nothing_is_drawn_again_when_nothing_changed) {

@@ -61,14 +61,74 @@ TEST(Mesh, a_ring_is_a_torus_and_one_without_axis_or_size_is_left_out) {
   SceneFrame frame;
   frame.rings.push_back({{1, 2, 3}, {0, 0, 5}, 0.1f, {1, 0.5f, 0, 1}});
   LeftOut left_out;
-  // 2 pi^2 R r^2, less what 32 x 10 facets cut off: 1 - sin(2 pi/n)/(2 pi/n) of each circle
-  const double torus = 2 * 9.8696 * 0.1 * 0.016 * 0.016;
+  // 2 pi^2 R r^2, less what 40 x 10 facets cut off: 1 - sin(2 pi/n)/(2 pi/n) of each circle
+  const double torus = 2 * 9.8696 * 0.1 * 0.013 * 0.013;
   EXPECT_NEAR(volume(solid_mesh(frame, left_out)), torus, 0.08 * torus);
   EXPECT_EQ(left_out.total(), 0);
   frame.rings = {
       {{0, 0, 0}, {0, 0, 0}, 0.1f, {}}, {{0, 0, 0}, {0, 0, 1}, 0, {}}, {{NAN, 0, 0}, {0, 0, 1}, 0.1f, {}}};
   EXPECT_TRUE(solid_mesh(frame, left_out).vertices.empty());
   EXPECT_EQ(left_out.rings, 3);
+}
+
+TEST(Mesh, a_ring_that_turns_is_open_and_its_arrow_head_points_along_the_turn) {
+  SceneFrame frame;
+  frame.rings.push_back({{0, 0, 0}, {0, 0, 1}, 0.1f, {1, 0.5f, 0, 1}, true});
+  LeftOut left_out;
+  const Mesh mesh = solid_mesh(frame, left_out);
+  double turns = 0;  // the last vertices are those of the head: foot and tip in turn
+  for (std::size_t i = mesh.vertices.size() - 48; i < mesh.vertices.size(); i += 3) {
+    const Eigen::Vector3f foot = mesh.vertices[i].position, tip = mesh.vertices[i + 1].position;
+    turns += foot.cross(tip).z();
+  }
+  EXPECT_GT(turns, 0);
+  frame.rings[0].axis = {0, 0, -1};
+  const Mesh other = solid_mesh(frame, left_out);
+  turns = 0;
+  for (std::size_t i = other.vertices.size() - 48; i < other.vertices.size(); i += 3)
+    turns += other.vertices[i].position.cross(other.vertices[i + 1].position).z();
+  EXPECT_LT(turns, 0);
+  EXPECT_EQ(left_out.total(), 0);
+}
+
+TEST(Mesh, a_torn_end_stands_back_in_teeth_and_is_closed) {
+  SceneFrame frame = one_beam(box_profile(0.02f));
+  LeftOut left_out;
+  const double whole = volume(solid_mesh(frame, left_out));
+  const std::size_t vertices = solid_mesh(frame, left_out).vertices.size();
+  frame.tubes[0].torn_last = 0.01f;
+  const Mesh torn = solid_mesh(frame, left_out);
+  EXPECT_EQ(torn.vertices.size(), vertices);
+  float least = 1e9f, most = -1e9f;
+  for (std::size_t i = vertices - 4; i < vertices; ++i) {  // its cap
+    least = std::min(least, torn.vertices[i].position.x());
+    most = std::max(most, torn.vertices[i].position.x());
+    EXPECT_NE(torn.vertices[i].rgba, 0u);
+  }
+  EXPECT_NEAR(most - least, 0.01f, 1e-6f);
+  EXPECT_LT(volume(torn), whole);
+  // two of four corners stand back: a third to two thirds of the teeth's depth is gone, by the diagonal
+  EXPECT_NEAR((whole - volume(torn)) / (0.01 * 0.02 * 0.02), 0.5, 0.17);
+}
+
+TEST(Mesh, lines_face_the_eye_and_fade_with_their_strength) {
+  SceneFrame frame;
+  frame.trails.push_back({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {0, 0.5f, 1}, {0, 0, 1, 1}});
+  const Eigen::Vector3f eye(1, -10, 0);
+  LeftOut left_out;
+  const Mesh mesh = trail_mesh(frame, eye, 0.01f, left_out);
+  ASSERT_EQ(mesh.vertices.size(), 6u);
+  EXPECT_EQ(mesh.indices.size(), 12u);
+  EXPECT_NEAR((mesh.vertices[3].position - mesh.vertices[2].position).norm(), 0.1f, 1e-4f);  // 10 m away
+  EXPECT_EQ(mesh.vertices[0].rgba >> 24, 0u);
+  EXPECT_EQ(mesh.vertices[5].rgba >> 24, 255u);
+  frame.trails.push_back({{{0, 0, 0}, {NAN, 0, 0}}, {1, 1}, {0, 0, 1, 1}});
+  frame.trails.push_back({{{0, 0, 0}, {1, 0, 0}}, {1}, {0, 0, 1, 1}});
+  frame.bands.push_back({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 1}}, {1, 0, 0, 1}});
+  EXPECT_EQ(trail_mesh(frame, eye, 0.01f, left_out).vertices.size(), 6u);
+  EXPECT_TRUE(band_mesh(frame, eye, 0.01f, left_out).vertices.empty());
+  EXPECT_EQ(left_out.trails, 2);
+  EXPECT_EQ(left_out.bands, 1);
 }
 
 TEST(Mesh, every_triangle_faces_the_way_its_normals_point) {
@@ -80,7 +140,7 @@ TEST(Mesh, every_triangle_faces_the_way_its_normals_point) {
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const auto v = [&](std::size_t k) { return mesh.vertices[mesh.indices[i + k]]; };
     const Eigen::Vector3f faces = (v(1).position - v(0).position).cross(v(2).position - v(0).position);
-    if (faces.norm() < 1e-12f) continue;  // the tip of an arrow
+    if (faces.norm() < 1e-12f) continue;
     const Eigen::Vector3f normal = v(0).normal + v(1).normal + v(2).normal;
     ASSERT_GT(faces.normalized().dot(normal.normalized()), 0.7f) << "triangle " << i / 3;
   }

@@ -44,6 +44,7 @@ TEST(Overlay, parts_stay_inside_and_apart_at_every_size_with_any_length_of_text)
         frame.legend.range_policy = much;
         frame.legend.mark_label = "mark with a long name too " + much;
         frame.legend.maximum = 1.5e7f;
+        frame.legend.notes = {much, "deformation ×20"};
         frame.trace.label = much;
       }
       Picture picture(off_screen(), size[0], size[1]);
@@ -90,6 +91,41 @@ TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
   EXPECT_FALSE(draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 600}, left_out));
   EXPECT_EQ(left_out.legends, 1);
   EXPECT_EQ(list.VtxBuffer.Size, before);
+  ImGui::EndFrame();
+  ImGui::DestroyContext();
+}
+
+TEST(Overlay, labels_stay_in_their_room_and_apart) {
+  ImGui::CreateContext();
+  ImGui::GetIO().DisplaySize = {1280, 720};
+  const OverlayFonts fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, 720);
+  ImGui::GetIO().Fonts->Build();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::NewFrame();
+  SceneFrame frame;
+  for (int i = 0; i < 6; ++i)
+    frame.labels.push_back({{0, 0, 1 + 0.01f * static_cast<float>(i)}, "My 12.3 N m"});
+  frame.labels.push_back({{0, 0, 1e6f}, "far above"});
+  frame.labels.push_back({{50, 0, 1}, "behind the eye"});
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const int before = list.VtxBuffer.Size;
+  const OverlayBox room{"", 100, 50, 700, 450};
+  draw_labels(list, fonts, frame, look_at({10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1.5f, 0.1f, 100), room);
+  ASSERT_GT(list.VtxBuffer.Size, before);
+  for (int i = before; i < list.VtxBuffer.Size; ++i) {
+    const ImVec2 p = list.VtxBuffer[i].pos;
+    EXPECT_TRUE(p.x >= room.left - 1 && p.x <= room.right + 1 && p.y >= room.top - 1 &&
+                p.y <= room.bottom + 1)
+        << p.x << ", " << p.y;
+  }
+  // 60 mm are 10 px here, and each label is over 14 px high: they had to move apart
+  float top = 1e9f, bottom = 0;
+  for (int i = before; i < list.VtxBuffer.Size; ++i) {
+    if (list.VtxBuffer[i].pos.y < room.top + 30) continue;  // that of far above
+    top = std::min(top, list.VtxBuffer[i].pos.y);
+    bottom = std::max(bottom, list.VtxBuffer[i].pos.y);
+  }
+  EXPECT_GT(bottom - top, 6 * 14.f);
   ImGui::EndFrame();
   ImGui::DestroyContext();
 }

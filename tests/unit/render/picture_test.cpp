@@ -93,6 +93,8 @@ TEST(Picture, what_is_not_finite_never_reaches_a_pixel) {
     if (!std::isfinite(bad)) add_tube([&](Station& s) { s.value = bad; });
     dirty.panels.push_back(dirty.panels[0]);
     dirty.panels.back().corners[2][0] = bad;
+    dirty.trails.push_back({{{0, 0, 0}, {0, 0, bad}}, {1, 1}, {1, 0, 0, 1}});
+    dirty.labels.push_back({{0, bad, 0}, "nowhere"});
     dirty.arrows.push_back({{0, 0, bad}, {0, 0, 1}, {1, 0, 0, 1}});
     dirty.grounds.push_back({{0, 0, 0}, {0, bad, 1}, {1, 0, 0}, 4, 4, true});
     LeftOut left_out;
@@ -100,6 +102,7 @@ TEST(Picture, what_is_not_finite_never_reaches_a_pixel) {
     EXPECT_EQ(left_out.tubes, std::isfinite(bad) ? 2 : 3) << bad;
     EXPECT_EQ(left_out.panels, 1) << bad;
     EXPECT_EQ(left_out.arrows, 1) << bad;
+    EXPECT_EQ(left_out.trails, 1) << bad;
     EXPECT_EQ(left_out.grounds, 1) << bad;
   }
 }

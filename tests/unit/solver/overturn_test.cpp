@@ -99,6 +99,24 @@ TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
   EXPECT_NEAR(critical_angle(s.model, 0, turned(s.model, Vec3::Zero())), k_edge_angle, 1e-9);
 }
 
+// The centre of gravity of a body that turns about its edge rises by what the barrier says.
+TEST(Overturn, barrier_is_the_weight_times_the_rise_to_above_the_edge) {
+  const Standing s = standing();
+  const Body& body = s.model.bodies[0];
+  constexpr double k_g = 9.81;
+  const Vec3 edge(body.base_centre.x() + k_depth / 2, 0, body.base_centre.z());
+  const auto height = [&](double angle) {
+    return (exp_quaternion(angle * Vec3::UnitY()) * (body.centre_of_gravity - edge)).z();
+  };
+  for (const double angle : {1e-9, 0.02, 0.1, 0.9 * k_edge_angle}) {
+    const OverturnBarrier barrier = overturn_barrier(s.model, 0, turned(s.model, angle * Vec3::UnitY()), k_g);
+    EXPECT_NEAR(barrier.left, body.mass * k_g * (height(k_edge_angle) - height(angle)), 1e-9) << angle;
+    EXPECT_NEAR(barrier.whole, body.mass * k_g * (height(k_edge_angle) - height(0)), 1e-9) << angle;
+  }
+  EXPECT_EQ(overturn_barrier(s.model, 0, turned(s.model, 0.3 * Vec3::UnitY()), k_g).left, 0);
+  EXPECT_TRUE(std::isinf(overturn_barrier(sled(1, 0.06, 0.03), 0, turned(s.model, Vec3::Zero()), k_g).left));
+}
+
 TEST(Overturn, critical_angle_tells_front_from_back) {
   // a tripod: far to its foot on +x, near to its edge on -x; also to the left and right of its middle
   Model model = steel_model();
