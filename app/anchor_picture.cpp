@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/row.h"
+
 namespace topple::app {
 namespace {
 
@@ -105,8 +107,7 @@ std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
 
 Vec3 attached_point(const Model& model, const io::FrameRow& row, const Vec3& shift, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
-  const float *x = &row.position[3 * anchor.node], *q = &row.rotation[4 * anchor.node];
-  return Vec3(x[0], x[1], x[2]) + shift + Quat(q[0], q[1], q[2], q[3]).normalized() * anchor.arm;
+  return position(row, anchor.node) + shift + rotation(row, anchor.node) * anchor.arm;
 }
 
 void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift, render::SceneFrame& out) {

@@ -94,9 +94,11 @@ void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame&
     const Section& section = model.sections[model.members[model.elements[e].member].section];
     const ElementCurve curve = element_curve(model, row, e);
     const SectionForces forces = forces_at(model, row, e, 2 * t - 1);
+    const double sense = t == 1 ? -1 : 1;  // sections turn with the moment from the first end to the second
     const double size = std::max({section.size_y, section.size_z, k_least_section});
     out.rings.push_back(
-        {to_float(curve.place(t)), to_float(curve.axes(t) * Vec3(0, forces.moment.y(), forces.moment.z())),
+        {to_float(curve.place(t)),
+         to_float(curve.axes(t) * Vec3(0, sense * forces.moment.y(), sense * forces.moment.z())),
          static_cast<float>(k_ring * size), flowed ? k_flowed_colour : k_hinge_colour, !flowed});
   }
 }

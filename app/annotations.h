@@ -15,9 +15,9 @@ const char* component_name(std::size_t component);
 const char* component_unit(std::size_t component);
 double component_of(const SectionForces& forces, std::size_t component);
 
-/// A hinge that flows is a ring in the plane in which it bends, with an arrow head: the part of the member
-/// towards its second end turns that way about the part before it. One that has come to rest is pale and has
-/// no head. `row`: as it is drawn.
+/// A hinge that flows is a ring in the plane in which it bends, with an arrow head: its element turns that
+/// way about the node; about its first half, where the hinge is in the middle. One that has come to rest is
+/// pale and has no head. `row`: as it is drawn.
 void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame& out);
 
 /// Arrows of what floors and walls do to bodies, from the points of contact on, at `newtons` for each 0.1 m.

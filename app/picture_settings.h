@@ -34,7 +34,7 @@ struct PictureSettings {
   bool contact_forces = false;
   bool panels = true;
   Trails trails = Trails::none;
-  std::optional<Diagram> diagram;
+  std::optional<Diagram> diagram = {};
 };
 
 }  // namespace topple::app

@@ -222,6 +222,7 @@ bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
 
 /// px from the upper left corner of a picture of width x height; nothing behind the eye.
 std::optional<ImVec2> seen_at(const Camera& camera, const Float3& at, float width, float height) {
+  if (!drawable(at)) return std::nullopt;
   const Eigen::Vector4f clip = camera.projection * camera.view * Eigen::Vector3f(at.data()).homogeneous();
   if (!(clip.w() > 0) || !clip.allFinite()) return std::nullopt;
   return ImVec2(width * (0.5f + 0.5f * clip.x() / clip.w()), height * (0.5f - 0.5f * clip.y() / clip.w()));

@@ -175,6 +175,25 @@ TEST(StaticBridge, pictures_of_a_static_run_tell_load_step_and_load_factor) {
   EXPECT_GT(run.state().load_factor, 0.1);  // the loads move 3 mm
 }
 
+// Pushed along x, the columns of a portal turn about their feet from z towards x: about +y, whichever of
+// their ends the foot is.
+TEST(StaticBridge, rings_of_hinges_turn_as_their_elements_do) {
+  const io::Scene scene = io::load_scene("portal-pushover");
+  topple::Run run(scene.setup);
+  RunExtent extent;
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  const io::FrameRow row = io::frame_row(run);
+  extent.add(scene.setup.model, scene.setup.parameters, row);
+  const render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
+  int feet = 0;
+  for (const render::Ring& ring : frame.rings) {
+    if (!ring.turns || ring.centre[2] > 0.1f) continue;
+    ++feet;
+    EXPECT_GT(ring.axis[1], 0.9f * std::hypot(ring.axis[0], ring.axis[1], ring.axis[2]));
+  }
+  EXPECT_EQ(feet, 2);
+}
+
 TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
   io::FrameRow moved = end_;
   moved.floor_displacement[0] += 0.25;

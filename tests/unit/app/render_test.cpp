@@ -104,6 +104,52 @@ TEST_F(RenderTest, cameras_differ) {
   }
 }
 
+TEST_F(RenderTest, every_option_of_the_picture_changes_it) {
+  std::vector<std::string> pictures;
+  const std::vector<std::vector<std::string>> options{{},
+                                                      {"--colour", "yield-ratio"},
+                                                      {"--colour", "axial"},
+                                                      {"--colour", "moment"},
+                                                      {"--colour", "torsion"},
+                                                      {"--colour", "displacement"},
+                                                      {"--map", "cividis"},
+                                                      {"--range", "instant"},
+                                                      {"--range", "12.5"},
+                                                      {"--exaggerate", "200"},
+                                                      {"--forces"},
+                                                      {"--no-panels"},
+                                                      {"--trails", "run"},
+                                                      {"--inspect", "free"},
+                                                      {"--inspect", "free/post-1"}};
+  for (const std::vector<std::string>& option : options) {
+    std::vector<std::string> call{"a.h5", "--still", "a.png", "--at", "0.25"};
+    call.insert(call.end(), option.begin(), option.end());
+    draw(call);
+    pictures.push_back(bytes_of("a.png"));
+    EXPECT_EQ(std::count(pictures.begin(), pictures.end(), pictures.back()), 1)
+        << (option.empty() ? "" : option.front() + " " + option.back());
+  }
+}
+
+TEST_F(RenderTest, options_of_the_picture_that_mean_nothing_are_refused) {
+  const auto refused = [](const std::vector<std::string>& option, const std::string& words) {
+    std::vector<std::string> call{"render", "a.h5", "--still", "a.png", "--at", "0"};
+    call.insert(call.end(), option.begin(), option.end());
+    expect_one_line(call, 2, words);
+  };
+  refused({"--colour", "red"}, "--colour: \"red\" is not one of stress");
+  refused({"--map", "jet"}, "--map: \"jet\" is not one of");
+  refused({"--map", "diverging"}, "--map: \"diverging\" is not one of");
+  for (const char* range : {"0", "-1", "nan", "inf", "1e13", "much"})
+    refused({"--range", range}, "is not run, instant or a number");
+  for (const char* factor : {"0.5", "201", "nan", "x"})
+    refused({"--exaggerate", factor}, "is not a number from 1 to 200");
+  refused({"--trails", "0"}, "--trails: \"0\" is not one of");
+  refused({"--inspect", "nobody"}, "--inspect: nobody: there is no body of that name; there are free");
+  refused({"--inspect", "free/x"}, "--inspect: free/x: free has no such member; it has post-1");
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "s.toml"}));
+}
+
 TEST_F(RenderTest, instants_outside_the_recording_are_refused) {
   for (const char* time : {"-0.1", "0.31", "1e300"})
     expect_one_line({"render", "a.h5", "--still", "a.png", "--at", time}, 2,

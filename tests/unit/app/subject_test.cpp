@@ -100,7 +100,7 @@ TEST(Subject, a_body_has_the_energy_and_the_angular_velocity_of_its_state) {
         io::parse_scene(k_shaken, "s.toml", {std::string("cabinet.free.model=") + model_of_body});
     topple::Run run(scene.setup);
     std::vector<io::FrameRow> rows;
-    Vec3 spin;
+    Vec3 spin = Vec3::Zero();
     double kinetic = 0;
     for (int i = 0; i < 160; ++i) {
       ASSERT_TRUE(run.advance().ok());
