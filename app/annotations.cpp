@@ -24,6 +24,7 @@ constexpr double k_trail = 1;  // s
 constexpr std::size_t k_trail_points = 240;
 constexpr float k_least_strength = 0.15f;  // of what is oldest in a whole run
 
+constexpr double k_nothing = 1e-5;         // of the greatest value: rounding
 constexpr std::size_t k_my = 4, k_mz = 5;  // components
 constexpr int k_samples = 12;              // of a diagram, per element
 constexpr double k_diagram = 0.2;          // of the member's length, the height of its greatest value
@@ -179,6 +180,7 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
   const auto [least, most] = std::ranges::minmax_element(all, {}, &Ordinate::value);
   const double greatest = std::max(std::abs(least->value), std::abs(most->value));
   const double scale = greatest > 0 ? std::min(k_diagram * length, k_highest_diagram) / greatest : 0;
+  const auto is_something = [&](const Ordinate& o) { return std::abs(o.value) > k_nothing * greatest; };
   const auto begin_band = [&](const Ordinate& from, bool positive) {
     out.bands.push_back(
         {{to_float(from.base)}, {to_float(from.edge(scale))}, positive ? k_positive : k_negative});
@@ -187,14 +189,17 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
     out.bands.back().base.push_back(to_float(base));
     out.bands.back().edge.push_back(to_float(edge));
   };
-  begin_band(all.front(), all.front().value >= 0);
+  bool positive = std::ranges::find_if(all, is_something) == all.end() ||
+                  std::ranges::find_if(all, is_something)->value > 0;
+  begin_band(all.front(), positive);
   for (std::size_t i = 1; i < all.size(); ++i) {
     const Ordinate &a = all[i - 1], &b = all[i];
-    if ((a.value >= 0) != (b.value >= 0)) {
+    if (is_something(b) && (b.value > 0) != positive) {
       const double u = a.value / (a.value - b.value);
       const Ordinate zero{a.base + u * (b.base - a.base), a.side, 0};
       add(zero.base, zero.base);
-      begin_band(zero, b.value >= 0);
+      positive = !positive;
+      begin_band(zero, positive);
     }
     add(b.base, b.edge(scale));
   }
