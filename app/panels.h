@@ -34,6 +34,9 @@ void draw_timeline(Player& player, const Box& box);
 /// Sliders of what may be edited. What was refused, and why, is left in `refused`.
 void draw_parameters(Player& player, std::string& refused);
 
+/// Colours by another quantity; a fixed range, which had the unit of the last one, becomes that of the run.
+void choose_colour(PictureSettings& settings, BeamQuantity colour);
+
 /// Colours, deformation and what is shown beside bodies. `maximum`: where the colours end now, in the
 /// quantity's unit. True when anything changed.
 bool draw_picture_settings(PictureSettings& settings, double maximum);

@@ -42,13 +42,19 @@ bool choose(const char* id, const char* const (&names)[n], Choice& choice) {
 
 }  // namespace
 
+void choose_colour(PictureSettings& settings, BeamQuantity colour) {
+  settings.colour = colour;
+  if (settings.range == RangePolicy::fixed) settings.range = RangePolicy::run;
+}
+
 bool draw_picture_settings(PictureSettings& settings, double maximum) {
   bool changed = false;
   label("colour");
   const char* names[k_beam_quantities];
   for (std::size_t i = 0; i < k_beam_quantities; ++i) names[i] = name_of(static_cast<BeamQuantity>(i)).name;
-  if (choose("##colour", names, settings.colour)) {
-    if (settings.range == RangePolicy::fixed) settings.range = RangePolicy::run;  // it had another unit
+  BeamQuantity colour = settings.colour;
+  if (choose("##colour", names, colour)) {
+    choose_colour(settings, colour);
     changed = true;
   }
   label("map");

@@ -84,10 +84,7 @@ class Drawing {
     if (inspected_ && inspected_->kind == Subject::Kind::member)
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
-    if (inspected_ && inspected_->kind == Subject::Kind::body)
-      frame.highlighted_body = static_cast<std::int64_t>(inspected_->index);
-    else if (inspected_)
-      frame.highlighted_member = static_cast<std::int64_t>(inspected_->index);
+    if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
     return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()),
                          {.map = options_.picture.map});
   }

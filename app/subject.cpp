@@ -159,6 +159,16 @@ std::string name_of(const Model& model, const Subject& subject) {
   return "";
 }
 
+void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame) {
+  const auto index = static_cast<std::int64_t>(subject.index);
+  if (subject.kind == Subject::Kind::body)
+    frame.highlighted_body = index;
+  else if (subject.kind == Subject::Kind::member)
+    frame.highlighted_member = index;
+  else
+    frame.highlighted_member = index + static_cast<std::int64_t>(model.members.size());
+}
+
 Subject subject_named(const Model& model, const std::string& name) {
   const std::size_t slash = name.find('/');
   const std::string body_name = name.substr(0, slash);

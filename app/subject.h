@@ -21,6 +21,9 @@ struct Subject {
 /// "free/post-1", "free", "strap".
 std::string name_of(const Model& model, const Subject& subject);
 
+/// Has it outlined.
+void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame);
+
 /// From BODY or BODY/MEMBER. Throws io::InputError that says what there is.
 Subject subject_named(const Model& model, const std::string& name);
 

@@ -150,12 +150,8 @@ void Viewer::draw_scene() {
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
     const LiveStatus& status = player_.status();
-    if (picked && picked->kind == Subject::Kind::body)
-      frame_.highlighted_body = static_cast<std::int64_t>(picked->index);
-    else if (picked)
-      frame_.highlighted_member = static_cast<std::int64_t>(
-          picked->index +
-          (picked->kind == Subject::Kind::anchor ? player_.scene().setup.model.members.size() : 0));
+    if (picked)
+      highlight(player_.scene().setup.model, *picked, frame_);
     else if (status.kind == LiveStatus::Kind::failed && status.element >= 0)
       frame_.highlighted_member =
           player_.scene().setup.model.elements[static_cast<std::size_t>(status.element)].member;

@@ -70,8 +70,7 @@ void Viewer::press(const render::KeyPress& press) {
 
 void Viewer::next_colour() {
   const auto next = static_cast<std::size_t>(settings_.colour) + 1;
-  settings_.colour = static_cast<BeamQuantity>(next % k_beam_quantities);
-  if (settings_.range == RangePolicy::fixed) settings_.range = RangePolicy::run;  // it had another unit
+  choose_colour(settings_, static_cast<BeamQuantity>(next % k_beam_quantities));
   scene_changed_ = true;
 }
 
