@@ -60,6 +60,13 @@ void require_writable_text(const std::string& option, const std::string& path, c
   if (!is_special(path)) require_writable_file(option, path, source);
 }
 
+void require_no_record(const std::string& option, const std::string& path, const std::string& source,
+                       const io::Scene& scene) {
+  for (const io::SceneFile& file : scene.files)
+    if (same_file(path, (fs::path(source).parent_path() / file.name).string()))
+      throw BadInput(option + ": " + path + " is a record of the scene; choose another name");
+}
+
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   return fs::equivalent(a, b, error) || (!a.empty() && !b.empty() && behind_links(a) == behind_links(b));

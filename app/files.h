@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "solver/io/scene.h"
+
 namespace topple::app {
 
 /// Throws BadInput, with `what` named, unless files can be created in `folder`.
@@ -14,6 +16,10 @@ void require_writable_file(const std::string& option, const std::string& path, c
 
 /// As require_writable_file, for text that a pipe or device takes as well.
 void require_writable_text(const std::string& option, const std::string& path, const std::string& source);
+
+/// Throws BadInput when `path` is one of the accelerograms that the scene in the file `source` names.
+void require_no_record(const std::string& option, const std::string& path, const std::string& source,
+                       const io::Scene& scene);
 
 /// Whether both paths lead to one file, whether it exists or not.
 bool same_file(const std::string& a, const std::string& b);

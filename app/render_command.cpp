@@ -180,6 +180,9 @@ int render_command(const RenderOptions& options) {
   inspected_by(options, scene->setup.model);
   defer_interrupts();
   check_outputs(options);
+  if (options.png.empty())
+    require_no_record(options.mp4.empty() ? "--still" : "--mp4",
+                      options.mp4.empty() ? options.still : options.mp4, options.source, *scene);
   const TemporaryFile file;
   const RecordedRun run = record(*scene, file.path(), {.quiet = options.quiet});
   if (!run.trouble.empty())

@@ -155,6 +155,7 @@ int report_command(const ReportOptions& options) {
                                ? options.file
                                : std::filesystem::path(scene.name).filename().string() + "-report.html";
   require_writable_text("--output", file, options.scene);
+  require_no_record("--output", file, options.scene, scene);
   defer_interrupts();
 
   const TemporaryFile temporary;

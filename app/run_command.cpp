@@ -163,9 +163,13 @@ int run_command(const RunOptions& options) {
   if (options.estimate && is_static(scene.setup)) throw BadInput("--estimate: statics take no steps of time");
   const bool json_to_output = options.json == "-";
   defer_interrupts();
-  if (!options.recording.empty()) require_writable_file("--output", options.recording, options.scene);
+  if (!options.recording.empty()) {
+    require_writable_file("--output", options.recording, options.scene);
+    require_no_record("--output", options.recording, options.scene, scene);
+  }
   if (!options.json.empty() && !json_to_output) {
     require_writable_text("--json", options.json, options.scene);
+    require_no_record("--json", options.json, options.scene, scene);
     if (same_file(options.json, options.recording))
       throw BadInput("--json: " + options.json + " is the recording; choose another name");
   }

@@ -85,6 +85,17 @@ TEST_F(BadOutputTest, what_is_being_read_is_not_replaced) {
   EXPECT_EQ(bytes_of("a.h5"), recording);
 }
 
+TEST_F(BadOutputTest, records_of_the_scene_are_not_replaced) {
+  const std::string samples = "time_s,ax_gal\n0,0\n0.01,1\n0.02,2\n0.03,1\n0.04,0\n";
+  write_bytes("shake.csv", samples);
+  write_bytes("r.toml", bytes_of("s.toml") + "[[shake]]\ntype = \"record\"\nfiles = [\"shake.csv\"]\n");
+  expect_one_line({"run", "r.toml", "-o", "shake.csv"}, 2, "--output: shake.csv is a record of the scene");
+  expect_one_line({"run", "r.toml", "--json", "./shake.csv"}, 2, "is a record of the scene");
+  expect_one_line({"render", "r.toml", "--still", "shake.csv", "--at", "0"}, 2, "is a record of the scene");
+  expect_one_line({"report", "r.toml", "-o", "shake.csv"}, 2, "is a record of the scene");
+  EXPECT_EQ(bytes_of("shake.csv"), samples);
+}
+
 TEST_F(BadOutputTest, a_scene_cannot_be_drawn_without_a_place_for_its_recording) {
   const Circumstances nowhere{.set = {{"TMPDIR", "/proc/none"}}};
   expect_one_line({"render", "s.toml", "--still", "a.png", "--at", "0"}, 1, "TMPDIR", nowhere);
