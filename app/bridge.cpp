@@ -157,6 +157,7 @@ double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& se
   const double top = settings.range == RangePolicy::run
                          ? extent_.top(settings.colour)
                          : peaks_of(scene_.setup.model, row)[static_cast<std::size_t>(settings.colour)];
+  if (!(top > 0)) return 1;
   return std::max(top / name_of(settings.colour).per_unit, k_least_range);
 }
 

@@ -253,20 +253,20 @@ TEST_F(BridgeTest, ranges_end_at_this_instant_at_the_run_or_at_a_number) {
   const auto legend = [&](const io::FrameRow& row, const PictureSettings& settings) {
     return bridge.frame(row, scene_.setup.parameters, settings).legend;
   };
+  const auto end = [](double top) { return top > 0 ? std::max(top, 1e-3) : 1; };
   for (std::size_t q = 0; q < k_beam_quantities; ++q) {
     const auto quantity = static_cast<BeamQuantity>(q);
     const double unit = name_of(quantity).per_unit;
     SCOPED_TRACE(name_of(quantity).option);
     PictureSettings settings{.colour = quantity, .range = RangePolicy::run};
-    EXPECT_FLOAT_EQ(legend(end_, settings).maximum,
-                    static_cast<float>(std::max(extent_.top(quantity) / unit, 1e-3)));
+    EXPECT_FLOAT_EQ(legend(end_, settings).maximum, static_cast<float>(end(extent_.top(quantity) / unit)));
     EXPECT_EQ(legend(start_, settings).maximum, legend(end_, settings).maximum);
     settings.range = RangePolicy::instant;
     const render::SceneFrame frame = bridge.frame(end_, scene_.setup.parameters, settings);
     float most = 0;
     for (const render::Station& station : frame.stations) most = std::max(most, std::abs(station.value));
     // stresses are greatest at element ends, where stations lie; displacements at nodes, or a little beyond
-    EXPECT_NEAR(frame.legend.maximum, std::max(most, 1e-3f), 0.15 * frame.legend.maximum + 1e-6);
+    EXPECT_NEAR(frame.legend.maximum, end(most), 0.15 * frame.legend.maximum + 1e-6);
     settings.range = RangePolicy::fixed;
     settings.maximum = 7.5;
     EXPECT_EQ(legend(end_, settings).maximum, 7.5f);

@@ -169,6 +169,10 @@ TEST(Histories, follow_the_run_and_its_branches) {
   player.scrub(0.5);
   player.continue_from_here();
   ASSERT_TRUE(until([&] { return player.can_edit() && player.history().branches.size() == 2; }));
+  // As many instants as before, and other ones.
+  player.edit({Edit::Key::amplitude, 0, Vec3(100 * k_gal, 0, 0)});
+  player.play();
+  ASSERT_TRUE(until([&] { return player.status().kind == LiveStatus::Kind::over; }));
   expect_values();
 }
 
