@@ -226,7 +226,7 @@ class CommandLine {
         ->type_name("FACTOR");
     command.add_flag("--forces", render_.picture.contact_forces,
                      "arrows of what floors and walls do to bodies");
-    command.add_flag("!--no-panels", render_.picture.panels, "without the sheets of cabinets");
+    command.add_flag("--no-panels", no_panels_, "without the sheets of cabinets");
     command
         .add_option("--trails", trails_,
                     "second or run: paths of centres of gravity and tops of bodies since then")
@@ -258,6 +258,7 @@ class CommandLine {
     if (!factor || !(*factor >= 1 && *factor <= k_most_exaggeration))
       throw BadInput("--exaggerate: \"" + exaggerate_ + "\" is not a number from 1 to 200");
     picture.exaggeration = *factor;
+    picture.panels = !no_panels_;
     if (!trails_.empty() && trails_ != "second" && trails_ != "run")
       throw BadInput("--trails: \"" + trails_ + "\" is not one of second, run");
     picture.trails = trails_.empty() ? Trails::none : trails_ == "run" ? Trails::run : Trails::second;
@@ -439,6 +440,7 @@ class CommandLine {
   ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
   std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_;
+  bool no_panels_ = false;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;
   std::vector<std::string> scenes_, check_overrides_;
