@@ -55,6 +55,19 @@ void read_count(const std::string& text, int& count, std::string& spacing) {
 
 }  // namespace
 
+std::vector<double> Axis::edges() const {
+  const auto middle = [this](double a, double b) { return logarithmic ? std::sqrt(a * b) : (a + b) / 2; };
+  const auto mirrored = [this](double edge, double value) {
+    return logarithmic ? value * value / edge : 2 * value - edge;
+  };
+  std::vector<double> out;
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) out.push_back(middle(values[i], values[i + 1]));
+  const double first = mirrored(out.front(), values.front()), last = mirrored(out.back(), values.back());
+  out.insert(out.begin(), first);
+  out.push_back(last);
+  return out;
+}
+
 std::string Axis::change(int i) const {
   return fmt::format("{}={:.6g}{}{}", key, values[static_cast<std::size_t>(i)], unit.empty() ? "" : " ",
                      unit);

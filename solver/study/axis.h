@@ -27,6 +27,8 @@ struct Axis {
 
   int count() const { return static_cast<int>(values.size()); }
   double in_si(int i) const { return si * values[static_cast<std::size_t>(i)]; }
+  /// Ends of the cells around the values, one more than these.
+  std::vector<double> edges() const;
   /// "shake.1.frequency=0.5 Hz", as of --set.
   std::string change(int i) const;
 };

@@ -9,7 +9,7 @@
 namespace topple::study {
 namespace {
 
-constexpr int k_places = 96;         // of a curve
+constexpr int k_places = 60;         // of a curve
 constexpr double k_same = 1e-6;      // relative, of the two edges
 constexpr double k_least_w_p = 0.3;  // longer pulses are as good as steady
 
@@ -38,7 +38,7 @@ double circular_frequency(const Shake& shake, double x) {
 Criterion curve(const std::string& name, const std::string& label, const std::string& about, const Axis& x,
                 const Axis& y, const std::function<std::optional<double>(double x_si)>& amplitude) {
   Criterion out{name, label, about, {}, {}};
-  const double from = x.values.front(), to = x.values.back();
+  const double from = x.edges().front(), to = x.edges().back();
   for (int k = 0; k <= k_places; ++k) {
     const double part = static_cast<double>(k) / k_places;
     const double at = x.logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
@@ -88,8 +88,8 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
     return out;
   }
   const Standing& body = out.body;
-  out.list.push_back(
-      curve("west", "West", "lifts: a = g b/h", x, y, [&](double) { return west_acceleration(body); }));
+  out.list.push_back(curve("west", "West", "a = g b/h, above which it lifts", x, y,
+                           [&](double) { return west_acceleration(body); }));
   // greatest velocity of a floor that moves as the shake says; of a sine that of its steady motion
   const double swings = shake.kind == Shake::Kind::sine ? 1 : 2;
   const auto velocity_limit = [&](double x_si) {
@@ -99,8 +99,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   };
   out.list.push_back(
       curve("ishiyama", "Ishiyama",
-            "may overturn above both this floor velocity, v = 0.4 (8 g R (1 - cos α)/(3 cos^2 α))^{1/2}, "
-            "and West's acceleration",
+            "v = 0.4 (8 g R (1 - cos α)/(3 cos^2 α))^{1/2} of the floor; above it and West's it may overturn",
             x, y, velocity_limit));
   const double most = 4 * y.in_si(y.count() - 1) / body.gravity;
   const auto pulse = [&](bool half) {

@@ -11,9 +11,9 @@
 namespace topple::study {
 namespace {
 
-constexpr int k_height = 1010, k_single = 1260, k_double = 1880;  // px, sheets of one panel and of two
-constexpr int k_left = 104, k_bottom = 92, k_top = 246;           // around panels
-constexpr int k_map_right = 1070, k_second_left = 1340, k_second_right = 1846;
+constexpr int k_height = 1040, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
+constexpr int k_left = 104, k_bottom = 92, k_top = 276;           // around panels
+constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
 constexpr const char* k_grey = "textcolor rgb '#444444'";
 
 /// How a verdict is drawn: told apart in grey by luminance, and by marks.
@@ -35,27 +35,9 @@ constexpr const char* k_viridis =
 
 constexpr const char* k_dashes[] = {"1", "(14,6)", "(4,4)"};
 
-double middle(double a, double b, bool logarithmic) {
-  return logarithmic ? std::sqrt(a * b) : (a + b) / 2;
-}
-
-/// Ends of the cells, one more than values.
-std::vector<double> edges(const Axis& axis) {
-  const std::vector<double>& v = axis.values;
-  std::vector<double> out;
-  for (std::size_t i = 0; i + 1 < v.size(); ++i) out.push_back(middle(v[i], v[i + 1], axis.logarithmic));
-  const auto mirrored = [&](double edge, double value) {
-    return axis.logarithmic ? value * value / edge : 2 * value - edge;
-  };
-  const double first = mirrored(out.front(), v.front()), last = mirrored(out.back(), v.back());
-  out.insert(out.begin(), first);
-  out.push_back(last);
-  return out;
-}
-
 /// Range, scale and tics at 1, 2 and 5 of each decade where the axis is logarithmic.
 std::string scale(const char* which, const Axis& axis) {
-  const std::vector<double> ends = edges(axis);
+  const std::vector<double> ends = axis.edges();
   std::string out = fmt::format("set {}range [{:.9g}:{:.9g}]\n", which, ends.front(), ends.back());
   if (!axis.logarithmic)
     return out + fmt::format("unset logscale {0}\nset {0}tics autofreq nomirror\n", which);
@@ -82,7 +64,7 @@ struct Panel {
   const Axis *x_axis, *y_axis;
 
   static double part(const Axis& axis, double value) {
-    const std::vector<double> ends = edges(axis);
+    const std::vector<double> ends = axis.edges();
     return axis.logarithmic ? std::log(value / ends.front()) / std::log(ends.back() / ends.front())
                             : (value - ends.front()) / (ends.back() - ends.front());
   }
@@ -120,24 +102,31 @@ class Chart {
   }
 
   std::string header(const std::string& origin) const {
-    const std::string what = plan_.ensemble > 1 ? "How often a body overturns: " : "What overturns: ";
-    std::string title = what + plan_.scene.name;
-    std::string out = text(bold(plain(title), 1.5), k_left, k_height - 34);
+    const std::string what = plan_.ensemble > 1 ? "How often a body overturns in " : "What overturns in ";
+    std::string out = text(bold(plain(what + plan_.scene.name), 1.5), k_left, k_height - 34);
     const std::string grey = std::string("noenhanced ") + k_grey;
     out += text(plan_.scene.title, k_left, k_height - 74, grey);
-    std::string settings =
-        plan_.ensemble > 1
-            ? fmt::format("{} runs a point, amplitude of every shake times 1 ± {:g} at random (even). ",
-                          plan_.ensemble, plan_.spread)
-            : "One run a point. ";
-    settings += fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
+    std::string settings = fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
     for (const std::string& change : plan_.set) settings += ", " + change;
+    if (plan_.ensemble > 1)
+      settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
+                              1 - plan_.spread, 1 + plan_.spread);
     out += text(settings, k_left, k_height - 100, grey);
-    const std::string covered = map_.run == map_.of ? fmt::format("{} runs", map_.of)
-                                                    : fmt::format("{} of {} runs", map_.run, map_.of);
-    out += text(origin + ". " + covered, k_left, k_height - 126, grey);
+    out += text(origin + ". " + coverage(), k_left, k_height - 126, grey);
     out += plan_.ensemble > 1 ? marks_of_ensemble() : marks_of_verdicts();
     return out + criteria_in_words();
+  }
+
+  std::string coverage() const {
+    int least = plan_.ensemble, most = 0;
+    for (const OverturnPoint& p : map_.points) {
+      least = std::min(least, p.runs + p.failed);
+      most = std::max(most, p.runs + p.failed);
+    }
+    const std::string points = plan_.ensemble == 1 ? "one run a point"
+                               : least == most     ? fmt::format("{} runs a point", most)
+                                                   : fmt::format("{} to {} runs a point", least, most);
+    return map_.run == map_.of ? points : fmt::format("{} of {} runs, {}", map_.run, map_.of, points);
   }
 
   bool shows(Verdict verdict) const {
@@ -156,7 +145,7 @@ class Chart {
     return out + text(words, x + 34, y, "");
   }
 
-  static double width_of(const std::string& words) { return 60 + 8.6 * static_cast<double>(words.size()); }
+  static double width_of(const std::string& words) { return 64 + 9.2 * static_cast<double>(words.size()); }
 
   std::string marks_of_verdicts() const {
     std::string out;
@@ -195,25 +184,17 @@ class Chart {
   }
 
   std::string criteria_in_words() const {
-    const double y = k_height - 192;
-    const std::string grey = k_grey;
     if (!map_.criteria.why_not.empty())
-      return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, y, grey);
+      return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190, k_grey);
+    std::vector<std::string> lines{
+        fmt::format("Curves: rigid block as {}, b = {:.0f} mm, h = {:.0f} mm, that does not slip (friction "
+                    "of the scene: {:g})",
+                    plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base,
+                    1e3 * map_.criteria.body.height, plan_.scene.setup.parameters.contact.friction)};
+    for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
     std::string out;
-    std::vector<std::string> lines(2);
-    lines[0] = fmt::format("Rigid block of {}: b = {:.0f} mm, h = {:.0f} mm, friction {:g}. ",
-                           plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base,
-                           1e3 * map_.criteria.body.height, plan_.scene.setup.parameters.contact.friction);
-    for (std::size_t k = 0; k < map_.criteria.list.size(); ++k) {
-      const Criterion& c = map_.criteria.list[k];
-      lines[k == 1 ? 1 : (k == 0 ? 0 : 1)] += c.label + ": " + c.about + ". ";
-    }
-    if (map_.criteria.list.size() > 2) {
-      lines[0] += map_.criteria.list[2].label + ": " + map_.criteria.list[2].about + ". ";
-      lines[1] = map_.criteria.list[1].label + ": " + map_.criteria.list[1].about + ".";
-    }
     for (std::size_t k = 0; k < lines.size(); ++k)
-      out += text("{/*0.92 " + lines[k] + "}", k_left, y - 25 * static_cast<double>(k), grey);
+      out += text("{/*0.94 " + lines[k] + "}", k_left, k_height - 186 - 22 * static_cast<double>(k), k_grey);
     return out;
   }
 
@@ -224,7 +205,7 @@ class Chart {
   /// Cells of the points for which `wanted` gives a value.
   template <typename Wanted>
   std::string cells(const std::string& block, Wanted wanted) const {
-    const std::vector<double> x = edges(plan_.x), y = edges(plan_.y);
+    const std::vector<double> x = plan_.x.edges(), y = plan_.y.edges();
     std::string out = "$" + block + " << END\n";
     bool any = false;
     for (int j = 0; j < plan_.y.count(); ++j)
@@ -316,7 +297,7 @@ class Chart {
           std::string(k_viridis) +
           fmt::format(
               "set cbrange [0:1]\nset colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
-              "set cbtics 0.25\nset cblabel 'share of runs in which a body overturns'\n",
+              "set cbtics 0.25\nset cblabel 'share of runs in which a body overturns' offset 0.4,0\n",
               (k_map_right + 128.) / panel_.sheet.width, panel_.bottom / k_height, 22. / panel_.sheet.width,
               (panel_.top - panel_.bottom) / k_height);
     return out + "plot " + plot + "\nunset label\nunset arrow\nunset object\nunset colorbox\n";
@@ -324,8 +305,8 @@ class Chart {
 
   /// Beside the right edge where the curve leaves there, else above the panel.
   std::string end_label(const Criterion& c) const {
-    const double most_x = edges(plan_.x).back(), most_y = edges(plan_.y).back(),
-                 least_y = edges(plan_.y).front();
+    const double most_x = plan_.x.edges().back(), most_y = plan_.y.edges().back(),
+                 least_y = plan_.y.edges().front();
     for (std::size_t n = c.x.size(); n-- > 0;) {
       if (c.y[n] > most_y || c.y[n] < least_y) continue;
       if (n + 1 == c.x.size() && panel_.x(c.x[n]) > panel_.x(most_x) - 60)
@@ -353,7 +334,7 @@ class Chart {
 
   bool own_shown() const {
     const auto inside = [](const Axis& axis) {
-      return axis.own && *axis.own >= edges(axis).front() && *axis.own <= edges(axis).back();
+      return axis.own && *axis.own >= axis.edges().front() && *axis.own <= axis.edges().back();
     };
     return inside(plan_.x) && inside(plan_.y);
   }
@@ -389,9 +370,10 @@ class Chart {
         text(bold(plain(fmt::format("At {} = {}", other.key,
                                     valued(other, other.values[static_cast<std::size_t>(map_.own_column)]))),
                   1.08),
-             k_second_left, k_height - k_top + 66);
-    out += text(fit_in_words(at, along), k_second_left, k_height - k_top + 40, k_grey);
-    out += text("bars: 95 % intervals (Wilson)", k_second_left, k_height - k_top + 16, k_grey);
+             k_second_left, k_height - k_top + 70);
+    double y = k_height - k_top + 42;
+    for (const std::string& line : fit_in_words(at, along))
+      out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
     out += "$shares << END\n";
     for (const Level& level : levels(plan_, map_, map_.own_column)) {
       if (level.runs == 0) continue;
@@ -404,11 +386,13 @@ class Chart {
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
         "'#dddddd' lw 0.8\n";
     out += "set xlabel " + gnuplot_quoted(axis_title(along)) + " offset 0,0.2\n";
-    out += "set ylabel 'share of runs in which a body overturns' offset 1.4,0\nset border 3\n";
+    out +=
+        "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset 1.2,0\nset "
+        "border 3\n";
     std::string plot = "$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle";
     if (at.fit) {
       out += "$fit << END\n";
-      const std::vector<double> ends = edges(along);
+      const std::vector<double> ends = along.edges();
       for (int k = 0; k <= 200; ++k) {
         const double part = k / 200.;
         const double a = along.logarithmic ? ends.front() * std::pow(ends.back() / ends.front(), part)
@@ -421,11 +405,17 @@ class Chart {
     return out + "plot " + plot + "\n";
   }
 
-  static std::string fit_in_words(const Fragility& f, const Axis& along) {
-    if (!f.fit) return plain("No lognormal fits: " + f.why_not);
-    return fmt::format("lognormal: median {} ± {:.2g}, β = {:.3g} ± {:.2g}; deviance {:.3g} of {}",
-                       valued(along, f.fit->median), f.fit->median_error, f.fit->beta, f.fit->beta_error,
-                       f.fit->deviance, f.fit->freedom);
+  /// Two lines at most.
+  static std::vector<std::string> fit_in_words(const Fragility& f, const Axis& along) {
+    constexpr std::size_t k_line = 58;
+    if (f.fit)
+      return {fmt::format("lognormal: median {} ± {:.2g}, β = {:.3g} ± {:.2g}", valued(along, f.fit->median),
+                          f.fit->median_error, f.fit->beta, f.fit->beta_error),
+              fmt::format("deviance {:.3g} with {} degrees of freedom", f.fit->deviance, f.fit->freedom)};
+    const std::string words = plain("no lognormal: " + f.why_not);
+    const std::size_t blank = words.size() > k_line ? words.rfind(' ', k_line) : std::string::npos;
+    if (blank == std::string::npos) return {words};
+    return {words.substr(0, blank), words.substr(blank + 1)};
   }
 
   const OverturnPlan& plan_;

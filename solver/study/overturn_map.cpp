@@ -108,9 +108,12 @@ ordered_json settings_of(const OverturnPlan& plan) {
 }
 
 std::vector<int> case_order(const OverturnPlan& plan) {
+  const std::vector<int> points = coarse_to_fine(plan.x.count(), plan.y.count());
   std::vector<int> order;
-  for (const int point : coarse_to_fine(plan.x.count(), plan.y.count()))
-    for (int member = 0; member < plan.ensemble; ++member) order.push_back(point * plan.ensemble + member);
+  for (int from = 0, to = 1; from < plan.ensemble; from = to, to *= 4)
+    for (const int point : points)
+      for (int member = from; member < std::min(to, plan.ensemble); ++member)
+        order.push_back(point * plan.ensemble + member);
   return order;
 }
 

@@ -38,10 +38,11 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
 /// What rows depend on, for KeptRows.
 nlohmann::ordered_json settings_of(const OverturnPlan& plan);
 
-/// The order in which cases are begun: coarse points first (coarse_to_fine), all runs of one together.
+/// The order in which cases are begun: one run at each point, coarse points first (coarse_to_fine), then
+/// rounds over all points that come to 4, 16, 64 ... runs.
 std::vector<int> case_order(const OverturnPlan& plan);
 
-/// Runs cases one after another; the scene of a point is read once.
+/// Runs cases one after another; the scene of a point is read once for those that follow each other.
 class OverturnRunner {
  public:
   explicit OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {}

@@ -162,16 +162,22 @@ Standing towards(const Model& model, const Parameters& parameters, int index, co
   return out;
 }
 
+/// h, or less where the push has a kink at its end.
+double step_to(double end, double time, double h) {
+  constexpr double k_rounding = 1e-9;
+  return time < end - k_rounding * h && time + h > end ? end - time : h;
+}
+
 /// Least amplitude, over g, of a push one way that ends at `end` and overturns before the body falls back.
 /// push(amplitude, t) and its time of passing b/h, lifts(amplitude), in 1/p.
 template <typename Push, typename Lifts>
 double least_push(const Standing& body, double end, Push push, Lifts lifts) {
-  constexpr int k_steps = 4000;  // of the push
+  constexpr int k_steps = 400;  // of the push
   const double h = end / k_steps;
   const auto falls = [&](double amplitude) {
     Rocking rocking{body.critical(), 0, 0, lifts(amplitude)};
     while (true) {
-      rocking.advance(h, [&](double t) { return push(amplitude, t); });
+      rocking.advance(step_to(end, rocking.time, h), [&](double t) { return push(amplitude, t); });
       if (rocking.angle < 0 || (rocking.time >= end && rocking.rate < 0)) return false;
       if (rocking.time >= end && rocking.angle > rocking.critical) return true;
     }
@@ -289,8 +295,8 @@ double least_rectangle(const Standing& body, double length) {
 }
 
 std::optional<double> least_full_sine(const Standing& body, double ratio, double most) {
-  constexpr int k_steps = 800;  // of the pulse, or of 4/p where that is shorter
-  constexpr double k_apart = 1.01, k_still = 1e-6;
+  constexpr int k_steps = 200;  // of the pulse, or of 4/p where that is shorter
+  constexpr double k_near = 1.002, k_apart = 1.01, k_still = 1e-6;
   const double end = 2 * k_pi / ratio, h = std::min(end, 4.) / k_steps;
   const double kept = 1 - 2 * body.mass * body.base * body.base / body.inertia_of_edge;
   const auto falls = [&](double amplitude) {
@@ -305,16 +311,17 @@ std::optional<double> least_full_sine(const Standing& body, double ratio, double
       }
       if (rocking.angle == 0 && rocking.rate < k_still) {  // it stands until it is pushed enough
         if (push(rocking.time) < 0) side = -side;
-        if (push(rocking.time) <= body.rigid_limit()) {
+        if (push(rocking.time) < body.rigid_limit() * (1 - 1e-9)) {
           rocking.rate = 0;
           rocking.time += h;
           continue;
         }
       }
       const Rocking before = rocking;
-      rocking.advance(h, push);
+      const double step = step_to(end, rocking.time, h);
+      rocking.advance(step, push);
       if (rocking.angle >= 0) continue;
-      double low = 0, high = h;  // the landing lies between
+      double low = 0, high = step;  // the landing lies between
       while (high - low > 1e-12) {
         const double middle = (low + high) / 2;
         rocking = before;
@@ -327,11 +334,13 @@ std::optional<double> least_full_sine(const Standing& body, double ratio, double
     }
     return true;
   };
-  double high = body.rigid_limit() * (1 + 1e-9);
-  while (!falls(high))
-    if ((high *= k_apart) > most) return std::nullopt;
-  double low = high / k_apart;
-  while (high - low > 1e-7 * high) {
+  double low = body.rigid_limit(), high = low * (1 + 1e-9);
+  while (!falls(high)) {
+    low = high;
+    high *= high < 1.5 * body.rigid_limit() ? k_near : k_apart;  // slow pulses fall in narrow ranges
+    if (high > most) return std::nullopt;
+  }
+  while (high - low > 1e-6 * high) {
     const double middle = (low + high) / 2;
     (falls(middle) ? high : low) = middle;
   }
