@@ -11,8 +11,8 @@
 namespace topple::study {
 namespace {
 
-constexpr int k_height = 1040, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
-constexpr int k_left = 104, k_bottom = 92, k_top = 276;           // around panels
+constexpr int k_height = 1064, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
+constexpr int k_left = 104, k_bottom = 92, k_top = 300;           // around panels
 constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
 constexpr const char* k_grey = "textcolor rgb '#444444'";
 
@@ -186,11 +186,11 @@ class Chart {
   std::string criteria_in_words() const {
     if (!map_.criteria.why_not.empty())
       return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190, k_grey);
-    std::vector<std::string> lines{
-        fmt::format("Curves: rigid block as {}, b = {:.0f} mm, h = {:.0f} mm, that does not slip (friction "
-                    "of the scene: {:g})",
-                    plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base,
-                    1e3 * map_.criteria.body.height, plan_.scene.setup.parameters.contact.friction)};
+    std::vector<std::string> lines{fmt::format(
+        "Curves: a rigid block like {}, b = {:.0f} mm, h = {:.0f} mm, that does not slip (friction "
+        "of the scene: {:g})",
+        plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base, 1e3 * map_.criteria.body.height,
+        plan_.scene.setup.parameters.contact.friction)};
     for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
     std::string out;
     for (std::size_t k = 0; k < lines.size(); ++k)
@@ -366,11 +366,10 @@ class Chart {
     const Axis& along = map_.fragility_along_y ? plan_.y : plan_.x;
     const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
     const Fragility& at = map_.fragility[static_cast<std::size_t>(map_.own_column)];
-    out +=
-        text(bold(plain(fmt::format("At {} = {}", other.key,
-                                    valued(other, other.values[static_cast<std::size_t>(map_.own_column)]))),
-                  1.08),
-             k_second_left, k_height - k_top + 70);
+    std::string place = fmt::format("At {} = {}", other.key,
+                                    valued(other, other.values[static_cast<std::size_t>(map_.own_column)]));
+    if (other.own) place += fmt::format(", nearest to the scene's {:.4g}", *other.own);
+    out += text(bold(plain(place), 1.08), k_second_left, k_height - k_top + 70);
     double y = k_height - k_top + 42;
     for (const std::string& line : fit_in_words(at, along))
       out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
@@ -409,8 +408,8 @@ class Chart {
   static std::vector<std::string> fit_in_words(const Fragility& f, const Axis& along) {
     constexpr std::size_t k_line = 58;
     if (f.fit)
-      return {fmt::format("lognormal: median {} ± {:.2g}, β = {:.3g} ± {:.2g}", valued(along, f.fit->median),
-                          f.fit->median_error, f.fit->beta, f.fit->beta_error),
+      return {fmt::format("lognormal: median {:.4g} ± {:.2g} {}, β = {:.3g} ± {:.2g}", f.fit->median,
+                          f.fit->median_error, along.unit, f.fit->beta, f.fit->beta_error),
               fmt::format("deviance {:.3g} with {} degrees of freedom", f.fit->deviance, f.fit->freedom)};
     const std::string words = plain("no lognormal: " + f.why_not);
     const std::size_t blank = words.size() > k_line ? words.rfind(' ', k_line) : std::string::npos;
