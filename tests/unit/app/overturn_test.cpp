@@ -152,7 +152,7 @@ TEST_F(OverturnTest, a_run_that_diverges_is_a_row_and_the_sweep_goes_on) {
 }
 
 TEST_F(OverturnTest, a_full_disk_is_told_and_what_was_kept_can_be_resumed) {
-  const Ended ended = topple(call("out", {"--jobs", "1"}), {.most_bytes = 3500});
+  const Ended ended = topple(call("out", {"--jobs", "1"}), {.most_bytes = 2700});
   EXPECT_EQ(ended.code, 1);
   EXPECT_NE(ended.err.find("out/overturn.rows: cannot be written: "), std::string::npos) << ended.err;
   EXPECT_EQ(topple(call("out", {"--resume"})).code, 0);
