@@ -112,7 +112,7 @@ class Chart {
       settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
                               1 - plan_.spread, 1 + plan_.spread);
     out += text(settings, k_left, k_height - 100, grey);
-    out += text(origin + ". " + coverage(), k_left, k_height - 126, grey);
+    out += text(origin + ", " + coverage(), k_left, k_height - 126, grey);
     out += plan_.ensemble > 1 ? marks_of_ensemble() : marks_of_verdicts();
     return out + criteria_in_words();
   }
