@@ -45,7 +45,8 @@ namespace {
 
 constexpr const char* k_library = "libmpi.so.40";  // Open MPI 3.1 to 5
 
-/// Open MPI, loaded when it is needed: linked it would take as long as the rest of the program to start.
+/// Open MPI, loaded when it is needed: linked it would add a third to the time that every command takes to
+/// start.
 struct Mpi {
   void* library = load();
   decltype(&MPI_Init_thread) init = function<decltype(&MPI_Init_thread)>("MPI_Init_thread");
@@ -122,8 +123,7 @@ std::optional<std::string> Ranks::take(int from, int tag) {
 
 Ranks::Ranks() {
   throw BadInput(
-      "mpirun: this build of topple has no MPI, so that every process would do all the work; start it "
-      "without "
+      "mpirun: this build of topple has no MPI, and every process would do all the work; start it without "
       "mpirun (--jobs N), or install libopenmpi-dev and build it again");
 }
 Ranks::~Ranks() = default;

@@ -107,8 +107,4 @@ void KeptRows::add(int k, const std::string& row) {
   rows_[static_cast<std::size_t>(k)] = row;
 }
 
-void KeptRows::remove() {
-  unlink(path_.c_str());
-}
-
 }  // namespace topple::study

@@ -26,8 +26,6 @@ class KeptRows {
   int count() const;
   /// Throws std::runtime_error when the disk is full.
   void add(int k, const std::string& row);
-  /// There is nothing left to resume.
-  void remove();
 
  private:
   void read(const nlohmann::ordered_json& settings);

@@ -12,7 +12,7 @@ namespace topple::study {
 namespace {
 
 constexpr int k_height = 1064, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
-constexpr int k_left = 104, k_bottom = 92, k_top = 300;           // around panels
+constexpr int k_left = 112, k_bottom = 92, k_top = 300;           // around panels
 constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
 constexpr const char* k_grey = "textcolor rgb '#444444'";
 
@@ -291,7 +291,7 @@ class Chart {
     out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
     out += scale("x", plan_.x) + scale("y", plan_.y);
     out += "set xlabel " + gnuplot_quoted(axis_title(plan_.x)) + " offset 0,0.2\nset ylabel " +
-           gnuplot_quoted(axis_title(plan_.y)) + " offset 0.6,0\n";
+           gnuplot_quoted(axis_title(plan_.y)) + " offset 1.4,0\n";
     if (plan_.ensemble > 1)
       out +=
           std::string(k_viridis) +

@@ -57,7 +57,7 @@ class OverturnRunner {
   std::string trouble_;  ///< why there is no setup
 };
 
-/// Worst first among equals.
+/// From the worst to the best that is known.
 enum class Verdict { not_computed, failed, all, some, rocks, stands };
 /// "all overturn".
 const char* name(Verdict verdict);
