@@ -19,7 +19,8 @@ TEST(ForEachCase, each_is_worked_once_on_any_number_of_threads) {
     std::vector<std::atomic<int>> times(50);
     int last = 0;
     for_each_case(
-        50, jobs, [&](int k, int worker) {
+        50, jobs,
+        [&](int k, int worker) {
           EXPECT_LT(worker, jobs);
           ++times[static_cast<std::size_t>(k)];
         },
