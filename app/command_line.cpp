@@ -17,6 +17,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/ranks.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {
@@ -24,7 +25,7 @@ namespace {
 
 // Subcommands of the contract that this version does not have yet.
 constexpr std::string_view k_later[] = {"recover"};
-constexpr std::string_view k_later_studies[] = {"precision", "stability", "overturn"};
+constexpr std::string_view k_later_studies[] = {"precision", "stability"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 
 template <typename Number>
@@ -52,6 +53,24 @@ std::string rate(const std::string& text) {
 std::string job_count(const std::string& text) {
   const std::optional<int> value = whole_number<int>(text);
   return value && *value >= 1 && *value <= 256 ? "" : "\"" + text + "\" is not a whole number in 1..256";
+}
+
+std::string ensemble_size(const std::string& text) {
+  const std::optional<int> value = whole_number<int>(text);
+  return value && *value >= 2 && *value <= 10000 ? "" : "\"" + text + "\" is not a whole number in 2..10000";
+}
+
+/// "5%" or "0.05".
+std::optional<double> share_in(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  const std::optional<double> value = whole_number<double>(text);
+  const double share = value.value_or(0) / (percent ? 100 : 1);
+  return share > 0 && share < 1 ? std::optional(share) : std::nullopt;
+}
+
+std::string share(const std::string& text) {
+  return share_in(text) ? "" : "\"" + text + "\" is not between 0% and 100%";
 }
 
 std::string mode_count(const std::string& text) {
@@ -129,9 +148,6 @@ class CommandLine {
   }
   static void refuse(const std::string& option) {
     throw BadInput(option + ": not supported by this version");
-  }
-  static void add_later_flag(CLI::App& command, const char* name) {
-    command.add_flag_callback(name, [name] { refuse(name); })->group("");
   }
   static void add_later_option(CLI::App& command, const char* name) {
     command.add_option_function<std::string>(name, [name](const std::string&) { refuse(name); })->group("");
@@ -304,9 +320,10 @@ class CommandLine {
 
   void add_study() {
     CLI::App& command = add_command("study", "a family of runs as table and charts",
-                                    "study elements -o elements-study --jobs 1");
+                                    "study overturn paper-a -o overturn-study --ensemble 64 --spread 5%");
     command
         .add_option("KIND", kind_,
+                    "overturn: what overturns over two keys of a scene, such as frequency and amplitude; "
                     "elements: error of the three schemes against elements and CPU time; penalty: what the "
                     "contact law of a scene does, and the alpha to take")
         ->required()
@@ -317,30 +334,63 @@ class CommandLine {
         ->type_name("");
     add_path(command, "-o,--output", study_.folder, "DIR",
              "folder for KIND.csv, .json, .svg and .png (required)");
+    add_set(command, study_.overrides);
+    add_path(command, "--x", study_.x, "KEY=FROM..TO:N",
+             "overturn: N values of a key, log or lin behind N names the spacing (else log from a ratio of 5 "
+             "on); default frequency or duration of the first shake");
+    add_path(command, "--y", study_.y, "KEY=FROM..TO:N", "overturn: the same, default its amplitude");
+    CLI::Option* const ensemble =
+        command
+            .add_option("--ensemble", ensemble_,
+                        "overturn: runs a point, with amplitudes varied at random: probabilities and a "
+                        "fragility curve")
+            ->type_name("N")
+            ->check(ensemble_size, "", "count");
+    command.add_option("--spread", spread_, "of the amplitudes, default 5%")
+        ->type_name("PERCENT%")
+        ->check(share, "", "share")
+        ->needs(ensemble);
+    command.add_flag("--resume", study_.resume, "overturn: go on with the runs of one that was interrupted");
     command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
-    command.add_option("--jobs", jobs_, "runs at a time, default 1, at which CPU times are undisturbed")
+    command
+        .add_option("--jobs", jobs_,
+                    "runs at a time, of each rank under mpirun; default one per core, of elements and "
+                    "penalty 1, at which CPU times are undisturbed")
         ->type_name("N")
         ->check(job_count, "", "count");
     command.add_flag("--quiet", study_.quiet, "no progress");
-    for (const char* later : {"--x", "--y", "--ensemble", "--spread"}) add_later_option(command, later);
-    add_later_flag(command, "--resume");
     command.callback([this] {
       check_study();
-      study_.jobs = whole_number<int>(jobs_).value_or(study_.jobs);
-      action_ = [this] { return kind_ == "elements" ? elements_command(study_) : penalty_command(study_); };
+      study_.jobs = whole_number<int>(jobs_);
+      study_.ensemble = whole_number<int>(ensemble_).value_or(1);
+      study_.spread = ensemble_.empty() ? 0 : share_in(spread_).value();
+      action_ = [this] {
+        return kind_ == "elements"  ? elements_command(study_)
+               : kind_ == "penalty" ? penalty_command(study_)
+                                    : overturn_command(study_);
+      };
     });
   }
 
   void check_study() const {
     if (std::find(std::begin(k_later_studies), std::end(k_later_studies), kind_) != std::end(k_later_studies))
       refuse("study " + kind_);
-    const bool elements = kind_ == "elements";
-    if (!elements && kind_ != "penalty")
-      throw BadInput("\"" + kind_ + "\" is not a study; known: elements, penalty");
+    const bool elements = kind_ == "elements", overturn = kind_ == "overturn";
+    if (!elements && !overturn && kind_ != "penalty")
+      throw BadInput("\"" + kind_ + "\" is not a study; known: elements, overturn, penalty");
     if (elements && !study_.scene.empty())
       throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_.scene + "\")");
+    if (elements && !study_.overrides.empty())
+      throw BadInput("study elements: has no scene to --set a key of");
     if (!elements && study_.scene.empty())
       throw BadInput("study " + kind_ + ": SCENE is required (topple study --help)");
+    for (const auto& [name, given] :
+         {std::pair{"--x", !study_.x.empty()}, std::pair{"--y", !study_.y.empty()},
+          std::pair{"--ensemble", !ensemble_.empty()}, std::pair{"--resume", study_.resume}})
+      if (given && !overturn) throw BadInput(std::string(name) + ": not of study " + kind_);
+    if (!overturn && started_ranks() > 1)
+      throw BadInput("mpirun: study " + kind_ +
+                     " does not share its work among ranks; start it without mpirun");
     if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");
   }
 
@@ -450,7 +500,7 @@ class CommandLine {
   StudyOptions study_;
   CompareOptions compare_;
   ReportOptions report_;
-  std::string kind_, jobs_;
+  std::string kind_, jobs_, ensemble_, spread_ = "5%";
   std::string count_;
 };
 
@@ -469,7 +519,7 @@ int run_command_line(int argc, char** argv) {
     flush_results();
     return code;
   } catch (const BadInput& error) {
-    say(error.what());
+    if (started_rank() == 0) say(error.what());
     return k_bad_input;
   } catch (const io::InputError& error) {
     say(error.what());

@@ -80,16 +80,23 @@ struct VerifyOptions {
 int verify_command(const VerifyOptions& options);
 
 struct StudyOptions {
-  std::string scene;   ///< empty for studies that have scenes of their own
-  std::string folder;  ///< created when missing
-  int jobs = 1;        ///< runs at a time
-  bool quick = false;  ///< within a time budget
+  std::string scene;                   ///< empty for studies that have scenes of their own
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  std::string folder;                  ///< created when missing
+  std::optional<int> jobs;             ///< runs at a time; absent: 1 where CPU times count, else one per core
+  bool quick = false;                  ///< within a time budget
   bool quiet = false;
+  std::string x, y;     ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
+  int ensemble = 1;     ///< runs a point
+  double spread = 0;    ///< of the ensemble's input
+  bool resume = false;  ///< go on with the rows of a sweep that was interrupted
 };
 /// `topple study elements`: the element comparison.
 int elements_command(const StudyOptions& options);
 /// `topple study penalty`: penalty contact of a scene.
 int penalty_command(const StudyOptions& options);
+/// `topple study overturn`: who overturns over two keys.
+int overturn_command(const StudyOptions& options);
 
 struct CompareOptions {
   std::string a, b;  ///< scenes or recordings

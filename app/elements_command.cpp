@@ -31,7 +31,7 @@ ordered_json document(const study::ElementsStudy& results, const StudyOptions& o
       {"units", {{"error", "1, |computed - reference|/|reference|"}, {"cpu_s", "s"}, {"wall_s", "s"}}},
       {"machine", machine_json()},
       {"settings",
-       {{"jobs", options.jobs},
+       {{"jobs", options.jobs.value_or(1)},
         {"quick", options.quick},
         {"cpu_time",
          fmt::format("CPU time of the solving thread for one solution, without reading the scene; mean of "
@@ -72,11 +72,12 @@ int elements_command(const StudyOptions& options) {
   defer_interrupts();
   const auto start = Clock::now();
   std::optional<Progress> progress;
-  const study::ElementsStudy results = study::study_elements({.jobs = options.jobs}, [&](int done, int of) {
-    if (!progress) progress.emplace("study elements", "solutions", of, options.quiet);
-    progress->update(done);
-    return !interrupted() && !(options.quick && seconds_since(start) > k_quick);
-  });
+  const study::ElementsStudy results =
+      study::study_elements({.jobs = options.jobs.value_or(1)}, [&](int done, int of) {
+        if (!progress) progress.emplace("study elements", "solutions", of, options.quiet);
+        progress->update(done);
+        return !interrupted() && !(options.quick && seconds_since(start) > k_quick);
+      });
   progress.reset();
   if (interrupted()) {
     say("interrupted before every case had run");
@@ -84,7 +85,8 @@ int elements_command(const StudyOptions& options) {
   }
   const double wall_s = seconds_since(start);
   const ordered_json json = document(results, options, wall_s);
-  const std::string origin = fmt::format("{}; solutions at a time: {}", origin_text(), options.jobs);
+  const std::string origin =
+      fmt::format("{}; solutions at a time: {}", origin_text(), options.jobs.value_or(1));
   write_study(stem, json["rows"], json,
               [&](study::ChartFormat format) { return elements_chart(results, origin, format); });
   const char* const covered = !options.quick                 ? ""

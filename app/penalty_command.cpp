@@ -52,7 +52,7 @@ ordered_json document(const study::PenaltyStudy& results, const study::Advice& a
             {"wall_s", "s"}}},
           {"machine", machine_json()},
           {"settings",
-           {{"jobs", options.jobs},
+           {{"jobs", options.jobs.value_or(1)},
             {"quick", options.quick},
             {"contact", law_json(results.law)},
             {"time_step_s", results.time_step > 0 ? ordered_json(results.time_step) : ordered_json("auto")},
@@ -151,7 +151,7 @@ std::string advice_text(const study::Advice& advice) {
 }  // namespace
 
 int penalty_command(const StudyOptions& options) {
-  const io::Scene scene = io::load_scene(options.scene);
+  const io::Scene scene = io::load_scene(options.scene, options.overrides);
   if (const std::string why = study::why_not_studied(scene.setup); !why.empty())
     throw BadInput("study penalty: " + options.scene + " " + why);
   const std::string stem = place_for_results(options.folder, "penalty");
@@ -159,7 +159,7 @@ int penalty_command(const StudyOptions& options) {
   const auto start = Clock::now();
   std::optional<Progress> progress;
   const study::PenaltyStudy results = study::study_penalty(
-      scene.name, scene.title, scene.setup, {.jobs = options.jobs}, [&](int done, int of) {
+      scene.name, scene.title, scene.setup, {.jobs = options.jobs.value_or(1)}, [&](int done, int of) {
         if (!progress) progress.emplace("study penalty", "runs", of, options.quiet);
         progress->update(done);
         return !interrupted() && !(options.quick && seconds_since(start) > k_quick);

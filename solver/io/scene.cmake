@@ -34,6 +34,7 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_keys_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_number.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_reference.cpp

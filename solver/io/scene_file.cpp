@@ -60,4 +60,12 @@ ReadSceneFile builtin_files() {
   };
 }
 
+ReadSceneFile kept_files(const Scene& scene) {
+  return [&scene](const std::string& name) {
+    for (const SceneFile& file : scene.files)
+      if (file.name == name) return file.bytes;
+    throw InputError(name + ": is not among the files of the scene");
+  };
+}
+
 }  // namespace topple::io

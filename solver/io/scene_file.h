@@ -13,4 +13,7 @@ ReadSceneFile files_beside(const std::string& origin);
 /// Built-in records, else files in the working folder.
 ReadSceneFile builtin_files();
 
+/// Those that a scene keeps, which must outlive it.
+ReadSceneFile kept_files(const Scene& scene);
+
 }  // namespace topple::io

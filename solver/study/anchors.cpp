@@ -1,8 +1,7 @@
 #include "solver/study/anchors.h"
 
-#include <algorithm>
-
 #include "solver/io/scene_document.h"
+#include "solver/io/scene_file.h"
 
 namespace topple::study {
 namespace {
@@ -21,12 +20,7 @@ std::optional<io::Scene> without_anchors(const io::Scene& scene) {
   if (anchor_count(scene) == 0) return std::nullopt;
   io::Node root = io::parse_toml(scene.text, scene.name);
   std::erase_if(root.items, [](const io::Item& item) { return item.key == k_key; });
-  io::Scene rest = io::parse_scene(io::write_toml(root), scene.name, {}, [&](const std::string& name) {
-    const auto file =
-        std::find_if(scene.files.begin(), scene.files.end(), [&](const auto& f) { return f.name == name; });
-    if (file == scene.files.end()) throw io::InputError(name + ": is not among the files of the scene");
-    return file->bytes;
-  });
+  io::Scene rest = io::parse_scene(io::write_toml(root), scene.name, {}, io::kept_files(scene));
   rest.name = scene.name;
   return rest;
 }

@@ -192,7 +192,9 @@ ElementsStudy study_elements(const ElementsSettings& settings,
   study.of = static_cast<int>(solutions.size());
   for_each_case(
       study.of, settings.jobs,
-      [&](int k) { run_solution(study.benchmarks, settings.timed, solutions[static_cast<std::size_t>(k)]); },
+      [&](int k, int) {
+        run_solution(study.benchmarks, settings.timed, solutions[static_cast<std::size_t>(k)]);
+      },
       [&](int done) { return go_on(done, study.of); });
   for (std::size_t b = 0; b < study.benchmarks.size(); ++b)
     for (std::size_t k = 0; k < study.benchmarks[b].quantities.size(); ++k)

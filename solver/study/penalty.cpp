@@ -272,7 +272,7 @@ PenaltyStudy study_penalty(const std::string& name, const std::string& title, co
   study.of = static_cast<int>(runs.size());
   for_each_case(
       study.of, settings.jobs,
-      [&](int k) {
+      [&](int k, int) {
         Entry& entry = *runs[static_cast<std::size_t>(k)];
         const Trial trial = entry.trial();
         entry.row.computed = trial.value;

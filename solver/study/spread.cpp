@@ -36,7 +36,7 @@ std::vector<Trial> try_factors(const Setup& setup, const std::vector<double>& fa
   std::vector<Trial> trials(factors.size());
   for_each_case(
       static_cast<int>(factors.size()), jobs,
-      [&](int k) {
+      [&](int k, int) {
         Trial& trial = trials[static_cast<std::size_t>(k)];
         trial.factor = factors[static_cast<std::size_t>(k)];
         const Setup changed = shaken_by(setup, trial.factor);

@@ -11,6 +11,8 @@
 namespace topple::study {
 namespace {
 
+constexpr double k_across = 1 - 1e-6;  // cosine, of an edge that lies across a direction
+
 /// What the floor does when the body is `sunk` deeper than in the reference pose and leans by theta.
 struct Support {
   double force = 0, moment = 0, stiffness = 0;  ///< N, N m about the centre of gravity, N/m
@@ -117,33 +119,32 @@ struct Rocking {
   }
 };
 
-}  // namespace
+/// An edge of the base.
+struct Edge {
+  Vec3 outward;     // unit, horizontal
+  double distance;  // m, from the centre of gravity
+};
 
-double Standing::critical() const {
-  return std::atan2(base, height);
-}
-
-double Standing::p() const {
-  return std::sqrt(weight() * std::hypot(base, height) / inertia_of_edge);
-}
-
-Standing standing(const Model& model, const Parameters& parameters, int index) {
-  const Body& body = model.bodies[index];
-  const Plane floor = floor_of(model).value();
-  const Vec3 centre = body.centre_of_gravity;
-  Standing out;
-  out.base = std::numeric_limits<double>::infinity();
+std::vector<Edge> edges_of(const Body& body) {
+  std::vector<Edge> edges;
   const std::vector<Vec3>& corners = body.support_polygon;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3 edge = corners[(i + 1) % corners.size()] - corners[i];
     const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
-    const double distance = outward.dot(corners[i] - centre);
-    if (distance > out.base * (1 - 1e-9)) continue;
-    out.base = distance;
-    out.direction = outward;
+    edges.push_back({outward, outward.dot(corners[i] - body.centre_of_gravity)});
   }
+  return edges;
+}
+
+Standing towards(const Model& model, const Parameters& parameters, int index, const Edge& edge) {
+  const Body& body = model.bodies[index];
+  const Plane floor = floor_of(model).value();
+  const Vec3 centre = body.centre_of_gravity;
+  Standing out;
+  out.base = edge.distance;
+  out.direction = edge.outward;
   out.edge = centre + out.base * out.direction;
-  out.edge.z() = corners.front().z();
+  out.edge.z() = body.support_polygon.front().z();
   out.mass = body.mass;
   out.gravity = parameters.gravity.norm();
   out.height = centre.z() - out.edge.z();
@@ -159,6 +160,60 @@ Standing standing(const Model& model, const Parameters& parameters, int index) {
         {out.direction.dot(place - centre), axis.dot(place - centre), (contact.width + width) / 2, -gap});
   }
   return out;
+}
+
+/// h, or less where the push has a kink at its end.
+double step_to(double end, double time, double h) {
+  constexpr double k_rounding = 1e-9;
+  return time < end - k_rounding * h && time + h > end ? end - time : h;
+}
+
+/// Least amplitude, over g, of a push one way that ends at `end` and overturns before the body falls back.
+/// push(amplitude, t) and its time of passing b/h, lifts(amplitude), in 1/p.
+template <typename Push, typename Lifts>
+double least_push(const Standing& body, double end, Push push, Lifts lifts) {
+  constexpr int k_steps = 400;  // of the push
+  const double h = end / k_steps;
+  const auto falls = [&](double amplitude) {
+    Rocking rocking{body.critical(), 0, 0, lifts(amplitude)};
+    while (true) {
+      rocking.advance(step_to(end, rocking.time, h), [&](double t) { return push(amplitude, t); });
+      if (rocking.angle < 0 || (rocking.time >= end && rocking.rate < 0)) return false;
+      if (rocking.time >= end && rocking.angle > rocking.critical) return true;
+    }
+  };
+  double low = body.rigid_limit() * (1 + 1e-9), high = 2 * low;
+  while (!falls(high)) high *= 2;
+  while (high - low > 1e-8 * high) {
+    const double middle = (low + high) / 2;
+    (falls(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+double Standing::critical() const {
+  return std::atan2(base, height);
+}
+
+double Standing::p() const {
+  return std::sqrt(weight() * std::hypot(base, height) / inertia_of_edge);
+}
+
+Standing standing(const Model& model, const Parameters& parameters, int body) {
+  const std::vector<Edge> edges = edges_of(model.bodies[body]);
+  return towards(model, parameters, body,
+                 *std::ranges::min_element(edges, [](const Edge& one, const Edge& other) {
+                   return one.distance < other.distance * (1 - 1e-9);
+                 }));
+}
+
+std::optional<Standing> standing_towards(const Model& model, const Parameters& parameters, int body,
+                                         const Vec3& direction) {
+  for (const Edge& edge : edges_of(model.bodies[body]))
+    if (edge.outward.dot(direction) > k_across) return towards(model, parameters, body, edge);
+  return std::nullopt;
 }
 
 double rest_depth(const Standing& body, const ContactLaw& law) {
@@ -227,21 +282,65 @@ double fall_back_time(const Standing& body) {
 }
 
 double least_half_sine(const Standing& body, double ratio) {
-  constexpr int k_steps = 4000;  // of the pulse
-  const double end = k_pi / ratio, h = end / k_steps;
+  const double end = k_pi / ratio;
+  return least_push(
+      body, end, [&](double amplitude, double t) { return t < end ? amplitude * std::sin(ratio * t) : 0; },
+      [&](double amplitude) { return std::asin(body.rigid_limit() / amplitude) / ratio; });
+}
+
+double least_rectangle(const Standing& body, double length) {
+  return least_push(
+      body, length, [&](double amplitude, double t) { return t < length ? amplitude : 0; },
+      [](double) { return 0.; });
+}
+
+std::optional<double> least_full_sine(const Standing& body, double ratio, double most) {
+  constexpr int k_steps = 200;  // of the pulse, or of 4/p where that is shorter
+  constexpr double k_near = 1.002, k_apart = 1.01, k_still = 1e-6;
+  const double end = 2 * k_pi / ratio, h = std::min(end, 4.) / k_steps;
+  const double kept = 1 - 2 * body.mass * body.base * body.base / body.inertia_of_edge;
   const auto falls = [&](double amplitude) {
-    // it starts to rock when the pulse passes b/h
     Rocking rocking{body.critical(), 0, 0, std::asin(body.rigid_limit() / amplitude) / ratio};
-    const auto push = [&](double t) { return t < end ? amplitude * std::sin(ratio * t) : 0; };
-    while (true) {
-      rocking.advance(h, push);
-      if (rocking.angle < 0 || (rocking.time >= end && rocking.rate < 0)) return false;
-      if (rocking.time >= end && rocking.angle > rocking.critical) return true;
+    double side = 1;
+    const auto push = [&](double t) { return t < end ? side * amplitude * std::sin(ratio * t) : 0; };
+    while (rocking.angle < k_pi / 2) {
+      if (rocking.time >= end) {
+        if (rocking.angle > rocking.critical) return true;
+        // what is below the energy of standing on the edge stays there
+        if (rocking.rate * rocking.rate / 2 + std::cos(rocking.critical - rocking.angle) < 1) return false;
+      }
+      if (rocking.angle == 0 && rocking.rate < k_still) {  // it stands until it is pushed enough
+        if (push(rocking.time) < 0) side = -side;
+        if (push(rocking.time) < body.rigid_limit() * (1 - 1e-9)) {
+          rocking.rate = 0;
+          rocking.time += h;
+          continue;
+        }
+      }
+      const Rocking before = rocking;
+      const double step = step_to(end, rocking.time, h);
+      rocking.advance(step, push);
+      if (rocking.angle >= 0) continue;
+      double low = 0, high = step;  // the landing lies between
+      while (high - low > 1e-12) {
+        const double middle = (low + high) / 2;
+        rocking = before;
+        rocking.advance(middle, push);
+        (rocking.angle < 0 ? high : low) = middle;
+      }
+      rocking.angle = 0;
+      rocking.rate *= -kept;
+      side = -side;
     }
+    return true;
   };
-  double low = body.rigid_limit() * (1 + 1e-9), high = 2 * low;
-  while (!falls(high)) high *= 2;
-  while (high - low > 1e-8 * high) {
+  double low = body.rigid_limit(), high = low * (1 + 1e-9);
+  while (!falls(high)) {
+    low = high;
+    high *= high < 1.5 * body.rigid_limit() ? k_near : k_apart;  // slow pulses fall in narrow ranges
+    if (high > most) return std::nullopt;
+  }
+  while (high - low > 1e-6 * high) {
     const double middle = (low + high) / 2;
     (falls(middle) ? high : low) = middle;
   }

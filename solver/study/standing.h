@@ -1,6 +1,7 @@
 // What theory says of a rigid body that stands on penalty contacts.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solver/model.h"
@@ -30,6 +31,10 @@ struct Standing {
 
 /// The body must stand freely (alone.h).
 Standing standing(const Model& model, const Parameters& parameters, int body);
+
+/// The same pushed towards the edge that lies across `direction`, unit; none: no edge does.
+std::optional<Standing> standing_towards(const Model& model, const Parameters& parameters, int body,
+                                         const Vec3& direction);
 
 /// Depth 1 - l/L of the deepest contact at rest. n like contacts evenly around the centre of gravity:
 ///   (W/(n alpha))^(1/q)
@@ -63,5 +68,14 @@ double fall_back_time(const Standing& body);
 /// rigid contact before it falls back:
 ///   th'' = p^2 (-sin(critical - th) + a/g cos(critical - th))
 double least_half_sine(const Standing& body, double ratio);
+
+/// The same of a constant push for `length`/p.
+double least_rectangle(const Standing& body, double length);
+
+/// The same of a whole sine, as far as `most`; none: that does not overturn it. A body that falls back lands
+/// on its other edge, as far off, after Housner (1963): th' -> (1 - 2 m b^2/I) th', I about the edge. The
+/// amplitudes tried are 0.2 % apart, from 1.5 b/h on 1 %, then halved: more than the least may leave the body
+/// standing again.
+std::optional<double> least_full_sine(const Standing& body, double ratio, double most);
 
 }  // namespace topple::study

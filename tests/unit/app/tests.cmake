@@ -9,6 +9,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/overturn_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report_test.cpp

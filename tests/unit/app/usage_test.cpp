@@ -76,16 +76,10 @@ TEST_F(UsageTest, empty_names_are_refused) {
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
   expect_one_line({"recover"}, 2, "recover: not supported by this version");
   expect_one_line({"recover", "s.toml", "-o", "out"}, 2, "recover: not supported by this version");
-  for (const char* kind : {"precision", "stability", "overturn"}) {
+  for (const char* kind : {"precision", "stability"}) {
     const std::string refusal = std::string("study ") + kind + ": not supported by this version";
     expect_one_line({"study", kind}, 2, refusal);
     expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
-  }
-  for (const char* kind : {"elements", "penalty"}) {
-    for (const char* option : {"--x", "--y", "--ensemble", "--spread"})
-      expect_one_line({"study", kind, "-o", "out", option, "1"}, 2,
-                      std::string(option) + ": not supported by this version");
-    expect_one_line({"study", kind, "-o", "out", "--resume"}, 2, "--resume: not supported by this version");
   }
   expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
@@ -95,13 +89,40 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study"}, 2, "KIND is required");
   expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
-  expect_one_line({"study", "frob", "-o", "out"}, 2, "\"frob\" is not a study; known: elements, penalty");
+  expect_one_line({"study", "frob", "-o", "out"}, 2,
+                  "\"frob\" is not a study; known: elements, overturn, penalty");
   expect_one_line({"study", "penalty", "-o", "out"}, 2,
                   "study penalty: SCENE is required (topple study --help)");
   expect_one_line({"study", "penalty", "paper-a"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "s.toml", "-o", "out"}, 2,
                   "study elements: has scenes of its own and takes none (found \"s.toml\")");
-  expect_one_line({"study", "elements", "-o", "out", "--set", "run.elements=asi"}, 2, "not expected: ");
+  expect_one_line({"study", "elements", "-o", "out", "--set", "run.elements=asi"}, 2,
+                  "study elements: has no scene to --set a key of");
+  expect_one_line({"study", "overturn", "-o", "out"}, 2, "study overturn: SCENE is required");
+  for (const char* kind : {"elements", "penalty"}) {
+    std::vector<std::string> call{"study", kind};
+    if (kind == std::string("penalty")) call.push_back("paper-a");
+    call.insert(call.end(), {"-o", "out"});
+    const auto refused = [&](const std::vector<std::string>& options) {
+      std::vector<std::string> whole = call;
+      whole.insert(whole.end(), options.begin(), options.end());
+      expect_one_line(whole, 2, options[0] + ": not of study " + kind);
+    };
+    refused({"--x", "contact.friction=0..1:2"});
+    refused({"--y", "contact.friction=0..1:2"});
+    refused({"--ensemble", "4"});
+    refused({"--resume"});
+  }
+  for (const char* size : {"1", "x", "10001"})
+    expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--ensemble", size}, 2,
+                    "--ensemble: \"" + std::string(size) + "\" is not a whole number in 2..10000");
+  for (const char* spread : {"0", "100%", "5 %", "x"})
+    expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--ensemble", "4", "--spread", spread}, 2,
+                    "--spread: \"" + std::string(spread) + "\" is not between 0% and 100%");
+  expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--spread", "5%"}, 2,
+                  "--spread requires --ensemble");
+  expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--x", "contact.friction=0..2:3"}, 2,
+                  "--x contact.friction: 2 is outside 0..1.5");
   for (const char* jobs : {"", "0", "-1", "257", "two", "1.5"})
     expect_one_line({"study", "elements", "-o", "out", "--jobs", jobs}, 2,
                     "--jobs: \"" + std::string(jobs) + "\" is not a whole number in 1..256");

@@ -19,7 +19,11 @@ TEST(ForEachCase, each_is_worked_once_on_any_number_of_threads) {
     std::vector<std::atomic<int>> times(50);
     int last = 0;
     for_each_case(
-        50, jobs, [&](int k) { ++times[static_cast<std::size_t>(k)]; },
+        50, jobs,
+        [&](int k, int worker) {
+          EXPECT_LT(worker, jobs);
+          ++times[static_cast<std::size_t>(k)];
+        },
         [&](int done) {
           EXPECT_EQ(done, ++last);
           return true;
@@ -32,13 +36,13 @@ TEST(ForEachCase, each_is_worked_once_on_any_number_of_threads) {
 TEST(ForEachCase, none_is_begun_after_a_no) {
   std::atomic<int> begun = 0;
   for_each_case(
-      100, 1, [&](int) { ++begun; }, [](int done) { return done < 3; });
+      100, 1, [&](int, int) { ++begun; }, [](int done) { return done < 3; });
   EXPECT_EQ(begun, 3);
 }
 
 TEST(ForEachCase, the_first_error_is_thrown_when_all_have_ended) {
   std::atomic<int> ended = 0;
-  const auto work = [&](int k) {
+  const auto work = [&](int k, int) {
     if (k == 3 || k == 17) throw std::runtime_error("case " + std::to_string(k));
     ++ended;
   };

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "app/interrupt.h"
+#include "app/log.h"
+#include "app/study_results.h"
+#include "app/sweep.h"
+#include "solver/study/overturn_chart.h"
+#include "solver/study/overturn_map.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+MakeWork work_on(const study::OverturnPlan& plan) {
+  return [&plan] {
+    return [runner = study::OverturnRunner(plan)](int k, const std::function<bool()>& give_up) mutable {
+      return runner.run(k, give_up);
+    };
+  };
+}
+
+/// The scene as other ranks are told it: name, text, then name and bytes of each file.
+std::vector<std::string> told(const io::Scene& scene) {
+  std::vector<std::string> parts{scene.name, scene.text};
+  for (const io::SceneFile& file : scene.files) parts.insert(parts.end(), {file.name, file.bytes});
+  return parts;
+}
+
+io::Scene scene_from(const std::vector<std::string>& told) {
+  const auto read = [&told](const std::string& name) {
+    for (std::size_t k = 2; k + 1 < told.size(); k += 2)
+      if (told[k] == name) return told[k + 1];
+    throw io::InputError(name + ": is not among the files of the scene");
+  };
+  io::Scene scene = io::parse_scene(told[1], told[0], {}, read);
+  scene.name = told[0];
+  return scene;
+}
+
+study::OverturnPlan plan_of(const StudyOptions& options, io::Scene scene) {
+  return study::plan_overturn(std::move(scene), options.x, options.y, options.ensemble, options.spread);
+}
+
+ordered_json document(const study::OverturnPlan& plan, const study::OverturnMap& map, const Crew& crew,
+                      const StudyOptions& options, double wall_s) {
+  double cpu = 0;
+  for (const study::OverturnPoint& point : map.points) cpu += point.cpu;
+  ordered_json json{
+      {"topple", TOPPLE_VERSION},
+      {"schema", 1},
+      {"study", "overturn"},
+      {"scene", plan.scene.name},
+      {"title", "What overturns in " + plan.scene.name + " over " + plan.x.key + " and " + plan.y.key},
+      {"scene_title", plan.scene.title},
+      {"units",
+       {{"x", plan.x.unit},
+        {"y", plan.y.unit},
+        {"probability", "1, of runs in which a body overturns; low, high: 95 % by Wilson's score"},
+        {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},
+        {"cpu_s", "s, of the solving thread, the scene's reading included"},
+        {"wall_s", "s"}}},
+      {"machine", machine_json()},
+      {"settings",
+       {{"jobs", crew.jobs()},
+        {"ranks", crew.ranks()},
+        {"quick", options.quick},
+        {"ensemble", plan.ensemble},
+        {"spread", plan.spread},
+        {"perturbation", plan.ensemble > 1 ? ordered_json("amplitude of every shake times a factor within "
+                                                          "1 -+ spread, even, from point and member")
+                                           : ordered_json(nullptr)},
+        {"duration_s", plan.scene.setup.run.duration},
+        {"set", plan.set}}},
+      {"run", map.run},
+      {"of", map.of},
+      {"wall_s", wall_s},
+      {"cpu_s", cpu}};
+  json.update(map_as_json(plan, map));
+  json["rows"] = rows_as_json(plan, map);
+  return json;
+}
+
+/// A letter a point, the greatest y on top; of ensembles tenths of the runs in which a body overturns.
+std::string picture(const study::OverturnPlan& plan, const study::OverturnMap& map) {
+  constexpr int k_widest = 80;
+  constexpr const char* k_letters = " !X/o.";  // by verdict
+  if (plan.x.count() > k_widest) return "";
+  std::string text;
+  for (int j = plan.y.count(); j-- > 0;) {
+    text += fmt::format("{:>12.5g} ", plan.y.values[static_cast<std::size_t>(j)]);
+    for (int i = 0; i < plan.x.count(); ++i) {
+      const study::OverturnPoint& point = map.points[static_cast<std::size_t>(j * plan.x.count() + i)];
+      const std::optional<double> share = point.probability();
+      text += plan.ensemble > 1 && share
+                  ? (*share == 1 ? 'X' : static_cast<char>('0' + static_cast<int>(*share * 10)))
+                  : k_letters[static_cast<int>(point.verdict)];
+    }
+    text += '\n';
+  }
+  text += fmt::format("{:>12} {:.5g} .. {:.5g} {}, {}\n", plan.y.unit, plan.x.values.front(),
+                      plan.x.values.back(), plan.x.unit, plan.x.key);
+  return text + (plan.ensemble > 1
+                     ? "0-9: tenths of the runs in which a body overturns, X: all, !: all failed\n"
+                     : ". stands, o rocks, / some overturn, X all overturn, ! failed\n");
+}
+
+std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnMap& map) {
+  if (plan.ensemble == 1 || map.fragility.empty()) return "";
+  const study::Axis& along = map.fragility_along_y ? plan.y : plan.x;
+  const study::Axis& other = map.fragility_along_y ? plan.x : plan.y;
+  const study::Fragility& at = map.fragility[static_cast<std::size_t>(map.own_column)];
+  const std::string where = fmt::format("fragility at {} = {:.5g} {}: ", other.key,
+                                        other.values[static_cast<std::size_t>(map.own_column)], other.unit);
+  if (!at.fit) return where + "none, " + at.why_not + "\n";
+  return where + fmt::format("median {:.4g} +- {:.2g} {}, beta {:.3g} +- {:.2g}\n", at.fit->median,
+                             at.fit->median_error, along.unit, at.fit->beta, at.fit->beta_error);
+}
+
+}  // namespace
+
+int overturn_command(const StudyOptions& options) {
+  Crew crew(options.jobs);
+  defer_interrupts();
+  if (!crew.leads()) {
+    if (const auto heard = crew.listen()) {
+      const study::OverturnPlan plan = plan_of(options, scene_from(*heard));
+      crew.serve(work_on(plan));
+    }
+    return k_done;
+  }
+  const study::OverturnPlan plan = plan_of(options, io::load_scene(options.scene, options.overrides));
+  const std::string stem = place_for_results(options.folder, "overturn"), rows_file = stem + ".rows";
+  const auto start = Clock::now();
+  ordered_json settings = settings_of(plan);
+  settings["topple"] = TOPPLE_VERSION;
+  const SweepEnd end = sweep(crew,
+                             {.name = "study overturn",
+                              .file = rows_file,
+                              .settings = settings,
+                              .order = case_order(plan),
+                              .told = told(plan.scene),
+                              .make = work_on(plan)},
+                             options);
+  if (interrupted()) {
+    say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
+                    plan.cases(), rows_file));
+    return k_interrupted;
+  }
+  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const study::OverturnMap map = gather(plan, end.rows);
+  const ordered_json json = document(plan, map, crew, options, wall_s);
+  write_study(stem, json["rows"], json,
+              [&](study::ChartFormat format) { return overturn_chart(plan, map, origin_text(), format); });
+  if (end.complete()) std::filesystem::remove(rows_file);
+  const int now = end.run - end.kept;
+  fmt::print(
+      "{}{}{} of {} runs{} in {:.1f} s, {:.3g} runs/s, {:.3g} ms CPU time a run{}\n{}.csv, .json, .svg, "
+      ".png\n",
+      picture(plan, map), fit_in_words(plan, map), end.run, plan.cases(),
+      end.kept > 0 ? fmt::format(" ({} from before)", end.kept) : "", wall_s, now / wall_s,
+      1e3 * json["cpu_s"].get<double>() / std::max(1, end.run),
+      !options.quick   ? ""
+      : end.complete() ? ": --quick left nothing out"
+                       : fmt::format("; --quick left out the finest, --resume goes on from {}", rows_file),
+      stem);
+  return k_done;
+}
+
+}  // namespace topple::app

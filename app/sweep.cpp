@@ -1,0 +1,132 @@
+#include "app/sweep.h"
+
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/ranks.h"
+#include "app/study_results.h"
+#include "solver/study/kept_rows.h"
+#include "solver/study/measure.h"
+#include "solver/study/parallel.h"
+
+namespace topple::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int k_common = 0;  // tag of what is for a rank; 1 and on: its workers
+constexpr const char* k_end = "end";
+
+}  // namespace
+
+Crew::Crew(std::optional<int> jobs) : jobs_(jobs.value_or(study::core_count())) {
+  if (started_ranks() > 1) ranks_ = std::make_unique<Ranks>();
+}
+
+Crew::~Crew() {
+  if (!ranks_ || !leads()) return;
+  if (!told_)
+    for (int rank = 1; rank < ranks(); ++rank) {
+      ranks_->wait(rank, k_common);
+      ranks_->send(rank, k_common, "0");
+    }
+  for (const Remote& worker : remote_) ranks_->send(worker.rank, worker.tag, k_end);
+  for (const Remote& worker : remote_)
+    while (ranks_->wait(worker.rank, worker.tag) != k_end) {  // a row that nobody waited for
+    }
+}
+
+bool Crew::leads() const {
+  return !ranks_ || ranks_->rank() == 0;
+}
+
+int Crew::ranks() const {
+  return ranks_ ? ranks_->count() : 1;
+}
+
+int Crew::gather_workers(const std::vector<std::string>& told) {
+  told_ = true;
+  for (int rank = 1; rank < ranks(); ++rank) {
+    const int workers = std::stoi(ranks_->wait(rank, k_common));
+    for (int worker = 1; worker <= workers; ++worker) remote_.push_back({rank, worker});
+    ranks_->send(rank, k_common, std::to_string(told.size()));
+    for (const std::string& part : told) ranks_->send(rank, k_common, part);
+  }
+  return jobs_ + static_cast<int>(remote_.size());
+}
+
+std::optional<std::vector<std::string>> Crew::listen() {
+  ranks_->send(0, k_common, std::to_string(jobs_));
+  std::vector<std::string> told(std::stoul(ranks_->wait(0, k_common)));
+  for (std::string& part : told) part = ranks_->wait(0, k_common);
+  return told.empty() ? std::nullopt : std::optional(std::move(told));
+}
+
+void Crew::serve(const MakeWork& make) {
+  std::vector<std::jthread> threads;
+  for (int worker = 1; worker <= jobs_; ++worker)
+    threads.emplace_back([this, worker, work = make()] {
+      for (std::string task; (task = ranks_->wait(0, worker)) != k_end;)
+        ranks_->send(0, worker, work(std::stoi(task), interrupted));
+      ranks_->send(0, worker, k_end);
+    });
+}
+
+CaseWork Crew::work_of(int worker, const MakeWork& make) {
+  if (worker < jobs_) return make();
+  return [this, remote = remote_[static_cast<std::size_t>(worker - jobs_)]](
+             int k, const std::function<bool()>& give_up) -> std::string {
+    ranks_->send(remote.rank, remote.tag, std::to_string(k));
+    for (; !give_up(); std::this_thread::sleep_for(std::chrono::microseconds(200)))
+      if (std::optional<std::string> row = ranks_->take(remote.rank, remote.tag)) return *std::move(row);
+    return "";
+  };
+}
+
+SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
+  const auto start = Clock::now();
+  const auto in_time = [&] {
+    return !options.quick || std::chrono::duration<double>(Clock::now() - start).count() < k_quick;
+  };
+  study::KeptRows kept(plan.file, plan.settings, static_cast<int>(plan.order.size()), options.resume);
+  std::vector<int> left;
+  for (const int k : plan.order)
+    if (kept.rows()[static_cast<std::size_t>(k)].empty()) left.push_back(k);
+  SweepEnd end{.rows = {}, .kept = kept.count()};
+  if (!left.empty()) {
+    const int workers = crew.gather_workers(plan.told);
+    std::vector<CaseWork> works;
+    for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
+    Progress progress(plan.name, "runs", static_cast<double>(left.size()), options.quiet);
+    std::mutex keeping;
+    std::exception_ptr trouble;
+    study::for_each_case(
+        static_cast<int>(left.size()), workers,
+        [&](int n, int worker) {
+          const int k = left[static_cast<std::size_t>(n)];
+          const std::string row = works[static_cast<std::size_t>(worker)](k, interrupted);
+          if (row.empty()) return;
+          const std::scoped_lock lock(keeping);
+          try {
+            if (!trouble) kept.add(k, row);
+          } catch (...) {
+            trouble = std::current_exception();
+          }
+        },
+        [&](int done) {
+          progress.update(done);
+          const std::scoped_lock lock(keeping);
+          return !interrupted() && in_time() && !trouble;
+        });
+    if (trouble) std::rethrow_exception(trouble);
+  }
+  end.rows = kept.rows();
+  end.run = kept.count();
+  return end;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,74 @@
+// Sweeps of studies: their cases on threads and, under mpirun, on other ranks; rows kept while they come.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+
+namespace topple::app {
+
+class Ranks;
+
+/// Works out one case: its row, JSON in one line; empty when give_up() came true. One worker's calls do not
+/// overlap.
+using CaseWork = std::function<std::string(int k, const std::function<bool()>& give_up)>;
+/// Makes what one worker has for itself.
+using MakeWork = std::function<CaseWork()>;
+
+/// The workers of a sweep: threads of this process, and under mpirun those of the other ranks, to which rank
+/// 0 hands out cases. They need nothing but the same command line: rank 0 tells them the rest.
+class Crew {
+ public:
+  /// `jobs`: threads of this process; absent: one per core that it may run on. Under mpirun joins the other
+  /// ranks; throws BadInput where it cannot.
+  explicit Crew(std::optional<int> jobs);
+  /// Rank 0 lets the others go.
+  ~Crew();
+
+  bool leads() const;
+  int ranks() const;
+  int jobs() const { return jobs_; }
+  /// Rank 0, once: what the others listen for. Returns the number of workers.
+  int gather_workers(const std::vector<std::string>& told);
+  /// The others: none when rank 0 has no work.
+  std::optional<std::vector<std::string>> listen();
+  /// The others: works until rank 0 says that it was all.
+  void serve(const MakeWork& make);
+  /// Rank 0: the work of one of the workers, those of this process first.
+  CaseWork work_of(int worker, const MakeWork& make);
+
+ private:
+  struct Remote {
+    int rank, tag;
+  };
+  int jobs_;
+  std::unique_ptr<Ranks> ranks_;  ///< null: alone
+  std::vector<Remote> remote_;
+  bool told_ = false;
+};
+
+struct SweepPlan {
+  std::string name;                 ///< "study overturn", of the progress
+  std::string file;                 ///< where rows are kept while it goes on
+  nlohmann::ordered_json settings;  ///< that rows depend on
+  std::vector<int> order;           ///< of all cases, as they are begun
+  std::vector<std::string> told;    ///< to other ranks
+  MakeWork make;
+};
+
+struct SweepEnd {
+  std::vector<std::string> rows;  ///< per case; empty: it was not run
+  int run = 0, kept = 0;          ///< cases that have a row, those of them from before included
+  bool complete() const { return run == static_cast<int>(rows.size()); }
+};
+
+/// Runs the cases that have no row yet until all have one, the time of --quick is over or Ctrl+C comes, which
+/// must be deferred (interrupt.h). The file stays. Throws std::runtime_error when a row cannot be kept.
+SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
+
+}  // namespace topple::app

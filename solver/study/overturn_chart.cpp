@@ -1,0 +1,433 @@
+#include "solver/study/overturn_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/study/gnuplot.h"
+
+namespace topple::study {
+namespace {
+
+constexpr int k_height = 1064, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
+constexpr int k_left = 112, k_bottom = 92, k_top = 300;           // around panels
+constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
+constexpr const char* k_grey = "textcolor rgb '#444444'";
+
+/// How a verdict is drawn: told apart in grey by luminance, and by marks.
+struct Look {
+  Verdict verdict;
+  const char *fill, *mark;  // "": no mark
+  const char* meaning;
+};
+constexpr Look k_looks[] = {{Verdict::stands, "#edf2f7", "", "stands: no side of a base lifts"},
+                            {Verdict::rocks, "#a9cbe4", "pt 7 lc rgb '#2b5c86'", "rocks and stays up"},
+                            {Verdict::some, "#f2ab5e", "pt 9 lc rgb '#5a2d00'", "some bodies overturn"},
+                            {Verdict::all, "#a3203a", "pt 2 lw 1.6 lc rgb '#ffffff'", "all bodies overturn"},
+                            {Verdict::failed, "#f5e663", "pt 1 lw 2 lc rgb '#000000'", "the run failed"}};
+
+/// Nodes of viridis (S. van der Walt and N. Smith 2015), whose luminance grows evenly.
+constexpr const char* k_viridis =
+    "set palette defined (0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', "
+    "6 '#5ec962', 7 '#addc30', 8 '#fde725')\n";
+
+constexpr const char* k_dashes[] = {"1", "(14,6)", "(4,4)"};
+
+/// Range, scale and tics at 1, 2 and 5 of each decade where the axis is logarithmic.
+std::string scale(const char* which, const Axis& axis) {
+  const std::vector<double> ends = axis.edges();
+  std::string out = fmt::format("set {}range [{:.9g}:{:.9g}]\n", which, ends.front(), ends.back());
+  if (!axis.logarithmic)
+    return out + fmt::format("unset logscale {0}\nset {0}tics autofreq nomirror\n", which);
+  std::string tics;
+  for (int e = static_cast<int>(std::floor(std::log10(ends.front()))); std::pow(10., e) < ends.back(); ++e)
+    for (const double digit : {1., 2., 5.})
+      if (const double at = digit * std::pow(10., e); at >= ends.front() && at <= ends.back())
+        tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ",", at);
+  return out + fmt::format("set logscale {0}\nset {0}tics nomirror ({1})\n", which, tics);
+}
+
+std::string axis_title(const Axis& axis) {
+  return plain(axis.key) + (axis.unit.empty() ? "" : ", " + axis.unit);
+}
+
+std::string valued(const Axis& axis, double value) {
+  return fmt::format("{:.4g}{}{}", value, axis.unit.empty() ? "" : " ", axis.unit);
+}
+
+/// Where a panel is on its sheet, px, and what it shows.
+struct Panel {
+  Sheet sheet;
+  double left, right, bottom, top;
+  const Axis *x_axis, *y_axis;
+
+  static double part(const Axis& axis, double value) {
+    const std::vector<double> ends = axis.edges();
+    return axis.logarithmic ? std::log(value / ends.front()) / std::log(ends.back() / ends.front())
+                            : (value - ends.front()) / (ends.back() - ends.front());
+  }
+  double x(double value) const { return left + (right - left) * part(*x_axis, value); }
+  double y(double value) const { return bottom + (top - bottom) * part(*y_axis, value); }
+};
+
+/// Sees plan and map, knows its place on the sheet.
+class Chart {
+ public:
+  Chart(const OverturnPlan& plan, const OverturnMap& map)
+      : plan_(plan),
+        map_(map),
+        with_fragility_(plan.ensemble > 1),
+        panel_{{with_fragility_ ? k_double : k_single, k_height},
+               k_left,
+               k_map_right,
+               k_bottom,
+               k_height - k_top,
+               &plan.x,
+               &plan.y} {}
+
+  std::string script(const std::string& origin, ChartFormat format) {
+    return panel_.sheet.begin(format) + header(origin) + map_panel() + (with_fragility_ ? fragility() : "") +
+           "unset multiplot\n";
+  }
+
+ private:
+  const OverturnPoint& point(int i, int j) const {
+    return map_.points[static_cast<std::size_t>(j * plan_.x.count() + i)];
+  }
+
+  std::string text(const std::string& words, double x, double y, const std::string& how = "") const {
+    return panel_.sheet.label(words, x, y, how);
+  }
+
+  std::string header(const std::string& origin) const {
+    const std::string what = plan_.ensemble > 1 ? "How often a body overturns in " : "What overturns in ";
+    std::string out = text(bold(plain(what + plan_.scene.name), 1.5), k_left, k_height - 34);
+    const std::string grey = std::string("noenhanced ") + k_grey;
+    out += text(plan_.scene.title, k_left, k_height - 74, grey);
+    std::string settings = fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
+    for (const std::string& change : plan_.set) settings += ", " + change;
+    if (plan_.ensemble > 1)
+      settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
+                              1 - plan_.spread, 1 + plan_.spread);
+    out += text(settings, k_left, k_height - 100, grey);
+    out += text(origin + ", " + coverage(), k_left, k_height - 126, grey);
+    out += plan_.ensemble > 1 ? marks_of_ensemble() : marks_of_verdicts();
+    return out + criteria_in_words();
+  }
+
+  std::string coverage() const {
+    int least = plan_.ensemble, most = 0;
+    for (const OverturnPoint& p : map_.points) {
+      least = std::min(least, p.runs + p.failed);
+      most = std::max(most, p.runs + p.failed);
+    }
+    const std::string points = plan_.ensemble == 1 ? "one run a point"
+                               : least == most     ? fmt::format("{} runs a point", most)
+                                                   : fmt::format("{} to {} runs a point", least, most);
+    return map_.run == map_.of ? points : fmt::format("{} of {} runs, {}", map_.run, map_.of, points);
+  }
+
+  bool shows(Verdict verdict) const {
+    return std::ranges::any_of(map_.points, [=](const OverturnPoint& p) { return p.verdict == verdict; });
+  }
+
+  std::string swatch(double x, double y, const std::string& fill, const std::string& mark,
+                     const std::string& words) const {
+    const Sheet& s = panel_.sheet;
+    std::string out = fmt::format(
+        "set object rectangle from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} {} fc rgb '{}' lw 0.6\n",
+        x / s.width, (y - 10) / s.height, (x + 24) / s.width, (y + 10) / s.height,
+        fill.empty() ? "fs pattern 4 border lc rgb '#888888'" : "fs solid border lc rgb '#888888'",
+        fill.empty() ? "#888888" : fill);
+    if (!mark.empty()) out += text("", x + 12, y, "point " + mark + " ps 0.9");
+    return out + text(words, x + 34, y, "");
+  }
+
+  static double width_of(const std::string& words) { return 64 + 9.2 * static_cast<double>(words.size()); }
+
+  std::string marks_of_verdicts() const {
+    std::string out;
+    double x = k_left;
+    const double y = k_height - 160;
+    for (const Look& look : k_looks) {
+      if (!shows(look.verdict)) continue;
+      out += swatch(x, y, look.fill, look.mark, look.meaning);
+      x += width_of(look.meaning);
+    }
+    if (shows(Verdict::not_computed)) out += swatch(x, y, "", "", "not computed");
+    return out;
+  }
+
+  std::string marks_of_ensemble() const {
+    std::string out;
+    double x = k_left;
+    const double y = k_height - 160;
+    if (shows(Verdict::failed)) {
+      out += swatch(x, y, k_looks[4].fill, k_looks[4].mark, "every run failed");
+      x += width_of("every run failed");
+    }
+    if (shows(Verdict::not_computed)) {
+      out += swatch(x, y, "", "", "not computed");
+      x += width_of("not computed");
+    }
+    const Sheet& s = panel_.sheet;
+    if (has_medians())
+      out += fmt::format(
+                 "set arrow from screen {0:.5f},{2:.5f} to screen {1:.5f},{2:.5f} nohead lc rgb '#e7298a' lw "
+                 "3\n",
+                 x / s.width, (x + 34) / s.width, y / s.height) +
+             text("", x + 17, y, "point pt 7 ps 0.8 lc rgb '#e7298a'") +
+             text("median of the fitted lognormal, where there is one", x + 44, y);
+    return out;
+  }
+
+  std::string criteria_in_words() const {
+    if (!map_.criteria.why_not.empty())
+      return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190, k_grey);
+    std::vector<std::string> lines{fmt::format(
+        "Curves: a rigid block like {}, b = {:.0f} mm, h = {:.0f} mm, that does not slip (friction "
+        "of the scene: {:g})",
+        plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base, 1e3 * map_.criteria.body.height,
+        plan_.scene.setup.parameters.contact.friction)};
+    for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
+    std::string out;
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      out += text("{/*0.94 " + lines[k] + "}", k_left, k_height - 186 - 22 * static_cast<double>(k), k_grey);
+    return out;
+  }
+
+  bool has_medians() const {
+    return std::ranges::count_if(map_.fragility, [](const Fragility& f) { return f.fit.has_value(); }) > 0;
+  }
+
+  /// Cells of the points for which `wanted` gives a value.
+  template <typename Wanted>
+  std::string cells(const std::string& block, Wanted wanted) const {
+    const std::vector<double> x = plan_.x.edges(), y = plan_.y.edges();
+    std::string out = "$" + block + " << END\n";
+    bool any = false;
+    for (int j = 0; j < plan_.y.count(); ++j)
+      for (int i = 0; i < plan_.x.count(); ++i)
+        if (const std::optional<double> value = wanted(point(i, j))) {
+          any = true;
+          out += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.6g}\n", plan_.x.values[i],
+                             plan_.y.values[j], x[i], x[i + 1], y[j], y[j + 1], *value);
+        }
+    return any ? out + "END\n" : out + "NaN NaN NaN NaN NaN NaN NaN\nEND\n";
+  }
+
+  /// px, of marks: smaller than the cells.
+  double mark_size() const {
+    const double cell = std::min((panel_.right - panel_.left) / plan_.x.count(),
+                                 (panel_.top - panel_.bottom) / plan_.y.count());
+    return std::clamp(cell / 26, 0.15, 1.1);
+  }
+
+  /// Data blocks, and what is plotted of them.
+  std::pair<std::string, std::string> verdict_layers() const {
+    std::string data, plot;
+    for (const Look& look : k_looks) {
+      const std::string block = fmt::format("verdict{}", static_cast<int>(look.verdict));
+      data += cells(block, [&](const OverturnPoint& p) {
+        return p.verdict == look.verdict ? std::optional(0.) : std::nullopt;
+      });
+      plot += fmt::format("${} using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '{}' notitle, ",
+                          block, look.fill);
+      if (*look.mark)
+        plot += fmt::format("${} using 1:2 with points {} ps {:.2f} notitle, ", block, look.mark,
+                            mark_size() * (look.verdict == Verdict::rocks ? 0.45 : 0.8));
+    }
+    return {data, plot};
+  }
+
+  std::pair<std::string, std::string> probability_layers() const {
+    std::string data = cells("probability", [](const OverturnPoint& p) { return p.probability(); });
+    data += cells("failed", [](const OverturnPoint& p) {
+      return p.verdict == Verdict::failed ? std::optional(0.) : std::nullopt;
+    });
+    std::string plot =
+        "$probability using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette notitle, ";
+    plot += fmt::format(
+        "$failed using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '{0}' notitle, "
+        "$failed using 1:2 with points {1} ps {2:.2f} notitle, ",
+        k_looks[4].fill, k_looks[4].mark, mark_size());
+    return {data, plot};
+  }
+
+  std::string map_panel() {
+    auto [data, plot] = plan_.ensemble > 1 ? probability_layers() : verdict_layers();
+    data += cells("open", [](const OverturnPoint& p) {
+      return p.verdict == Verdict::not_computed ? std::optional(0.) : std::nullopt;
+    });
+    plot += "$open using 1:2:3:4:5:6 with boxxyerror fs pattern 4 noborder fc rgb '#888888' notitle, ";
+    std::string labels;
+    for (std::size_t k = 0; k < map_.criteria.list.size(); ++k) {
+      const Criterion& c = map_.criteria.list[k];
+      data += fmt::format("$curve{} << END\n", k);
+      for (std::size_t n = 0; n < c.x.size(); ++n) data += fmt::format("{:.6g} {:.6g}\n", c.x[n], c.y[n]);
+      data += c.x.empty() ? "NaN NaN\nEND\n" : "END\n";
+      // a light line below keeps the dark one apart from any ground
+      plot += fmt::format(
+          "$curve{0} with lines lc rgb '#ffffff' lw 5.5 notitle, $curve{0} with lines lc rgb '#000000' lw "
+          "2.4 dt {1} notitle, ",
+          k, k_dashes[std::min(k, std::size(k_dashes) - 1)]);
+      labels += end_label(c);
+    }
+    if (plan_.ensemble > 1 && has_medians()) {
+      data += "$medians << END\n" + medians() + "END\n";
+      plot +=
+          "$medians with linespoints lc rgb '#ffffff' lw 6 pt 7 ps 1.1 notitle, "
+          "$medians with linespoints lc rgb '#e7298a' lw 3 pt 7 ps 0.8 notitle, ";
+    }
+    data += "$own << END\n" + own_point() + "END\n";
+    plot +=
+        "$own with points pt 7 ps 2.9 lc rgb '#ffffff' notitle, $own with points pt 6 ps 2.5 lw 3 lc rgb "
+        "'#000000' notitle, "
+        "$own with points pt 7 ps 0.8 lc rgb '#000000' notitle";
+    std::string out = data + labels + own_label();
+    out += panel_.sheet.place(panel_.left, panel_.right, panel_.bottom, panel_.top);
+    out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
+    out += scale("x", plan_.x) + scale("y", plan_.y);
+    out += "set xlabel " + gnuplot_quoted(axis_title(plan_.x)) + " offset 0,0.2\nset ylabel " +
+           gnuplot_quoted(axis_title(plan_.y)) + " offset 1.4,0\n";
+    if (plan_.ensemble > 1)
+      out +=
+          std::string(k_viridis) +
+          fmt::format(
+              "set cbrange [0:1]\nset colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
+              "set cbtics 0.25\nset cblabel 'share of runs in which a body overturns' offset 0.4,0\n",
+              (k_map_right + 128.) / panel_.sheet.width, panel_.bottom / k_height, 22. / panel_.sheet.width,
+              (panel_.top - panel_.bottom) / k_height);
+    return out + "plot " + plot + "\nunset label\nunset arrow\nunset object\nunset colorbox\n";
+  }
+
+  /// Beside the right edge where the curve leaves there, else above the panel.
+  std::string end_label(const Criterion& c) const {
+    const double most_x = plan_.x.edges().back(), most_y = plan_.y.edges().back(),
+                 least_y = plan_.y.edges().front();
+    for (std::size_t n = c.x.size(); n-- > 0;) {
+      if (c.y[n] > most_y || c.y[n] < least_y) continue;
+      if (n + 1 == c.x.size() && panel_.x(c.x[n]) > panel_.x(most_x) - 60)
+        return text(plain(c.label), panel_.right + 8, panel_.y(c.y[n]), "left");
+      return text(plain(c.label), panel_.x(c.x[n]), panel_.top + 14, "center");
+    }
+    return "";
+  }
+
+  std::string medians() const {
+    std::string out;
+    const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
+    for (std::size_t k = 0; k < map_.fragility.size(); ++k) {
+      const Fragility& f = map_.fragility[k];
+      if (!f.fit) {
+        out += "\n";  // no line across what has none
+        continue;
+      }
+      const double at = other.values[k];
+      out += map_.fragility_along_y ? fmt::format("{:.6g} {:.6g}\n", at, f.fit->median)
+                                    : fmt::format("{:.6g} {:.6g}\n", f.fit->median, at);
+    }
+    return out;
+  }
+
+  bool own_shown() const {
+    const auto inside = [](const Axis& axis) {
+      return axis.own && *axis.own >= axis.edges().front() && *axis.own <= axis.edges().back();
+    };
+    return inside(plan_.x) && inside(plan_.y);
+  }
+
+  std::string own_point() const {
+    return own_shown() ? fmt::format("{:.9g} {:.9g}\n", *plan_.x.own, *plan_.y.own) : "NaN NaN\n";
+  }
+
+  std::string own_label() const {
+    if (!own_shown()) return "";
+    const double x = panel_.x(*plan_.x.own), y = panel_.y(*plan_.y.own);
+    const bool right = x < (panel_.left + panel_.right) / 2;
+    return "set style textbox 1 opaque noborder fillcolor '#ffffff' margins 0.6,0.4\n" +
+           text(
+               fmt::format("the scene: {}, {}", valued(plan_.x, *plan_.x.own), valued(plan_.y, *plan_.y.own)),
+               x + (right ? 20 : -20), y, std::string(right ? "left" : "right") + " front boxed bs 1");
+  }
+
+  std::string fragility() const {
+    const double middle_x = (k_second_left + k_second_right) / 2.;
+    std::string out = panel_.sheet.place(k_second_left, k_second_right, k_bottom, k_height - k_top);
+    if (map_.fragility.empty())
+      return out +
+             text("no fragility curve: neither axis is an amplitude or scale above 0", middle_x,
+                  k_height / 2., "center") +
+             "unset border\nunset tics\nunset xlabel\nunset ylabel\nset xrange [0:1]\nset yrange "
+             "[0:1]\nunset "
+             "logscale\nplot NaN notitle\n";
+    const Axis& along = map_.fragility_along_y ? plan_.y : plan_.x;
+    const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
+    const Fragility& at = map_.fragility[static_cast<std::size_t>(map_.own_column)];
+    std::string place = fmt::format("At {} = {}", other.key,
+                                    valued(other, other.values[static_cast<std::size_t>(map_.own_column)]));
+    if (other.own) place += fmt::format(", nearest to the scene's {:.4g}", *other.own);
+    out += text(bold(plain(place), 1.08), k_second_left, k_height - k_top + 70);
+    double y = k_height - k_top + 42;
+    for (const std::string& line : fit_in_words(at, along))
+      out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
+    out += "$shares << END\n";
+    for (const Level& level : levels(plan_, map_, map_.own_column)) {
+      if (level.runs == 0) continue;
+      const Interval bounds = wilson(level.hits, level.runs);
+      out += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
+                         static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
+    }
+    out += "NaN NaN NaN NaN\nEND\n" + scale("x", along);
+    out +=
+        "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
+        "'#dddddd' lw 0.8\n";
+    out += "set xlabel " + gnuplot_quoted(axis_title(along)) + " offset 0,0.2\n";
+    out +=
+        "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset 1.2,0\nset "
+        "border 3\n";
+    std::string plot = "$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle";
+    if (at.fit) {
+      out += "$fit << END\n";
+      const std::vector<double> ends = along.edges();
+      for (int k = 0; k <= 200; ++k) {
+        const double part = k / 200.;
+        const double a = along.logarithmic ? ends.front() * std::pow(ends.back() / ends.front(), part)
+                                           : std::lerp(ends.front(), ends.back(), part);
+        out += fmt::format("{:.6g} {:.6g}\n", a, at.fit->probability(a));
+      }
+      out += "END\n";
+      plot = "$fit with lines lc rgb '#e7298a' lw 3 notitle, " + plot;
+    }
+    return out + "plot " + plot + "\n";
+  }
+
+  /// Two lines at most.
+  static std::vector<std::string> fit_in_words(const Fragility& f, const Axis& along) {
+    constexpr std::size_t k_line = 58;
+    if (f.fit)
+      return {fmt::format("lognormal: median {:.4g} ± {:.2g} {}, β = {:.3g} ± {:.2g}", f.fit->median,
+                          f.fit->median_error, along.unit, f.fit->beta, f.fit->beta_error),
+              fmt::format("deviance {:.3g} with {} degrees of freedom", f.fit->deviance, f.fit->freedom)};
+    const std::string words = plain("no lognormal: " + f.why_not);
+    const std::size_t blank = words.size() > k_line ? words.rfind(' ', k_line) : std::string::npos;
+    if (blank == std::string::npos) return {words};
+    return {words.substr(0, blank), words.substr(blank + 1)};
+  }
+
+  const OverturnPlan& plan_;
+  const OverturnMap& map_;
+  const bool with_fragility_;
+  const Panel panel_;
+};
+
+}  // namespace
+
+std::string overturn_chart(const OverturnPlan& plan, const OverturnMap& map, const std::string& origin,
+                           ChartFormat format) {
+  return Chart(plan, map).script(origin, format);
+}
+
+}  // namespace topple::study

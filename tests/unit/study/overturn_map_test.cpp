@@ -1,0 +1,196 @@
+// The overturning map: verdicts against theory, rows that do not depend on how they came, what is left open.
+#include "solver/study/overturn_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+
+#include "solver/study/overturn_chart.h"
+#include "verification/housner.h"
+
+namespace topple::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+const auto k_never = [] { return false; };
+
+std::vector<std::string> run_all(const OverturnPlan& plan) {
+  std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
+  OverturnRunner runner(plan);
+  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = runner.run(k, k_never);
+  return rows;
+}
+
+std::string without_time(const std::string& row) {
+  ordered_json json = ordered_json::parse(row);
+  json.erase("cpu_s");
+  return json.dump();
+}
+
+/// Half-sines under a rigid uniform block on hard contacts.
+OverturnPlan pulses(const std::string& durations, const std::string& amplitudes, int ensemble = 1,
+                    double spread = 0) {
+  return plan_overturn(io::load_scene("verify/rocking-defaults-half-sine-4-above"),
+                       "shake.1.duration=" + durations, "shake.1.amplitude=" + amplitudes, ensemble, spread);
+}
+
+const test::Block k_block{0.19, 0.895, 4. / 3};
+
+/// m/s^2; by another integration than that of the criteria.
+double least_half_sine_of(const test::Block& block, double duration) {
+  const auto falls = [&](double a) {
+    return test::rock(
+               block, {0, 0},
+               [&](double t) { return t < duration ? a * std::sin(std::numbers::pi * t / duration) : 0; }, 3,
+               1e-3)
+        .overturned;
+  };
+  double low = 1, high = 10;
+  while (high - low > 1e-5) (falls((low + high) / 2) ? high : low) = (low + high) / 2;
+  return high * block.gravity * std::tan(block.critical);
+}
+
+// Contacts by default overturn up to 1.6 % below the rigid block (README); the next value is up to 2 % off.
+TEST(OverturnMap, the_boundary_is_the_exact_pulse_curve_within_two_percent) {
+  const OverturnPlan plan = pulses("0.25..0.5:2", "3.4 m/s^2..7 m/s^2:37log");
+  const OverturnMap map = gather(plan, run_all(plan));
+  EXPECT_EQ(map.run, 74);
+  for (int i = 0; i < 2; ++i) {
+    const double exact = least_half_sine_of(k_block, plan.x.in_si(i));
+    EXPECT_GT(exact, 1.1 * plan.y.in_si(0));
+    EXPECT_LT(exact, plan.y.in_si(36) / 1.1);
+    for (int j = 0; j < 37; ++j) {
+      const double off = plan.y.in_si(j) / exact - 1;
+      const Verdict verdict = map.points[static_cast<std::size_t>(2 * j + i)].verdict;
+      if (off < -0.02) {
+        EXPECT_EQ(verdict, Verdict::rocks) << i << " " << off;
+      }
+      if (off > 0.02) {
+        EXPECT_EQ(verdict, Verdict::all) << i << " " << off;
+      }
+    }
+    // the curve that is drawn is the same, to the straight lines between its places
+    const Criterion& curve = map.criteria.list.back();
+    EXPECT_EQ(curve.name, "half-sine");
+    const auto above =
+        std::ranges::lower_bound(curve.x, plan.x.values[static_cast<std::size_t>(i)]) - curve.x.begin();
+    const double part = (plan.x.values[static_cast<std::size_t>(i)] - curve.x[above - 1]) /
+                        (curve.x[above] - curve.x[above - 1]);
+    EXPECT_NEAR(std::lerp(curve.y[above - 1], curve.y[above], part) * plan.y.si / exact, 1, 1e-3);
+  }
+}
+
+TEST(OverturnMap, a_rigid_block_does_not_lift_below_west) {
+  const double west = k_block.gravity * std::tan(k_block.critical);
+  const OverturnPlan plan =
+      pulses("0.4..0.8:2", std::to_string(0.98 * west) + ".." + std::to_string(1.02 * west) + ":2");
+  const OverturnMap map = gather(plan, run_all(plan));
+  const Verdict expected[] = {Verdict::stands, Verdict::stands, Verdict::rocks, Verdict::rocks};
+  for (int p = 0; p < 4; ++p) EXPECT_EQ(map.points[static_cast<std::size_t>(p)].verdict, expected[p]) << p;
+}
+
+TEST(OverturnMap, runs_of_an_ensemble_do_not_depend_on_their_order) {
+  const OverturnPlan plan = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2", 5, 0.2);
+  const std::vector<std::string> rows = run_all(plan);
+  OverturnRunner backwards(plan);
+  std::set<std::string> different;
+  for (int k = plan.cases(); k-- > 0;) {
+    const std::string again = without_time(backwards.run(k, k_never));
+    EXPECT_EQ(again, without_time(rows[static_cast<std::size_t>(k)])) << k;
+    different.insert(again);
+  }
+  EXPECT_GT(different.size(), 8u);  // members differ in their times where they fall
+  const OverturnMap map = gather(plan, rows);
+  for (const OverturnPoint& point : map.points) {
+    EXPECT_EQ(point.runs, 5);
+    EXPECT_EQ(point.overturned, static_cast<int>(point.times.size()));
+    EXPECT_EQ(point.fell, std::vector<int>{point.overturned});
+    EXPECT_NEAR(point.interval()->high, wilson(point.overturned, 5).high, 0);
+  }
+  EXPECT_GT(map.points[2].time(0.9).value(), map.points[2].time(0.1).value());
+}
+
+TEST(OverturnMap, rounds_come_to_one_four_and_all_runs_at_each_point) {
+  const OverturnPlan plan = pulses("0.25..0.5:3", "4 m/s^2..6 m/s^2:3", 6, 0.05);
+  const std::vector<int> order = case_order(plan);
+  ASSERT_EQ(order.size(), 54u);
+  int counts[9] = {};
+  for (int n = 0; n < 54; ++n) {
+    ++counts[order[static_cast<std::size_t>(n)] / 6];
+    const auto [least, most] = std::ranges::minmax(counts);
+    if (n + 1 == 9) {
+      EXPECT_EQ(std::pair(least, most), std::pair(1, 1));
+    }
+    if (n + 1 == 36) {
+      EXPECT_EQ(std::pair(least, most), std::pair(4, 4));
+    }
+  }
+  EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), 54u);
+}
+
+TEST(OverturnMap, what_was_not_run_is_open_in_every_result) {
+  const OverturnPlan plan = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2");
+  std::vector<std::string> rows(4);
+  rows[3] = OverturnRunner(plan).run(3, k_never);
+  const OverturnMap map = gather(plan, rows);
+  EXPECT_EQ(map.run, 1);
+  EXPECT_EQ(map.of, 4);
+  const ordered_json json = map_as_json(plan, map), table = rows_as_json(plan, map);
+  EXPECT_EQ(json["verdict"][0][0], "not computed");
+  EXPECT_EQ(json["verdict"][1][1], "all overturn");
+  EXPECT_TRUE(json["probability"][0][1].is_null());
+  EXPECT_EQ(json["probability"][1][1], 1);
+  EXPECT_EQ(table[0]["status"], "not run");
+  EXPECT_TRUE(table[0]["overturn_time_s"].is_null());
+  const std::string chart = overturn_chart(plan, map, "here", ChartFormat::svg);
+  EXPECT_NE(chart.find("1 of 4 runs"), std::string::npos);
+  EXPECT_NE(chart.find("not computed"), std::string::npos);
+}
+
+TEST(OverturnMap, a_run_that_is_given_up_has_no_row) {
+  const OverturnPlan plan = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2");
+  EXPECT_EQ(OverturnRunner(plan).run(0, [] { return true; }), "");
+}
+
+TEST(OverturnMap, scenes_that_cannot_be_built_at_a_point_have_a_row_that_says_so) {
+  // no densities of its members put the centre of gravity of a cabinet so low
+  const OverturnPlan plan = plan_overturn(io::load_scene("paper-a"), "cabinet.free.cg_height=0.01..1.05:2",
+                                          "shake.1.amplitude=1..1.1:2", 1, 0);
+  const OverturnMap map = gather(plan, {OverturnRunner(plan).run(0, k_never), "", "", ""});
+  EXPECT_EQ(map.points[0].verdict, Verdict::failed);
+  EXPECT_EQ(map.points[0].failed, 1);
+  EXPECT_NE(map.points[0].status.find("cg_height"), std::string::npos) << map.points[0].status;
+}
+
+TEST(OverturnMap, the_study_adds_to_a_scene_what_it_leaves_out_alone) {
+  const auto added = [](const std::vector<std::string>& set) {
+    return plan_overturn(io::load_scene("paper-a", set), "", "", 1, 0).set;
+  };
+  EXPECT_EQ(added({}), (std::vector<std::string>{"run.want=[\"motion\"]", "run.stop_when=all-overturned"}));
+  EXPECT_EQ(added({"run.want=[\"stress\"]", "run.stop_when=never"}), std::vector<std::string>{});
+}
+
+TEST(OverturnMap, plans_that_make_no_sense_are_refused) {
+  const auto refused = [](const std::string& scene, const std::string& x, const std::string& y, int ensemble,
+                          const std::string& part) {
+    try {
+      plan_overturn(io::load_scene(scene), x, y, ensemble, 0.05);
+      ADD_FAILURE() << part;
+    } catch (const io::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused("portal-pushover", "", "", 1, "is not dynamic");
+  refused("near-fault", "", "", 1, "--x KEY=FROM..TO:N is required");
+  refused("free-rocking", "contact.friction=0..1:3", "contact.q=1..2:3", 4, "has no shake");
+  refused("paper-a", "shake.1.amplitude=1..2:3", "", 1, "is the key of the x axis");
+  refused("paper-a", "shake.1.duration=1..2:3", "", 1, "--x shake.1.duration=1 s: shake.table.duration: ");
+}
+
+}  // namespace
+}  // namespace topple::study
