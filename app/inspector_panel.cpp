@@ -9,11 +9,14 @@
 #include "app/lane.h"
 #include "app/panels.h"
 #include "app/row.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 constexpr ImU32 k_sheet = IM_COL32(255, 255, 255, 255), k_frame = IM_COL32(60, 74, 88, 70);
 constexpr ImU32 k_chosen = IM_COL32(219, 13, 115, 255);  // as the outline of what is picked
@@ -69,7 +72,7 @@ void draw_plot_button(Inspection& inspection, const PlottedValue& plot) {
   if (ImGui::InvisibleButton("plot", {side, side})) toggle_plot(inspection, plot);
   const bool on = is_plotted(inspection, plot);
   add_plot_icon(*ImGui::GetWindowDrawList(), ImGui::GetItemRectMin(), side, on, ImGui::IsItemHovered());
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip(on ? "Take it off the plots" : "Plot it over time");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(on ? k_unplot : k_plot).c_str());
 }
 
 void draw_values(const Inspected& at, const Subject& subject, std::size_t count) {
@@ -82,7 +85,7 @@ void draw_values(const Inspected& at, const Subject& subject, std::size_t count)
   for (std::size_t k = 0; k < std::min(count, values.size()); ++k) {
     ImGui::PushID(static_cast<int>(k));
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(values[k].name);
+    ImGui::TextUnformatted(say(values[k].name).c_str());
     ImGui::TableNextColumn();
     ImGui::TextUnformatted((value_text(at.value(subject, k)) + " " + values[k].unit).c_str());
     ImGui::TableNextColumn();
@@ -112,7 +115,7 @@ bool draw_component(const Inspected& at, const Subject& subject, std::size_t com
                        component_unit(component)));
   add_plot_icon(list, {high.x - line - 2, low.y + 3}, line, is_plotted(at.inspection, {subject, value}),
                 hovered && on_icon);
-  if (hovered) ImGui::SetTooltip(on_icon ? "Plot it over time" : "Draw it along the member in the scene");
+  if (hovered) ImGui::SetTooltip("%s", say(on_icon ? k_plot : k_draw_along).c_str());
 
   const Member& member = at.model.members[subject.index];
   const float left = low.x + 8, right = high.x - 8, top = low.y + line + 8, bottom = high.y - 5;
@@ -178,12 +181,12 @@ void draw_integration_points(const Inspected& at, const Member& member) {
   }
   const float words = y + 0.65f * line;
   diamond(left + r, words + line / 2);
-  add_text(list, left + 3.2f * r, words, k_chart_text, "integrated");
+  add_text(list, left + 3.2f * r, words, k_chart_text, say(k_integrated));
   const float second = left + 7.2f * line;
   circle(second, words + line / 2, k_chart_text);
-  add_text(list, second + 2.2f * r, words, k_chart_text, "stresses (hinge: orange)");
+  add_text(list, second + 2.2f * r, words, k_chart_text, say(k_stresses_at));
   ImGui::Dummy({width, 2.6f * line});
-  ImGui::TextWrapped("s of its elements: %s", places.c_str());
+  ImGui::TextWrapped("%s", say(k_s_of_elements, places).c_str());
 }
 
 void draw_history(const Inspected& at, const Subject& subject, std::size_t value) {
@@ -198,7 +201,7 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
   list.AddRectFilled(low, {low.x + width, low.y + height}, k_sheet, 3);
   list.AddRect(low, {low.x + width, low.y + height}, k_frame, 3);
   add_text(list, low.x + 5, low.y + 3, k_chart_text,
-           fmt::format("{} over the run, peak {} {}", what.name, value_text(lane.high), what.unit));
+           say(k_over_run, say(what.name), value_text(lane.high), what.unit));
   if (lane.high > 0)
     add_curve(
         list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, k_line, 1.4f);
@@ -209,31 +212,30 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
 /// Name, what it is, and a pin. True when the pin was pressed.
 bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
   ImGui::TextUnformatted(name_of(at.model, subject).c_str());
-  const char* const words = pinned ? "Unpin" : "Pin";
-  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(words).x -
+  const std::string words = say(pinned ? k_unpin : k_pin);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(words.c_str()).x -
                   2 * ImGui::GetStyle().FramePadding.x);
-  const bool pressed = ImGui::SmallButton(words);
-  if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("Keep it here while another one is looked at");
+  const bool pressed = ImGui::SmallButton((words + "##pin").c_str());
+  if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("%s", say(k_pin_about).c_str());
   if (subject.kind == Subject::Kind::member) {
     const Member& member = at.model.members[subject.index];
     double length = 0;
     for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
       length += at.model.elements[e].length;
-    ImGui::TextDisabled("%s", fmt::format("{}, {}, {:.0f} mm long", at.model.sections[member.section].name,
-                                          at.model.materials[member.material].name, 1e3 * length)
+    ImGui::TextDisabled("%s", say(k_member_line, at.model.sections[member.section].name,
+                                  at.model.materials[member.material].name, 1e3 * length)
                                   .c_str());
   } else if (subject.kind == Subject::Kind::body) {
     const Body& body = at.model.bodies[subject.index];
-    ImGui::TextDisabled("%s", fmt::format("{:.4g} kg, {} members, {}", body.mass, body.member_count,
-                                          name(static_cast<Rung>(at.row.rung[subject.index])))
-                                  .c_str());
+    ImGui::TextDisabled(
+        "%s",
+        say(k_body_line, body.mass, body.member_count, say(k_rungs[at.row.rung[subject.index]])).c_str());
   } else {
     const Anchor& anchor = at.model.anchors[subject.index];
     const float* const values = &at.row.anchor[4 * subject.index];
-    ImGui::TextDisabled(
-        "%s", fmt::format("{} of {}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
-                          at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
-                  .c_str());
+    ImGui::TextDisabled("%s", say(k_anchor_line, anchor_type_in_words(anchor),
+                                  at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
+                                  .c_str());
     ImGui::TextUnformatted(anchor_in_words(at.model, at.row, subject.index).c_str());
   }
   return pressed;
@@ -242,8 +244,7 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
 /// True when another component is to be drawn in the scene.
 bool draw_member(const Inspected& at, const Subject& subject) {
   draw_values(at, subject, k_first_component_value);
-  if (is_approximate(at.model, at.row, subject.index))
-    ImGui::TextWrapped("A contact presses on its middle node: its own bending is approximate.");
+  if (is_approximate(at.model, at.row, subject.index)) ImGui::TextWrapped("%s", say(k_approximate).c_str());
   const std::size_t drawn = component_of(at.model, at.row, {subject.index, at.inspection.component});
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size{(ImGui::GetContentRegionAvail().x - gap) / 2, 4.3f * ImGui::GetTextLineHeight()};
@@ -277,7 +278,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
     if (subject.kind == Subject::Kind::member) {
       changed = draw_member(at, subject);
       const auto body = static_cast<std::size_t>(model.members[subject.index].body);
-      if (ImGui::Button(("All of " + model.bodies[body].name).c_str())) {
+      if (ImGui::Button((say(k_all_of, model.bodies[body].name) + "##body").c_str())) {
         inspection.picked = Subject{Subject::Kind::body, body};
         changed = true;
       }
@@ -286,7 +287,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
       draw_history(at, subject, 0);
     }
   } else {
-    ImGui::TextWrapped("Click a member or an anchor; click a member again for its body. Bodies:");
+    ImGui::TextWrapped("%s", say(k_how_to_inspect).c_str());
     for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
       if (ImGui::Selectable(model.bodies[b].name.c_str())) {
         inspection.picked = Subject{Subject::Kind::body, b};

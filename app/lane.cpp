@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/overlay.h"
 
@@ -64,7 +65,9 @@ void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float labe
     const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
     add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_chart_text, label);
   }
-  if (loads) add_text(list, label_left, lane.bottom + 11, k_chart_text, steps ? "load step" : "load factor");
+  if (loads)
+    add_text(list, label_left, lane.bottom + 11, k_chart_text,
+             say(steps ? window_words::k_load_step : window_words::k_load_factor));
 }
 
 }  // namespace topple::app

@@ -6,6 +6,7 @@
 
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/text_layout.h"
 
@@ -45,8 +46,7 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
   const std::string now =
       row ? value_text(value.at(instant_of(player, *row), plot.subject.index)) + " " + value.unit : "";
   float y = lane.top;
-  for (const std::string& words :
-       {name_of(player.scene().setup.model, plot.subject), std::string(value.name), now}) {
+  for (const std::string& words : {name_of(player.scene().setup.model, plot.subject), say(value.name), now}) {
     add_text(list, label_left, y, k_chart_text, render::shortened(font, words, width));
     y += 1.15f * line;
   }
@@ -89,15 +89,15 @@ PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspect
   PlotRequest request = PlotRequest::none;
   begin_panel("plots", box);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted("Plots");
+  ImGui::TextUnformatted(say(window_words::k_plots).c_str());
   ImGui::SameLine(k_labels * ImGui::GetTextLineHeight());
   if (ImGui::Button("CSV")) request = PlotRequest::csv;
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Write these values as a table");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_csv_about).c_str());
   ImGui::SameLine();
   if (ImGui::Button("PNG")) request = PlotRequest::png;
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Write these plots as a picture");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_png_about).c_str());
   ImGui::SameLine();
-  if (ImGui::Button("Close all")) inspection.plots.clear();
+  if (ImGui::Button((say(window_words::k_close_all) + "##close").c_str())) inspection.plots.clear();
   ImGui::BeginChild("lanes");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight(), step = (k_lane + k_gap) * line;
@@ -114,7 +114,7 @@ PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspect
       player.scrub((ImGui::GetIO().MousePos.x - lane.left) / (lane.right - lane.left) * player.length());
     ImGui::SetCursorScreenPos({lane.right - side, lane.top});
     if (ImGui::InvisibleButton("close", {side, side})) closed = i;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Close this plot");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_close_plot).c_str());
     add_text(list, lane.right - 0.85f * side, lane.top, k_quiet, "×");
     ImGui::PopID();
     lane.top += step;
@@ -133,8 +133,8 @@ std::string plots_csv(const Player& player, Histories& histories, const Inspecti
   std::vector<const std::vector<float>*> columns;
   for (const PlottedValue& plot : inspection.plots) {
     const SubjectValue& value = values_of(plot.subject.kind)[plot.value];
-    text += fmt::format(",\"{} {}{}{}\"", name_of(model, plot.subject), value.name, *value.unit ? ", " : "",
-                        value.unit);
+    text += fmt::format(",\"{} {}{}{}\"", name_of(model, plot.subject), value.name.english,
+                        *value.unit ? ", " : "", value.unit);
     columns.push_back(&histories.of(player, plot.subject, plot.value));
   }
   for (std::size_t i = 0; i < player.way().size(); ++i) {

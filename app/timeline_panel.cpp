@@ -8,6 +8,7 @@
 #include "app/body_colour.h"
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/overlay.h"
 #include "solver/io/edit_text.h"
@@ -15,6 +16,8 @@
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 constexpr double k_degrees = 180 / k_pi;
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
@@ -59,7 +62,7 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
     moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
   }
   const float line = ImGui::GetTextLineHeight();
-  add_text(list, label_left, lane.top, k_chart_text, "floor, gal");
+  add_text(list, label_left, lane.top, k_chart_text, say(k_floor_lane));
   if (!moving.empty()) add_text(list, label_left, lane.top + line, k_chart_text, moving);
   const std::string top = fmt::format("{:.0f}", most);
   add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_chart_text, top);
@@ -76,9 +79,8 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   lane.high = greatest > least ? 1.08 * greatest : 1;
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
   add_curve(list, lane, rows, factor, k_floor_colours[0], 1.3f);
-  add_text(list, label_left, lane.top, k_chart_text, "load factor");
-  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_chart_text,
-           fmt::format("up to {:.4g}", greatest));
+  add_text(list, label_left, lane.top, k_chart_text, say(k_load_factor));
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_chart_text, say(k_up_to, greatest));
 }
 
 void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
@@ -109,7 +111,7 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   }
   const float line = ImGui::GetTextLineHeight();
   float y = lane.top - 2;
-  add_text(list, label_left, y, k_chart_text, critical > 0 ? "tilt" : "tilt, °");
+  add_text(list, label_left, y, k_chart_text, say(k_tilt_lane));
   for (std::size_t b = 0; b < furniture && y + 2 * line < lane.bottom + line; ++b) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
@@ -123,29 +125,29 @@ std::string when(const Player& player, std::int64_t step, double time) {
   if (!is_static(player.scene().setup)) return fmt::format("{:.3f} s", time);
   const auto at = std::find_if(player.way().begin(), player.way().end(),
                                [step](const RowPtr& row) { return row->step == step; });
-  return at == player.way().end() ? fmt::format("load step {}", step)
+  return at == player.way().end() ? say(k_load_step_number, step)
                                   : instant_in_words(player.scene().setup, **at);
 }
 
 std::string event_text(const Player& player, const io::RecordedEvent& event) {
   if (event.event.kind == Event::Kind::anchor) {
     const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
-    return fmt::format("{}: anchor {} breaks at {:.0f} N", when(player, event.step, event.time), anchor.name,
-                       std::abs(event.event.value));
+    return say(k_anchor_breaks, when(player, event.step, event.time), anchor.name,
+               std::abs(event.event.value));
   }
-  const char* what = event.event.kind == Event::Kind::uplift     ? "lifts off"
-                     : event.event.kind == Event::Kind::impact   ? "strikes the floor"
-                     : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
-                     : event.event.kind == Event::Kind::fracture ? "breaks a member"
-                     : event.event.kind == Event::Kind::model    ? "is computed as"
-                                                                 : "passes its critical angle";
-  const std::string model_of =
+  const Phrase& what = event.event.kind == Event::Kind::uplift     ? k_lifts
+                       : event.event.kind == Event::Kind::impact   ? k_strikes
+                       : event.event.kind == Event::Kind::hinge    ? k_hinges
+                       : event.event.kind == Event::Kind::fracture ? k_breaks
+                                                                   : k_passes;
+  const std::string words =
       event.event.kind == Event::Kind::model
-          ? fmt::format(" {} ({})", name(static_cast<Rung>(event.event.value)), name(event.event.reason))
-          : "";
+          ? say(k_computed_as, say(k_rungs[static_cast<std::size_t>(event.event.value)]),
+                say(k_rung_reasons[static_cast<std::size_t>(event.event.reason)]))
+          : say(what);
   const Model& model = player.scene().setup.model;
-  return fmt::format("{}: {} {}{}", when(player, event.step, event.time),
-                     model.bodies[static_cast<std::size_t>(event.event.body)].name, what, model_of);
+  return say(k_event, when(player, event.step, event.time),
+             model.bodies[static_cast<std::size_t>(event.event.body)].name, words);
 }
 
 std::string edit_text(const Player& player, const LoggedEdit& edit) {
@@ -156,7 +158,7 @@ std::string edit_text(const Player& player, const LoggedEdit& edit) {
       : key.type == io::KeyType::boolean
           ? std::string(v.x() != 0 ? "true" : "false")
           : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
-  return fmt::format("{}: {} = {}", when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
+  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
 }
 
 /// Marks along the top of the tilt lane; the one under the mouse says what it is.

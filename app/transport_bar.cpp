@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 enum class Icon { to_start, back, play, pause, on, to_end, restart };
 
@@ -56,11 +59,11 @@ void add_icon(ImDrawList& list, Icon icon, ImVec2 at, float r, ImU32 colour) {
   }
 }
 
-void tooltip(const char* text) {
-  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", text);
+void tooltip(const Phrase& text) {
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", say(text).c_str());
 }
 
-bool icon_button(const char* id, Icon icon, const char* about, bool enabled = true) {
+bool icon_button(const char* id, Icon icon, const Phrase& about, bool enabled = true) {
   const float side = ImGui::GetFrameHeight();
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button(id, {1.35f * side, side});
@@ -73,9 +76,9 @@ bool icon_button(const char* id, Icon icon, const char* about, bool enabled = tr
   return pressed;
 }
 
-bool text_button(const char* label, const char* about, bool enabled) {
+bool text_button(const std::string& label, const Phrase& about, bool enabled) {
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(label.c_str());
   ImGui::EndDisabled();
   tooltip(about);
   ImGui::SameLine();
@@ -95,8 +98,7 @@ void choose_branch(Player& player) {
   const auto& branches = player.history().branches;
   if (branches.size() < 2) return;
   const auto name = [&](std::int32_t id) {
-    return fmt::format("branch {}{}", id + 1,
-                       !player.replay() && id == player.status().branch ? " (live)" : "");
+    return say(!player.replay() && id == player.status().branch ? k_branch_live : k_branch, id + 1);
   };
   ImGui::SetNextItemWidth(6.5f * ImGui::GetFrameHeight());
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
@@ -105,7 +107,7 @@ void choose_branch(Player& player) {
         player.show_branch(branch.id);
     ImGui::EndCombo();
   }
-  tooltip("Which future to look at");
+  tooltip(k_branch_about);
   ImGui::SameLine();
 }
 
@@ -114,37 +116,32 @@ void choose_branch(Player& player) {
 void draw_transport_bar(Player& player, const Box& box) {
   begin_panel("transport", box);
   const bool loads = is_static(player.scene().setup);
-  if (icon_button("##start", Icon::to_start, "To the start (Home)")) player.to_start();
-  if (icon_button("##back", Icon::back, "One instant back ( , )")) player.step(-1);
-  if (icon_button("##play", player.playing() ? Icon::pause : Icon::play,
-                  player.playing() ? "Pause (Space)" : "Play (Space)"))
+  if (icon_button("##start", Icon::to_start, k_to_start)) player.to_start();
+  if (icon_button("##back", Icon::back, k_one_back)) player.step(-1);
+  if (icon_button("##play", player.playing() ? Icon::pause : Icon::play, player.playing() ? k_pause : k_play))
     player.toggle();
-  if (icon_button("##on", Icon::on, "One instant on ( . )")) player.step(1);
-  if (icon_button("##end", Icon::to_end, "To the newest instant (End)")) player.to_end();
-  if (icon_button(
-          "##restart", Icon::restart,
-          player.replay() ? "To the start (R)" : "Run again from the start with the sliders as they are (R)"))
+  if (icon_button("##on", Icon::on, k_one_on)) player.step(1);
+  if (icon_button("##end", Icon::to_end, k_to_end)) player.to_end();
+  if (icon_button("##restart", Icon::restart, player.replay() ? k_replay_restart : k_restart))
     player.restart();
   gap();
-  if (text_button("-##slower", "Half the speed ( [ )", player.speed() > k_least_speed)) player.slower();
+  if (text_button("-##slower", k_slower, player.speed() > k_least_speed)) player.slower();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(speed_text(player.speed()).c_str());
-  tooltip(loads ? "Load paths per second, asked for" : "Simulated seconds per second, asked for");
+  tooltip(loads ? k_load_speed : k_speed);
   ImGui::SameLine();
-  if (text_button("+##faster", "Twice the speed ( ] )", player.speed() < k_most_speed)) player.faster();
+  if (text_button("+##faster", k_faster, player.speed() < k_most_speed)) player.faster();
   gap();
-  if (text_button("Continue from here", "A new branch begins at the instant shown (C)",
-                  player.can_continue()))
+  if (text_button(say(k_continue) + "##continue", k_continue_about, player.can_continue()))
     player.continue_from_here();
   choose_branch(player);
   gap();
-  if (text_button("Undo", "Takes the last change back, from now on (Ctrl+Z)", player.can_undo()))
-    player.undo();
-  if (text_button("Redo", "(Ctrl+Shift+Z)", player.can_redo())) player.redo();
+  if (text_button(say(k_undo) + "##undo", k_undo_about, player.can_undo())) player.undo();
+  if (text_button(say(k_redo) + "##redo", k_redo_about, player.can_redo())) player.redo();
   const auto row = loads ? player.row() : std::nullopt;
   const std::string clock = row     ? instant_in_words(player.scene().setup, *row)
                             : loads ? ""
-                                    : fmt::format("{:.2f} s of {:.6g} s", player.time(), player.length());
+                                    : say(k_clock, player.time(), player.length());
   const float width = ImGui::CalcTextSize(clock.c_str()).x;
   const float right = ImGui::GetWindowContentRegionMax().x - width;
   if (right > ImGui::GetCursorPosX()) {

@@ -7,6 +7,7 @@
 
 #include "app/files.h"
 #include "app/viewer.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
@@ -14,6 +15,8 @@
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 constexpr ImU32 k_text = IM_COL32(40, 50, 60, 255), k_quiet_text = IM_COL32(80, 92, 104, 255);
 
@@ -32,8 +35,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   line(fonts_.small, k_quiet_text,
        instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
-    line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
+  for (const std::string& words : bodies_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
   for (const std::string& words : anchors_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
   render::LeftOut left_out;
   const float legend = 190 * scale_;
@@ -52,14 +54,14 @@ void Viewer::draw_words(const io::FrameRow& row) {
 }
 
 void Viewer::draw_tabs() {
-  constexpr std::pair<const char*, Tab> k_tabs[] = {
-      {"Parameters", Tab::parameters}, {"Picture", Tab::picture}, {"Inspect", Tab::inspect}};
+  static constexpr std::pair<Phrase, Tab> k_tabs[] = {
+      {k_parameters, Tab::parameters}, {k_picture, Tab::picture}, {k_inspect, Tab::inspect}};
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
   for (const auto& [name, tab] : k_tabs) {
     const bool chosen = tab == tab_;
     if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(name, {width, 0})) tab_ = tab;
+    if (ImGui::Button(say(name).c_str(), {width, 0})) tab_ = tab;
     if (chosen) ImGui::PopStyleColor();
     if (tab != Tab::inspect) ImGui::SameLine();
   }
@@ -74,17 +76,17 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   } else if (tab_ == Tab::picture) {
     if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
       scene_changed_ = true;
-    if (!player_.ghost_way().empty() && ImGui::Checkbox("ghost of the branch left", &ghost_shown_))
+    if (!player_.ghost_way().empty() && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
       scene_changed_ = true;
     ImGui::Separator();
-    const std::pair<const char*, render::NamedView> views[] = {{"Front", render::NamedView::front},
-                                                               {"Side", render::NamedView::side},
-                                                               {"Top", render::NamedView::top},
-                                                               {"Iso", render::NamedView::iso}};
+    static constexpr std::pair<Phrase, render::NamedView> views[] = {{k_front, render::NamedView::front},
+                                                                     {k_side, render::NamedView::side},
+                                                                     {k_top, render::NamedView::top},
+                                                                     {k_iso, render::NamedView::iso}};
     const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) /
                         static_cast<float>(std::size(views));
     for (const auto& [name, view] : views) {
-      if (ImGui::Button(name, {width, 0})) look(view);
+      if (ImGui::Button(say(name).c_str(), {width, 0})) look(view);
       if (view != render::NamedView::iso) ImGui::SameLine();
     }
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
@@ -115,9 +117,9 @@ void Viewer::write_plots(PlotRequest request) {
       write_whole_file(path.string(), plots_csv(player_, histories_, inspection_));
     else
       render::write_png(path, picture_of_plots());
-    told_ = "Written: " + std::filesystem::absolute(path, ignored).string();
+    told_ = say(k_written, std::filesystem::absolute(path, ignored).string());
   } catch (const std::runtime_error& error) {
-    told_ = fmt::format("Not written: {}", error.what());
+    told_ = say(k_not_written, error.what());
   }
 }
 
@@ -151,12 +153,12 @@ void Viewer::draw_status() {
   std::string words = status_in_words(player_);
   const bool failed = status.kind == LiveStatus::Kind::failed && player_.at_head();
   if (!told_.empty()) words = told_;
-  if (!refused_.empty()) words = "Refused: " + refused_;
-  if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
+  if (!refused_.empty()) words = say(k_refused, refused_);
+  if (!status.record_failure.empty()) words += say(k_not_recorded, status.record_failure);
   const double least_step = io::key_of(Edit::Key::time_step).least;
   if (failed && player_.can_edit() && !is_static(player_.scene().setup) &&
       player_.parameters().time_step >= 2 * least_step) {
-    if (ImGui::SmallButton("Halve the step and retry")) {
+    if (ImGui::SmallButton(say(k_halve).c_str())) {
       player_.begin_edit();
       player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});
       player_.play();
@@ -164,8 +166,7 @@ void Viewer::draw_status() {
     ImGui::SameLine();
   }
   ImGui::TextUnformatted(words.c_str());
-  const std::string pace =
-      frame_ms_ > 0 ? fmt::format("{:.0f} ms a frame   F1: keys", frame_ms_) : "F1: keys";
+  const std::string pace = (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
   const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(pace.c_str()).x;
   ImGui::SameLine();
   if (right > ImGui::GetCursorPosX()) {
