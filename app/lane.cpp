@@ -61,12 +61,12 @@ void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float labe
     t += 0.;  // makes 0 of -0
     if (steps && t != std::round(t)) continue;
     const float x = lane.x(t / scale);
-    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
+    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, theme().axis);
     const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
-    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_chart_text, label);
+    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, theme().text, label);
   }
   if (loads)
-    add_text(list, label_left, lane.bottom + 11, k_chart_text,
+    add_text(list, label_left, lane.bottom + 11, theme().text,
              say(steps ? window_words::k_load_step : window_words::k_load_factor));
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/appearance.h"
 #include "app/picture_settings.h"
 #include "app/player.h"
 #include "app/subject.h"
@@ -21,11 +22,13 @@ struct Box {
   }
 };
 
-/// Begins a window that fills `box` and does nothing else; ImGui::End() ends it.
+/// Begins a window that fills `box` and does nothing else; ImGui::End() ends it. Keys move among what is in
+/// it.
 void begin_panel(const char* name, const Box& box);
 
-/// Buttons for play, pause, steps, speed, restart, branches, undo and redo.
-void draw_transport_bar(Player& player, const Box& box);
+/// Buttons for play, pause, steps, speed, restart, branches, undo and redo, in as many rows as the width of
+/// the box asks for. Returns the height that they need.
+float draw_transport_bar(Player& player, const Box& box);
 
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.
@@ -36,6 +39,9 @@ void draw_parameters(Player& player, std::string& refused);
 
 /// Colours by another quantity; a fixed range, which had the unit of the last one, becomes that of the run.
 void choose_colour(PictureSettings& settings, BeamQuantity colour);
+
+/// Theme, language and scale. True when one was changed.
+bool draw_appearance(Appearance& appearance);
 
 /// Colours, deformation and what is shown beside bodies. `maximum`: where the colours end now, in the
 /// quantity's unit. True when anything changed.

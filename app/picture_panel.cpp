@@ -106,4 +106,26 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
   return changed;
 }
 
+bool draw_appearance(Appearance& appearance) {
+  const Appearance before = appearance;
+  static constexpr Phrase k_themes[] = {k_light, k_dark}, k_languages[] = {k_english, k_japanese};
+  label(k_theme);
+  choose("##theme", k_themes, appearance.dark);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Ctrl+D");
+  label(k_language);
+  ImGui::BeginDisabled(!render::has_japanese_font());
+  choose("##language", k_languages, appearance.language);
+  ImGui::EndDisabled();
+  if (!render::has_japanese_font() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    ImGui::SetTooltip("%s", say(k_needs_font).c_str());
+  label(k_size);
+  if (ImGui::Button("-##smaller")) appearance.scale = next_scale(appearance.scale, -1);
+  ImGui::SameLine();
+  ImGui::Text("%.0f %%", 100 * appearance.scale);
+  ImGui::SameLine();
+  if (ImGui::Button("+##larger")) appearance.scale = next_scale(appearance.scale, 1);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_size_about).c_str());
+  return appearance != before;
+}
+
 }  // namespace topple::app

@@ -23,10 +23,6 @@ constexpr double k_degrees = 180 / k_pi;
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 
-constexpr ImU32 k_ghost = IM_COL32(120, 128, 136, 150);
-constexpr ImU32 k_floor_colours[] = {IM_COL32(70, 82, 94, 255), IM_COL32(140, 90, 60, 255),
-                                     IM_COL32(110, 110, 170, 255)};
-
 ImU32 line_colour(std::size_t body) {
   const auto& [red, green, blue] = body_colour(body);
   return IM_COL32(red, green, blue, 255);
@@ -54,18 +50,18 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   for (int k = 0; k < 3; ++k) most = std::max(most, 1.08 * peak(rows, component(k)));
   lane.low = -most;
   lane.high = most;
-  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
   std::string moving;
   for (int k = 0; k < 3; ++k) {
     if (!rows.empty() && peak(rows, component(k)) == 0) continue;
-    add_curve(list, lane, rows, component(k), k_floor_colours[k], 1.3f);
+    add_curve(list, lane, rows, component(k), theme().floor[k], 1.3f);
     moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
   }
   const float line = ImGui::GetTextLineHeight();
-  add_text(list, label_left, lane.top, k_chart_text, say(k_floor_lane));
-  if (!moving.empty()) add_text(list, label_left, lane.top + line, k_chart_text, moving);
+  add_text(list, label_left, lane.top, theme().text, say(k_floor_lane));
+  if (!moving.empty()) add_text(list, label_left, lane.top + line, theme().text, moving);
   const std::string top = fmt::format("{:.0f}", most);
-  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_chart_text, top);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, theme().text, top);
 }
 
 void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
@@ -77,10 +73,10 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   }
   lane.low = 1.08 * least;
   lane.high = greatest > least ? 1.08 * greatest : 1;
-  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
-  add_curve(list, lane, rows, factor, k_floor_colours[0], 1.3f);
-  add_text(list, label_left, lane.top, k_chart_text, say(k_load_factor));
-  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_chart_text, say(k_up_to, greatest));
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
+  add_curve(list, lane, rows, factor, theme().floor[0], 1.3f);
+  add_text(list, label_left, lane.top, theme().text, say(k_load_factor));
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
 
 void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
@@ -97,26 +93,26 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   }
   lane.low = 0;
   lane.high = critical > 0 ? k_tilt_room * critical : most;
-  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, k_axis);
+  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
   if (critical > 0) {
     for (float x = lane.left; x < lane.right; x += 9)
-      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, k_axis);
+      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
     const std::string label = fmt::format("{:.1f}°", critical);
     add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
-             k_chart_text, label);
+             theme().text, label);
   }
   for (std::size_t b = 0; b < furniture; ++b) {
-    add_curve(list, lane, player.ghost_way(), tilt(b), k_ghost, 1);
+    add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
     add_curve(list, lane, rows, tilt(b), line_colour(b), 1.6f);
   }
   const float line = ImGui::GetTextLineHeight();
   float y = lane.top - 2;
-  add_text(list, label_left, y, k_chart_text, say(k_tilt_lane));
+  add_text(list, label_left, y, theme().text, say(k_tilt_lane));
   for (std::size_t b = 0; b < furniture && y + 2 * line < lane.bottom + line; ++b) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
                        line_colour(b));
-    add_text(list, label_left + 14, y, k_chart_text, bodies[b].name);
+    add_text(list, label_left + 14, y, theme().text, bodies[b].name);
   }
 }
 
@@ -197,7 +193,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   for (const LoggedEdit& edit : player.edits())
     mark(
         edit.time, lane.top, [&] { return edit_text(player, edit); },
-        [&](ImVec2 p) { list.AddNgonFilled(p, k_size, IM_COL32(150, 60, 140, 255), 4); });
+        [&](ImVec2 p) { list.AddNgonFilled(p, k_size, theme().edit, 4); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
     for (const Branch& branch : player.history().branches) {
@@ -206,7 +202,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
                                    [&](const RowPtr& row) { return row->branch == branch.id; });
       if (at == player.way().end()) continue;
       const float x = lane.x((*at)->time);
-      list.AddLine({x, lane.top}, {x, lane.bottom}, k_axis);
+      list.AddLine({x, lane.top}, {x, lane.bottom}, theme().axis);
     }
   if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
 }
@@ -237,8 +233,8 @@ void draw_timeline(Player& player, const Box& box) {
   add_axis(list, lower, player.scene().setup, label_left);
 
   const float x = lane.x(player.time());
-  list.AddLine({x, lane.top}, {x, lane.bottom}, k_cursor, 1.5f);
-  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, k_cursor);
+  list.AddLine({x, lane.top}, {x, lane.bottom}, theme().cursor, 1.5f);
+  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, theme().cursor);
   ImGui::SetCursorScreenPos({lane.left, lane.top});
   ImGui::InvisibleButton("scrub", {lane.right - lane.left, height + line});
   if (ImGui::IsItemActive())

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/panels.h"
@@ -59,12 +60,22 @@ void add_icon(ImDrawList& list, Icon icon, ImVec2 at, float r, ImU32 colour) {
   }
 }
 
+/// What comes next begins a new row unless it has room on this one.
+void flow(float width) {
+  if (ImGui::GetCursorPosX() + width > ImGui::GetWindowContentRegionMax().x) ImGui::NewLine();
+}
+
+float button_width(const std::string& label) {
+  return ImGui::CalcTextSize(label.c_str(), nullptr, true).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
 void tooltip(const Phrase& text) {
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", say(text).c_str());
 }
 
 bool icon_button(const char* id, Icon icon, const Phrase& about, bool enabled = true) {
   const float side = ImGui::GetFrameHeight();
+  flow(1.35f * side);
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button(id, {1.35f * side, side});
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
@@ -77,6 +88,7 @@ bool icon_button(const char* id, Icon icon, const Phrase& about, bool enabled = 
 }
 
 bool text_button(const std::string& label, const Phrase& about, bool enabled) {
+  flow(button_width(label));
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button(label.c_str());
   ImGui::EndDisabled();
@@ -100,7 +112,9 @@ void choose_branch(Player& player) {
   const auto name = [&](std::int32_t id) {
     return say(!player.replay() && id == player.status().branch ? k_branch_live : k_branch, id + 1);
   };
-  ImGui::SetNextItemWidth(6.5f * ImGui::GetFrameHeight());
+  const float width = 6.5f * ImGui::GetFrameHeight();
+  flow(width);
+  ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
     for (const Branch& branch : branches)
       if (ImGui::Selectable(name(branch.id).c_str(), branch.id == player.shown_branch()))
@@ -113,7 +127,7 @@ void choose_branch(Player& player) {
 
 }  // namespace
 
-void draw_transport_bar(Player& player, const Box& box) {
+float draw_transport_bar(Player& player, const Box& box) {
   begin_panel("transport", box);
   const bool loads = is_static(player.scene().setup);
   if (icon_button("##start", Icon::to_start, k_to_start)) player.to_start();
@@ -126,6 +140,7 @@ void draw_transport_bar(Player& player, const Box& box) {
     player.restart();
   gap();
   if (text_button("-##slower", k_slower, player.speed() > k_least_speed)) player.slower();
+  flow(ImGui::CalcTextSize(speed_text(player.speed()).c_str()).x);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(speed_text(player.speed()).c_str());
   tooltip(loads ? k_load_speed : k_speed);
@@ -143,15 +158,14 @@ void draw_transport_bar(Player& player, const Box& box) {
                             : loads ? ""
                                     : say(k_clock, player.time(), player.length());
   const float width = ImGui::CalcTextSize(clock.c_str()).x;
-  const float right = ImGui::GetWindowContentRegionMax().x - width;
-  if (right > ImGui::GetCursorPosX()) {
-    ImGui::SetCursorPosX(right);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(clock.c_str());
-  } else {
-    ImGui::NewLine();
-  }
+  flow(width);
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(clock.c_str());
+  const float height =
+      ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + ImGui::GetStyle().WindowPadding.y;
   ImGui::End();
+  return height;
 }
 
 }  // namespace topple::app

@@ -77,6 +77,19 @@ LiveSource open_source(const ViewOptions& o) {
   return source;
 }
 
+Appearance window_appearance(const fs::path& settings, const std::optional<Language>& asked) {
+  std::string warning;
+  Appearance appearance = read_appearance(settings, warning);
+  if (!warning.empty()) say("warning: " + warning);
+  if (asked) {
+    appearance.language = *asked;
+  } else if (appearance.language == Language::japanese && !render::has_japanese_font()) {
+    say("warning: Japanese needs the Debian package fonts-vlgothic; the window is in English");
+    appearance.language = Language::english;
+  }
+  return appearance;
+}
+
 /// Draws while there is something to draw, until the window closes or Ctrl+C.
 void show(render::Window& window, render::Stage& stage, Viewer& viewer, Player& player) {
   int frames_due = k_frames_of_input;
@@ -113,6 +126,11 @@ void show(render::Window& window, render::Stage& stage, Viewer& viewer, Player& 
 int view_command(const ViewOptions& options) {
   LiveSource source = open_source(options);
   const std::shared_ptr<const io::Scene> scene = source.scene;
+  const std::filesystem::path settings = settings_file();
+  const Appearance appearance = window_appearance(settings, options.language);
+  const Viewer::Keep keep = [settings](const Appearance& chosen) {
+    if (!settings.empty()) keep_appearance(settings, chosen);
+  };
   defer_interrupts();
   const Interface interface;
   render::Window window("topple: " + scene->name);
@@ -123,7 +141,7 @@ int view_command(const ViewOptions& options) {
   // Where a point of the desktop is several pixels, Dear ImGui's coordinates are scaled already.
   const float pixels =
       static_cast<float>(window.framebuffer_size().width) / static_cast<float>(window.size().width);
-  Viewer viewer(player, stage, window.content_scale() / pixels);
+  Viewer viewer(player, stage, window.content_scale() / pixels, render::NamedView::iso, {}, appearance, keep);
   show(window, stage, viewer, player);
   const LiveStatus status = run.close(interrupted() ? "interrupted" : "stopped");
   if (!status.record_failure.empty()) say(status.record_failure);

@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "app/theme.h"
+#include "app/window_words.h"
 
 namespace topple::app {
 namespace {
@@ -14,31 +19,9 @@ constexpr double k_quiet = 0.4;          // s without change after which the sce
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
-
-void set_style(float scale) {
-  ImGui::StyleColorsLight();
-  ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowRounding = 0;
-  style.WindowBorderSize = 0;
-  style.FrameRounding = 3;
-  style.GrabRounding = 3;
-  style.WindowPadding = {10, 6};
-  style.FramePadding = {7, 4};
-  style.ItemSpacing = {7, 5};
-  style.Colors[ImGuiCol_WindowBg] = {0.955f, 0.96f, 0.965f, 1};
-  style.Colors[ImGuiCol_PopupBg] = {1, 1, 1, 0.98f};
-  style.Colors[ImGuiCol_Text] = {0.14f, 0.18f, 0.22f, 1};
-  style.Colors[ImGuiCol_TextDisabled] = {0.38f, 0.43f, 0.48f, 1};
-  style.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 1};
-  style.Colors[ImGuiCol_FrameBgHovered] = {0.90f, 0.94f, 0.98f, 1};
-  style.Colors[ImGuiCol_FrameBgActive] = {0.84f, 0.91f, 0.98f, 1};
-  style.Colors[ImGuiCol_Button] = {0.87f, 0.895f, 0.92f, 1};
-  style.Colors[ImGuiCol_ButtonHovered] = {0.76f, 0.86f, 0.95f, 1};
-  style.Colors[ImGuiCol_ButtonActive] = {0.62f, 0.78f, 0.92f, 1};
-  style.Colors[ImGuiCol_SliderGrab] = {0.58f, 0.77f, 0.93f, 1};
-  style.Colors[ImGuiCol_SliderGrabActive] = {0.40f, 0.65f, 0.88f, 1};
-  style.ScaleAllSizes(scale);
-}
+constexpr float k_side = 320;            // px at 720 lines
+constexpr float k_most_side = 0.45f;     // of the width
+constexpr float k_least_letters = 12;    // px
 
 bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::FrameRow>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
@@ -52,14 +35,16 @@ void begin_panel(const char* name, const Box& box) {
   ImGui::SetNextWindowSize({box.width, box.height});
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus);
 }
 
 Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view,
-               const PictureSettings& settings)
+               const PictureSettings& settings, const Appearance& appearance, Keep keep)
     : player_(player),
       stage_(stage),
-      scale_(scale),
+      desktop_scale_(scale),
+      appearance_(appearance),
+      keep_(std::move(keep)),
       bridge_(player.scene(), player.extent()),
       settings_(settings),
       view_(view) {
@@ -68,14 +53,39 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
-  fonts_ = render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)));
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  dress();
+}
+
+void Viewer::dress() {
+  scale_ = desktop_scale_ * static_cast<float>(appearance_.scale);
+  window_language() = appearance_.language;
+  window_is_dark() = appearance_.dark;
+  ImGuiIO& io = ImGui::GetIO();
+  io.Fonts->Clear();
+  render::Letters letters = window_letters(player_.scene());
+  letters.smallest = k_least_letters;
+  fonts_ = render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale_)), letters);
   io.FontDefault = fonts_.small;
   stage_.upload_fonts(*io.Fonts);
-  set_style(scale);
+  set_style(scale_);
+  dressed_ = appearance_;
+  scene_changed_ = true;
+}
+
+void Viewer::wear(const Appearance& appearance) {
+  appearance_ = appearance;
+  try {
+    if (keep_) keep_(appearance_);
+  } catch (const std::runtime_error& error) {
+    told_ = say(window_words::k_not_written, error.what());
+  }
 }
 
 bool Viewer::update(double wall_s) {
-  const bool news = player_.update(wall_s);
+  const bool redress = dressed_ != appearance_;
+  if (redress) dress();
+  const bool news = player_.update(wall_s) || redress;
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;
@@ -85,9 +95,14 @@ bool Viewer::update(double wall_s) {
 
 void Viewer::lay_out() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float side = std::min(300 * scale_, 0.45f * size.x), status = 26 * scale_, bar = 38 * scale_;
-  const float timeline = std::min(165 * scale_, 0.3f * size.y);
-  const float upper = std::max(size.y - status - bar - timeline, 16.f), line = fonts_.small->FontSize;
+  const float line = fonts_.small->FontSize;
+  const float side = std::min(k_side * scale_, k_most_side * size.x);
+  const float status = static_cast<float>(status_lines_.size()) * ImGui::GetTextLineHeightWithSpacing() +
+                       2 * ImGui::GetStyle().WindowPadding.y;
+  const float bar = transport_height_ > 0 ? transport_height_ : 38 * scale_;
+  const float timeline =
+      std::min({182 * scale_, 0.3f * size.y, 0.45f * std::max(size.y - status - bar, 0.f)});
+  const float upper = std::max(size.y - status - bar - timeline, 16.f);
   const float heading = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y;
   const float plots = inspection_.plots.empty()
                           ? 0
@@ -116,9 +131,11 @@ void Viewer::report_frame_time(double ms) {
 
 void Viewer::build() {
   const Box before = scene_;
+  write_status();
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
   handle_characters();
+  if (std::exchange(to_next_panel_, false)) focus_next_panel();
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
       refused_.clear();
@@ -130,7 +147,7 @@ void Viewer::build() {
   handle_mouse();
   if (row_) draw_words(*row_);
   draw_side_panel(row_);
-  draw_transport_bar(player_, transport_);
+  transport_height_ = draw_transport_bar(player_, transport_);
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
@@ -149,6 +166,7 @@ void Viewer::draw_scene() {
     if (picked && picked->kind == Subject::Kind::member)
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
+    frame_.dark = appearance_.dark;
     const LiveStatus& status = player_.status();
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);

@@ -2,10 +2,13 @@
 // the window nor where its pictures go, so that tests drive it off screen.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
 #include "render/font.h"
@@ -18,10 +21,14 @@ namespace topple::app {
 
 class Viewer {
  public:
+  /// Keeps how the window looks for the next start. May throw std::runtime_error.
+  using Keep = std::function<void(const Appearance&)>;
+
   /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
-  /// and panels, 1 for 720 lines. Throws std::runtime_error without the font.
+  /// and panels, 1 for 720 lines, times that of `appearance`. `keep` is called when a person changes that.
+  /// Throws std::runtime_error without the font.
   Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso,
-         const PictureSettings& settings = {});
+         const PictureSettings& settings = {}, const Appearance& appearance = {}, Keep keep = {});
 
   /// Looks closely at it; nothing: at none.
   void inspect(const std::optional<Subject>& subject);
@@ -42,6 +49,7 @@ class Viewer {
   const Box& timeline_box() const { return timeline_; }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
+  const Appearance& appearance() const { return appearance_; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
@@ -49,7 +57,11 @@ class Viewer {
   enum class Tab { parameters, picture, inspect };
   struct KeyAction;
   static std::span<const KeyAction> key_actions();
+  void dress();
+  void wear(const Appearance& appearance);
+  void resize(int direction);
   void let_go();
+  void focus_next_panel();
   void next_colour();
   void turn(bool& on);
   void lay_out();
@@ -65,13 +77,19 @@ class Viewer {
   void draw_plots_strip();
   void write_plots(PlotRequest request);
   render::Image picture_of_plots();
+  bool can_halve() const;
+  std::string pace() const;
+  void write_status();
   void draw_status();
   void draw_key_table();
   float aspect() const { return scene_.width / scene_.height; }
 
   Player& player_;
   render::Stage& stage_;
-  const float scale_;
+  const float desktop_scale_;
+  float scale_ = 1;
+  Appearance appearance_, dressed_;  // as asked for, and as shown
+  const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
   Box scene_, plots_, timeline_, transport_, side_, status_;
@@ -90,6 +108,9 @@ class Viewer {
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
   bool wants_to_close_ = false;
+  float transport_height_ = 0;  // as last drawn
+  std::vector<std::string> status_lines_;
+  bool to_next_panel_ = false;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
   std::string told_;  // what was written, or why it was not

@@ -1,4 +1,5 @@
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <span>
 
@@ -56,6 +57,33 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {k_wheel, k_key_wheel},
       {k_click, k_key_click},
       {{"Esc", "Esc"}, k_key_let_go, render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
+      {{"F6", "F6"}, k_key_panel, render::key::f6, false, false, [](Viewer& v) { v.to_next_panel_ = true; }},
+      {{"Tab", "Tab"},
+       k_key_tab,
+       render::key::tab,
+       false,
+       false,
+       [](Viewer& v) { v.to_next_panel_ = !ImGui::GetIO().NavActive; }},
+      {k_arrows, k_key_arrows},
+      {{"Ctrl +, Ctrl -, Ctrl+0", "Ctrl +、Ctrl -、Ctrl+0"}, k_key_size},
+      {{}, {}, '+', true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '+', true, true, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '=', true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '=', true, true, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, render::key::keypad_plus, true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '-', true, false, [](Viewer& v) { v.resize(-1); }},
+      {{}, {}, render::key::keypad_minus, true, false, [](Viewer& v) { v.resize(-1); }},
+      {{}, {}, '0', true, false, [](Viewer& v) { v.resize(0); }},
+      {{"Ctrl+D", "Ctrl+D"},
+       k_key_theme,
+       'D',
+       true,
+       false,
+       [](Viewer& v) {
+         Appearance other = v.appearance_;
+         other.dark = !other.dark;
+         v.wear(other);
+       }},
       {{"F1", "F1"},
        k_key_table,
        render::key::f1,
@@ -68,7 +96,11 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
 }
 
 void Viewer::press(const render::KeyPress& press) {
-  if (ImGui::GetIO().WantTextInput) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput) return;
+  const bool for_control =
+      press.key == ' ' || press.key == render::key::home || press.key == render::key::end;
+  if (io.NavVisible && for_control) return;  // the control that has the focus takes it
   refused_.clear();
   for (const KeyAction& action : key_actions())
     if (action.act && action.key == press.key && action.control == press.control &&
@@ -87,6 +119,31 @@ void Viewer::turn(bool& on) {
   scene_changed_ = true;
 }
 
+void Viewer::resize(int direction) {
+  Appearance other = appearance_;
+  other.scale = next_scale(other.scale, direction);
+  wear(other);
+}
+
+// Dear ImGui's own way, Ctrl+Tab, shows its names of panels.
+void Viewer::focus_next_panel() {
+  static constexpr const char* k_panels[] = {"side", "transport", "timeline", "plots", "status"};
+  const ImGuiWindow* const now = ImGui::GetCurrentContext()->NavWindow;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < std::size(k_panels); ++i)
+    if (now && now->RootWindow == ImGui::FindWindowByName(k_panels[i])) next = i + 1;
+  for (std::size_t i = 0; i < std::size(k_panels); ++i) {
+    ImGuiWindow* const window = ImGui::FindWindowByName(k_panels[(next + i) % std::size(k_panels)]);
+    if (!window || !window->WasActive) continue;
+    ImGui::FocusWindow(window);
+    ImGui::NavInitWindow(window, true);
+    ImGuiContext& context = *ImGui::GetCurrentContext();
+    context.NavDisableHighlight = false;
+    context.NavDisableMouseHover = true;
+    return;
+  }
+}
+
 void Viewer::let_go() {
   keys_shown_ = false;
   inspect(std::nullopt);
@@ -102,13 +159,15 @@ void Viewer::handle_characters() {
 }
 
 void Viewer::draw_key_table() {
-  ImGui::SetNextWindowPos({scene_.left + scene_.width / 2, scene_.top + scene_.height / 2}, ImGuiCond_Always,
-                          {0.5f, 0.5f});
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.98f * size.x, 0.95f * size.y});
   ImGui::Begin(
       (say(k_keys) + "###keys").c_str(), &keys_shown_,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const KeyAction& action : key_actions()) {
+      if (action.shown.english.empty()) continue;
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(say(action.shown).c_str());
       ImGui::TableNextColumn();

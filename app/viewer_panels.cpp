@@ -4,13 +4,16 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "app/files.h"
+#include "app/theme.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
 #include "app/words.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
+#include "render/text_layout.h"
 #include "solver/io/edit_text.h"
 
 namespace topple::app {
@@ -18,52 +21,73 @@ namespace {
 
 using namespace window_words;
 
-constexpr ImU32 k_text = IM_COL32(40, 50, 60, 255), k_quiet_text = IM_COL32(80, 92, 104, 255);
+constexpr int k_most_status_lines = 3;
+constexpr float k_most_legend = 0.3f;  // of the width
 
 }  // namespace
 
 void Viewer::draw_words(const io::FrameRow& row) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.PushClipRect({scene_.left, scene_.top}, {scene_.left + scene_.width, scene_.top + scene_.height});
-  const float margin = 14 * scale_;
-  float y = scene_.top + margin;
-  const auto line = [&](ImFont* font, ImU32 colour, const std::string& text) {
-    list.AddText(font, font->FontSize, {scene_.left + margin, y}, colour, text.c_str());
-    y += std::round(1.3f * font->FontSize);
+  const float right = scene_.left + scene_.width, bottom = scene_.top + scene_.height;
+  list.PushClipRect({scene_.left, scene_.top}, {right, bottom});
+  const float margin = 14 * scale_, legend = std::min(190 * scale_, k_most_legend * scene_.width);
+  const float room = scene_.width - legend - 2 * margin, pad = 0.5f * margin;
+  std::vector<std::pair<ImFont*, std::string>> lines;
+  float width = 0, height = 0;
+  const auto add = [&](ImFont* font, const std::string& text) {
+    for (const std::string& line : render::wrapped(*font, text, room, 2)) {
+      if (scene_.top + margin + height + 1.3f * font->FontSize > bottom) return;
+      lines.emplace_back(font, line);
+      width = std::max(width, render::text_width(*font, line));
+      height += std::round(1.3f * font->FontSize);
+    }
   };
-  line(fonts_.text, k_text, player_.scene().title);
-  line(fonts_.small, k_quiet_text,
-       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
+  add(fonts_.text, player_.scene().title);
+  add(fonts_.small,
+      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (const std::string& words : bodies_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
-  for (const std::string& words : anchors_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
+  for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
+  for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
+  float x = scene_.left + margin, y = scene_.top + margin;
+  list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
+  for (const auto& [font, line] : lines) {
+    list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
+                 line.c_str());
+    y += std::round(1.3f * font->FontSize);
+  }
+  // Here the scene may lie behind the legend.
+  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
+  const float inner = right - legend, outer = inner - margin;
+  list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
+  list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
   render::LeftOut left_out;
-  const float legend = 190 * scale_;
-  // Here the scene may lie behind it.
-  const ImU32 clear = IM_COL32(244, 246, 248, 0), veil = IM_COL32(244, 246, 248, 215);
-  list.AddRectFilledMultiColor({scene_.left + scene_.width - legend, scene_.top},
-                               {scene_.left + scene_.width, scene_.top + scene_.height}, clear, veil, veil,
-                               clear);
   render::draw_legend_in(list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
-                         {"", scene_.left + scene_.width - legend, scene_.top + margin,
-                          scene_.left + scene_.width - margin, scene_.top + scene_.height - margin},
+                         {"", inner, scene_.top + margin, right - margin, bottom - margin}, frame_.dark,
                          left_out);
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
-                      {"", scene_.left, scene_.top, scene_.left + scene_.width, scene_.top + scene_.height});
+                      {"", scene_.left, scene_.top, right, bottom});
   list.PopClipRect();
 }
 
 void Viewer::draw_tabs() {
   static constexpr std::pair<Phrase, Tab> k_tabs[] = {
       {k_parameters, Tab::parameters}, {k_picture, Tab::picture}, {k_inspect, Tab::inspect}};
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float width = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
+  constexpr auto k_count = static_cast<float>(std::size(k_tabs));
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const auto natural = [&](const Phrase& name) {
+    return ImGui::CalcTextSize(say(name).c_str()).x + 2 * style.FramePadding.x;
+  };
+  float room = ImGui::GetContentRegionAvail().x - (k_count - 1) * style.ItemSpacing.x;
+  for (const auto& [name, tab] : k_tabs) room -= natural(name);
   for (const auto& [name, tab] : k_tabs) {
     const bool chosen = tab == tab_;
-    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(say(name).c_str(), {width, 0})) tab_ = tab;
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, style.Colors[ImGuiCol_ButtonActive]);
+    if (ImGui::Button(say(name).c_str(), {natural(name) + std::max(room, 0.f) / k_count, 0})) tab_ = tab;
     if (chosen) ImGui::PopStyleColor();
-    if (tab != Tab::inspect) ImGui::SameLine();
+    const std::size_t next = static_cast<std::size_t>(tab) + 1;
+    if (next == std::size(k_tabs)) break;
+    ImGui::SameLine();
+    if (natural(k_tabs[next].first) > ImGui::GetContentRegionAvail().x) ImGui::NewLine();
   }
   ImGui::Separator();
 }
@@ -71,6 +95,7 @@ void Viewer::draw_tabs() {
 void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   begin_panel("side", side_);
   draw_tabs();
+  ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   if (tab_ == Tab::parameters) {
     draw_parameters(player_, refused_);
   } else if (tab_ == Tab::picture) {
@@ -89,9 +114,13 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
       if (ImGui::Button(say(name).c_str(), {width, 0})) look(view);
       if (view != render::NamedView::iso) ImGui::SameLine();
     }
+    ImGui::Separator();
+    Appearance appearance = appearance_;
+    if (draw_appearance(appearance)) wear(appearance);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }
+  ImGui::EndChild();
   ImGui::End();
 }
 
@@ -137,8 +166,10 @@ render::Image Viewer::picture_of_plots() {
   io.DeltaTime = 1.f / 60;
   ImGui::NewFrame();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddText({10, std::round(0.5f * line)}, k_text, player_.scene().title.c_str());
+  const bool dark = std::exchange(window_is_dark(), false);  // it is written on white
+  list.AddText({10, std::round(0.5f * line)}, theme().text, player_.scene().title.c_str());
   draw_plot_lanes(list, player_, histories_, inspection_, {0, 2 * line, io.DisplaySize.x, height});
+  window_is_dark() = dark;
   ImGui::Render();
   const render::Image image =
       stage_.sheet(static_cast<int>(io.DisplaySize.x), static_cast<int>(height), *ImGui::GetDrawData());
@@ -147,32 +178,46 @@ render::Image Viewer::picture_of_plots() {
   return image;
 }
 
-void Viewer::draw_status() {
-  begin_panel("status", status_);
+bool Viewer::can_halve() const {
+  const double least_step = io::key_of(Edit::Key::time_step).least;
+  return player_.status().kind == LiveStatus::Kind::failed && player_.at_head() && player_.can_edit() &&
+         !is_static(player_.scene().setup) && player_.parameters().time_step >= 2 * least_step;
+}
+
+void Viewer::write_status() {
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
-  const bool failed = status.kind == LiveStatus::Kind::failed && player_.at_head();
   if (!told_.empty()) words = told_;
   if (!refused_.empty()) words = say(k_refused, refused_);
   if (!status.record_failure.empty()) words += say(k_not_recorded, status.record_failure);
-  const double least_step = io::key_of(Edit::Key::time_step).least;
-  if (failed && player_.can_edit() && !is_static(player_.scene().setup) &&
-      player_.parameters().time_step >= 2 * least_step) {
-    if (ImGui::SmallButton(say(k_halve).c_str())) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
+  float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
+  if (can_halve()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
+  status_lines_ = render::wrapped(*fonts_.small, words, room, k_most_status_lines);
+  if (status_lines_.empty()) status_lines_.emplace_back();
+}
+
+std::string Viewer::pace() const {
+  return (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
+}
+
+void Viewer::draw_status() {
+  begin_panel("status", status_);
+  if (can_halve()) {
+    if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) {
       player_.begin_edit();
       player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});
       player_.play();
     }
     ImGui::SameLine();
   }
-  ImGui::TextUnformatted(words.c_str());
-  const std::string pace = (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
-  const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(pace.c_str()).x;
-  ImGui::SameLine();
-  if (right > ImGui::GetCursorPosX()) {
-    ImGui::SetCursorPosX(right);
-    ImGui::TextDisabled("%s", pace.c_str());
-  }
+  ImGui::BeginGroup();
+  for (const std::string& line : status_lines_) ImGui::TextUnformatted(line.c_str());
+  ImGui::EndGroup();
+  const std::string right = pace();
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
+  ImGui::TextDisabled("%s", right.c_str());
   ImGui::End();
 }
 

@@ -173,6 +173,8 @@ inline constexpr Phrase k_dark{"dark", "ダーク"};
 inline constexpr Phrase k_language{"language", "言語"};
 inline constexpr Phrase k_english{"English", "English"};
 inline constexpr Phrase k_japanese{"日本語", "日本語"};
+inline constexpr Phrase k_needs_font{"Japanese needs the Debian package fonts-vlgothic",
+                                     "日本語表示には Debian パッケージ fonts-vlgothic が必要です"};
 inline constexpr Phrase k_size{"size", "文字の倍率"};
 inline constexpr Phrase k_size_about{"Of letters and panels (Ctrl +, Ctrl -, Ctrl+0)",
                                      "文字とパネルの倍率（Ctrl +、Ctrl -、Ctrl+0）"};
