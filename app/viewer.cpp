@@ -53,7 +53,8 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
-  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  // Off screen there is no keyboard to move among panels with.
+  if (io.KeyMap[ImGuiKey_Space] != -1) io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   dress();
 }
 

@@ -16,16 +16,16 @@ namespace topple::render {
 namespace {
 
 struct Colours {
-  ImU32 title, text, quiet, frame, sheet, trace, cursor;
+  ImU32 title, text, quiet, frame, sheet, trace, cursor, border, axis;
 };
-constexpr Colours k_light = {IM_COL32(24, 34, 45, 255),    IM_COL32(44, 56, 68, 255),
-                             IM_COL32(84, 97, 110, 255),   IM_COL32(60, 74, 88, 150),
-                             IM_COL32(255, 255, 255, 205), IM_COL32(38, 92, 140, 255),
-                             IM_COL32(200, 70, 30, 255)};
-constexpr Colours k_dark = {IM_COL32(240, 243, 246, 255), IM_COL32(220, 226, 232, 255),
-                            IM_COL32(186, 195, 204, 255), IM_COL32(190, 200, 210, 150),
-                            IM_COL32(26, 30, 36, 205),    IM_COL32(110, 185, 240, 255),
-                            IM_COL32(255, 130, 90, 255)};
+constexpr Colours k_light = {
+    IM_COL32(24, 34, 45, 255),  IM_COL32(44, 56, 68, 255),    IM_COL32(84, 97, 110, 255),
+    IM_COL32(60, 74, 88, 150),  IM_COL32(255, 255, 255, 205), IM_COL32(38, 92, 140, 255),
+    IM_COL32(200, 70, 30, 255), IM_COL32(60, 74, 88, 60),     IM_COL32(60, 74, 88, 90)};
+constexpr Colours k_dark = {
+    IM_COL32(240, 243, 246, 255), IM_COL32(220, 226, 232, 255), IM_COL32(186, 195, 204, 255),
+    IM_COL32(190, 200, 210, 150), IM_COL32(26, 30, 36, 205),    IM_COL32(110, 185, 240, 255),
+    IM_COL32(255, 130, 90, 255),  IM_COL32(190, 200, 210, 60),  IM_COL32(190, 200, 210, 90)};
 
 const Colours& colours(bool dark) {
   return dark ? k_dark : k_light;
@@ -295,7 +295,7 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   if (!std::isfinite(span)) return;
 
   at.list.AddRectFilled({left, top}, {right, bottom}, at.colours.sheet, 4 * at.unit);
-  at.list.AddRect({left + 0.5f, top + 0.5f}, {right - 0.5f, bottom - 0.5f}, at.colours.frame, 4 * at.unit);
+  at.list.AddRect({left + 0.5f, top + 0.5f}, {right - 0.5f, bottom - 0.5f}, at.colours.border, 4 * at.unit);
   const float inset = std::round(9 * at.unit);
   const float plot_left = left + inset;
   const float plot_right = right - inset;
@@ -312,7 +312,7 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   }
   const float zero_y = std::round(negative ? (plot_top + plot_bottom) / 2 : plot_bottom);
   const float scale = peak > 0 ? (zero_y - plot_top) / peak : 0;
-  at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, at.colours.frame);
+  at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, at.colours.axis);
   const std::vector<ImVec2> points = polyline(samples, plot_left, plot_right, zero_y, scale);
   at.list.AddPolyline(points.data(), static_cast<int>(points.size()), at.colours.trace, 0,
                       std::max(1.0f, 1.3f * at.unit));
