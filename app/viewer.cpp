@@ -86,7 +86,9 @@ void Viewer::wear(const Appearance& appearance) {
 bool Viewer::update(double wall_s) {
   const bool redress = dressed_ != appearance_;
   if (redress) dress();
-  const bool news = player_.update(wall_s) || redress;
+  bool news = player_.update(wall_s) || redress;
+  if (teaching_.guide && teaching_.guide->update()) news = true;
+  if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;

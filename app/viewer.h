@@ -11,6 +11,7 @@
 #include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
+#include "app/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
 #include "render/orbit.h"
@@ -21,6 +22,9 @@ namespace topple::app {
 
 class Viewer {
  public:
+  /// What the side panel shows.
+  enum class Tab { parameters, picture, inspect, teach };
+
   /// Keeps how the window looks for the next start. May throw std::runtime_error.
   using Keep = std::function<void(const Appearance&)>;
 
@@ -32,6 +36,8 @@ class Viewer {
 
   /// Looks closely at it; nothing: at none.
   void inspect(const std::optional<Subject>& subject);
+
+  void show(Tab tab) { tab_ = tab; }
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
@@ -47,6 +53,7 @@ class Viewer {
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
+  const TeachingState& teaching() const { return teaching_; }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
   const Appearance& appearance() const { return appearance_; }
@@ -54,7 +61,6 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
-  enum class Tab { parameters, picture, inspect };
   struct KeyAction;
   static std::span<const KeyAction> key_actions();
   void dress();
@@ -102,6 +108,7 @@ class Viewer {
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;
+  TeachingState teaching_;
   Tab tab_ = Tab::parameters;
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality

@@ -70,8 +70,10 @@ void Viewer::draw_words(const io::FrameRow& row) {
 }
 
 void Viewer::draw_tabs() {
-  static constexpr std::pair<Phrase, Tab> k_tabs[] = {
-      {k_parameters, Tab::parameters}, {k_picture, Tab::picture}, {k_inspect, Tab::inspect}};
+  static constexpr std::pair<Phrase, Tab> k_tabs[] = {{k_parameters, Tab::parameters},
+                                                      {k_picture, Tab::picture},
+                                                      {k_inspect, Tab::inspect},
+                                                      {k_teach, Tab::teach}};
   constexpr auto k_count = static_cast<float>(std::size(k_tabs));
   const ImGuiStyle& style = ImGui::GetStyle();
   const auto natural = [&](const Phrase& name) {
@@ -117,6 +119,8 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     ImGui::Separator();
     Appearance appearance = appearance_;
     if (draw_appearance(appearance)) wear(appearance);
+  } else if (tab_ == Tab::teach) {
+    draw_teaching(player_, teaching_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }
