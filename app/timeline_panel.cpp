@@ -124,9 +124,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   if (critical > 0) {
     for (float x = lane.left; x < lane.right; x += 9)
       list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
-    const std::string label = fmt::format("{:.1f}°", critical);
-    add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
-             theme().text, label);
+    add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
+             fmt::format("{:.1f}°", critical));
   }
   const std::vector<std::size_t> told = told_bodies(player);
   const auto is_told = [&](std::size_t b) { return std::ranges::find(told, b) != told.end(); };
