@@ -59,9 +59,16 @@ int view_command(const ViewOptions& options);
 
 struct ExportOptions {
   std::string recording;
-  std::string csv;
+  std::string csv;   ///< folder; or
+  std::string xdmf;  ///< file
 };
 int export_command(const ExportOptions& options);
+
+struct RecoverOptions {
+  std::string recording;
+  std::string output;  ///< empty: NAME.recovered.h5 beside it
+};
+int recover_command(const RecoverOptions& options);
 
 struct ModesOptions {
   std::string scene;

@@ -198,19 +198,4 @@ int render_command(const RenderOptions& options) {
   }
 }
 
-int export_command(const ExportOptions& options) {
-  if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
-    for (const io::BuiltinScene& scene : io::builtin_scenes())
-      if (scene.name == options.recording)
-        throw BadInput(
-            fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
-  const io::Recording recording(options.recording);
-  std::error_code error;
-  fs::create_directories(options.csv, error);
-  if (error) throw BadInput(options.csv + ": cannot be created: " + error.message());
-  require_writable_folder(options.csv, options.csv);
-  io::export_csv(recording, options.csv);
-  return k_done;
-}
-
 }  // namespace topple::app

@@ -12,6 +12,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/recover_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rigid_fit_test.cpp
