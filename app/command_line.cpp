@@ -130,6 +130,8 @@ class CommandLine {
     return action_();
   }
 
+  const CLI::App& table() const { return app_; }
+
  private:
   CLI::App& add_command(const char* name, const char* about, const char* example) {
     CLI::App& command = *app_.add_subcommand(name, about);
@@ -523,6 +525,10 @@ void flush_results() {
 }
 
 }  // namespace
+
+void read_commands(const std::function<void(const CLI::App&)>& read) {
+  read(CommandLine().table());
+}
 
 int run_command_line(int argc, char** argv) {
   catch_interrupts();

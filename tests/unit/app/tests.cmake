@@ -10,6 +10,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/manual_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recover_test.cpp
