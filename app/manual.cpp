@@ -84,9 +84,21 @@ std::string bash_pattern(const std::string& command, const CLI::Option& option) 
   return patterns.substr(1);
 }
 
+/// The words that a description explains: "one: what it is; two: what it is" gives "one two".
+std::string explained_words(const std::string& description) {
+  std::string words;
+  for (std::size_t begin = 0; begin < description.size();) {
+    const std::size_t end = std::min(description.find("; ", begin), description.size());
+    words += (words.empty() ? "" : " ") + description.substr(begin, description.find(':', begin) - begin);
+    begin = end + 2;
+  }
+  return words;
+}
+
 /// What a value without an option's name may be.
 std::string bash_positional(const CLI::Option& option) {
-  if (option.get_name() == "KIND") return "_topple_words 'elements penalty'; ";
+  if (option.get_name() == "KIND")
+    return "_topple_words '" + explained_words(option.get_description()) + "'; ";
   return option.get_name() == "RECORDING" ? "_filedir; " : "_topple_words \"$scenes\"; _filedir; ";
 }
 

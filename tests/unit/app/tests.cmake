@@ -5,6 +5,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/bad_scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bridge_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/compare_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/documents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
