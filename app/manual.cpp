@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <sstream>
 #include <vector>
 
 #include "solver/io/scene.h"
@@ -67,11 +68,24 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands({});
 }
 
+/// The single words of a list at the beginning of a description: "front, side or iso (default): where from".
+std::string listed_words(std::string text) {
+  text.resize(std::min(text.find(':'), text.size()));
+  for (const char* between : {" (default)", ",", " or "}) replace_all(text, between, "\n");
+  std::istringstream pieces(text);
+  std::string words;
+  for (std::string piece; std::getline(pieces, piece);) {
+    piece.erase(0, piece.find_first_not_of(' '));
+    if (!piece.empty() && piece.find(' ') == std::string::npos) words += (words.empty() ? "" : " ") + piece;
+  }
+  return words;
+}
+
 /// The bash command that completes a value of the option; empty: nothing does.
 std::string bash_value(const CLI::Option& option) {
-  const std::string name = option.get_name(), type = option.get_type_name();
-  if (name == "--camera") return "_topple_words 'front side top iso'";
-  if (name == "--lang") return "_topple_words 'en ja'";
+  const std::string type = option.get_type_name();
+  for (const char* listed : {"NAME", "LANGUAGE", "QUANTITY", "RANGE", "SPAN"})
+    if (type == listed) return "_topple_words '" + listed_words(option.get_description()) + "'";
   if (type == "DIR") return "_filedir -d";
   return type.find("FILE") != std::string::npos || type == "REC.h5" ? "_filedir" : "";
 }

@@ -34,20 +34,21 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+/// How numbers are stored, and what XDMF calls that.
+struct NumberType {
+  hid_t stored;
+  const char* xdmf;
+};
 template <typename Number>
-hid_t stored_type() {
-  if constexpr (std::is_same_v<Number, float>) return H5T_IEEE_F32LE;
-  if constexpr (std::is_same_v<Number, double>) return H5T_IEEE_F64LE;
-  if constexpr (std::is_same_v<Number, std::int32_t>) return H5T_STD_I32LE;
-  if constexpr (std::is_same_v<Number, std::uint8_t>) return H5T_STD_U8LE;
-}
-
-template <typename Number>
-const char* xdmf_type() {
-  if constexpr (std::is_same_v<Number, float>) return "NumberType=\"Float\" Precision=\"4\"";
-  if constexpr (std::is_same_v<Number, double>) return "NumberType=\"Float\" Precision=\"8\"";
-  if constexpr (std::is_same_v<Number, std::int32_t>) return "NumberType=\"Int\" Precision=\"4\"";
-  if constexpr (std::is_same_v<Number, std::uint8_t>) return "NumberType=\"UChar\" Precision=\"1\"";
+NumberType number_type() {
+  if constexpr (std::is_same_v<Number, float>)
+    return {H5T_IEEE_F32LE, "NumberType=\"Float\" Precision=\"4\""};
+  if constexpr (std::is_same_v<Number, double>)
+    return {H5T_IEEE_F64LE, "NumberType=\"Float\" Precision=\"8\""};
+  if constexpr (std::is_same_v<Number, std::int32_t>)
+    return {H5T_STD_I32LE, "NumberType=\"Int\" Precision=\"4\""};
+  if constexpr (std::is_same_v<Number, std::uint8_t>)
+    return {H5T_STD_U8LE, "NumberType=\"UChar\" Precision=\"1\""};
 }
 
 /// Both files while they are written: every array goes into the HDF5 file and is named in the XML.
@@ -71,15 +72,15 @@ class XdmfFile {
   std::string store(const std::string& name, const std::vector<Number>& values, std::size_t columns) {
     const std::array<hsize_t, 2> dims = {values.size() / columns, columns};
     const int rank = columns == 1 ? 1 : 2;
+    const NumberType type = number_type<Number>();
     guarded([&] {
       const Handle space(H5Screate_simple(rank, dims.data(), nullptr), H5Sclose);
-      const Handle set(
-          H5Dcreate2(h5_, name.c_str(), stored_type<Number>(), space, link_, creation_, H5P_DEFAULT),
-          H5Dclose);
-      checked(H5Dwrite(set, stored_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+      const Handle set(H5Dcreate2(h5_, name.c_str(), type.stored, space, link_, creation_, H5P_DEFAULT),
+                       H5Dclose);
+      checked(H5Dwrite(set, type.stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     });
-    return std::string("<DataItem Format=\"HDF\" ") + xdmf_type<Number>() + " Dimensions=\"" +
-           std::to_string(dims[0]) + (rank == 2 ? " " + std::to_string(columns) : "") + "\">" +
+    return std::string("<DataItem Format=\"HDF\" ") + type.xdmf + " Dimensions=\"" + std::to_string(dims[0]) +
+           (rank == 2 ? " " + std::to_string(columns) : "") + "\">" +
            escaped(data_.path().filename().string()) + ":/" + name + "</DataItem>\n";
   }
 
