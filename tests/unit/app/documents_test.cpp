@@ -46,7 +46,7 @@ TEST(Documents, files_that_they_name_exist) {
   for (const char* name : {"assets/theory.md", "assets/developers.md"}) {
     const std::string text = page(name);
     ASSERT_FALSE(text.empty());
-    for (const std::string& file : matches(text, R"(\b((?:solver|render|app|assets|tests)/[\w/.-]*[\w]))"))
+    for (const std::string& file : matches(text, R"([^/\w]((?:solver|render|app|assets|tests)/[\w/.-]*\w))"))
       EXPECT_TRUE(fs::exists(k_source / file)) << name << " names " << file;
     for (const std::string& link : matches(text, R"(\]\(([\w/.-]+)\))"))
       EXPECT_TRUE(fs::exists(k_source / "assets" / link)) << name << " links to " << link;

@@ -21,7 +21,7 @@ class ManualTest : public ProgramTest {
   }
   static std::set<std::string> commands() { return matches(topple({"--help"}).out, "\n  ([a-z]+)  "); }
   static std::set<std::string> options(const std::string& command) {
-    return matches(topple({command, "--help"}).out, "\n  [^\n]{0,4}(--[a-z0-9]+)");
+    return matches(topple({command, "--help"}).out, "\n  [^\n]{0,4}(--[a-z0-9-]+)");
   }
   static std::string page() {
     std::string page;
@@ -35,14 +35,14 @@ class ManualTest : public ProgramTest {
     read_commands([](const CLI::App& table) { write_bytes("completion", bash_completion(table)); });
     write_bytes("complete", R"(
 _init_completion() { words=("${COMP_WORDS[@]}"); cword=$COMP_CWORD; cur=${words[cword]}; prev=${words[cword - 1]}; }
-_filedir() { COMPREPLY+=("files$1"); }
+_filedir() { COMPREPLY+=("files${1-}"); }
 . ./completion
 COMP_WORDS=()" + call + R"()
 COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
 _topple
 printf '%s\n' "${COMPREPLY[@]}" >offers
 )");
-    EXPECT_EQ(std::system("bash -eu ./complete"), 0) << call;
+    EXPECT_EQ(std::system("bash -u ./complete"), 0) << call;
     std::istringstream lines(bytes_of("offers"));
     std::vector<std::string> words;
     for (std::string word; std::getline(lines, word);)
@@ -61,8 +61,8 @@ TEST_F(ManualTest, page_has_every_command_and_option_of_the_help) {
     ASSERT_NE(begin, std::string::npos) << command;
     const std::string section = text.substr(begin, text.find("\n.S", begin + 1) - begin);
     for (const std::string& option : options(command))
-      if (option != "--help")
-        EXPECT_NE(section.find(option + "\\fR"), std::string::npos) << command << option;
+      EXPECT_TRUE(option == "--help" || section.find(option + "\\fR") != std::string::npos)
+          << command << option;
   }
 }
 
@@ -79,7 +79,7 @@ TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
     EXPECT_EQ(std::set<std::string>(offered.begin(), offered.end()), options(command)) << command;
   }
   EXPECT_EQ(offers("topple run paper-"), (Words{"paper-a", "paper-b", "files"}));
-  EXPECT_EQ(offers("topple study el"), (Words{"elements", "files"}))
+  EXPECT_EQ(offers("topple study el"), (Words{"elements", "files"}));
   EXPECT_EQ(offers("topple study pe"), (Words{"penalty", "files"}));
   EXPECT_EQ(offers("topple recover a"), (Words{"files"}));
   EXPECT_EQ(offers("topple render a.h5 --camera s"), (Words{"side"}));
