@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace ww = window_words;
 
-constexpr float k_card = 240;    // px at scale 1: least width of a card
+constexpr float k_card = 200;    // px at scale 1: least width of a card
 constexpr float k_recent = 270;  // of the column of files
 
 std::string lower(std::string text) {
@@ -158,7 +158,9 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   ImGui::SetCursorPosY(18 * unit);
   ImGui::SetNextItemWidth(filter_width);
   if (std::exchange(appeared_, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 1);
   ImGui::InputTextWithHint("##filter", say(ww::k_filter).c_str(), filter_, sizeof filter_);
+  ImGui::PopStyleVar();
   ImGui::Dummy({0, 6 * unit});
   const float foot = ImGui::GetFrameHeightWithSpacing();
   const ImGuiWindowFlags plain = ImGuiWindowFlags_NoNav;
@@ -166,9 +168,13 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   draw_recent(fonts);
   ImGui::EndChild();
   ImGui::SameLine(0, 20 * unit);
+  ImGui::BeginGroup();
+  ImGui::TextUnformatted(say(ww::k_built_in).c_str());
+  ImGui::Separator();
   ImGui::BeginChild("scenes", {0, -foot}, false, plain);
   draw_scenes(fonts);
   ImGui::EndChild();
+  ImGui::EndGroup();
   ImGui::TextDisabled("%s", say(ww::k_choose_keys).c_str());
   ImGui::End();
 }
@@ -206,8 +212,6 @@ void Chooser::draw_recent(const render::OverlayFonts& fonts) {
 }
 
 void Chooser::draw_scenes(const render::OverlayFonts& fonts) {
-  ImGui::TextUnformatted(say(ww::k_built_in).c_str());
-  ImGui::Separator();
   if (shown_scenes_.empty()) ImGui::TextDisabled("%s", say(ww::k_nothing_found, filtered_by_).c_str());
   const float unit = fonts.small->FontSize / 14, gap = 12 * unit;
   const float room = ImGui::GetContentRegionAvail().x;

@@ -144,7 +144,7 @@ std::string ExportDialog::take_news() {
 
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
                         const Box& window, const render::OverlayFonts& fonts) {
-  begin_panel_over("export", window, 600, say(ww::k_export_title), fonts);
+  begin_panel_over("export", window, 660, say(ww::k_export_title), fonts);
   ImGui::BeginDisabled(job_.has_value());
   draw_choices(player);
   ImGui::EndDisabled();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "solver/excitation.h"
 #include "solver/io/edit_text.h"
@@ -39,7 +40,9 @@ std::string toml_of(const Edit& edit, const Parameters& now) {
              "]";
     case Edit::Key::frequency:
       if (now.shakes[static_cast<std::size_t>(edit.shake)].kind == Shake::Kind::sweep)
-        return "[" + number_text(key, value.x()) + ", " + number_text(key, value.y()) + "]";
+        // A sweep that does not change is refused; the number next to it is not.
+        return "[" + number_text(key, value.x()) + ", " +
+               number_text(key, value.y() == value.x() ? std::nextafter(value.y(), 1e9) : value.y()) + "]";
       return number_text(key, value.x());
     case Edit::Key::want:
       return value.x() != 0 ? "[\"motion\", \"stress\"]" : "[\"motion\"]";
@@ -74,7 +77,10 @@ BodyEntry entry_of_body(const Node& root, std::size_t body) {
 
 class Rewriting {
  public:
-  Rewriting(const Scene& scene, const Parameters& now) : model_(scene.setup.model), now_(now) {
+  Rewriting(const Scene& scene, const Parameters& now)
+      : model_(scene.setup.model),
+        now_(now),
+        analysis_(word(*find_key("run", "analysis"), static_cast<int>(scene.setup.run.analysis))) {
     saved_.text = scene.text;
   }
 
@@ -102,6 +108,8 @@ class Rewriting {
       if (!retyped && !step && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
       if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
       if (key == Edit::Key::integrator && !frames_only()) continue;
+      const auto& analyses = key_of(key).analyses;
+      if (!analyses.empty() && std::ranges::find(analyses, analysis_) == analyses.end()) continue;
       keys.emplace_back(key, index);
     }
     return keys;
@@ -191,6 +199,7 @@ class Rewriting {
 
   const Model& model_;
   const Parameters& now_;
+  const std::string_view analysis_;
   SavedScene saved_;
   std::vector<KeyChange> changes_;
 };
