@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <limits>
+#include <numbers>
 #include <new>
 #include <optional>
 #include <string_view>
@@ -26,6 +28,7 @@ namespace {
 // Studies of the contract that this version does not have yet.
 constexpr std::string_view k_later_studies[] = {"precision", "stability"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
+constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
 
 template <typename Number>
 std::optional<Number> whole_number(std::string_view text) {
@@ -182,7 +185,7 @@ class CommandLine {
   void add_view() {
     CLI::App& command = add_command("view", "watch a scene in a window, shake it, rewind it; or a recording",
                                     "view paper-a --set contact.alpha=\"500 kgf\"");
-    add_path(command, "SOURCE", view_.source, "", "scene or recording").required();
+    add_path(command, "SOURCE", view_.source, "", "scene or recording; without: choose");
     add_path(command, "-o,--output", view_.recording, "REC.h5",
              "recording to write, default in the state folder");
     add_set(command, view_.overrides);
@@ -210,22 +213,50 @@ class CommandLine {
     command.add_option("--fps", render_.fps, "pictures per second, default 30")
         ->type_name("RATE")
         ->check(rate, "", "rate");
-    command.add_option("--camera", camera_, "front, side, top or iso (default)")->type_name("NAME");
+    command
+        .add_option("--camera", camera_,
+                    "front, side, top or iso (default); or AZIMUTH,ELEVATION,DISTANCE,X,Y,Z: of the eye from "
+                    "the point looked at, in degrees and m")
+        ->type_name("NAME");
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
     command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
     add_picture(command);
     command.callback([this, at, from, to] {
       read_size(size_, render_);
-      const auto view = render::view_named(camera_);
-      if (!view) throw BadInput("--camera: \"" + camera_ + "\" is not one of front, side, top, iso");
-      render_.view = *view;
+      read_camera();
       read_picture();
       if (*at) render_.at = at_;
       if (*from) render_.from = from_;
       if (*to) render_.to = to_;
       action_ = [this] { return render_command(render_); };
     });
+  }
+
+  void read_camera() {
+    if (const auto view = render::view_named(camera_)) {
+      render_.view = *view;
+      return;
+    }
+    std::vector<float> numbers;
+    for (std::size_t at = 0; at <= camera_.size();) {
+      const std::size_t end = std::min(camera_.find(',', at), camera_.size());
+      const auto number = whole_number<float>(std::string_view(camera_).substr(at, end - at));
+      numbers.push_back(number.value_or(std::numeric_limits<float>::quiet_NaN()));
+      at = end + 1;
+    }
+    const bool good = numbers.size() == 6 &&
+                      std::ranges::all_of(numbers, [](float x) { return std::abs(x) <= k_farthest; }) &&
+                      std::abs(numbers[1]) <= 90 && numbers[2] > 0;
+    if (!good)
+      throw BadInput("--camera: \"" + camera_ +
+                     "\" is not one of front, side, top, iso, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
+                     "elevation of -90..90 and a distance above 0");
+    if (render_.ui) throw BadInput("--camera: with --ui, one of front, side, top, iso");
+    constexpr float radians = std::numbers::pi_v<float> / 180;
+    render_.orbit = render::Orbit{.target = {numbers[3], numbers[4], numbers[5]},
+                                  .distance = numbers[2],
+                                  .sight = {numbers[0] * radians, numbers[1] * radians}};
   }
 
   void add_picture(CLI::App& command) {

@@ -9,6 +9,7 @@
 
 #include "app/picture_settings.h"
 #include "render/camera.h"
+#include "render/orbit.h"
 
 namespace topple::app {
 
@@ -42,16 +43,17 @@ struct RenderOptions {
   int width = 1280, height = 720;
   int fps = 30;
   render::NamedView view = render::NamedView::iso;
-  std::optional<double> from, to;  ///< s
-  bool ui = false;                 ///< with the panels of the window
-  PictureSettings picture;         ///< all but `diagram`
-  std::string inspect;             ///< BODY or BODY/MEMBER, looked at closely; empty: none
+  std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
+  std::optional<double> from, to;      ///< s
+  bool ui = false;                     ///< with the panels of the window
+  PictureSettings picture;             ///< all but `diagram`
+  std::string inspect;                 ///< BODY or BODY/MEMBER, looked at closely; empty: none
   bool quiet = false;
 };
 int render_command(const RenderOptions& options);
 
 struct ViewOptions {
-  std::string source;                  ///< scene or recording
+  std::string source;                  ///< scene or recording; empty: a person chooses
   std::vector<std::string> overrides;  ///< of a scene
   std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
 };

@@ -8,6 +8,8 @@
 #include "app/picture_settings.h"
 #include "app/player.h"
 #include "app/subject.h"
+#include "render/font.h"
+#include "render/stage.h"
 
 struct ImDrawList;
 
@@ -21,11 +23,18 @@ struct Box {
   }
 };
 
+/// Letters and looks of the current Dear ImGui context. `scale`: 1 for 720 lines. Throws std::runtime_error
+/// without the font.
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale);
+
 /// Begins a window that fills `box` and does nothing else; ImGui::End() ends it.
 void begin_panel(const char* name, const Box& box);
 
-/// Buttons for play, pause, steps, speed, restart, branches, undo and redo.
-void draw_transport_bar(Player& player, const Box& box);
+/// What a person asks of the shell around the viewer (shell.h).
+enum class ShellRequest { none, scenes, save, export_view };
+
+/// Buttons for play, pause, steps, speed, loop, restart, branches, undo and redo, and for the shell.
+ShellRequest draw_transport_bar(Player& player, const Box& box);
 
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.

@@ -85,11 +85,17 @@ class Drawing {
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
-    return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()),
-                         {.map = options_.picture.map});
+    return picture_.draw(frame, camera(frame), {.map = options_.picture.map});
   }
 
  private:
+  render::Camera camera(const render::SceneFrame& frame) const {
+    if (!options_.orbit) return render::fit_camera(options_.view, frame, picture_.aspect());
+    render::Orbit orbit = *options_.orbit;
+    orbit.set_bounds(frame);
+    return orbit.camera(picture_.aspect());
+  }
+
   const RenderOptions& options_;
   const std::optional<Subject> inspected_;
   const RunExtent extent_;

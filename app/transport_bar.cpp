@@ -2,14 +2,16 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "app/panels.h"
+#include "app/shell_words.h"
 #include "app/words.h"
 
 namespace topple::app {
 namespace {
 
-enum class Icon { to_start, back, play, pause, on, to_end, restart };
+enum class Icon { to_start, back, play, pause, on, to_end, restart, loop };
 
 /// Filled triangle that points right (1) or left (-1), in a square of side 2 about (x, y).
 void add_arrow(ImDrawList& list, float x, float y, float half, float direction, ImU32 colour) {
@@ -52,6 +54,15 @@ void add_icon(ImDrawList& list, Icon icon, ImVec2 at, float r, ImU32 colour) {
       list.PathStroke(colour, 0, 0.28f * r);
       list.AddTriangleFilled({at.x + 0.1f * r, at.y - 1.35f * r}, {at.x + 0.95f * r, at.y - 0.75f * r},
                              {at.x + 0.1f * r, at.y - 0.15f * r}, colour);
+      break;
+    case Icon::loop:  // two arrows after each other
+      for (const float s : {1.f, -1.f}) {
+        list.AddLine({at.x - 0.9f * s * r, at.y + 0.35f * s * r}, {at.x - 0.9f * s * r, at.y - 0.5f * s * r},
+                     colour, 0.26f * r);
+        list.AddLine({at.x - 0.9f * s * r, at.y - 0.5f * s * r}, {at.x + 0.4f * s * r, at.y - 0.5f * s * r},
+                     colour, 0.26f * r);
+        add_arrow(list, at.x + 0.6f * s * r, at.y - 0.5f * s * r, 0.45f * r, s, colour);
+      }
       break;
   }
 }
@@ -111,7 +122,7 @@ void choose_branch(Player& player) {
 
 }  // namespace
 
-void draw_transport_bar(Player& player, const Box& box) {
+ShellRequest draw_transport_bar(Player& player, const Box& box) {
   begin_panel("transport", box);
   const bool loads = is_static(player.scene().setup);
   if (icon_button("##start", Icon::to_start, "To the start (Home)")) player.to_start();
@@ -125,6 +136,10 @@ void draw_transport_bar(Player& player, const Box& box) {
           "##restart", Icon::restart,
           player.replay() ? "To the start (R)" : "Run again from the start with the sliders as they are (R)"))
     player.restart();
+  const bool loop = player.loop();
+  if (loop) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  if (icon_button("##loop", Icon::loop, say(window_words::k_loop_about).c_str())) player.set_loop(!loop);
+  if (loop) ImGui::PopStyleColor();
   gap();
   if (text_button("-##slower", "Half the speed ( [ )", player.speed() > k_least_speed)) player.slower();
   ImGui::AlignTextToFramePadding();
@@ -141,6 +156,14 @@ void draw_transport_bar(Player& player, const Box& box) {
   if (text_button("Undo", "Takes the last change back, from now on (Ctrl+Z)", player.can_undo()))
     player.undo();
   if (text_button("Redo", "(Ctrl+Shift+Z)", player.can_redo())) player.redo();
+  gap();
+  ShellRequest asked = ShellRequest::none;
+  const std::tuple<const Phrase*, const Phrase*, ShellRequest> shell[] = {
+      {&window_words::k_scenes, &window_words::k_scenes_about, ShellRequest::scenes},
+      {&window_words::k_save, &window_words::k_save_about, ShellRequest::save},
+      {&window_words::k_export, &window_words::k_export_about, ShellRequest::export_view}};
+  for (const auto& [label, about, request] : shell)
+    if (text_button(say(*label).c_str(), say(*about).c_str(), true)) asked = request;
   const auto row = loads ? player.row() : std::nullopt;
   const std::string clock = row     ? instant_in_words(player.scene().setup, *row)
                             : loads ? ""
@@ -155,6 +178,7 @@ void draw_transport_bar(Player& player, const Box& box) {
     ImGui::NewLine();
   }
   ImGui::End();
+  return asked;
 }
 
 }  // namespace topple::app

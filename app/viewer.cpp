@@ -47,6 +47,21 @@ bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::
 
 }  // namespace
 
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  io.Fonts->Clear();
+  const render::OverlayFonts fonts =
+      render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)));
+  io.FontDefault = fonts.small;
+  stage.upload_fonts(*io.Fonts);
+  set_style(scale);
+  return fonts;
+}
+
 void begin_panel(const char* name, const Box& box) {
   ImGui::SetNextWindowPos({box.left, box.top});
   ImGui::SetNextWindowSize({box.width, box.height});
@@ -60,19 +75,10 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
     : player_(player),
       stage_(stage),
       scale_(scale),
+      fonts_(set_up_interface(stage, scale)),
       bridge_(player.scene(), player.extent()),
       settings_(settings),
-      view_(view) {
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  io.LogFilename = nullptr;
-  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  io.ConfigWindowsMoveFromTitleBarOnly = true;
-  fonts_ = render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)));
-  io.FontDefault = fonts_.small;
-  stage_.upload_fonts(*io.Fonts);
-  set_style(scale);
-}
+      view_(view) {}
 
 bool Viewer::update(double wall_s) {
   const bool news = player_.update(wall_s);
@@ -114,11 +120,11 @@ void Viewer::report_frame_time(double ms) {
   frame_ms_ = frame_ms_ == 0 ? ms : 0.9 * frame_ms_ + 0.1 * ms;
 }
 
-void Viewer::build() {
+void Viewer::build(const std::function<void()>& over) {
   const Box before = scene_;
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
-  handle_characters();
+  if (!over) handle_characters();
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
       refused_.clear();
@@ -130,11 +136,12 @@ void Viewer::build() {
   handle_mouse();
   if (row_) draw_words(*row_);
   draw_side_panel(row_);
-  draw_transport_bar(player_, transport_);
+  asked_ = draw_transport_bar(player_, transport_);
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
   if (keys_shown_) draw_key_table();
+  if (over) over();
   ImGui::Render();
   draw_scene();
 }

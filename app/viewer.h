@@ -2,6 +2,7 @@
 // the window nor where its pictures go, so that tests drive it off screen.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,17 +32,23 @@ class Viewer {
   /// Does what the key is for.
   void press(const render::KeyPress& press);
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
-  /// when it changed.
-  void build();
+  /// when it changed. `over` builds what lies over it all and takes the keyboard.
+  void build(const std::function<void()>& over = {});
   /// Where things lie, for Stage::present.
   render::Surface surface() const;
 
+  /// What the last frame's buttons asked for.
+  ShellRequest asked() const { return asked_; }
   bool wants_to_close() const { return wants_to_close_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
+  const render::OverlayFonts& fonts() const { return fonts_; }
+  const render::Orbit& orbit() const { return orbit_; }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
+  /// In the status line until the next click.
+  void tell(const std::string& words) { told_ = words; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
@@ -90,6 +97,7 @@ class Viewer {
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
   bool wants_to_close_ = false;
+  ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
   std::string told_;  // what was written, or why it was not

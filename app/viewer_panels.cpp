@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "app/files.h"
+#include "app/shell_words.h"
 #include "app/viewer.h"
 #include "app/words.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
-#include "solver/io/edit_text.h"
 
 namespace topple::app {
 namespace {
@@ -149,18 +149,11 @@ void Viewer::draw_status() {
   begin_panel("status", status_);
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
-  const bool failed = status.kind == LiveStatus::Kind::failed && player_.at_head();
   if (!told_.empty()) words = told_;
   if (!refused_.empty()) words = "Refused: " + refused_;
   if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
-  const double least_step = io::key_of(Edit::Key::time_step).least;
-  if (failed && player_.can_edit() && !is_static(player_.scene().setup) &&
-      player_.parameters().time_step >= 2 * least_step) {
-    if (ImGui::SmallButton("Halve the step and retry")) {
-      player_.begin_edit();
-      player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});
-      player_.play();
-    }
+  if (player_.can_halve_step()) {
+    if (ImGui::SmallButton(say(window_words::k_halve).c_str())) player_.halve_step_and_retry();
     ImGui::SameLine();
   }
   ImGui::TextUnformatted(words.c_str());

@@ -5,8 +5,10 @@ namespace topple::render {
 
 /// Printable keys are the capital that stands on them (ASCII); these are the others that count.
 namespace key {
-inline constexpr int escape = 256, home = 268, end = 269, f1 = 290;  // as GLFW numbers them
-}
+// As GLFW numbers them.
+inline constexpr int escape = 256, enter = 257, right = 262, left = 263, down = 264, up = 265, home = 268,
+                     end = 269, f1 = 290, enter_of_pad = 335;
+}  // namespace key
 
 struct KeyPress {
   int key = 0;

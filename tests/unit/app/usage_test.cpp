@@ -64,6 +64,7 @@ TEST_F(UsageTest, empty_names_are_refused) {
   expect_one_line({"run", ""}, 2, "is empty");
   expect_one_line({"run", "s.toml", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"view", ""}, 2, "is empty");
+  expect_one_line({"view", "-o", "a.h5"}, 2, "SOURCE");
   expect_one_line({"view", "s.toml", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"run", "s.toml", "--json", ""}, 2, "--json: is empty");
   expect_one_line({"render", "s.toml", "--png", ""}, 2, "--png: is empty");
@@ -183,7 +184,8 @@ TEST_F(UsageTest, instants_outside_the_scene_are_refused_before_it_runs) {
 }
 
 TEST_F(UsageTest, unknown_cameras_are_refused) {
-  for (const char* camera : {"", "up", "Front"})
+  for (const char* camera :
+       {"", "up", "Front", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,99,3,0,0,0", "1,2,0,0,0,0", "1,2,3,nan,0,0"})
     expect_one_line({"render", "s.toml", "--png", "p", "--camera", camera}, 2,
                     "--camera: \"" + std::string(camera) + "\" is not one of front, side, top, iso");
 }
