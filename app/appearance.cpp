@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double k_scales[] = {0.75, 0.9, 1, 1.1, 1.25, 1.5, 1.75, 2, 2.5, 3};
-constexpr float k_least_letters = 12;  // px
 
 Language language_of_locale() {
   for (const char* const name : {"LC_ALL", "LC_MESSAGES", "LANG"})
@@ -99,17 +98,20 @@ void keep_appearance(const fs::path& path, const Appearance& appearance) {
                                               appearance.language == Language::japanese ? "ja" : "en"));
 }
 
-render::Letters window_letters(const io::Scene& scene) {
+render::Letters window_letters(const io::Scene* scene) {
   const bool japanese = window_language() == Language::japanese;
-  const Model& model = scene.setup.model;
-  std::string text = say(window_words::k_japanese) + scene.title + scene.name;
-  for (const auto& body : model.bodies) text += body.name;
-  for (const auto& member : model.members) text += member.name;
-  for (const auto& anchor : model.anchors) text += anchor.name;
-  for (const auto& section : model.sections) text += section.name;
-  for (const auto& material : model.materials) text += material.name;
+  std::string text(window_words::k_japanese.japanese);
+  if (scene) {
+    const Model& model = scene->setup.model;
+    text += scene->title + scene->name;
+    for (const auto& body : model.bodies) text += body.name;
+    for (const auto& member : model.members) text += member.name;
+    for (const auto& anchor : model.anchors) text += anchor.name;
+    for (const auto& section : model.sections) text += section.name;
+    for (const auto& material : model.materials) text += material.name;
+  }
   if (japanese) text += phrase_tables();
-  return {.more = text, .needed = japanese, .smallest = k_least_letters};
+  return {.more = text, .needed = japanese};
 }
 
 }  // namespace topple::app

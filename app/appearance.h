@@ -30,7 +30,7 @@ Appearance read_appearance(const std::filesystem::path& file, std::string& warni
 /// Throws std::runtime_error.
 void keep_appearance(const std::filesystem::path& file, const Appearance& appearance);
 
-/// Letters for texts in the language of the window and for the names in a scene.
-render::Letters window_letters(const io::Scene& scene);
+/// Letters for texts in the language of the window and for the names in a scene; null: none.
+render::Letters window_letters(const io::Scene* scene);
 
 }  // namespace topple::app

@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -23,10 +25,10 @@
 namespace topple::app {
 namespace {
 
-// Subcommands of the contract that this version does not have yet.
-constexpr std::string_view k_later[] = {"recover"};
+// Studies of the contract that this version does not have yet.
 constexpr std::string_view k_later_studies[] = {"precision", "stability"};
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
+constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
 
 template <typename Number>
 std::optional<Number> whole_number(std::string_view text) {
@@ -115,6 +117,7 @@ class CommandLine {
     add_report();
     add_check();
     add_info();
+    add_recover();
     add_scenes();
   }
 
@@ -129,6 +132,8 @@ class CommandLine {
     }
     return action_();
   }
+
+  const CLI::App& table() const { return app_; }
 
  private:
   CLI::App& add_command(const char* name, const char* about, const char* example) {
@@ -180,7 +185,7 @@ class CommandLine {
   void add_view() {
     CLI::App& command = add_command("view", "watch a scene in a window, shake it, rewind it; or a recording",
                                     "view paper-a --set contact.alpha=\"500 kgf\"");
-    add_path(command, "SOURCE", view_.source, "", "scene or recording").required();
+    add_path(command, "SOURCE", view_.source, "", "scene or recording; without: choose");
     add_path(command, "-o,--output", view_.recording, "REC.h5",
              "recording to write, default in the state folder");
     add_set(command, view_.overrides);
@@ -213,7 +218,11 @@ class CommandLine {
     command.add_option("--fps", render_.fps, "pictures per second, default 30")
         ->type_name("RATE")
         ->check(rate, "", "rate");
-    command.add_option("--camera", camera_, "front, side, top or iso (default)")->type_name("NAME");
+    command
+        .add_option("--camera", camera_,
+                    "front, side, top or iso (default); or AZIMUTH,ELEVATION,DISTANCE,X,Y,Z: of the eye from "
+                    "the point looked at, in degrees and m")
+        ->type_name("NAME");
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
     command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
@@ -221,9 +230,7 @@ class CommandLine {
     add_picture(command);
     command.callback([this, at, from, to] {
       read_size(size_, render_);
-      const auto view = render::view_named(camera_);
-      if (!view) throw BadInput("--camera: \"" + camera_ + "\" is not one of front, side, top, iso");
-      render_.view = *view;
+      read_camera();
       read_picture();
       if (!language_.empty()) render_.language = chosen_language();
       if (*at) render_.at = at_;
@@ -237,6 +244,32 @@ class CommandLine {
     if (language_ != "en" && language_ != "ja")
       throw BadInput("--lang: \"" + language_ + "\" is not one of en, ja");
     return language_ == "ja" ? Language::japanese : Language::english;
+  }
+
+  void read_camera() {
+    if (const auto view = render::view_named(camera_)) {
+      render_.view = *view;
+      return;
+    }
+    std::vector<float> numbers;
+    for (std::size_t at = 0; at <= camera_.size();) {
+      const std::size_t end = std::min(camera_.find(',', at), camera_.size());
+      const auto number = whole_number<float>(std::string_view(camera_).substr(at, end - at));
+      numbers.push_back(number.value_or(std::numeric_limits<float>::quiet_NaN()));
+      at = end + 1;
+    }
+    const bool good = numbers.size() == 6 &&
+                      std::ranges::all_of(numbers, [](float x) { return std::abs(x) <= k_farthest; }) &&
+                      std::abs(numbers[1]) <= 90 && numbers[2] > 0;
+    if (!good)
+      throw BadInput("--camera: \"" + camera_ +
+                     "\" is not one of front, side, top, iso, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
+                     "elevation of -90..90 and a distance above 0");
+    if (render_.ui) throw BadInput("--camera: with --ui, one of front, side, top, iso");
+    constexpr float radians = std::numbers::pi_v<float> / 180;
+    render_.orbit = render::Orbit{.target = {numbers[3], numbers[4], numbers[5]},
+                                  .distance = numbers[2],
+                                  .sight = {numbers[0] * radians, numbers[1] * radians}};
   }
 
   void add_picture(CLI::App& command) {
@@ -295,12 +328,15 @@ class CommandLine {
 
   void add_export() {
     CLI::App& command =
-        add_command("export", "data of a recording for spreadsheets", "export paper-a.h5 --csv paper-a-data");
+        add_command("export", "data of a recording for spreadsheets and ParaView",
+                    "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf");
     add_path(command, "RECORDING", export_.recording, "", "recording").required();
-    for (const char* later : {"--xdmf", "--vtk"}) add_later_option(command, later);
-    add_path(command, "--csv", export_.csv, "DIR",
-             "folder for bodies.csv, nodes.csv, elements.csv, floor.csv and energy.csv")
-        .required();
+    add_later_option(command, "--vtk");
+    auto* what = command.add_option_group("output", "what to write");
+    add_path(*what, "--csv", export_.csv, "DIR",
+             "folder for bodies.csv, nodes.csv, elements.csv, floor.csv, energy.csv, anchors.csv");
+    add_path(*what, "--xdmf", export_.xdmf, "FILE", "for ParaView 5.11 and later; the data go to FILE.h5");
+    what->require_option(1);
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }
 
@@ -457,6 +493,15 @@ class CommandLine {
     command.callback([this] { action_ = [this] { return info_command(info_); }; });
   }
 
+  void add_recover() {
+    CLI::App& command = add_command("recover", "repair a recording whose writer was killed",
+                                    "recover paper-a.h5 -o repaired.h5");
+    add_path(command, "RECORDING", recover_.recording, "", "recording; it stays as it is").required();
+    add_path(command, "-o,--output", recover_.output, "REC.h5",
+             "closed copy of what can be read, default NAME.recovered.h5");
+    command.callback([this] { action_ = [this] { return recover_command(recover_); }; });
+  }
+
   void add_scenes() {
     add_command("scenes", "list the built-in scenes", "scenes").callback([this] {
       action_ = [] { return scenes_command(); };
@@ -466,7 +511,6 @@ class CommandLine {
   void refuse_unknown_command(int argc, char** argv) const {
     if (argc < 2) return;
     const std::string first = argv[1];
-    if (std::find(std::begin(k_later), std::end(k_later), first) != std::end(k_later)) refuse(first);
     if (first.rfind('-', 0) == 0) {
       if (first == "-h" || first == "--help" || first == "--version") return;
       throw BadInput(first + ": unknown option; a command comes first (topple --help)");
@@ -506,6 +550,7 @@ class CommandLine {
   bool no_panels_ = false;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;
+  RecoverOptions recover_;
   std::vector<std::string> scenes_, check_overrides_;
   InfoOptions info_;
   ModesOptions modes_;
@@ -524,6 +569,10 @@ void flush_results() {
 }
 
 }  // namespace
+
+void read_commands(const std::function<void(const CLI::App&)>& read) {
+  read(CommandLine().table());
+}
 
 int run_command_line(int argc, char** argv) {
   catch_interrupts();

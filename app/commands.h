@@ -10,6 +10,7 @@
 #include "app/language.h"
 #include "app/picture_settings.h"
 #include "render/camera.h"
+#include "render/orbit.h"
 
 namespace topple::app {
 
@@ -43,8 +44,9 @@ struct RenderOptions {
   int width = 1280, height = 720;
   int fps = 30;
   render::NamedView view = render::NamedView::iso;
-  std::optional<double> from, to;  ///< s
-  bool ui = false;                 ///< with the panels of the window
+  std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
+  std::optional<double> from, to;      ///< s
+  bool ui = false;                     ///< with the panels of the window
   Language language = Language::english;
   PictureSettings picture;  ///< all but `diagram`
   std::string inspect;      ///< BODY or BODY/MEMBER, looked at closely; empty: none
@@ -53,7 +55,7 @@ struct RenderOptions {
 int render_command(const RenderOptions& options);
 
 struct ViewOptions {
-  std::string source;                  ///< scene or recording
+  std::string source;                  ///< scene or recording; empty: a person chooses
   std::vector<std::string> overrides;  ///< of a scene
   std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
   std::optional<Language> language;    ///< absent: as kept, or that of the locale
@@ -62,9 +64,16 @@ int view_command(const ViewOptions& options);
 
 struct ExportOptions {
   std::string recording;
-  std::string csv;
+  std::string csv;   ///< folder; or
+  std::string xdmf;  ///< file
 };
 int export_command(const ExportOptions& options);
+
+struct RecoverOptions {
+  std::string recording;
+  std::string output;  ///< empty: NAME.recovered.h5 beside it
+};
+int recover_command(const RecoverOptions& options);
 
 struct ModesOptions {
   std::string scene;

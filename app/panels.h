@@ -9,6 +9,8 @@
 #include "app/picture_settings.h"
 #include "app/player.h"
 #include "app/subject.h"
+#include "render/font.h"
+#include "render/stage.h"
 
 struct ImDrawList;
 
@@ -22,13 +24,22 @@ struct Box {
   }
 };
 
+/// Letters and looks of the current Dear ImGui context, in the language of `appearance`. `scale`: 1 for 720
+/// lines, times that of `appearance`. `scene`: whose names are shown; null: none. Throws std::runtime_error
+/// without the font.
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
+                                      const io::Scene* scene);
+
 /// Begins a window that fills `box` and does nothing else; ImGui::End() ends it. Keys move among what is in
 /// it.
 void begin_panel(const char* name, const Box& box);
 
-/// Buttons for play, pause, steps, speed, restart, branches, undo and redo, in as many rows as the width of
-/// the box asks for. Returns the height that they need.
-float draw_transport_bar(Player& player, const Box& box);
+/// What a person asks of the shell around the viewer (shell.h).
+enum class ShellRequest { none, scenes, save, export_view };
+
+/// Buttons for play, pause, steps, speed, loop, restart, branches, undo and redo, and for the shell, in as
+/// many rows as the width of the box asks for; `height`: that they need.
+ShellRequest draw_transport_bar(Player& player, const Box& box, float& height);
 
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.

@@ -118,13 +118,13 @@ bool draw_appearance(Appearance& appearance) {
   ImGui::EndDisabled();
   if (!render::has_japanese_font() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     ImGui::SetTooltip("%s", say(k_needs_font).c_str());
-  label(k_size);
+  label(k_letters);
   if (ImGui::Button("-##smaller")) appearance.scale = next_scale(appearance.scale, -1);
   ImGui::SameLine();
   ImGui::Text("%.0f %%", 100 * appearance.scale);
   ImGui::SameLine();
   if (ImGui::Button("+##larger")) appearance.scale = next_scale(appearance.scale, 1);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_size_about).c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_letters_about).c_str());
   return appearance != before;
 }
 

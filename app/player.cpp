@@ -57,9 +57,11 @@ bool Player::update(double wall_s) {
     cursor_ = head_->time;
   } else if (playing_ && !play_when_there_ && !forking()) {
     cursor_ = std::min(cursor_ + speed_ * wall_s, end());
-    if (cursor_ >= end()) {
+    if (cursor_ >= end() && loop_ && !goes_on_at_end()) {
+      cursor_ = way_.front()->time;
+    } else if (cursor_ >= end()) {
       following_ = live_shown();
-      playing_ = following_ && status_.kind == LiveStatus::Kind::halted;
+      playing_ = goes_on_at_end();
       if (playing_) run_.go(speed_);
     }
   }
@@ -67,7 +69,12 @@ bool Player::update(double wall_s) {
     play_when_there_ = false;
     run_.go(speed_);
   } else if (following_ && !forking() && nothing_goes_on()) {
-    playing_ = false;
+    const bool again = playing_ && loop_ && status_.kind == LiveStatus::Kind::over;
+    playing_ = again;
+    if (again) {
+      following_ = false;
+      cursor_ = way_.front()->time;
+    }
   }
   news = news || cursor_ != before || way_.size() != rows_before;
   if (news) update_parameters();
@@ -144,6 +151,24 @@ bool Player::busy() const {
 bool Player::nothing_goes_on() const {
   return status_.kind == LiveStatus::Kind::over || status_.kind == LiveStatus::Kind::ended ||
          (status_.kind == LiveStatus::Kind::failed && posted_.empty());
+}
+
+// What is played up to where a live run stands goes over into stepping.
+bool Player::goes_on_at_end() const {
+  return live_shown() && status_.kind == LiveStatus::Kind::halted;
+}
+
+bool Player::can_halve_step() const {
+  return status_.kind == LiveStatus::Kind::failed && can_edit() &&
+         scene_->setup.run.analysis == Analysis::dynamic &&
+         parameters_.time_step >= 2 * io::key_of(Edit::Key::time_step).least;
+}
+
+void Player::halve_step_and_retry() {
+  if (!can_halve_step()) return;
+  begin_edit();
+  edit({Edit::Key::time_step, 0, Vec3(parameters_.time_step / 2, 0, 0)});
+  play();
 }
 
 double Player::end() const {

@@ -35,6 +35,9 @@ class Player {
   void scrub(double time);  ///< pauses
   void to_start();
   void to_end();
+  /// At the end playing begins again, with what there is from the start.
+  void set_loop(bool loop) { loop_ = loop; }
+  bool loop() const { return loop_; }
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
   double time() const { return cursor_; }
@@ -45,6 +48,10 @@ class Player {
   bool replay() const {
     return status_.kind == LiveStatus::Kind::replay || status_.kind == LiveStatus::Kind::reading;
   }
+
+  /// A failed step may be tried again at half its length, for which this makes the edit.
+  bool can_halve_step() const;
+  void halve_step_and_retry();
 
   // Branches.
   bool can_continue() const { return !following_ && !way_.empty() && !busy(); }
@@ -90,6 +97,7 @@ class Player {
   };
   bool busy() const;
   bool nothing_goes_on() const;
+  bool goes_on_at_end() const;
   bool forking() const { return forks_asked_ > status_.forks; }
   bool live_shown() const { return !replay() && shown_ == status_.branch; }
   void set_speed(double speed);
@@ -114,7 +122,7 @@ class Player {
   Parameters parameters_;
   std::vector<Edit> posted_;  // on their way
   std::vector<Undo> undo_, redo_;
-  bool playing_ = false, following_ = true;
+  bool playing_ = false, loop_ = false, following_ = true;
   bool new_undo_ = true;
   bool play_when_there_ = false;  // asked for on the way to a fork
   std::int64_t forks_asked_ = 0;

@@ -78,7 +78,7 @@ class Drawing {
         bridge_(scene, extent_),
         replay_(replay),
         context_(render::make_osmesa_context()),
-        picture_(context_->get_proc(), o.width, o.height, window_letters(scene)) {}
+        picture_(context_->get_proc(), o.width, o.height, window_letters(&scene)) {}
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
@@ -87,11 +87,17 @@ class Drawing {
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
-    return picture_.draw(frame, render::fit_camera(options_.view, frame, picture_.aspect()),
-                         {.map = options_.picture.map});
+    return picture_.draw(frame, camera(frame), {.map = options_.picture.map});
   }
 
  private:
+  render::Camera camera(const render::SceneFrame& frame) const {
+    if (!options_.orbit) return render::fit_camera(options_.view, frame, picture_.aspect());
+    render::Orbit orbit = *options_.orbit;
+    orbit.set_bounds(frame);
+    return orbit.camera(picture_.aspect());
+  }
+
   const RenderOptions& options_;
   const std::optional<Subject> inspected_;
   const RunExtent extent_;
@@ -199,21 +205,6 @@ int render_command(const RenderOptions& options) {
     say(error.what());
     return run.exit_code;
   }
-}
-
-int export_command(const ExportOptions& options) {
-  if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
-    for (const io::BuiltinScene& scene : io::builtin_scenes())
-      if (scene.name == options.recording)
-        throw BadInput(
-            fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
-  const io::Recording recording(options.recording);
-  std::error_code error;
-  fs::create_directories(options.csv, error);
-  if (error) throw BadInput(options.csv + ": cannot be created: " + error.message());
-  require_writable_folder(options.csv, options.csv);
-  io::export_csv(recording, options.csv);
-  return k_done;
 }
 
 }  // namespace topple::app

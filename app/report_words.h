@@ -59,7 +59,7 @@ inline constexpr Phrase k_pulse{"{0} pulse, {1} gal, along {2}, from {3} s for {
 inline constexpr Phrase k_half_sine{"Half-sine", "半正弦波"};
 inline constexpr Phrase k_full_sine{"Full-sine", "1周期正弦波"};
 inline constexpr Phrase k_rectangle{"Rectangular", "矩形"};
-inline constexpr Phrase k_record{"Record of {0} s in {1} components, peak {2} gal (scale {3}), from {4} s",
+inline constexpr Phrase k_record{"Record of {0} s, components: {1}, peak {2} gal (scale {3}), from {4} s",
                                  "加速度記録 {0}秒、{1}成分、最大 {2} gal（倍率 {3}）、{4}秒から"};
 inline constexpr Phrase k_jump{
     "The floor starts with a jump of velocity, which the chart and the intensity do not contain.",

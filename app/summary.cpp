@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/run_warnings.h"
 #include "app/words.h"
-#include "solver/accelerogram.h"
 #include "solver/ladder.h"
 
 namespace topple::app {
@@ -17,8 +17,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_degrees = 180 / k_pi;
-constexpr double k_good_balance = 1e-3;
-constexpr double k_pinched = 0.95;  // 1 - l/L between members
 
 ordered_json number(double x) {
   return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
@@ -139,47 +137,6 @@ ordered_json peak_load_factor(const Run& run) {
   for (const LoadStep& step : run.load_steps())
     if (step.converged) peak = std::max(peak.value_or(step.factor), step.factor);
   return number(peak);
-}
-
-constexpr double k_same_interval = 1 + 1e-9;  // of a step and a sample interval, both rounded
-
-ordered_json warnings(const Run& run) {
-  ordered_json list = ordered_json::array();
-  const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    if (bodies[b].peak_penetration > 1)
-      list.push_back(
-          fmt::format("body \"{}\" sank to {:.2f} contact widths: the centre line of a member passed that of "
-                      "the floor or wall; a larger alpha or width holds it",
-                      run.setup().model.bodies[b].name, bodies[b].peak_penetration));
-  const Model& model = run.setup().model;
-  for (int b = 0; b < model.furniture_total(); ++b)
-    if (bodies[b].peak_pinch > k_pinched)
-      list.push_back(
-          fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
-                      "larger alpha keeps them apart",
-                      model.bodies[b].name, 1 - bodies[b].peak_pinch));
-  if (const auto& crowded = run.outcome().crowded_members(); !crowded.empty()) {
-    std::string names;
-    for (const int member : crowded)
-      names += fmt::format("{}{}/{}", names.empty() ? "" : ", ",
-                           model.bodies[model.members[member].body].name, model.members[member].name);
-    list.push_back("both ends of an element pass yield, which holds one hinge, in " + names +
-                   "; more elements or divisions show it");
-  }
-  const Parameters& parameters = run.setup().parameters;
-  for (const Shake& shake : parameters.shakes)
-    if (shake.kind == Shake::Kind::record && !parameters.adaptive &&
-        parameters.time_step > k_same_interval * shake.record->interval)
-      list.push_back(fmt::format(
-          "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
-          "steps is not seen",
-          1e3 * parameters.time_step, 1e3 * shake.record->interval));
-  const double balance = run.state().energy.balance_error();
-  if (!is_static(run.setup()) && balance > k_good_balance)
-    list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
-                               balance, k_good_balance));
-  return list;
 }
 
 /// Characters of a UTF-8 text.
@@ -324,7 +281,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   }
   out["static"] = load_steps(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
-  out["warnings"] = warnings(run);
+  out["warnings"] = run_warnings(run);
   return out;
 }
 

@@ -1,7 +1,7 @@
 // Texts of what the window teaches.
 #pragma once
 
-#include "app/window_words.h"
+#include "app/shell_words.h"
 
 namespace topple::app::window_words {
 
@@ -94,7 +94,6 @@ inline constexpr Phrase k_how_accurate{"How accurate is this?", "この計算の
 inline constexpr Phrase k_how_accurate_about{
     "Computes the scene as it is now twice, at its steps and at half of them, beside the window",
     "現在の設定のシーンを、通常の刻みと半分の刻みで2回計算して比べる"};
-inline constexpr Phrase k_cancel{"Cancel", "中止"};
 inline constexpr Phrase k_estimating{"Computing: {0:.0f} %", "計算中：{0:.0f} %"};
 inline constexpr Phrase k_estimate_failed{"No estimate: {0}", "精度を評価できません：{0}"};
 inline constexpr Phrase k_sure_fall{"{0}: overturns at {1:.3f} s, ± {2:.3f} s.",

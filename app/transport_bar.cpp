@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "app/panels.h"
-#include "app/window_words.h"
+#include "app/shell_words.h"
 #include "app/words.h"
 
 namespace topple::app {
@@ -13,7 +14,7 @@ namespace {
 
 using namespace window_words;
 
-enum class Icon { to_start, back, play, pause, on, to_end, restart };
+enum class Icon { to_start, back, play, pause, on, to_end, restart, loop };
 
 /// Filled triangle that points right (1) or left (-1), in a square of side 2 about (x, y).
 void add_arrow(ImDrawList& list, float x, float y, float half, float direction, ImU32 colour) {
@@ -56,6 +57,15 @@ void add_icon(ImDrawList& list, Icon icon, ImVec2 at, float r, ImU32 colour) {
       list.PathStroke(colour, 0, 0.28f * r);
       list.AddTriangleFilled({at.x + 0.1f * r, at.y - 1.35f * r}, {at.x + 0.95f * r, at.y - 0.75f * r},
                              {at.x + 0.1f * r, at.y - 0.15f * r}, colour);
+      break;
+    case Icon::loop:  // two arrows after each other
+      for (const float s : {1.f, -1.f}) {
+        list.AddLine({at.x - 0.9f * s * r, at.y + 0.35f * s * r}, {at.x - 0.9f * s * r, at.y - 0.5f * s * r},
+                     colour, 0.26f * r);
+        list.AddLine({at.x - 0.9f * s * r, at.y - 0.5f * s * r}, {at.x + 0.4f * s * r, at.y - 0.5f * s * r},
+                     colour, 0.26f * r);
+        add_arrow(list, at.x + 0.6f * s * r, at.y - 0.5f * s * r, 0.45f * r, s, colour);
+      }
       break;
   }
 }
@@ -127,7 +137,7 @@ void choose_branch(Player& player) {
 
 }  // namespace
 
-float draw_transport_bar(Player& player, const Box& box) {
+ShellRequest draw_transport_bar(Player& player, const Box& box, float& height) {
   begin_panel("transport", box);
   const bool loads = is_static(player.scene().setup);
   if (icon_button("##start", Icon::to_start, k_to_start)) player.to_start();
@@ -138,6 +148,10 @@ float draw_transport_bar(Player& player, const Box& box) {
   if (icon_button("##end", Icon::to_end, k_to_end)) player.to_end();
   if (icon_button("##restart", Icon::restart, player.replay() ? k_replay_restart : k_restart))
     player.restart();
+  const bool loop = player.loop();
+  if (loop) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  if (icon_button("##loop", Icon::loop, k_loop_about)) player.set_loop(!loop);
+  if (loop) ImGui::PopStyleColor();
   gap();
   if (text_button("-##slower", k_slower, player.speed() > k_least_speed)) player.slower();
   flow(ImGui::CalcTextSize(speed_text(player.speed()).c_str()).x);
@@ -153,6 +167,14 @@ float draw_transport_bar(Player& player, const Box& box) {
   gap();
   if (text_button(say(k_undo) + "##undo", k_undo_about, player.can_undo())) player.undo();
   if (text_button(say(k_redo) + "##redo", k_redo_about, player.can_redo())) player.redo();
+  gap();
+  ShellRequest asked = ShellRequest::none;
+  const std::tuple<const Phrase&, const Phrase&, ShellRequest> shell[] = {
+      {k_scenes, k_scenes_about, ShellRequest::scenes},
+      {k_save, k_save_about, ShellRequest::save},
+      {k_export, k_export_about, ShellRequest::export_view}};
+  for (const auto& [label, about, request] : shell)
+    if (text_button(say(label), about, true)) asked = request;
   const auto row = loads ? player.row() : std::nullopt;
   const std::string clock = row     ? instant_in_words(player.scene().setup, *row)
                             : loads ? ""
@@ -162,10 +184,9 @@ float draw_transport_bar(Player& player, const Box& box) {
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(clock.c_str());
-  const float height =
-      ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + ImGui::GetStyle().WindowPadding.y;
+  height = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + ImGui::GetStyle().WindowPadding.y;
   ImGui::End();
-  return height;
+  return asked;
 }
 
 }  // namespace topple::app

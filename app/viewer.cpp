@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/shell_words.h"
 #include "app/theme.h"
-#include "app/window_words.h"
 
 namespace topple::app {
 namespace {
@@ -23,12 +23,43 @@ constexpr float k_side = 320;            // px at 720 lines
 constexpr float k_most_side = 0.45f;     // of the width
 constexpr float k_least_letters = 12;    // px
 
+/// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
+void set_keyboard_navigation(bool on) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyMap[ImGuiKey_Space] == -1) return;
+  if (on)
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
 bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::FrameRow>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   return a->time == b->time && a->step == b->step && a->branch == b->branch;
 }
 
 }  // namespace
+
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
+                                      const io::Scene* scene) {
+  window_language() = appearance.language;
+  window_is_dark() = appearance.dark;
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  io.Fonts->Clear();
+  scale *= static_cast<float>(appearance.scale);
+  render::Letters letters = window_letters(scene);
+  letters.smallest = k_least_letters;
+  const render::OverlayFonts fonts =
+      render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)), letters);
+  io.FontDefault = fonts.small;
+  stage.upload_fonts(*io.Fonts);
+  set_style(scale);
+  return fonts;
+}
 
 void begin_panel(const char* name, const Box& box) {
   ImGui::SetNextWindowPos({box.left, box.top});
@@ -48,28 +79,12 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
       bridge_(player.scene(), player.extent()),
       settings_(settings),
       view_(view) {
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  io.LogFilename = nullptr;
-  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-  io.ConfigWindowsMoveFromTitleBarOnly = true;
-  // Off screen there is no keyboard to move among panels with.
-  if (io.KeyMap[ImGuiKey_Space] != -1) io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   dress();
 }
 
 void Viewer::dress() {
   scale_ = desktop_scale_ * static_cast<float>(appearance_.scale);
-  window_language() = appearance_.language;
-  window_is_dark() = appearance_.dark;
-  ImGuiIO& io = ImGui::GetIO();
-  io.Fonts->Clear();
-  render::Letters letters = window_letters(player_.scene());
-  letters.smallest = k_least_letters;
-  fonts_ = render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale_)), letters);
-  io.FontDefault = fonts_.small;
-  stage_.upload_fonts(*io.Fonts);
-  set_style(scale_);
+  fonts_ = set_up_interface(stage_, desktop_scale_, appearance_, &player_.scene());
   dressed_ = appearance_;
   scene_changed_ = true;
 }
@@ -132,12 +147,13 @@ void Viewer::report_frame_time(double ms) {
   frame_ms_ = frame_ms_ == 0 ? ms : 0.9 * frame_ms_ + 0.1 * ms;
 }
 
-void Viewer::build() {
+void Viewer::build(const std::function<void()>& over) {
   const Box before = scene_;
   write_status();
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
-  handle_characters();
+  if (!over) handle_characters();
+  set_keyboard_navigation(!over);
   if (std::exchange(to_next_panel_, false)) focus_next_panel();
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
@@ -150,11 +166,12 @@ void Viewer::build() {
   handle_mouse();
   if (row_) draw_words(*row_);
   draw_side_panel(row_);
-  transport_height_ = draw_transport_bar(player_, transport_);
+  asked_ = draw_transport_bar(player_, transport_, transport_height_);
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
   if (keys_shown_) draw_key_table();
+  if (over) over();
   ImGui::Render();
   draw_scene();
 }

@@ -44,19 +44,25 @@ class Viewer {
   /// Does what the key is for.
   void press(const render::KeyPress& press);
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
-  /// when it changed.
-  void build();
+  /// when it changed. `over` builds what lies over it all and takes the keyboard.
+  void build(const std::function<void()>& over = {});
   /// Where things lie, for Stage::present.
   render::Surface surface() const;
 
+  /// What the last frame's buttons asked for.
+  ShellRequest asked() const { return asked_; }
   bool wants_to_close() const { return wants_to_close_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
   const TeachingState& teaching() const { return teaching_; }
+  const Appearance& appearance() const { return appearance_; }
+  const render::OverlayFonts& fonts() const { return fonts_; }
+  const render::Orbit& orbit() const { return orbit_; }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
-  const Appearance& appearance() const { return appearance_; }
+  /// In the status line until the next click.
+  void tell(const std::string& words) { told_ = words; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
@@ -83,7 +89,6 @@ class Viewer {
   void draw_plots_strip();
   void write_plots(PlotRequest request);
   render::Image picture_of_plots();
-  bool can_halve() const;
   std::string pace() const;
   void write_status();
   void draw_status();
@@ -118,6 +123,7 @@ class Viewer {
   float transport_height_ = 0;  // as last drawn
   std::vector<std::string> status_lines_;
   bool to_next_panel_ = false;
+  ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
   std::string told_;  // what was written, or why it was not

@@ -7,14 +7,13 @@
 #include <utility>
 
 #include "app/files.h"
+#include "app/shell_words.h"
 #include "app/theme.h"
 #include "app/viewer.h"
-#include "app/window_words.h"
 #include "app/words.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
 #include "render/text_layout.h"
-#include "solver/io/edit_text.h"
 
 namespace topple::app {
 namespace {
@@ -71,7 +70,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
 
 void Viewer::draw_tabs() {
   static constexpr std::pair<Phrase, Tab> k_tabs[] = {{k_parameters, Tab::parameters},
-                                                      {k_picture, Tab::picture},
+                                                      {k_picture_tab, Tab::picture},
                                                       {k_inspect, Tab::inspect},
                                                       {k_teach, Tab::teach}};
   constexpr auto k_count = static_cast<float>(std::size(k_tabs));
@@ -182,22 +181,16 @@ render::Image Viewer::picture_of_plots() {
   return image;
 }
 
-bool Viewer::can_halve() const {
-  const double least_step = io::key_of(Edit::Key::time_step).least;
-  return player_.status().kind == LiveStatus::Kind::failed && player_.at_head() && player_.can_edit() &&
-         !is_static(player_.scene().setup) && player_.parameters().time_step >= 2 * least_step;
-}
-
 void Viewer::write_status() {
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
   if (!told_.empty()) words = told_;
   if (!refused_.empty()) words = say(k_refused, refused_);
-  if (!status.record_failure.empty()) words += say(k_not_recorded, status.record_failure);
+  if (!status.record_failure.empty()) words += say(k_no_longer_recorded, status.record_failure);
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
   float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
-  if (can_halve()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
+  if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
   status_lines_ = render::wrapped(*fonts_.small, words, room, k_most_status_lines);
   if (status_lines_.empty()) status_lines_.emplace_back();
 }
@@ -208,12 +201,8 @@ std::string Viewer::pace() const {
 
 void Viewer::draw_status() {
   begin_panel("status", status_);
-  if (can_halve()) {
-    if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) {
-      player_.begin_edit();
-      player_.edit({Edit::Key::time_step, 0, Vec3(player_.parameters().time_step / 2, 0, 0)});
-      player_.play();
-    }
+  if (player_.can_halve_step()) {
+    if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) player_.halve_step_and_retry();
     ImGui::SameLine();
   }
   ImGui::BeginGroup();

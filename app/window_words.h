@@ -91,10 +91,7 @@ inline constexpr Phrase k_can_branch_or_return{
     "{0}. C continues from here as a new branch, End returns to the newest instant.",
     "{0}。C でここから新しい分岐を開始、End で最新の時刻に戻ります。"};
 inline constexpr Phrase k_refused{"Refused: {0}", "変更できません：{0}"};
-inline constexpr Phrase k_not_recorded{"  No longer recorded: {0}", "　記録は中断されました：{0}"};
-inline constexpr Phrase k_halve{"Halve the step and retry", "時間刻みを半分にして再試行"};
-inline constexpr Phrase k_written{"Written: {0}", "保存しました：{0}"};
-inline constexpr Phrase k_not_written{"Not written: {0}", "保存できません：{0}"};
+inline constexpr Phrase k_no_longer_recorded{"  No longer recorded: {0}", "　記録は中断されました：{0}"};
 inline constexpr Phrase k_frame_time{"{0:.0f} ms a frame   ", "描画 {0:.0f} ms　"};
 inline constexpr Phrase k_f1{"F1: keys", "F1：キー一覧"};
 
@@ -164,7 +161,7 @@ inline constexpr Phrase k_mark_edit{"change", "変更"};
 
 // tabs and appearance
 inline constexpr Phrase k_parameters{"Parameters", "パラメーター"};
-inline constexpr Phrase k_picture{"Picture", "表示"};
+inline constexpr Phrase k_picture_tab{"Picture", "表示"};
 inline constexpr Phrase k_inspect{"Inspect", "詳細"};
 inline constexpr Phrase k_teach{"Learn", "学習"};
 inline constexpr Phrase k_theme{"theme", "配色"};
@@ -175,9 +172,9 @@ inline constexpr Phrase k_english{"English", "English"};
 inline constexpr Phrase k_japanese{"日本語", "日本語"};
 inline constexpr Phrase k_needs_font{"Japanese needs the Debian package fonts-vlgothic",
                                      "日本語表示には Debian パッケージ fonts-vlgothic が必要です"};
-inline constexpr Phrase k_size{"size", "文字の倍率"};
-inline constexpr Phrase k_size_about{"Of letters and panels (Ctrl +, Ctrl -, Ctrl+0)",
-                                     "文字とパネルの倍率（Ctrl +、Ctrl -、Ctrl+0）"};
+inline constexpr Phrase k_letters{"size", "文字の倍率"};
+inline constexpr Phrase k_letters_about{"Of letters and panels (Ctrl +, Ctrl -, Ctrl+0)",
+                                        "文字とパネルの倍率（Ctrl +、Ctrl -、Ctrl+0）"};
 
 // parameters
 inline constexpr Phrase k_floor{"Floor", "床（加振）"};
@@ -371,6 +368,10 @@ inline constexpr Phrase k_key_arrows{"between controls of a panel; Space or Ente
                                      "パネル内の移動。Space か Enter で操作"};
 inline constexpr Phrase k_key_size{"larger, smaller, usual letters", "文字を大きく、小さく、標準に"};
 inline constexpr Phrase k_key_theme{"light or dark", "ライトとダークの切り替え"};
+inline constexpr Phrase k_key_loop{"at the end, begin again", "最後まで来たら最初から繰り返す"};
+inline constexpr Phrase k_key_scenes{"another scene or recording", "別のシーンや記録を開く"};
+inline constexpr Phrase k_key_save{"save the scene as it is now", "現在のシーンを保存"};
+inline constexpr Phrase k_key_export{"export a picture, a video or tables", "画像・動画・表の書き出し"};
 inline constexpr Phrase k_key_table{"this table", "この一覧"};
 inline constexpr Phrase k_key_quit{"close the recording and the window", "記録とウィンドウを閉じる"};
 inline constexpr Phrase k_drag{"drag", "ドラッグ"};

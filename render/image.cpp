@@ -95,6 +95,17 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
   return bytes;
 }
 
+std::optional<Image> load_png(const std::filesystem::path& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&png, path.c_str())) return std::nullopt;
+  png.format = PNG_FORMAT_RGBA;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.rgba.resize(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr)) return std::nullopt;
+  return image;
+}
+
 void write_png(const std::filesystem::path& path, const Image& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
   std::filesystem::path partial = path;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace topple::render {
@@ -19,6 +20,9 @@ struct Image {
 /// The PNG file's bytes; the same image gives the same bytes. Alpha is left out when all of it is
 /// opaque. Throws std::runtime_error on an image without pixels or whose size does not fit its bytes.
 std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Reads a PNG file; nothing when there is none that can be read.
+std::optional<Image> load_png(const std::filesystem::path& path);
 
 /// Writes a PNG file. It appears complete or not at all: an existing file is replaced only when the
 /// new one is written. Throws std::runtime_error with the path and the reason.

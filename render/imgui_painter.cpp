@@ -13,6 +13,10 @@ const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
+ImTextureID texture_id(const GlObject& texture) {
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id()));
+}
+
 constexpr GLenum k_index_type = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
 
 }  // namespace
@@ -41,7 +45,13 @@ void ImguiPainter::upload_fonts(ImFontAtlas& atlas) {
   atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
   gl_.ActiveTexture(GL_TEXTURE0);
   font_texture_ = make_texture(gl_, {}, width, height, pixels);
-  atlas.SetTexID(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(font_texture_.id())));
+  atlas.SetTexID(texture_id(font_texture_));
+}
+
+void* ImguiPainter::keep(const Image& image) {
+  gl_.ActiveTexture(GL_TEXTURE0);
+  pictures_.push_back(make_texture(gl_, {}, image.width, image.height, image.rgba.data()));
+  return texture_id(pictures_.back());
 }
 
 void ImguiPainter::draw(const ImDrawData& data, const Target& target) {

@@ -1,8 +1,11 @@
 // Draws Dear ImGui's lists with the own function table: the same for a window and off screen.
 #pragma once
 
+#include <vector>
+
 #include "render/gl.h"
 #include "render/gl_objects.h"
+#include "render/image.h"
 #include "render/scene_painter.h"
 
 struct ImDrawData;
@@ -18,6 +21,9 @@ class ImguiPainter {
   /// Bakes and uploads the atlas; call again when its fonts change.
   void upload_fonts(ImFontAtlas& atlas);
 
+  /// Keeps a picture as a texture; returns its ImTextureID.
+  void* keep(const Image& image);
+
   /// Draws over what the target shows. An ImTextureID is the texture's GL name.
   void draw(const ImDrawData& data, const Target& target);
 
@@ -25,6 +31,7 @@ class ImguiPainter {
   const Gl& gl_;
   Program program_;
   GlObject array_, vertices_, indices_, font_texture_;
+  std::vector<GlObject> pictures_;
 };
 
 }  // namespace topple::render

@@ -59,6 +59,14 @@ Image Stage::shot(const Surface& surface, const ImDrawData& interface_lists) {
   return canvas.read();
 }
 
+Image Stage::portrait(const SceneFrame& frame, const Camera& camera, ColourMap map, int width, int height) {
+  Canvas& canvas = fitting(shot_, gl_, width, height, k_samples);
+  LeftOut ignored;
+  canvas.draw(scene_, frame, camera, map, Quality::still, ignored);
+  check_gl(gl_, "drawing a portrait");
+  return canvas.read();
+}
+
 Image Stage::sheet(int width, int height, const ImDrawData& interface_lists) {
   const Canvas& canvas = fitting(shot_, gl_, width, height, 0);
   gl_.Disable(GL_SCISSOR_TEST);

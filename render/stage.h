@@ -52,6 +52,12 @@ class Stage {
   /// What present would show, without a window.
   Image shot(const Surface& surface, const ImDrawData& interface_lists);
 
+  /// A scene by itself, at its best; what draw_scene drew stays.
+  Image portrait(const SceneFrame& frame, const Camera& camera, ColourMap map, int width, int height);
+
+  /// Keeps a picture for the interface as long as the stage lives; returns its ImTextureID.
+  void* keep(const Image& image) { return interface_.keep(image); }
+
   /// The interface alone, on white.
   Image sheet(int width, int height, const ImDrawData& interface_lists);
 

@@ -82,6 +82,11 @@ struct Window::Parts {
     glfwSetFramebufferSizeCallback(window, note);
     glfwSetWindowRefreshCallback(window, note);
     glfwSetWindowCloseCallback(window, note);
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+      Parts& parts = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+      parts.input = true;
+      parts.drops.insert(parts.drops.end(), paths, paths + count);
+    });
   }
 
   static void note_key(GLFWwindow* w, int code, int scancode, int action, int modifiers) {
@@ -104,6 +109,7 @@ struct Window::Parts {
   ImGuiContext* imgui = nullptr;
   bool input = true;
   std::vector<KeyPress> keys;
+  std::vector<std::string> drops;
 };
 
 Window::Window(const std::string& title, int width, int height)
@@ -155,6 +161,10 @@ bool Window::should_close() const {
 
 std::vector<KeyPress> Window::take_keys() {
   return std::exchange(parts_->keys, {});
+}
+
+std::vector<std::string> Window::take_drops() {
+  return std::exchange(parts_->drops, {});
 }
 
 void Window::close() {

@@ -58,6 +58,9 @@ class Window : public Context {
   /// takes long.
   std::vector<KeyPress> take_keys();
 
+  /// Paths of files dropped on the window since the last call.
+  std::vector<std::string> take_drops();
+
   /// Shows what was drawn to framebuffer 0.
   void swap();
 

@@ -1,6 +1,5 @@
 #include "solver/io/export_csv.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -9,9 +8,9 @@
 #include <optional>
 #include <system_error>
 
+#include "solver/io/exported_values.h"
 #include "solver/io/scene.h"
-#include "solver/plasticity.h"
-#include "solver/section_forces.h"
+#include "solver/io/staged_file.h"
 
 namespace topple::io {
 namespace {
@@ -21,20 +20,12 @@ namespace fs = std::filesystem;
 /// A table that appears under its name when it is complete.
 class CsvFile {
  public:
-  CsvFile(const fs::path& path, const char* header) : path_(path), part_(path) {
-    part_ += ".part";
-    file_.reset(std::fopen(part_.c_str(), "wb"));
+  CsvFile(const fs::path& path, const char* header) : staged_(path) {
+    file_.reset(std::fopen(staged_.part().c_str(), "wb"));
     if (!file_) fail();
     buffer_ = header;
     buffer_ += '\n';
   }
-  ~CsvFile() {
-    file_.reset();
-    std::error_code ignored;
-    if (!complete_) fs::remove(part_, ignored);
-  }
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
 
   template <typename Number>
   CsvFile& number(Number value) {
@@ -66,12 +57,7 @@ class CsvFile {
     write();
     if (std::fclose(file_.release()) != 0) fail();
   }
-  void publish() {
-    std::error_code error;
-    fs::rename(part_, path_, error);
-    if (error) throw WriteError(path_.string() + ": " + error.message());
-    complete_ = true;
-  }
+  void publish() { staged_.publish(); }
 
  private:
   CsvFile& field(std::string_view value) {
@@ -85,16 +71,16 @@ class CsvFile {
     buffer_.clear();
   }
   [[noreturn]] void fail() const {
-    throw WriteError(path_.string() + ": " + std::generic_category().message(errno));
+    throw WriteError(staged_.path().string() + ": " + std::generic_category().message(errno));
   }
 
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  fs::path path_, part_;
+  StagedFile staged_;
   std::unique_ptr<std::FILE, Close> file_;
   std::string buffer_;
-  bool at_row_start_ = true, complete_ = false;
+  bool at_row_start_ = true;
 };
 
 void bodies_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
@@ -115,27 +101,14 @@ void nodes_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   }
 }
 
-/// Greatest loading of the element's ends against the yield surface; absent where it cannot yield.
-void yield_ratio(CsvFile& csv, const Element& element, const SectionForces& forces, double s) {
-  if (!std::isfinite(element.capacity[0])) {
-    csv.none();
-    return;
-  }
-  double f = -1;
-  for (double end : {-1., 1.})
-    f = std::max(f, yield_function(element, forces_along(forces, element.length, s, end)));
-  csv.number(static_cast<float>(std::sqrt(f + 1)));
-}
-
 void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Member& member = model.members[static_cast<std::size_t>(model.elements[e].member)];
     const float* f = row.section_force.data() + 6 * e;
-    const SectionForces forces{.normal = {f[0], f[1], f[2]}, .moment = {f[3], f[4], f[5]}};
-    const double stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces);
+    const ElementLoading loading = element_loading(model, row, e);
     csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
-    csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(stress);
-    yield_ratio(csv, model.elements[e], forces, row.s[e]);
+    csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(loading.stress);
+    std::isfinite(model.elements[e].capacity[0]) ? csv.number(loading.yield_ratio) : csv.none();
     csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
   }
 }
@@ -154,12 +127,6 @@ void anchors_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
 
 void floor_row(CsvFile& csv, const FrameRow& row) {
   csv.number(row.time).numbers(row.floor_acceleration, 3).numbers(row.floor_displacement, 3).end_row();
-}
-
-void expect_same_model(const Model& model, const FrameRow& row) {
-  if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
-      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
-    throw InputError(k_another_model);
 }
 
 }  // namespace

@@ -75,10 +75,14 @@ class Recording {
   const std::vector<SceneFile>& scene_files() const;
   const std::string& status() const;        ///< completed, stopped, diverged, interrupted
   const std::string& summary_json() const;  ///< empty when interrupted
+  /// Its writer has not closed it: it is at work, or was killed.
+  bool left_open() const;
   /// Follows a file that is still being written: takes in what came since. True when there was something new.
   /// Invalidates references to what is below and to status() and summary_json().
   bool refresh();
   std::int64_t frame_count() const;
+  /// Frames behind the last one that the writer had begun to put on disk.
+  std::int64_t incomplete_frames() const;
   FrameRow frame(std::int64_t index) const;  ///< checks the block's checksum
   /// Of every frame, in the order in which they were written.
   const std::vector<Instant>& index() const;

@@ -367,6 +367,15 @@ std::int64_t Recording::checkpoint_count() const {
   return static_cast<std::int64_t>(impl_->checkpoints.size());
 }
 
+bool Recording::left_open() const {
+  return impl_->live;
+}
+std::int64_t Recording::incomplete_frames() const {
+  hsize_t begun = impl_->frame_index.rows();
+  for (const RowReader& field : impl_->fields) begun = std::max(begun, field.rows());
+  return static_cast<std::int64_t>(begun) - frame_count();
+}
+
 bool Recording::refresh() {
   return impl_->guarded([this] { return impl_->refresh(); });
 }

@@ -38,5 +38,7 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_rewrite.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene_save.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_shakes.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)

@@ -69,7 +69,7 @@ std::string why_none(const std::vector<Level>& levels) {
     return fmt::format("every run overturns from {:.6g} on and none up to {:.6g}: the median lies between",
                        least_hit, most_miss);
   if (most_miss == least_hit)
-    return fmt::format("runs differ at {:.6g} alone, where the median lies", least_hit);
+    return fmt::format("runs differ at {:.6g} alone: the median lies near it", least_hit);
   if (most_hit <= least_miss) return "overturning does not become more frequent";
   return "";
 }

@@ -179,7 +179,7 @@ class Chart {
                  "3\n",
                  x / s.width, (x + 34) / s.width, y / s.height) +
              text("", x + 17, y, "point pt 7 ps 0.8 lc rgb '#e7298a'") +
-             text("median of the fitted lognormal, where there is one", x + 44, y);
+             text("median of the fitted lognormal, where there is one within the map", x + 44, y);
     return out;
   }
 
@@ -318,11 +318,12 @@ class Chart {
 
   std::string medians() const {
     std::string out;
+    const Axis& along = map_.fragility_along_y ? plan_.y : plan_.x;
     const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
     for (std::size_t k = 0; k < map_.fragility.size(); ++k) {
       const Fragility& f = map_.fragility[k];
-      if (!f.fit) {
-        out += "\n";  // no line across what has none
+      if (!f.fit || f.fit->median < along.values.front() || f.fit->median > along.values.back()) {
+        out += "\n";  // no line across what has none, nor to where nothing was run
         continue;
       }
       const double at = other.values[k];
@@ -366,13 +367,15 @@ class Chart {
     const Axis& along = map_.fragility_along_y ? plan_.y : plan_.x;
     const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
     const Fragility& at = map_.fragility[static_cast<std::size_t>(map_.own_column)];
-    std::string place = fmt::format("At {} = {}", other.key,
-                                    valued(other, other.values[static_cast<std::size_t>(map_.own_column)]));
-    if (other.own) place += fmt::format(", nearest to the scene's {:.4g}", *other.own);
-    out += text(bold(plain(place), 1.08), k_second_left, k_height - k_top + 70);
-    double y = k_height - k_top + 42;
-    for (const std::string& line : fit_in_words(at, along))
-      out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
+    std::vector<std::string> lines = fit_in_words(at, along);
+    if (other.own)
+      lines.insert(lines.begin(), "the value nearest to the scene's " + valued(other, *other.own));
+    double y = k_height - k_top - 6 + 24 * static_cast<double>(lines.size());
+    out += text(bold(plain("At " + other.key + " = " +
+                           valued(other, other.values[static_cast<std::size_t>(map_.own_column)])),
+                     1.08),
+                k_second_left, y + 28);
+    for (const std::string& line : lines) out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
     out += "$shares << END\n";
     for (const Level& level : levels(plan_, map_, map_.own_column)) {
       if (level.runs == 0) continue;

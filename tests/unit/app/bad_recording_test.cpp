@@ -22,6 +22,8 @@ class BadRecordingTest : public ProgramTest {
     expect_one_line({"render", name, "--mp4", "a.mp4"}, 2, part);
     expect_one_line({"view", name, "-o", "b.h5"}, 2, part);
     expect_one_line({"export", name, "--csv", "data"}, 2, part);
+    expect_one_line({"export", name, "--xdmf", "a.xdmf"}, 2, part);
+    expect_one_line({"recover", name}, 2, part);
     EXPECT_EQ(files(), before);
   }
 };
@@ -90,6 +92,8 @@ TEST_F(BadRecordingTest, a_recording_whose_scene_gives_another_model_now_is_refu
   expect_one_line({"render", "a.h5", "--mp4", "a.mp4"}, 2, part);
   expect_one_line({"view", "a.h5", "-o", "b.h5"}, 2, part);
   expect_one_line({"export", "a.h5", "--csv", "data"}, 2, part);
+  expect_one_line({"export", "a.h5", "--xdmf", "a.xdmf"}, 2, part);
+  EXPECT_FALSE(std::filesystem::exists("a.xdmf.h5"));
   EXPECT_FALSE(std::filesystem::exists("a.png"));
   EXPECT_FALSE(std::filesystem::exists("a.mp4"));
 }

@@ -1,8 +1,14 @@
-// Tables of a recording: the columns of the contract, the numbers of the recording.
+// Tables of a recording: the columns of the contract, the numbers of the recording. XDMF: those of the
+// tables.
+#include <Eigen/Geometry>
+#include <map>
+#include <regex>
 #include <sstream>
 
 #include "program.h"
 #include "scenes.h"
+#include "solver/hinges.h"
+#include "solver/io/hdf5_handle.h"
 #include "solver/io/recording.h"
 #include "solver/types.h"
 
@@ -22,8 +28,9 @@ class ExportTest : public ProgramTest {
     EXPECT_EQ(ended.out + ended.err, "");
   }
   /// Rows below the header, which must be `header`.
-  static Table rows(const std::string& name, const std::string& header) {
-    std::istringstream text(bytes_of("new/data/" + name));
+  static Table rows(const std::string& name, const std::string& header,
+                    const std::string& folder = "new/data/") {
+    std::istringstream text(bytes_of(folder + name));
     std::string line;
     std::getline(text, line);
     EXPECT_EQ(line, header) << name;
@@ -87,6 +94,189 @@ TEST_F(ExportTest, tables_are_the_same_every_time_and_replace_older_ones) {
   write_bytes("new/data/nodes.csv", "older");
   ASSERT_EQ(topple({"export", "a.h5", "--csv", "new/data"}).code, 0);
   EXPECT_EQ(bytes_of("new/data/nodes.csv"), before);
+}
+
+/// What an XDMF file refers to: of every grid its time, and by name the arrays and where they belong.
+struct XdmfGrid {
+  double time = 0;
+  struct Array {
+    std::string centre, set;
+    std::vector<hsize_t> dims;
+    std::vector<double> values;
+  };
+  std::map<std::string, Array> arrays;  ///< attributes by name; also "Topology", "Geometry"
+};
+
+class XdmfTest : public ExportTest {
+ protected:
+  static std::vector<XdmfGrid> read_xdmf(const std::string& file) {
+    const std::string text = bytes_of(file);
+    const io::Handle data(H5Fopen((file + ".h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    std::vector<XdmfGrid> grids;
+    std::vector<std::string> open;  // elements that are not closed yet
+    std::string name, centre;
+    const std::regex tag(R"(<([!?/]?)(\w+)([^<>]*?)(/?)>([^<]*))");
+    for (std::sregex_iterator i(text.begin(), text.end(), tag), none; i != none; ++i) {
+      const std::string kind = (*i)[1], element = (*i)[2], attributes = (*i)[3];
+      if (kind == "!" || kind == "?") continue;
+      if (kind == "/") {
+        EXPECT_EQ(open.empty() ? "" : open.back(), element);
+        if (!open.empty()) open.pop_back();
+        continue;
+      }
+      if ((*i)[4] != "/") open.push_back(element);
+      if (element == "Grid" && value(attributes, "GridType") == "Uniform") grids.emplace_back();
+      if (element == "Time") grids.back().time = number(value(attributes, "Value"));
+      if (element == "Attribute" || element == "Topology" || element == "Geometry") {
+        name = element == "Attribute" ? value(attributes, "Name") : element;
+        centre = value(attributes, "Center");
+      }
+      if (element == "DataItem") grids.back().arrays[name] = array(data, file, centre, attributes, (*i)[5]);
+    }
+    EXPECT_TRUE(open.empty());
+    return grids;
+  }
+
+  /// What the grids hold is what the tables hold, exactly.
+  static void expect_as_tables(const std::vector<XdmfGrid>& grids, const std::string& folder) {
+    const Table nodes = rows("nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz", folder);
+    const Table elements = rows(
+        "elements.csv", "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge", folder);
+    ASSERT_FALSE(grids.empty());
+    const std::size_t n = nodes.size() / grids.size(), e = elements.size() / grids.size();
+    const std::vector<std::string> columns = {"N_N",   "Vy_N",      "Vz_N",        "T_Nm", "My_Nm",
+                                              "Mz_Nm", "stress_Pa", "yield_ratio", "s",    "hinge"};
+    for (std::size_t f = 0; f < grids.size(); ++f) {
+      const XdmfGrid& grid = grids[f];
+      EXPECT_EQ(grid.time, number(nodes[f * n][0]));
+      EXPECT_EQ(grid.arrays.at("Topology").dims, (std::vector<hsize_t>{e, 2}));
+      ASSERT_EQ(grid.arrays.at("Geometry").dims, (std::vector<hsize_t>{n, 3}));
+      for (std::size_t i = 0; i < 3 * n; ++i)
+        EXPECT_EQ(grid.arrays.at("Geometry").values[i],
+                  std::strtof(nodes[f * n + i / 3][3 + i % 3].c_str(), nullptr));
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const XdmfGrid::Array& array = grid.arrays.at(columns[c]);
+        EXPECT_EQ(array.centre, "Cell");
+        ASSERT_EQ(array.dims, (std::vector<hsize_t>{e}));
+        for (std::size_t i = 0; i < e; ++i) {
+          const std::string& field = elements[f * e + i][4 + c];
+          EXPECT_EQ(array.values[i],
+                    columns[c] == "stress_Pa" ? number(field) : std::strtof(field.c_str(), nullptr))
+              << columns[c] << " of element " << i << " at " << grid.time << " s";
+        }
+      }
+    }
+  }
+
+ private:
+  static std::string value(const std::string& attributes, const std::string& name) {
+    const std::size_t at = attributes.find(" " + name + "=\"");
+    if (at == std::string::npos) return {};
+    const std::size_t begin = at + name.size() + 3;
+    return attributes.substr(begin, attributes.find('"', begin) - begin);
+  }
+  static XdmfGrid::Array array(hid_t data, const std::string& file, const std::string& centre,
+                               const std::string& attributes, const std::string& text) {
+    XdmfGrid::Array out;
+    out.centre = centre;
+    std::istringstream dims(value(attributes, "Dimensions"));
+    std::size_t count = 1;
+    for (hsize_t dim; dims >> dim; count *= dim) out.dims.push_back(dim);
+    const std::string before = std::filesystem::path(file).filename().string() + ".h5:";
+    EXPECT_TRUE(text.starts_with(before)) << text;
+    out.set = text.substr(before.size());
+    const io::Handle set(H5Dopen2(data, out.set.c_str(), H5P_DEFAULT), H5Dclose);
+    const io::Handle space(H5Dget_space(set), H5Sclose), type(H5Dget_type(set), H5Tclose);
+    EXPECT_EQ(std::to_string(H5Tget_size(type)), value(attributes, "Precision"));
+    EXPECT_EQ(H5Tget_class(type) == H5T_FLOAT, value(attributes, "NumberType") == "Float");
+    std::vector<hsize_t> extent(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+    H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+    EXPECT_EQ(extent, out.dims);
+    out.values.resize(count);
+    EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.values.data()), 0);
+    return out;
+  }
+};
+
+TEST_F(XdmfTest, every_number_is_that_of_the_tables) {
+  const Ended ended = topple({"export", "a.h5", "--xdmf", "a.xdmf"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out + ended.err, "");
+  const std::vector<XdmfGrid> grids = read_xdmf("a.xdmf");
+  ASSERT_EQ(grids.size(), 31u);
+  EXPECT_NE(grids[0].arrays.at("stress_Pa").set, grids[1].arrays.at("stress_Pa").set);
+  expect_as_tables(grids, "new/data/");
+}
+
+TEST_F(XdmfTest, yielding_and_hinges_are_those_of_the_tables) {
+  ASSERT_EQ(topple({"run", "portal-pushover", "-o", "p.h5"}).code, 0);
+  ASSERT_EQ(topple({"export", "p.h5", "--csv", "p"}).code, 0);
+  ASSERT_EQ(topple({"export", "p.h5", "--xdmf", "p.xdmf"}).code, 0);
+  const std::vector<XdmfGrid> grids = read_xdmf("p.xdmf");
+  expect_as_tables(grids, "p/");
+  const auto& ratio = grids.back().arrays.at("yield_ratio").values;
+  // perfectly plastic, but for the f by which a hinge beside it lets a section be over (solver/hinges.h)
+  EXPECT_NEAR(*std::max_element(ratio.begin(), ratio.end()), 1, k_beside / 2);
+  const auto& hinge = grids.back().arrays.at("hinge").values;
+  EXPECT_GT(*std::max_element(hinge.begin(), hinge.end()), 0);
+}
+
+TEST_F(XdmfTest, displacement_and_rotation_lead_from_the_reference_pose_to_the_instant) {
+  ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
+  const std::vector<XdmfGrid> grids = read_xdmf("a.xdmf");
+  const io::Recording recording("a.h5");
+  const Model model = io::recorded_scene(recording).setup.model;
+  const XdmfGrid& last = grids.back();
+  const io::FrameRow row = recording.frame(recording.frame_count() - 1);
+  const auto vector = [&last](const char* name, std::size_t n) {
+    return Eigen::Map<const Eigen::Vector3d>(last.arrays.at(name).values.data() + 3 * n);
+  };
+  double most = 0;
+  for (std::size_t n = 0; n < model.node_position.size(); ++n) {
+    EXPECT_EQ(last.arrays.at("displacement_m").centre, "Node");
+    EXPECT_LT((model.node_position[n] + vector("displacement_m", n) - vector("Geometry", n)).norm(), 1e-14);
+    const float* q = row.rotation.data() + 4 * n;
+    const Eigen::Vector3d turn = vector("rotation_rad", n);
+    const Eigen::Matrix3d matrix = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
+    // 1e-6: a few roundings of the recorded floats
+    EXPECT_LT((matrix - Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix()).norm(), 1e-6);
+    most = std::max(most, turn.norm());
+  }
+  EXPECT_GT(most, 1e-3);  // it was shaken
+}
+
+TEST_F(XdmfTest, lines_join_the_nodes_of_their_elements) {
+  ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
+  const XdmfGrid grid = read_xdmf("a.xdmf").front();
+  const Model model = io::recorded_scene(io::Recording("a.h5")).setup.model;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_EQ(grid.arrays.at("Topology").values[2 * e + k], model.elements[e].node[k]);
+    EXPECT_EQ(grid.arrays.at("member").values[e], model.elements[e].member);
+    EXPECT_EQ(grid.arrays.at("body").values[e], 0);
+  }
+}
+
+TEST_F(XdmfTest, files_are_the_same_every_time_and_replace_older_ones) {
+  ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
+  const std::string xml = bytes_of("a.xdmf"), data = bytes_of("a.xdmf.h5");
+  write_bytes("a.xdmf", "older");
+  write_bytes("a.xdmf.h5", "older");
+  ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "./a.xdmf"}).code, 0);
+  EXPECT_EQ(bytes_of("a.xdmf"), xml);
+  EXPECT_EQ(bytes_of("a.xdmf.h5"), data);
+}
+
+TEST_F(XdmfTest, places_that_cannot_be_are_refused_and_nothing_is_begun) {
+  std::filesystem::copy_file("a.h5", "b.xdmf.h5");
+  std::filesystem::create_directory("folder.h5");
+  const std::vector<std::string> before = files();
+  expect_one_line({"export", "a.h5", "--xdmf", "none/a.xdmf"}, 2, "there is no folder");
+  expect_one_line({"export", "a.h5", "--xdmf", "folder"}, 2, "folder.h5: cannot be written: is a folder");
+  expect_one_line({"export", "a.h5", "--xdmf", "a.h5"}, 2, "a.h5 is what is being read");
+  expect_one_line({"export", "b.xdmf.h5", "--xdmf", "b.xdmf"}, 2, "b.xdmf.h5 is what is being read");
+  expect_one_line({"export", "a.h5", "--xdmf", "a:b.xdmf"}, 2, "a name with a colon");
+  EXPECT_EQ(files(), before);
 }
 
 }  // namespace

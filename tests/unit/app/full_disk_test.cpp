@@ -71,6 +71,18 @@ TEST_F(FullDiskTest, tables_appear_whole_or_not_at_all) {
   EXPECT_TRUE(std::filesystem::is_empty("data"));
 }
 
+TEST_F(FullDiskTest, files_for_paraview_appear_whole_or_not_at_all) {
+  const std::vector<std::string> before = files();
+  for (const rlim_t bytes : {1000, 20'000, 100'000})
+    expect_one_line({"export", "a.h5", "--xdmf", "a.xdmf"}, 1, "a.xdmf.h5: File too large",
+                    {.most_bytes = bytes});
+  EXPECT_EQ(files(), before);
+  if (!mount_disk("disk", "100k")) GTEST_SKIP() << "may not mount a disk";
+  expect_one_line({"export", "a.h5", "--xdmf", "disk/a.xdmf"}, 1, "disk/a.xdmf.h5: No space left on device");
+  EXPECT_TRUE(std::filesystem::is_empty("disk"));
+  unmount_disk("disk");
+}
+
 TEST_F(FullDiskTest, a_summary_appears_whole_or_not_at_all) {
   const Ended ended = topple({"run", "s.toml", "--json", "b.json"}, {.most_bytes = 300});
   EXPECT_EQ(ended.code, 1);

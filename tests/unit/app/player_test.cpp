@@ -372,6 +372,19 @@ TEST_F(PlayerTest, a_record_is_scaled_replayed_and_continued_when_its_file_is_go
   expect_repeatable("again.h5", 2);
 }
 
+TEST_F(PlayerTest, with_the_loop_on_playing_begins_again_at_the_end) {
+  start();
+  player().set_loop(true);
+  run_to_end();
+  ASSERT_TRUE(until([&] { return player().playing() && !player().at_head() && player().time() < 0.5; }));
+  ASSERT_TRUE(until([&] { return player().time() > 0.9; }));  // of what was recorded: nothing is stepped
+  ASSERT_TRUE(until([&] { return player().time() < 0.5; }));
+  EXPECT_EQ(player().history().branches.size(), 1u);
+  player().set_loop(false);
+  ASSERT_TRUE(until([&] { return !player().playing(); }));
+  EXPECT_EQ(player().time(), player().end());
+}
+
 TEST_F(PlayerTest, a_failed_step_keeps_the_last_good_state_and_may_be_tried_again) {
   start(k_beam, [](topple::Run& run) {
     if (run.state().step >= 5 && run.parameters().time_step > 6e-4) {

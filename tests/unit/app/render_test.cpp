@@ -97,7 +97,7 @@ TEST_F(RenderTest, a_video_is_the_same_every_time) {
 
 TEST_F(RenderTest, cameras_differ) {
   std::vector<std::string> pictures;
-  for (const char* camera : {"front", "side", "top", "iso"}) {
+  for (const char* camera : {"front", "side", "top", "iso", "30,20,6,0,0,1", "30,20,8,0,0,1"}) {
     draw({"a.h5", "--still", "a.png", "--at", "0", "--camera", camera});
     pictures.push_back(bytes_of("a.png"));
     EXPECT_EQ(std::count(pictures.begin(), pictures.end(), pictures.back()), 1) << camera;

@@ -7,16 +7,21 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/bridge_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/compare_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/demo_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/documents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/manual_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/recover_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rigid_fit_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/shell_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
@@ -26,7 +31,8 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/viewer_test.cpp)
 target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(app_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
-target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>")
+target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>"
+  TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 add_dependencies(app_test topple)
 gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)
 

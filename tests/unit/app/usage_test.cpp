@@ -19,8 +19,8 @@ class UsageTest : public ProgramTest {
 
 TEST_F(UsageTest, help_and_version_go_to_standard_output) {
   EXPECT_EQ(topple({"--version"}).out, "topple " TOPPLE_VERSION "\n");
-  for (const char* command :
-       {"", "run", "render", "export", "verify", "study", "compare", "report", "check", "info", "scenes"}) {
+  for (const char* command : {"", "run", "render", "export", "verify", "study", "compare", "report", "check",
+                              "info", "recover", "scenes"}) {
     SCOPED_TRACE(command);
     const Ended ended =
         topple(*command ? std::vector<std::string>{command, "--help"} : std::vector<std::string>{"--help"});
@@ -50,9 +50,11 @@ TEST_F(UsageTest, what_is_missing_is_named) {
   expect_one_line({"render", "s.toml", "--still", "a.png"}, 2, "--still requires --at");
   expect_one_line({"render", "s.toml", "--at", "0"}, 2, "--at requires --still");
   expect_one_line({"render", "s.toml", "--png", "p", "--mp4", "a.mp4"}, 2, "2 were given");
-  expect_one_line({"export", "a.h5"}, 2, "--csv is required");
+  expect_one_line({"export", "a.h5"}, 2, "[--csv,--xdmf] is required");
+  expect_one_line({"export", "a.h5", "--csv", "d", "--xdmf", "x"}, 2, "2 were given");
   expect_one_line({"check"}, 2, "SCENES is required");
   expect_one_line({"info"}, 2, "FILE is required");
+  expect_one_line({"recover"}, 2, "RECORDING is required");
   expect_one_line({"run", "s.toml", "--json"}, 2, "--json: needs a value, FILE|-");
   expect_one_line({"run", "s.toml", "--set"}, 2, "--set: needs a value, KEY=VALUE");
   expect_one_line({"run", "s.toml", "-o", "a.h5", "-o", "b.h5"}, 2, "--output: given more than once");
@@ -62,6 +64,7 @@ TEST_F(UsageTest, empty_names_are_refused) {
   expect_one_line({"run", ""}, 2, "is empty");
   expect_one_line({"run", "s.toml", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"view", ""}, 2, "is empty");
+  expect_one_line({"view", "-o", "a.h5"}, 2, "SOURCE");
   expect_one_line({"view", "s.toml", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"run", "s.toml", "--json", ""}, 2, "--json: is empty");
   expect_one_line({"render", "s.toml", "--png", ""}, 2, "--png: is empty");
@@ -69,19 +72,19 @@ TEST_F(UsageTest, empty_names_are_refused) {
   expect_one_line({"render", "s.toml", "--still", "", "--at", "0"}, 2, "--still: is empty");
   expect_one_line({"export", "", "--csv", "c"}, 2, "is empty");
   expect_one_line({"export", "a.h5", "--csv", ""}, 2, "--csv: is empty");
+  expect_one_line({"export", "a.h5", "--xdmf", ""}, 2, "--xdmf: is empty");
   expect_one_line({"info", ""}, 2, "is empty");
+  expect_one_line({"recover", ""}, 2, "is empty");
+  expect_one_line({"recover", "a.h5", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"check", ""}, 2, "is empty");
 }
 
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
-  expect_one_line({"recover"}, 2, "recover: not supported by this version");
-  expect_one_line({"recover", "s.toml", "-o", "out"}, 2, "recover: not supported by this version");
   for (const char* kind : {"precision", "stability"}) {
     const std::string refusal = std::string("study ") + kind + ": not supported by this version";
     expect_one_line({"study", kind}, 2, refusal);
     expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
   }
-  expect_one_line({"export", "a.h5", "--xdmf", "x"}, 2, "--xdmf: not supported by this version");
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
 }
 
@@ -181,7 +184,8 @@ TEST_F(UsageTest, instants_outside_the_scene_are_refused_before_it_runs) {
 }
 
 TEST_F(UsageTest, unknown_cameras_are_refused) {
-  for (const char* camera : {"", "up", "Front"})
+  for (const char* camera :
+       {"", "up", "Front", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,99,3,0,0,0", "1,2,0,0,0,0", "1,2,3,nan,0,0"})
     expect_one_line({"render", "s.toml", "--png", "p", "--camera", camera}, 2,
                     "--camera: \"" + std::string(camera) + "\" is not one of front, side, top, iso");
 }

@@ -6,6 +6,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/scene_errors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_robustness_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_record_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/scene_save_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_test.cpp)
 target_link_libraries(scene_test PRIVATE topple_io GTest::gtest_main)
 target_compile_definitions(scene_test PRIVATE TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/files.h"
+#include "solver/io/export_xdmf.h"
+#include "solver/io/recording.h"
+#include "solver/io/scene.h"
+
+namespace topple::app {
+
+int export_command(const ExportOptions& options) {
+  if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
+    for (const io::BuiltinScene& scene : io::builtin_scenes())
+      if (scene.name == options.recording)
+        throw BadInput(
+            fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
+  const io::Recording recording(options.recording);
+  if (!options.xdmf.empty()) {
+    for (const std::string& file : {options.xdmf, options.xdmf + ".h5"})
+      require_writable_file("--xdmf", file, options.recording);
+    if (std::filesystem::path(options.xdmf).filename().string().find(':') != std::string::npos)
+      throw BadInput("--xdmf: " + options.xdmf + ": ParaView finds no data behind a name with a colon");
+    io::export_xdmf(recording, options.xdmf);
+    return k_done;
+  }
+  std::error_code error;
+  std::filesystem::create_directories(options.csv, error);
+  if (error) throw BadInput(options.csv + ": cannot be created: " + error.message());
+  require_writable_folder(options.csv, options.csv);
+  io::export_csv(recording, options.csv);
+  return k_done;
+}
+
+}  // namespace topple::app

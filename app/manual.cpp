@@ -1,0 +1,174 @@
+#include "app/manual.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include "solver/io/scene.h"
+
+namespace topple::app {
+namespace {
+
+/// Of one command: values without a name first, then options, those of its groups included; no hidden ones,
+/// and not --help, which all have.
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> all = command.get_options({});
+  for (const CLI::App* group : command.get_subcommands({}))
+    for (const CLI::Option* option : group->get_options({})) all.push_back(option);
+  std::erase_if(all, [](const CLI::Option* option) {
+    return option->get_group().empty() || option->check_lname("help");
+  });
+  std::stable_partition(all.begin(), all.end(), [](const CLI::Option* o) { return o->get_positional(); });
+  return all;
+}
+
+void replace_all(std::string& text, const std::string& what, const std::string& with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+}
+
+/// Text as roff shows it: hyphens that can be copied, no requests at the starts of lines.
+std::string roff(std::string text) {
+  replace_all(text, "\\", "\\e");
+  replace_all(text, "-", "\\-");
+  replace_all(text, "\n", "\n\\&");
+  return "\\&" + text;
+}
+
+bool takes_value(const CLI::Option& option) {
+  return option.get_items_expected_max() > 0;
+}
+
+std::string option_head(const CLI::Option& option) {
+  if (option.get_positional()) return "\\fI" + roff(option.get_name(true)) + "\\fR";
+  std::string head;
+  for (const std::string& name : option.get_snames()) head += "\\fB" + roff("-" + name) + "\\fR, ";
+  for (const std::string& name : option.get_lnames()) head += "\\fB" + roff("--" + name) + "\\fR";
+  return head + (takes_value(option) ? " \\fI" + roff(option.get_type_name()) + "\\fR" : "");
+}
+
+std::string command_section(const CLI::App& command) {
+  std::string usage, list;
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->get_positional()) usage += option_head(*option) + " ";
+    list += ".TP\n" + option_head(*option) + "\n" + roff(option->get_description()) + "\n";
+  }
+  // "Example:\n  topple run ..."
+  std::string example = command.get_footer();
+  example.erase(0, example.find('\n') + 1);
+  return ".SS topple " + command.get_name() + "\n.B topple " + command.get_name() + "\n" + usage +
+         "[\\fIOPTIONS\\fR]\n.PP\n" + roff(command.get_description()) + ".\n" + list +
+         ".PP\nExample:\n.EX\n" + roff(example) + "\n.EE\n";
+}
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands({});
+}
+
+/// The single words of a list at the beginning of a description: "front, side or iso (default): where from".
+std::string listed_words(std::string text) {
+  text.resize(std::min(text.find(':'), text.size()));
+  for (const char* between : {" (default)", ",", " or "}) replace_all(text, between, "\n");
+  std::istringstream pieces(text);
+  std::string words;
+  for (std::string piece; std::getline(pieces, piece);) {
+    piece.erase(0, piece.find_first_not_of(' '));
+    if (!piece.empty() && piece.find(' ') == std::string::npos) words += (words.empty() ? "" : " ") + piece;
+  }
+  return words;
+}
+
+/// The bash command that completes a value of the option; empty: nothing does.
+std::string bash_value(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  for (const char* listed : {"NAME", "LANGUAGE", "QUANTITY", "RANGE", "SPAN"})
+    if (type == listed) return "_topple_words '" + listed_words(option.get_description()) + "'";
+  if (type == "DIR") return "_filedir -d";
+  return type.find("FILE") != std::string::npos || type == "REC.h5" ? "_filedir" : "";
+}
+
+/// "run:-o|run:--output"
+std::string bash_pattern(const std::string& command, const CLI::Option& option) {
+  std::string patterns;
+  for (const std::string& name : option.get_snames()) patterns += "|" + command + ":-" + name;
+  for (const std::string& name : option.get_lnames()) patterns += "|" + command + ":--" + name;
+  return patterns.substr(1);
+}
+
+/// The words that a description explains: "one: what it is; two: what it is" gives "one two".
+std::string explained_words(const std::string& description) {
+  std::string words;
+  for (std::size_t begin = 0; begin < description.size();) {
+    const std::size_t end = std::min(description.find("; ", begin), description.size());
+    words += (words.empty() ? "" : " ") + description.substr(begin, description.find(':', begin) - begin);
+    begin = end + 2;
+  }
+  return words;
+}
+
+/// What a value without an option's name may be.
+std::string bash_positional(const CLI::Option& option) {
+  if (option.get_name() == "KIND")
+    return "_topple_words '" + explained_words(option.get_description()) + "'; ";
+  return option.get_name() == "RECORDING" ? "_filedir; " : "_topple_words \"$scenes\"; _filedir; ";
+}
+
+}  // namespace
+
+std::string manual_page(const CLI::App& app, std::string frame) {
+  std::string commands;
+  for (const CLI::App* command : commands_of(app)) commands += command_section(*command);
+  replace_all(frame, "@VERSION@", TOPPLE_VERSION);
+  replace_all(frame, "@COMMANDS@\n", commands);
+  return frame;
+}
+
+std::string bash_completion(const CLI::App& app) {
+  std::string scenes, commands, values, without, rest;
+  for (const io::BuiltinScene& scene : io::builtin_scenes()) scenes += std::string(scene.name) + " ";
+  for (const CLI::App* command : commands_of(app)) {
+    const std::string name = command->get_name();
+    commands += name + " ";
+    std::string options = "--help", positional;
+    for (const CLI::Option* option : options_of(*command)) {
+      if (option->get_positional()) {
+        const std::string what = bash_positional(*option);
+        if (positional.find(what) == std::string::npos) positional += what;
+        continue;
+      }
+      for (const std::string& long_name : option->get_lnames()) options += " --" + long_name;
+      if (!takes_value(*option)) continue;
+      const std::string pattern = bash_pattern(name, *option), value = bash_value(*option);
+      if (value.empty())
+        without += "|" + pattern;
+      else
+        values += fmt::format("    {}) {}; return ;;\n", pattern, value);
+    }
+    rest += fmt::format("    {}) if [[ $cur == -* ]]; then _topple_words '{}'; else {}:; fi ;;\n", name,
+                        options, positional);
+  }
+  return fmt::format(R"(# bash completion for topple, made from the program's own table of commands
+_topple_words() {{ COMPREPLY+=($(compgen -W "$1" -- "$cur")); }}
+_topple() {{
+  local cur prev words cword
+  local scenes='{}'
+  _init_completion -n = || return
+  if ((cword == 1)); then
+    _topple_words '{}--help --version'
+    return
+  fi
+  case ${{words[1]}}:$prev in
+{}    {}) return ;;
+  esac
+  case ${{words[1]}} in
+{}  esac
+}}
+complete -F _topple topple
+)",
+                     scenes, commands, values, without.substr(1), rest);
+}
+
+}  // namespace topple::app

@@ -1,0 +1,14 @@
+// What a run should not be trusted for, found in the run itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/run.h"
+
+namespace topple::app {
+
+/// One sentence each, for the `warnings` of a summary: what was seen, where, and what to try.
+std::vector<std::string> run_warnings(const Run& run);
+
+}  // namespace topple::app

@@ -1,0 +1,19 @@
+# A Debian package: cmake --workflow --preset package
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME topple)
+set(CPACK_PACKAGE_CONTACT "The topple developers <topple@localhost.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "shows how furniture tips over when the floor shakes")
+set(CPACK_PACKAGE_DESCRIPTION
+  "A finite-element model of cabinets on a shaking floor, with large rotations
+and frictional contact, that runs faster than real time, is recorded, and can
+be watched in a window or drawn without a display.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Loaded while it runs, so that no linker knows: OSMesa and the font for pictures, OpenGL for the window.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1, ffmpeg, gnuplot-nox, fonts-vlgothic")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+include(CPack)

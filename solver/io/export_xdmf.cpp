@@ -1,0 +1,201 @@
+#include "solver/io/export_xdmf.h"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+#include "solver/io/exported_values.h"
+#include "solver/io/hdf5_handle.h"
+#include "solver/io/scene.h"
+#include "solver/io/staged_file.h"
+#include "solver/rotation.h"
+
+namespace topple::io {
+namespace {
+
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// How numbers are stored, and what XDMF calls that.
+struct NumberType {
+  hid_t stored;
+  const char* xdmf;
+};
+template <typename Number>
+NumberType number_type() {
+  if constexpr (std::is_same_v<Number, float>)
+    return {H5T_IEEE_F32LE, "NumberType=\"Float\" Precision=\"4\""};
+  if constexpr (std::is_same_v<Number, double>)
+    return {H5T_IEEE_F64LE, "NumberType=\"Float\" Precision=\"8\""};
+  if constexpr (std::is_same_v<Number, std::int32_t>)
+    return {H5T_STD_I32LE, "NumberType=\"Int\" Precision=\"4\""};
+  if constexpr (std::is_same_v<Number, std::uint8_t>)
+    return {H5T_STD_U8LE, "NumberType=\"UChar\" Precision=\"1\""};
+}
+
+/// Both files while they are written: every array goes into the HDF5 file and is named in the XML.
+class XdmfFile {
+ public:
+  explicit XdmfFile(const std::string& file) : xml_(file), data_(file + ".h5") {
+    guarded([this] {
+      h5_ = Handle(H5Fcreate(data_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+      link_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+      checked(H5Pset_create_intermediate_group(link_, 1));
+      creation_ = Handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      checked(H5Pset_obj_track_times(creation_, false));  // the same bytes every time
+    });
+    text_ =
+        "<?xml version=\"1.0\"?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+        "<Grid Name=\"topple\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  }
+
+  /// Stores an array; `columns` numbers belong to each of its rows. The DataItem that refers to it.
+  template <typename Number>
+  std::string store(const std::string& name, const std::vector<Number>& values, std::size_t columns) {
+    const std::array<hsize_t, 2> dims = {values.size() / columns, columns};
+    const int rank = columns == 1 ? 1 : 2;
+    const NumberType type = number_type<Number>();
+    guarded([&] {
+      const Handle space(H5Screate_simple(rank, dims.data(), nullptr), H5Sclose);
+      const Handle set(H5Dcreate2(h5_, name.c_str(), type.stored, space, link_, creation_, H5P_DEFAULT),
+                       H5Dclose);
+      checked(H5Dwrite(set, type.stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    });
+    return std::string("<DataItem Format=\"HDF\" ") + type.xdmf + " Dimensions=\"" + std::to_string(dims[0]) +
+           (rank == 2 ? " " + std::to_string(columns) : "") + "\">" +
+           escaped(data_.path().filename().string()) + ":/" + name + "</DataItem>\n";
+  }
+
+  void add(const std::string& xml) { text_ += xml; }
+
+  void publish() {
+    guarded([this] { checked(h5_.reset()); });
+    text_ += "</Grid>\n</Domain>\n</Xdmf>\n";
+    std::ofstream file(xml_.part(), std::ios::binary);
+    file << text_;
+    file.close();
+    if (!file) throw WriteError(xml_.path().string() + ": " + std::generic_category().message(errno));
+    data_.publish();
+    xml_.publish();
+  }
+
+ private:
+  template <typename Work>
+  void guarded(Work&& work) {
+    const QuietHdf5 quiet;
+    try {
+      work();
+    } catch (const Hdf5Error& error) {
+      h5_.release();  // closing would write over caches that a failed write has left in no good state
+      throw WriteError(data_.path().string() + ": " + error.what());
+    }
+  }
+
+  StagedFile xml_, data_;
+  Handle h5_, link_, creation_;
+  std::string text_;
+};
+
+std::string attribute(const char* name, const char* centre, std::size_t columns, const std::string& item) {
+  return std::string("<Attribute Name=\"") + name + "\" AttributeType=\"" +
+         (columns == 3 ? "Vector" : "Scalar") + "\" Center=\"" + centre + "\">" + item + "</Attribute>\n";
+}
+
+/// What is the same in all frames: lines from node to node, and whose they are.
+std::string fixed_parts(XdmfFile& file, const Model& model) {
+  std::vector<std::int32_t> nodes, body, member;
+  for (const Element& element : model.elements) {
+    nodes.insert(nodes.end(), {element.node[0], element.node[1]});
+    member.push_back(element.member);
+    body.push_back(model.members[static_cast<std::size_t>(element.member)].body);
+  }
+  return "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" +
+         std::to_string(model.elements.size()) + "\">" + file.store("topology", nodes, 2) + "</Topology>\n" +
+         attribute("body", "Cell", 1, file.store("body", body, 1)) +
+         attribute("member", "Cell", 1, file.store("member", member, 1));
+}
+
+/// Of every node: what it moved, and its rotation vector.
+struct NodeMotion {
+  std::vector<double> displacement, rotation;
+  NodeMotion(const Model& model, const FrameRow& row) {
+    for (std::size_t n = 0; n < model.node_position.size(); ++n) {
+      const float *x = row.position.data() + 3 * n, *q = row.rotation.data() + 4 * n;
+      const Vec3 moved = Vec3(x[0], x[1], x[2]) - model.node_position[n];
+      const Vec3 turned = log_quaternion(Quat(q[0], q[1], q[2], q[3]).normalized());
+      displacement.insert(displacement.end(), {moved.x(), moved.y(), moved.z()});
+      rotation.insert(rotation.end(), {turned.x(), turned.y(), turned.z()});
+    }
+  }
+};
+
+void add_frame(XdmfFile& file, const Model& model, const FrameRow& row, int number,
+               const std::string& fixed) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "/%06d", number);
+  const auto field = [&](const char* name, const char* centre, const auto& values, std::size_t columns) {
+    file.add(attribute(name, centre, columns, file.store(name + std::string(digits), values, columns)));
+  };
+  file.add("<Grid Name=\"frame\" GridType=\"Uniform\">\n<Time Value=\"" + shortest(row.time) + "\"/>\n");
+  file.add(fixed);
+  file.add("<Geometry GeometryType=\"XYZ\">" +
+           file.store("position_m" + std::string(digits), row.position, 3) + "</Geometry>\n");
+  const NodeMotion motion(model, row);
+  field("displacement_m", "Node", motion.displacement, 3);
+  field("rotation_rad", "Node", motion.rotation, 3);
+  constexpr std::array k_forces = {"N_N", "Vy_N", "Vz_N", "T_Nm", "My_Nm", "Mz_Nm"};
+  const std::size_t elements = model.elements.size();
+  for (std::size_t k = 0; k < k_forces.size(); ++k) {
+    std::vector<float> values(elements);
+    for (std::size_t e = 0; e < elements; ++e) values[e] = row.section_force[6 * e + k];
+    field(k_forces[k], "Cell", values, 1);
+  }
+  std::vector<double> stress;
+  std::vector<float> yield_ratio;
+  for (std::size_t e = 0; e < elements; ++e) {
+    const ElementLoading loading = element_loading(model, row, e);
+    stress.push_back(loading.stress);
+    yield_ratio.push_back(loading.yield_ratio);
+  }
+  field("stress_Pa", "Cell", stress, 1);
+  field("yield_ratio", "Cell", yield_ratio, 1);
+  field("s", "Cell", row.s, 1);
+  field("hinge", "Cell", row.hinge, 1);
+  file.add("</Grid>\n");
+}
+
+}  // namespace
+
+void export_xdmf(const Recording& recording, const std::string& path) {
+  const Scene scene = recorded_scene(recording);
+  const Model& model = scene.setup.model;
+  XdmfFile file(path);
+  const std::string fixed = fixed_parts(file, model);
+  int number = 0;
+  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
+    const FrameRow row = recording.frame(i);
+    expect_same_model(model, row);
+    add_frame(file, model, row, number++, fixed);
+  }
+  file.publish();
+}
+
+}  // namespace topple::io

@@ -1,0 +1,31 @@
+#include "solver/io/exported_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/io/recording.h"
+#include "solver/plasticity.h"
+#include "solver/section_forces.h"
+
+namespace topple::io {
+
+void expect_same_model(const Model& model, const FrameRow& row) {
+  if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
+      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
+    throw InputError(k_another_model);
+}
+
+ElementLoading element_loading(const Model& model, const FrameRow& row, std::size_t e) {
+  const Element& element = model.elements[e];
+  const Member& member = model.members[static_cast<std::size_t>(element.member)];
+  const float* f = row.section_force.data() + 6 * e;
+  const SectionForces forces{.normal = {f[0], f[1], f[2]}, .moment = {f[3], f[4], f[5]}};
+  double greatest = -1;
+  for (const double end : {-1., 1.})
+    greatest =
+        std::max(greatest, yield_function(element, forces_along(forces, element.length, row.s[e], end)));
+  return {.stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces),
+          .yield_ratio = static_cast<float>(std::sqrt(greatest + 1))};
+}
+
+}  // namespace topple::io

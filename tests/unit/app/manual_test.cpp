@@ -1,0 +1,94 @@
+// The manual page and shell completion hold what --help holds.
+#include "app/manual.h"
+
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "app/command_line.h"
+#include "program.h"
+
+namespace topple::app {
+namespace {
+
+class ManualTest : public ProgramTest {
+ protected:
+  static std::set<std::string> matches(const std::string& text, const std::string& pattern) {
+    const std::regex regex(pattern);
+    std::set<std::string> found;
+    for (std::sregex_iterator i(text.begin(), text.end(), regex), none; i != none; ++i) found.insert((*i)[1]);
+    return found;
+  }
+  static std::set<std::string> commands() { return matches(topple({"--help"}).out, "\n  ([a-z]+)  "); }
+  static std::set<std::string> options(const std::string& command) {
+    return matches(topple({command, "--help"}).out, "\n  [^\n]{0,4}(--[a-z0-9-]+)");
+  }
+  static std::string page() {
+    std::string page;
+    read_commands([&page](const CLI::App& table) {
+      page = manual_page(table, bytes_of(TOPPLE_SOURCE_DIR "/assets/topple.1.in"));
+    });
+    return page;
+  }
+  /// What bash offers for the last word of a call.
+  static std::vector<std::string> offers(const std::string& call) {
+    read_commands([](const CLI::App& table) { write_bytes("completion", bash_completion(table)); });
+    write_bytes("complete", R"(
+_init_completion() { words=("${COMP_WORDS[@]}"); cword=$COMP_CWORD; cur=${words[cword]}; prev=${words[cword - 1]}; }
+_filedir() { COMPREPLY+=("files${1-}"); }
+. ./completion
+COMP_WORDS=()" + call + R"()
+COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+_topple
+printf '%s\n' "${COMPREPLY[@]}" >offers
+)");
+    EXPECT_EQ(std::system("bash -u ./complete"), 0) << call;
+    std::istringstream lines(bytes_of("offers"));
+    std::vector<std::string> words;
+    for (std::string word; std::getline(lines, word);)
+      if (!word.empty()) words.push_back(word);
+    return words;
+  }
+};
+
+TEST_F(ManualTest, page_has_every_command_and_option_of_the_help) {
+  const std::string text = std::regex_replace(page(), std::regex(R"(\\-)"), "-");
+  EXPECT_EQ(text.find('@'), std::string::npos);
+  EXPECT_NE(text.find("topple " TOPPLE_VERSION), std::string::npos);
+  ASSERT_GE(commands().size(), 13u);
+  for (const std::string& command : commands()) {
+    const std::size_t begin = text.find("\n.SS topple " + command + "\n");
+    ASSERT_NE(begin, std::string::npos) << command;
+    const std::string section = text.substr(begin, text.find("\n.S", begin + 1) - begin);
+    for (const std::string& option : options(command))
+      EXPECT_TRUE(option == "--help" || section.find(option + "\\fR") != std::string::npos)
+          << command << option;
+  }
+}
+
+TEST_F(ManualTest, page_does_not_tell_of_what_is_refused) {
+  EXPECT_EQ(page().find("vtk"), std::string::npos);
+}
+
+TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
+  using Words = std::vector<std::string>;
+  const Words first = offers("topple ''");
+  for (const std::string& command : commands()) {
+    EXPECT_EQ(std::count(first.begin(), first.end(), command), 1) << command;
+    const Words offered = offers("topple " + command + " --");
+    EXPECT_EQ(std::set<std::string>(offered.begin(), offered.end()), options(command)) << command;
+  }
+  EXPECT_EQ(offers("topple run paper-"), (Words{"paper-a", "paper-b", "files"}));
+  EXPECT_EQ(offers("topple study el"), (Words{"elements", "files"}));
+  EXPECT_EQ(offers("topple study pe"), (Words{"penalty", "files"}));
+  EXPECT_EQ(offers("topple recover a"), (Words{"files"}));
+  EXPECT_EQ(offers("topple render a.h5 --camera s"), (Words{"side"}));
+  EXPECT_EQ(offers("topple render a.h5 --range ''"), (Words{"run", "instant"}));
+  EXPECT_EQ(offers("topple report paper-a --lang ''"), (Words{"en", "ja"}));
+  EXPECT_EQ(offers("topple render a.h5 --png ''"), (Words{"files-d"}));
+  EXPECT_EQ(offers("topple run paper-a -o ''"), (Words{"files"}));
+  EXPECT_EQ(offers("topple run paper-a --jobs ''"), (Words{}));
+}
+
+}  // namespace
+}  // namespace topple::app
