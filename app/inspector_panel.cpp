@@ -178,10 +178,11 @@ void draw_integration_points(const Inspected& at, const Member& member) {
   const float words = y + 0.65f * line;
   diamond(left + r, words + line / 2);
   add_text(list, left + 3.2f * r, words, theme().text, say(k_integrated));
-  const float second = left + 7.2f * line;
-  circle(second, words + line / 2, theme().text);
-  add_text(list, second + 2.2f * r, words, theme().text, say(k_stresses_at));
-  ImGui::Dummy({width, 2.6f * line});
+  const bool beside = 7.2f * line + 2.2f * r + text_width(say(k_stresses_at)) <= width;
+  const float second = beside ? left + 7.2f * line : left + r, below = beside ? words : words + 1.1f * line;
+  circle(second, below + line / 2, theme().text);
+  add_text(list, second + 2.2f * r, below, theme().text, say(k_stresses_at));
+  ImGui::Dummy({width, below + 1.15f * line - low.y});
   ImGui::TextWrapped("%s", say(k_s_of_elements, places).c_str());
 }
 

@@ -54,15 +54,23 @@ void Viewer::draw_words(const io::FrameRow& row) {
                  line.c_str());
     y += std::round(1.3f * font->FontSize);
   }
-  // Here the scene may lie behind the legend.
-  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
+  // The scene may lie behind the legend, which is not drawn where it has no room.
+  list.ChannelsSplit(2);
+  list.ChannelsSetCurrent(1);
   const float inner = right - legend, outer = inner - margin;
-  list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
-  list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
   render::LeftOut left_out;
-  render::draw_legend_in(list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
-                         {"", inner, scene_.top + margin, right - margin, bottom - margin}, frame_.dark,
-                         left_out);
+  const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
+                                            render::colour_map_for(frame_.legend, settings_.map),
+                                            {"", inner, scene_.top + margin, right - margin, bottom - margin},
+                                            frame_.dark, left_out)
+                         .has_value();
+  list.ChannelsSetCurrent(0);
+  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
+  if (drawn) {
+    list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
+    list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
+  }
+  list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
                       {"", scene_.left, scene_.top, right, bottom});
   list.PopClipRect();

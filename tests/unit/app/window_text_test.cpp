@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "app/theme.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
 #include "live.h"
