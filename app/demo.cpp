@@ -4,6 +4,7 @@
 
 #include "app/teaching_words.h"
 #include "solver/accelerogram.h"
+#include "solver/study/alone.h"
 
 namespace topple::app {
 namespace {
@@ -21,6 +22,12 @@ constexpr DemoStep k_violent[] = {{Until::start, k_violent_start},
                                   {Until::impact, k_violent_impact},
                                   {Until::end, k_violent_end}};
 constexpr Demo k_demo_table[] = {{k_demo_gentle, 0.5, 190, k_gentle}, {k_demo_violent, 2, 700, k_violent}};
+
+std::int32_t first_standing(const Model& model) {
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (study::why_not_standing(model, b).empty()) return b;
+  return 0;
+}
 
 bool is_over(const LiveStatus& status) {
   return status.kind == LiveStatus::Kind::over || status.kind == LiveStatus::Kind::failed;
@@ -52,7 +59,10 @@ void shake_as_sine(Player& player, double frequency, double amplitude) {
 }
 
 DemoGuide::DemoGuide(const Demo& demo, Player& player)
-    : demo_(demo), player_(player), branch_before_(player.status().branch) {
+    : demo_(demo),
+      player_(player),
+      branch_before_(player.status().branch),
+      body_(first_standing(player.scene().setup.model)) {
   shake_as_sine(player_, demo_.frequency, demo_.amplitude);
   player_.restart();
 }
@@ -66,17 +76,17 @@ std::optional<DemoGuide::Instant> DemoGuide::instant_of(Until until) const {
   if (until == Until::start) return Instant{0, true};
   const double since = instants_.empty() ? 0 : instants_.back().time;
   if (until == Until::end) {
+    const auto tilt = 11 * static_cast<std::size_t>(body_) + 7;
     for (const RowPtr& row : player_.way())
-      for (std::size_t b = 0; b < static_cast<std::size_t>(player_.scene().setup.model.furniture_total());
-           ++b)
-        if (row->time >= since && row->body[11 * b + 7] > k_lying) return Instant{row->time, true};
+      if (row->time >= since && row->body[tilt] > k_lying) return Instant{row->time, true};
     return is_over(player_.status()) ? std::optional(Instant{player_.end(), true}) : std::nullopt;
   }
   const Event::Kind kind = until == Until::uplift   ? Event::Kind::uplift
                            : until == Until::impact ? Event::Kind::impact
                                                     : Event::Kind::overturn;
   for (const io::RecordedEvent& event : player_.events())
-    if (event.event.kind == kind && event.time >= since) return Instant{event.time, true};
+    if (event.event.kind == kind && event.event.body == body_ && event.time >= since)
+      return Instant{event.time, true};
   return is_over(player_.status()) ? std::optional(Instant{player_.end(), false}) : std::nullopt;
 }
 

@@ -29,7 +29,7 @@ bool can_shake_as_sine(const Player& player);
 /// Makes the first shake a sine from now on. `amplitude`: gal.
 void shake_as_sine(Player& player, double frequency, double amplitude);
 
-/// Takes a player through a demo, in a branch of its own.
+/// Takes a player through a demo, in a branch of its own. It follows the first body that stands freely.
 class DemoGuide {
  public:
   DemoGuide(const Demo& demo, Player& player);
@@ -58,6 +58,7 @@ class DemoGuide {
   const Demo& demo_;
   Player& player_;
   const std::int32_t branch_before_;
+  const std::int32_t body_;
   std::optional<std::size_t> reached_;
   bool going_ = true;
   std::vector<Instant> instants_;  // of the steps reached so far

@@ -80,7 +80,8 @@ TEST_F(DemoTest, what_does_not_come_about_is_said) {
 
 TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
   const auto scene = live_scene(k_rocking, {"run.duration=0.3"});
-  topple::Run run(scene->setup), finer(study::refined(scene->setup));
+  const topple::Setup fine = study::refined(scene->setup);
+  topple::Run run(scene->setup), finer(fine);
   while (!run.over()) run.advance();
   while (!finer.over()) finer.advance();
   const auto expected = study::errors(scene->setup.model, run.outcome(), finer.outcome());

@@ -407,7 +407,7 @@ TEST_F(InspectorTest, values_are_plotted_scrubbed_and_written) {
   EXPECT_EQ(png.width, 1280);
   EXPECT_EQ(png.rgba[0], 255);  // white paper, and something on it
   EXPECT_TRUE(std::ranges::any_of(png.rgba, [](std::uint8_t byte) { return byte < 60; }));
-  press_button("plots", "Close all");
+  press_button("plots", "Close all##close");
   EXPECT_TRUE(viewer_->inspection().plots.empty());
   EXPECT_EQ(viewer_->scene_box().height, before);
 }
