@@ -82,6 +82,7 @@ class Shell {
   std::unique_ptr<Session> session_;
   std::vector<std::future<LiveStatus>> closing_;
   std::string told_failure_, told_trouble_;  ///< what a message was shown for
+  int frames_due_ = 0;
   bool wants_to_close_ = false;
 };
 

@@ -374,7 +374,7 @@ class ExportDialogTest : public ShellTest {
     dialog().what = what;
   }
   std::string export_failure() {
-    if (!until([&] { return !dialog().job(); })) return "it did not end";
+    if (!until([&] { return !dialog().busy(); })) return "it did not end";
     return dialog().refused();
   }
 };
@@ -438,7 +438,7 @@ TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
   dialog().rate = 240;
   start();
   ASSERT_EQ(dialog().refused(), "");
-  ASSERT_TRUE(until([&] { return !dialog().job() || dialog().job()->part() > 0; }));
+  ASSERT_TRUE(until([&] { return !dialog().busy() || (dialog().job() && dialog().job()->part() > 0); }));
   ASSERT_NE(dialog().job(), nullptr) << dialog().refused();
   click("Cancel");
   EXPECT_EQ(export_failure(), "");
