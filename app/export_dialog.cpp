@@ -201,14 +201,15 @@ void ExportDialog::draw_choices(const Player& player) {
   if (what != What::video) return;
   for (int& side : size) side += side % 2;  // as H.264 has it
   const double first = player.way().empty() ? 0 : player.way().front()->time, last = player.end();
+  const char* const unit = is_static(player.scene().setup) ? "" : "s";
   label(ww::k_from);
   ImGui::SetNextItemWidth(number);
-  ImGui::InputDouble("s##from", &from, 0, 0, "%.2f");
+  ImGui::InputDouble(fmt::format("{}##from", unit).c_str(), &from, 0, 0, "%.2f");
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::TextUnformatted(say(ww::k_to).c_str());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
-  ImGui::InputDouble("s##to", &to, 0, 0, "%.2f");
+  ImGui::InputDouble(fmt::format("{}##to", unit).c_str(), &to, 0, 0, "%.2f");
   from = std::clamp(std::isfinite(from) ? from : first, first, last);
   to = std::clamp(std::isfinite(to) ? to : last, from, last);
   label(ww::k_rate);

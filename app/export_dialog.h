@@ -34,7 +34,7 @@ class ExportDialog {
   What what = What::picture;
   char path[4096] = {};
   int size[2] = {1920, 1080};
-  double from = 0, to = 0;  ///< s
+  double from = 0, to = 0;  ///< s; of a static run parts of its way
   int rate = 30;            ///< pictures a second
 
   /// Begins; what is wrong is in refused().

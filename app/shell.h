@@ -43,7 +43,7 @@ class Shell {
   void build();
   render::Surface surface() const;
   void report_frame_time(double ms);
-  bool wants_to_close() const { return wants_to_close_ || (session_ && session_->viewer().wants_to_close()); }
+  bool wants_to_close() const { return wants_to_close_; }
 
   /// "topple: paper-a".
   std::string title() const;

@@ -39,7 +39,6 @@ class Viewer {
 
   /// What the last frame's buttons asked for.
   ShellRequest asked() const { return asked_; }
-  bool wants_to_close() const { return wants_to_close_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
@@ -96,7 +95,6 @@ class Viewer {
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
-  bool wants_to_close_ = false;
   ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;

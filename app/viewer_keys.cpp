@@ -58,8 +58,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {"Ctrl+S", "save the scene as it is now"},
       {"Ctrl+E", "export a picture, a video or tables"},
       {"F1", "this table", render::key::f1, false, false, [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
-      {"Ctrl+Q", "close the recording and the window", 'Q', true, false,
-       [](Viewer& v) { v.wants_to_close_ = true; }},
+      {"Ctrl+Q", "close the recording and the window"},
   };
   return k_actions;
 }
