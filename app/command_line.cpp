@@ -11,8 +11,8 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
