@@ -4,18 +4,19 @@
 #include <cmath>
 
 #include "app/row.h"
+#include "app/window_words.h"
 #include "solver/plasticity.h"
 
 namespace topple::app {
 namespace {
 
 constexpr QuantityName k_names[k_beam_quantities] = {
-    {"stress", "von Mises stress", "MPa", 1e6, false},
-    {"yield-ratio", "yield ratio", "", 1, false},
-    {"axial", "axial force, tension +", "N", 1, true},
-    {"moment", "bending moment", "N m", 1, false},
-    {"torsion", "torsional moment", "N m", 1, true},
-    {"displacement", "elastic displacement from the best-fit pose", "mm", 1e-3, false},
+    {"stress", window_words::k_stress, "MPa", 1e6, false},
+    {"yield-ratio", window_words::k_yield_ratio, "", 1, false},
+    {"axial", window_words::k_axial, "N", 1, true},
+    {"moment", window_words::k_moment, "N m", 1, false},
+    {"torsion", window_words::k_torsion, "N m", 1, true},
+    {"displacement", window_words::k_displacement, "mm", 1e-3, false},
 };
 
 }  // namespace

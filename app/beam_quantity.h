@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "app/language.h"
 #include "app/rigid_fit.h"
 #include "solver/element_state.h"
 
@@ -19,7 +20,7 @@ inline constexpr std::size_t k_beam_quantities = 6;
 
 struct QuantityName {
   const char* option;  ///< on the command line
-  const char* name;
+  Phrase name;
   const char* unit;
   double per_unit;  ///< SI
   bool is_signed;

@@ -8,6 +8,7 @@
 #include "app/anchor_picture.h"
 #include "app/annotations.h"
 #include "app/row.h"
+#include "app/window_words.h"
 #include "app/words.h"
 
 namespace topple::app {
@@ -113,7 +114,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   if (settings.contact_forces) {
     const double newtons = newtons_per_decimetre(extent_);
     add_contact_forces(model, drawn, newtons, out);
-    out.legend.notes.push_back(fmt::format("arrows: {:g} N per 0.1 m", newtons));
+    out.legend.notes.push_back(say(window_words::k_arrow_scale, newtons));
   }
   if (settings.trails != Trails::none)
     add_trails(model, extent_, row, settings.trails == Trails::run || is_static(scene_.setup), out);
@@ -164,11 +165,11 @@ double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& se
 render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& settings) const {
   const QuantityName& name = name_of(settings.colour);
   render::Legend out;
-  out.quantity = name.name;
+  out.quantity = say(name.name);
   out.unit = name.unit;
-  out.range_policy = settings.range == RangePolicy::run     ? "covers 95 % of the run"
-                     : settings.range == RangePolicy::fixed ? "fixed range"
-                                                            : "range of this instant";
+  out.range_policy = say(settings.range == RangePolicy::run     ? window_words::k_covers_run
+                         : settings.range == RangePolicy::fixed ? window_words::k_range_fixed
+                                                                : window_words::k_range_instant);
   out.maximum = static_cast<float>(colour_maximum(row, settings));
   out.minimum = name.is_signed ? -out.maximum : 0;
   out.is_signed = name.is_signed;
@@ -176,16 +177,15 @@ render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& se
   const std::optional<double> yield = least_yield(scene_.setup.model);
   if (settings.colour == BeamQuantity::stress && yield) {
     out.mark = static_cast<float>(*yield / name.per_unit);
-    out.mark_label = fmt::format("yield {:g} MPa", out.mark);
+    out.mark_label = say(window_words::k_yield_at, out.mark);
   } else if (settings.colour == BeamQuantity::yield_ratio) {
     out.mark = 1;
     if (yield)
-      out.mark_label = "yield";
+      out.mark_label = say(window_words::k_yield);
     else
-      out.notes.emplace_back("nothing here can yield");
+      out.notes.push_back(say(window_words::k_cannot_yield));
   }
-  if (settings.exaggeration != 1)
-    out.notes.push_back(fmt::format("deformation ×{:g}", settings.exaggeration));
+  if (settings.exaggeration != 1) out.notes.push_back(say(window_words::k_deformed, settings.exaggeration));
   return out;
 }
 
@@ -299,33 +299,29 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     const Shake& shake = parameters.shakes.front();
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
-    out.caption.lines.push_back(
-        fmt::format("{};  now {:+.0f} gal, {:+.0f} mm", shake_in_words(parameters), a, 1e3 * d));
-    out.trace = {.label = "floor acceleration, gal",
+    out.caption.lines.push_back(say(window_words::k_now, shake_in_words(parameters), a, 1e3 * d));
+    out.trace = {.label = say(window_words::k_floor_trace),
                  .at = extent_.time_s,
                  .value = extent_.acceleration_gal,
                  .cursor = static_cast<float>(row.time)};
   }
   if (is_static(setup)) {
     const float steps = static_cast<float>(setup.run.statics.load_steps);
-    out.trace = {.label = "load factor",
-                 .unit = "load steps",
+    out.trace = {.label = say(window_words::k_load_factor),
+                 .unit = say(window_words::k_load_steps),
                  .whole = true,
                  .at = extent_.way,
                  .value = extent_.load_factor,
                  .cursor = steps * static_cast<float>(row.time)};
     for (float& at : out.trace.at) at *= steps;
   }
-  for (std::size_t b = 0; b < static_cast<std::size_t>(setup.model.furniture_total()); ++b)
-    out.caption.lines.push_back(body_in_words(setup.model, row, b));
+  for (const std::string& line : bodies_in_words(setup.model, row)) out.caption.lines.push_back(line);
   for (const std::string& line : anchors_in_words(setup.model, row)) out.caption.lines.push_back(line);
   std::string contact;
   if (!setup.model.planes.empty())
-    contact = fmt::format(" · contact α = {:g} kgf, q = {:g}, μ = {:g}",
-                          parameters.contact.alpha / k_standard_gravity, parameters.contact.q,
-                          parameters.contact.friction);
-  out.caption.note = fmt::format("topple {} · scene {}{} · deformation ×{:g}", TOPPLE_VERSION, scene_.name,
-                                 contact, settings.exaggeration);
+    contact = say(window_words::k_note_contact, parameters.contact.alpha / k_standard_gravity,
+                  parameters.contact.q, parameters.contact.friction);
+  out.caption.note = say(window_words::k_note, TOPPLE_VERSION, scene_.name, contact, settings.exaggeration);
 }
 
 }  // namespace topple::app

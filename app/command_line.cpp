@@ -189,7 +189,12 @@ class CommandLine {
     add_path(command, "-o,--output", view_.recording, "REC.h5",
              "recording to write, default in the state folder");
     add_set(command, view_.overrides);
-    command.callback([this] { action_ = [this] { return view_command(view_); }; });
+    command.add_option("--lang", language_, "en or ja, default as last chosen, or that of the locale")
+        ->type_name("LANGUAGE");
+    command.callback([this] {
+      if (!language_.empty()) view_.language = chosen_language();
+      action_ = [this] { return view_command(view_); };
+    });
   }
 
   void add_render() {
@@ -221,16 +226,24 @@ class CommandLine {
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
     command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
+    command.add_option("--lang", language_, "en (default) or ja")->type_name("LANGUAGE");
     add_picture(command);
     command.callback([this, at, from, to] {
       read_size(size_, render_);
       read_camera();
       read_picture();
+      if (!language_.empty()) render_.language = chosen_language();
       if (*at) render_.at = at_;
       if (*from) render_.from = from_;
       if (*to) render_.to = to_;
       action_ = [this] { return render_command(render_); };
     });
+  }
+
+  Language chosen_language() const {
+    if (language_ != "en" && language_ != "ja")
+      throw BadInput("--lang: \"" + language_ + "\" is not one of en, ja");
+    return language_ == "ja" ? Language::japanese : Language::english;
   }
 
   void read_camera() {
@@ -533,7 +546,7 @@ class CommandLine {
   RenderOptions render_;
   ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
-  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_;
+  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_, language_;
   bool no_panels_ = false;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/language.h"
 #include "app/picture_settings.h"
 #include "render/camera.h"
 #include "render/orbit.h"
@@ -46,8 +47,9 @@ struct RenderOptions {
   std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
   std::optional<double> from, to;      ///< s
   bool ui = false;                     ///< with the panels of the window
-  PictureSettings picture;             ///< all but `diagram`
-  std::string inspect;                 ///< BODY or BODY/MEMBER, looked at closely; empty: none
+  Language language = Language::english;
+  PictureSettings picture;  ///< all but `diagram`
+  std::string inspect;      ///< BODY or BODY/MEMBER, looked at closely; empty: none
   bool quiet = false;
 };
 int render_command(const RenderOptions& options);
@@ -56,6 +58,7 @@ struct ViewOptions {
   std::string source;                  ///< scene or recording; empty: a person chooses
   std::vector<std::string> overrides;  ///< of a scene
   std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
+  std::optional<Language> language;    ///< absent: as kept, or that of the locale
 };
 int view_command(const ViewOptions& options);
 

@@ -9,17 +9,15 @@
 #include "app/lane.h"
 #include "app/panels.h"
 #include "app/row.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
 
-constexpr ImU32 k_sheet = IM_COL32(255, 255, 255, 255), k_frame = IM_COL32(60, 74, 88, 70);
-constexpr ImU32 k_chosen = IM_COL32(219, 13, 115, 255);  // as the outline of what is picked
-constexpr ImU32 k_positive = IM_COL32(199, 33, 41, 255), k_negative = IM_COL32(41, 84, 191, 255);
-constexpr ImU32 k_line = IM_COL32(0, 114, 178, 255), k_hinge = IM_COL32(230, 84, 10, 255);
-constexpr ImU32 k_quiet = IM_COL32(96, 108, 120, 255);
+using namespace window_words;
+
 constexpr int k_samples = 12;  // of a small diagram, per element
 
 ImU32 translucent(ImU32 colour) {
@@ -58,10 +56,10 @@ void toggle_plot(Inspection& inspection, const PlottedValue& plot) {
 void add_plot_icon(ImDrawList& list, ImVec2 low, float side, bool on, bool hovered) {
   const ImVec2 high{low.x + side, low.y + side};
   if (on || hovered)
-    list.AddRectFilled(low, high, on ? k_line : ImGui::GetColorU32(ImGuiCol_ButtonHovered), 2);
+    list.AddRectFilled(low, high, on ? theme().line : ImGui::GetColorU32(ImGuiCol_ButtonHovered), 2);
   const auto at = [&](float x, float y) { return ImVec2(low.x + x * side, low.y + y * side); };
   const ImVec2 curve[] = {at(0.15f, 0.75f), at(0.38f, 0.3f), at(0.6f, 0.6f), at(0.85f, 0.2f)};
-  list.AddPolyline(curve, 4, on ? k_sheet : k_quiet, 0, 1.5f);
+  list.AddPolyline(curve, 4, on ? theme().sheet : theme().quiet, 0, 1.5f);
 }
 
 void draw_plot_button(Inspection& inspection, const PlottedValue& plot) {
@@ -69,7 +67,7 @@ void draw_plot_button(Inspection& inspection, const PlottedValue& plot) {
   if (ImGui::InvisibleButton("plot", {side, side})) toggle_plot(inspection, plot);
   const bool on = is_plotted(inspection, plot);
   add_plot_icon(*ImGui::GetWindowDrawList(), ImGui::GetItemRectMin(), side, on, ImGui::IsItemHovered());
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip(on ? "Take it off the plots" : "Plot it over time");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(on ? k_unplot : k_plot).c_str());
 }
 
 void draw_values(const Inspected& at, const Subject& subject, std::size_t count) {
@@ -82,7 +80,7 @@ void draw_values(const Inspected& at, const Subject& subject, std::size_t count)
   for (std::size_t k = 0; k < std::min(count, values.size()); ++k) {
     ImGui::PushID(static_cast<int>(k));
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(values[k].name);
+    ImGui::TextUnformatted(say(values[k].name).c_str());
     ImGui::TableNextColumn();
     ImGui::TextUnformatted((value_text(at.value(subject, k)) + " " + values[k].unit).c_str());
     ImGui::TableNextColumn();
@@ -104,15 +102,15 @@ bool draw_component(const Inspected& at, const Subject& subject, std::size_t com
   const bool on_icon = mouse.x > high.x - line - 4 && mouse.y < low.y + line + 4;
   ImGui::PopID();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(low, high, k_sheet, 3);
-  list.AddRect(low, high, chosen ? k_chosen : k_frame, 3, 0, chosen ? 2.f : 1.f);
+  list.AddRectFilled(low, high, theme().sheet, 3);
+  list.AddRect(low, high, chosen ? theme().chosen : theme().frame, 3, 0, chosen ? 2.f : 1.f);
   const std::size_t value = k_first_component_value + component;
-  add_text(list, low.x + 5, low.y + 3, k_chart_text,
+  add_text(list, low.x + 5, low.y + 3, theme().text,
            fmt::format("{} {} {}", component_name(component), value_text(at.value(subject, value)),
                        component_unit(component)));
   add_plot_icon(list, {high.x - line - 2, low.y + 3}, line, is_plotted(at.inspection, {subject, value}),
                 hovered && on_icon);
-  if (hovered) ImGui::SetTooltip(on_icon ? "Plot it over time" : "Draw it along the member in the scene");
+  if (hovered) ImGui::SetTooltip("%s", say(on_icon ? k_plot : k_draw_along).c_str());
 
   const Member& member = at.model.members[subject.index];
   const float left = low.x + 8, right = high.x - 8, top = low.y + line + 8, bottom = high.y - 5;
@@ -136,12 +134,12 @@ bool draw_component(const Inspected& at, const Subject& subject, std::size_t com
   list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // else there are seams between the pieces
   for (std::size_t i = 0; i + 1 < ordinates.size(); ++i) {
     const ImVec2 a = place(i), b = place(i + 1);
-    const ImU32 colour = ordinates[i] + ordinates[i + 1] >= 0 ? k_positive : k_negative;
+    const ImU32 colour = ordinates[i] + ordinates[i + 1] >= 0 ? theme().positive : theme().negative;
     if (b.x > a.x) list.AddQuadFilled({a.x, zero}, a, b, {b.x, zero}, translucent(colour));
     list.AddLine(a, b, colour, 1.4f);
   }
   list.Flags = flags;
-  list.AddLine({left, zero}, {right, zero}, k_axis);
+  list.AddLine({left, zero}, {right, zero}, theme().axis);
   if (pressed && on_icon) toggle_plot(at.inspection, {subject, value});
   return pressed && !on_icon;
 }
@@ -156,34 +154,36 @@ void draw_integration_points(const Inspected& at, const Member& member) {
     return left + width * (static_cast<float>(element) + static_cast<float>(xi + 1) / 2) /
                       static_cast<float>(member.element_count);
   };
-  const auto diamond = [&](float px, float py) { list.AddNgonFilled({px, py}, 1.25f * r, k_line, 4); };
+  const auto diamond = [&](float px, float py) { list.AddNgonFilled({px, py}, 1.25f * r, theme().line, 4); };
   const auto circle = [&](float px, float py, ImU32 colour) {
     list.AddCircle({px, py}, r, colour, 16, 1.6f);
   };
-  list.AddLine({left, y}, {left + width, y}, k_quiet, 2);
+  list.AddLine({left, y}, {left + width, y}, theme().quiet, 2);
   std::string places;
   for (int k = 0; k < member.element_count; ++k) {
     const std::size_t e = member.first_element + k;
-    for (const double end : {-1., 1.}) list.AddCircleFilled({x(k, end), y}, 0.6f * r, k_quiet);
+    for (const double end : {-1., 1.}) list.AddCircleFilled({x(k, end), y}, 0.6f * r, theme().quiet);
     places += fmt::format("{}{:+.3f}", k > 0 ? ", " : "", at.row.s[e] + 0.f);
     const std::uint8_t code = at.row.hinge[e];
     if (code == k_broken) {
-      list.AddLine({x(k, 0) - r, y - r}, {x(k, 0) + r, y + r}, k_hinge, 2);
-      list.AddLine({x(k, 0) - r, y + r}, {x(k, 0) + r, y - r}, k_hinge, 2);
+      list.AddLine({x(k, 0) - r, y - r}, {x(k, 0) + r, y + r}, theme().hinge, 2);
+      list.AddLine({x(k, 0) - r, y + r}, {x(k, 0) + r, y - r}, theme().hinge, 2);
       continue;
     }
     diamond(x(k, at.row.s[e]), y);
     const bool flows = code == 1 || code == 2 || code == 4;
-    circle(x(k, -at.row.s[e]), y, flows ? k_hinge : k_chart_text);
+    if (flows) list.AddCircleFilled({x(k, -at.row.s[e]), y}, r, theme().hinge, 16);
+    circle(x(k, -at.row.s[e]), y, flows ? theme().hinge : theme().text);
   }
   const float words = y + 0.65f * line;
   diamond(left + r, words + line / 2);
-  add_text(list, left + 3.2f * r, words, k_chart_text, "integrated");
-  const float second = left + 7.2f * line;
-  circle(second, words + line / 2, k_chart_text);
-  add_text(list, second + 2.2f * r, words, k_chart_text, "stresses (hinge: orange)");
-  ImGui::Dummy({width, 2.6f * line});
-  ImGui::TextWrapped("s of its elements: %s", places.c_str());
+  add_text(list, left + 3.2f * r, words, theme().text, say(k_integrated));
+  const bool beside = 7.2f * line + 2.2f * r + text_width(say(k_stresses_at)) <= width;
+  const float second = beside ? left + 7.2f * line : left + r, below = beside ? words : words + 1.1f * line;
+  circle(second, below + line / 2, theme().text);
+  add_text(list, second + 2.2f * r, below, theme().text, say(k_stresses_at));
+  ImGui::Dummy({width, below + 1.15f * line - low.y});
+  ImGui::TextWrapped("%s", say(k_s_of_elements, places).c_str());
 }
 
 void draw_history(const Inspected& at, const Subject& subject, std::size_t value) {
@@ -195,45 +195,45 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
   ImDrawList& list = *ImGui::GetWindowDrawList();
   Lane lane{low.x + 6, low.x + width - 6,          low.y + line + 8, low.y + height - 5, at.player.length(),
             0,         at.run_peak(subject, value)};
-  list.AddRectFilled(low, {low.x + width, low.y + height}, k_sheet, 3);
-  list.AddRect(low, {low.x + width, low.y + height}, k_frame, 3);
-  add_text(list, low.x + 5, low.y + 3, k_chart_text,
-           fmt::format("{} over the run, peak {} {}", what.name, value_text(lane.high), what.unit));
+  list.AddRectFilled(low, {low.x + width, low.y + height}, theme().sheet, 3);
+  list.AddRect(low, {low.x + width, low.y + height}, theme().frame, 3);
+  add_text(list, low.x + 5, low.y + 3, theme().text,
+           say(k_over_run, say(what.name), value_text(lane.high), what.unit));
   if (lane.high > 0)
     add_curve(
-        list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, k_line, 1.4f);
-  list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, k_cursor, 1.5f);
+        list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);
+  list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, theme().cursor,
+               1.5f);
   ImGui::Dummy({width, height});
 }
 
 /// Name, what it is, and a pin. True when the pin was pressed.
 bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
   ImGui::TextUnformatted(name_of(at.model, subject).c_str());
-  const char* const words = pinned ? "Unpin" : "Pin";
-  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(words).x -
+  const std::string words = say(pinned ? k_unpin : k_pin);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(words.c_str()).x -
                   2 * ImGui::GetStyle().FramePadding.x);
-  const bool pressed = ImGui::SmallButton(words);
-  if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("Keep it here while another one is looked at");
+  const bool pressed = ImGui::SmallButton((words + "##pin").c_str());
+  if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("%s", say(k_pin_about).c_str());
   if (subject.kind == Subject::Kind::member) {
     const Member& member = at.model.members[subject.index];
     double length = 0;
     for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
       length += at.model.elements[e].length;
-    ImGui::TextDisabled("%s", fmt::format("{}, {}, {:.0f} mm long", at.model.sections[member.section].name,
-                                          at.model.materials[member.material].name, 1e3 * length)
+    ImGui::TextDisabled("%s", say(k_member_line, at.model.sections[member.section].name,
+                                  at.model.materials[member.material].name, 1e3 * length)
                                   .c_str());
   } else if (subject.kind == Subject::Kind::body) {
     const Body& body = at.model.bodies[subject.index];
-    ImGui::TextDisabled("%s", fmt::format("{:.4g} kg, {} members, {}", body.mass, body.member_count,
-                                          name(static_cast<Rung>(at.row.rung[subject.index])))
-                                  .c_str());
+    ImGui::TextDisabled(
+        "%s",
+        say(k_body_line, body.mass, body.member_count, say(k_rungs[at.row.rung[subject.index]])).c_str());
   } else {
     const Anchor& anchor = at.model.anchors[subject.index];
     const float* const values = &at.row.anchor[4 * subject.index];
-    ImGui::TextDisabled(
-        "%s", fmt::format("{} of {}, {:.4g} kN/m, {:.0f} mm long", anchor_type(anchor),
-                          at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
-                  .c_str());
+    ImGui::TextDisabled("%s", say(k_anchor_line, anchor_type_in_words(anchor),
+                                  at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
+                                  .c_str());
     ImGui::TextUnformatted(anchor_in_words(at.model, at.row, subject.index).c_str());
   }
   return pressed;
@@ -242,8 +242,7 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
 /// True when another component is to be drawn in the scene.
 bool draw_member(const Inspected& at, const Subject& subject) {
   draw_values(at, subject, k_first_component_value);
-  if (is_approximate(at.model, at.row, subject.index))
-    ImGui::TextWrapped("A contact presses on its middle node: its own bending is approximate.");
+  if (is_approximate(at.model, at.row, subject.index)) ImGui::TextWrapped("%s", say(k_approximate).c_str());
   const std::size_t drawn = component_of(at.model, at.row, {subject.index, at.inspection.component});
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size{(ImGui::GetContentRegionAvail().x - gap) / 2, 4.3f * ImGui::GetTextLineHeight()};
@@ -277,7 +276,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
     if (subject.kind == Subject::Kind::member) {
       changed = draw_member(at, subject);
       const auto body = static_cast<std::size_t>(model.members[subject.index].body);
-      if (ImGui::Button(("All of " + model.bodies[body].name).c_str())) {
+      if (ImGui::Button((say(k_all_of, model.bodies[body].name) + "##body").c_str())) {
         inspection.picked = Subject{Subject::Kind::body, body};
         changed = true;
       }
@@ -286,7 +285,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
       draw_history(at, subject, 0);
     }
   } else {
-    ImGui::TextWrapped("Click a member or an anchor; click a member again for its body. Bodies:");
+    ImGui::TextWrapped("%s", say(k_how_to_inspect).c_str());
     for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
       if (ImGui::Selectable(model.bodies[b].name.c_str())) {
         inspection.picked = Subject{Subject::Kind::body, b};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/overlay.h"
 
@@ -54,17 +55,24 @@ float text_width(const std::string& text) {
 void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float label_left) {
   const bool loads = is_static(setup), steps = loads && setup.run.statics.control;
   const double scale = steps ? setup.run.statics.load_steps : 1;
+  const float apart = 6 * ImGui::GetTextLineHeight();
   const render::Ticks ticks = render::nice_ticks(
-      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / 85)));
+      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / apart)));
+  float written = lane.left;  // as far as labels reach
   for (double t : ticks.values) {
     t += 0.;  // makes 0 of -0
     if (steps && t != std::round(t)) continue;
     const float x = lane.x(t / scale);
-    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, k_axis);
+    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, theme().axis);
     const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
-    add_text(list, std::min(x + 3, lane.right - text_width(label)), lane.bottom + 11, k_chart_text, label);
+    const float at = std::min(x + 3, lane.right - text_width(label));
+    if (at < written) continue;
+    add_text(list, at, lane.bottom + 11, theme().text, label);
+    written = at + text_width(label) + 4;
   }
-  if (loads) add_text(list, label_left, lane.bottom + 11, k_chart_text, steps ? "load step" : "load factor");
+  if (loads)
+    add_text(list, label_left, lane.bottom + 11, theme().text,
+             say(steps ? window_words::k_load_step : window_words::k_load_factor));
 }
 
 }  // namespace topple::app

@@ -8,12 +8,9 @@
 #include <imgui.h>
 
 #include "app/player.h"
+#include "app/theme.h"
 
 namespace topple::app {
-
-inline constexpr ImU32 k_axis = IM_COL32(60, 74, 88, 110), k_faint = IM_COL32(60, 74, 88, 45);
-inline constexpr ImU32 k_chart_text = IM_COL32(52, 62, 72, 255);
-inline constexpr ImU32 k_cursor = IM_COL32(200, 40, 40, 255);
 
 /// Time, or the way through the loads, to the right; one quantity upwards.
 struct Lane {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/appearance.h"
 #include "app/picture_settings.h"
 #include "app/player.h"
 #include "app/subject.h"
@@ -23,18 +24,22 @@ struct Box {
   }
 };
 
-/// Letters and looks of the current Dear ImGui context. `scale`: 1 for 720 lines. Throws std::runtime_error
+/// Letters and looks of the current Dear ImGui context, in the language of `appearance`. `scale`: 1 for 720
+/// lines, times that of `appearance`. `scene`: whose names are shown; null: none. Throws std::runtime_error
 /// without the font.
-render::OverlayFonts set_up_interface(render::Stage& stage, float scale);
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
+                                      const io::Scene* scene);
 
-/// Begins a window that fills `box` and does nothing else; ImGui::End() ends it.
+/// Begins a window that fills `box` and does nothing else; ImGui::End() ends it. Keys move among what is in
+/// it.
 void begin_panel(const char* name, const Box& box);
 
 /// What a person asks of the shell around the viewer (shell.h).
 enum class ShellRequest { none, scenes, save, export_view };
 
-/// Buttons for play, pause, steps, speed, loop, restart, branches, undo and redo, and for the shell.
-ShellRequest draw_transport_bar(Player& player, const Box& box);
+/// Buttons for play, pause, steps, speed, loop, restart, branches, undo and redo, and for the shell, in as
+/// many rows as the width of the box asks for; `height`: that they need.
+ShellRequest draw_transport_bar(Player& player, const Box& box, float& height);
 
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.
@@ -45,6 +50,9 @@ void draw_parameters(Player& player, std::string& refused);
 
 /// Colours by another quantity; a fixed range, which had the unit of the last one, becomes that of the run.
 void choose_colour(PictureSettings& settings, BeamQuantity colour);
+
+/// Theme, language and scale. True when one was changed.
+bool draw_appearance(Appearance& appearance);
 
 /// Colours, deformation and what is shown beside bodies. `maximum`: where the colours end now, in the
 /// quantity's unit. True when anything changed.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/scene.h"
@@ -14,11 +15,13 @@
 namespace topple::app {
 namespace {
 
+using namespace window_words;
+
 /// How a parameter is shown. The slider covers what is usual, `low` to `high` in `unit` or, for a relative
 /// one, as factors of the scene's value; typing (Ctrl+click) reaches all that is legal.
 struct Slider {
   Edit::Key key;
-  const char* label;
+  Phrase label, about;  ///< about: of {0}, what the scene reference says
   const char* unit;
   const char* format;
   double low, high;
@@ -27,23 +30,23 @@ struct Slider {
 };
 
 constexpr Slider k_sliders[] = {
-    {Edit::Key::frequency, "frequency", "Hz", "%.3g Hz", 0.1, 10, false, true},
-    {Edit::Key::amplitude, "amplitude", "gal", "%.0f gal", 0, 1000},
-    {Edit::Key::direction, "direction", "", "%.0f°", -180, 180},
-    {Edit::Key::duration, "duration", "s", "%.3g s", 0.05, 60, false, true},
-    {Edit::Key::scale, "scale", "", "× %.2f", 0, 3},
-    {Edit::Key::alpha, "α", "kgf", "%.4g kgf", 1. / 50, 50, true, true},
-    {Edit::Key::q, "q", "", "%.2f", 0.5, 4},
-    {Edit::Key::friction, "μ", "", "%.2f", 0, 1.5},
-    {Edit::Key::friction_static, "static μ", "", "%.2f", 0, 1.5},
-    {Edit::Key::restitution, "restitution", "", "%.2f", 0, 1},
-    {Edit::Key::damping, "damping", "", "%.3f", 0, 0.2},
-    {Edit::Key::time_step, "time step", "ms", "%.3g ms", 0.05, 20, false, true},
+    {Edit::Key::frequency, k_frequency, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true},
+    {Edit::Key::amplitude, k_amplitude, k_amplitude_about, "gal", "%.0f gal", 0, 1000},
+    {Edit::Key::direction, k_direction, k_direction_about, "", "%.0f°", -180, 180},
+    {Edit::Key::duration, k_duration, k_duration_about, "s", "%.3g s", 0.05, 60, false, true},
+    {Edit::Key::scale, k_scale, k_scale_about, "", "× %.2f", 0, 3},
+    {Edit::Key::alpha, k_alpha, k_alpha_about, "kgf", "%.4g kgf", 1. / 50, 50, true, true},
+    {Edit::Key::q, k_q, k_q_about, "", "%.2f", 0.5, 4},
+    {Edit::Key::friction, k_friction, k_friction_about, "", "%.2f", 0, 1.5},
+    {Edit::Key::friction_static, k_friction_static, k_friction_static_about, "", "%.2f", 0, 1.5},
+    {Edit::Key::restitution, k_restitution, k_restitution_about, "", "%.2f", 0, 1},
+    {Edit::Key::damping, k_damping, k_damping_about, "", "%.3f", 0, 0.2},
+    {Edit::Key::time_step, k_time_step, k_time_step_about, "ms", "%.3g ms", 0.05, 20, false, true},
 };
 // Of a sweep, whose frequency has two values.
 constexpr Slider k_sweep[] = {
-    {Edit::Key::frequency, "from", "Hz", "%.3g Hz", 0.1, 10, false, true},
-    {Edit::Key::frequency, "to", "Hz", "%.3g Hz", 0.1, 10, false, true, 1},
+    {Edit::Key::frequency, k_sweep_from, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true},
+    {Edit::Key::frequency, k_sweep_to, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true, 1},
 };
 
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
@@ -69,7 +72,7 @@ class Row {
         refused_(refused) {}
 
   void slider(const Slider& look) {
-    begin(look.label);
+    begin(say(look.label));
     const double unit = io::unit_value(look.unit, key_.dimension);
     const auto shown = [&](const Vec3& value) {
       return look.key == Edit::Key::direction ? azimuth(value) : value[look.component] / unit;
@@ -106,7 +109,7 @@ class Row {
 
   /// One of the first `count` choices of the key but those that `legal` does not have.
   template <class F>
-  void choice(const char* label, int count, F&& legal) {
+  void choice(const std::string& label, const Phrase& tip, int count, F&& legal) {
     begin(label);
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
@@ -116,35 +119,35 @@ class Row {
         if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-      ImGui::SetTooltip("%s", fmt::format("{}: {}", io::edit_key(edit_), key_.about).c_str());
+      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), say(tip, key_.about)).c_str());
     }
     end();
   }
 
-  void tick(const char* label, const std::string& tooltip) {
+  void tick(const std::string& label, const std::string& tooltip) {
     bool on = edit_.value.x() != 0;
-    ImGui::PushID(label);
+    ImGui::PushID(label.c_str());
     ImGui::PushID(io::edit_key(edit_).c_str());
-    if (ImGui::Checkbox(label, &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
+    if (ImGui::Checkbox(label.c_str(), &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", fmt::format("{}: {}", io::edit_key(edit_), tooltip).c_str());
+      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), tooltip).c_str());
     end(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
         ImGui::GetStyle().ItemSpacing.x);
   }
 
-  void button(const char* label, double value, const char* tooltip) {
+  void button(const Phrase& label, double value, const Phrase& tooltip) {
     ImGui::PushID(io::edit_key(edit_).c_str());
-    if (ImGui::Button(label)) post_anew(Vec3(value, 0, 0));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
+    if (ImGui::Button(say(label).c_str())) post_anew(Vec3(value, 0, 0));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(tooltip).c_str());
     ImGui::PopID();
   }
 
  private:
-  void begin(const char* label) {
-    ImGui::PushID(label);
+  void begin(const std::string& label) {
+    ImGui::PushID(label.c_str());
     ImGui::PushID(io::edit_key(edit_).c_str());
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(label);
+    ImGui::TextUnformatted(label.c_str());
     ImGui::SameLine(6.2f * ImGui::GetFontSize());
   }
   // What slider() covers: the usual within the legal, and the value itself.
@@ -159,17 +162,15 @@ class Row {
   }
   std::string about(const Slider& look, double in_scene) const {
     const std::string name = io::edit_key(edit_);
-    if (look.key == Edit::Key::direction)
-      return name + ": of the acceleration, counter-clockwise from x (a cabinet's depth)";
-    return fmt::format("{}: {}\nallowed {}, in the scene {:.4g}{}{}\nCtrl+click to type", name, key_.about,
-                       io::range_text(key_), in_scene, *look.unit ? " " : "", look.unit);
+    if (look.key == Edit::Key::direction) return say(k_key_about, name, say(look.about));
+    return say(k_slider_about, name, say(look.about, key_.about), io::range_text(key_), in_scene, look.unit);
   }
   void end(float at = 0) {
     ImGui::SameLine(at);
     ImGui::BeginDisabled(edit_.value == scene_value_);
     if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post_anew(scene_value_);
     ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the scene's value");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_back_to_scene).c_str());
     ImGui::PopID();
     ImGui::PopID();
   }
@@ -201,27 +202,24 @@ void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
   Row row(player, key, index, refused);
   switch (key) {
     case Edit::Key::on:
-      return row.tick("on", "shakes the floor; switched over a quarter of a period");
+      return row.tick(say(k_on), say(k_on_about));
     case Edit::Key::type:
-      row.choice("type", static_cast<int>(Shake::Kind::record), k_any);
-      return row.button("Shake once", static_cast<double>(Shake::Kind::pulse),
-                        "A pulse from now on; of a sine, half of one period");
+      row.choice(say(k_type), k_type_about, static_cast<int>(Shake::Kind::record), k_any);
+      return row.button(k_shake_once, static_cast<double>(Shake::Kind::pulse), k_shake_once_about);
     case Edit::Key::law:
-      return row.choice("law", 3, k_any);
+      return row.choice(say(k_law), k_law_about, 3, k_any);
     case Edit::Key::integrator:
-      return row.choice("integrator", 4, [](int k) { return k > 0; });
+      return row.choice(say(k_integrator), k_integrator_about, 4, [](int k) { return k > 0; });
     case Edit::Key::want:
-      return row.tick("stresses are wanted", "what bodies with model \"auto\" are to answer besides motion");
+      return row.tick(say(k_stresses_wanted), say(k_stresses_wanted_about));
     case Edit::Key::model:
       ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
-      return row.choice("model", 4,
+      return row.choice(say(k_model), k_model_about, 4,
                         [&](int k) { return can_be(setup.model, index, static_cast<BodyModel>(k)); });
     case Edit::Key::anchor: {
       const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];
-      return row.tick(anchor.name.c_str(),
-                      fmt::format("ties {} to the wall or floor. One that is put in place starts without "
-                                  "force",
-                                  setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
+      return row.tick(anchor.name,
+                      say(k_anchor_about, setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
     }
     case Edit::Key::frequency:
       if (player.parameters().shakes[static_cast<std::size_t>(index)].kind == Shake::Kind::sweep) {
@@ -250,15 +248,16 @@ bool draw_heading(Group group, int index, const Parameters& parameters) {
   switch (group) {
     case Group::floor:
       ImGui::TextDisabled(
-          "%s", parameters.shakes.size() == 1 ? "Floor" : fmt::format("Floor, shake {}", index + 1).c_str());
+          "%s", (parameters.shakes.size() == 1 ? say(k_floor) : say(k_floor_shake, index + 1)).c_str());
       return true;
     case Group::bodies:
-      return ImGui::CollapsingHeader("Bodies",
+      return ImGui::CollapsingHeader((say(k_bodies) + "##bodies").c_str(),
                                      parameters.models.size() <= k_few ? ImGuiTreeNodeFlags_DefaultOpen : 0);
     default:
-      ImGui::TextDisabled("%s", group == Group::contact   ? "Contact"
-                                : group == Group::anchors ? "Anchors"
-                                                          : "Integration");
+      ImGui::TextDisabled("%s", say(group == Group::contact   ? k_contact
+                                    : group == Group::anchors ? k_anchors_heading
+                                                              : k_integration)
+                                    .c_str());
       return true;
   }
 }
@@ -286,8 +285,7 @@ void draw_parameters(Player& player, std::string& refused) {
     if (open) draw_row(player, key, index, refused);
   }
   ImGui::EndDisabled();
-  if (!player.can_edit() && !player.way().empty())
-    ImGui::TextWrapped("These were the values at this instant. Continue from here (C) to change them.");
+  if (!player.can_edit() && !player.way().empty()) ImGui::TextWrapped("%s", say(k_past_values).c_str());
 }
 
 }  // namespace topple::app

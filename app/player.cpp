@@ -260,14 +260,19 @@ void Player::restart() {
   }
   pause();
   const io::FrameRow& first = *way_.front();
+  ++forks_asked_;
+  run_.fork(first.branch, first.step, edits_since_start());
+}
+
+std::vector<Edit> Player::edits_since_start() const {
+  const io::FrameRow& first = *way_.front();
   const Parameters there = parameters_at(scene_->setup, history_, first.branch, first.step);
   std::vector<Edit> edits;
   for (const auto& [key, shake] : editable(scene_->setup.model, parameters_)) {
     const Vec3 value = edited_value(parameters_, key, shake);
     if (value != edited_value(there, key, shake)) edits.push_back({key, shake, value});
   }
-  ++forks_asked_;
-  run_.fork(first.branch, first.step, edits);
+  return edits;
 }
 
 void Player::continue_from_here() {

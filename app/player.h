@@ -66,6 +66,8 @@ class Player {
   void begin_edit() { new_undo_ = true; }
   /// Throws io::InputError for what a scene would be refused for.
   void edit(const Edit& edit);
+  /// Those that make the first instant's parameters what they are now; there must be one.
+  std::vector<Edit> edits_since_start() const;
   bool can_undo() const { return can_edit() && !undo_.empty(); }
   bool can_redo() const { return can_edit() && !redo_.empty(); }
   void undo();

@@ -6,6 +6,7 @@
 
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/text_layout.h"
 
@@ -15,8 +16,6 @@ namespace {
 constexpr float k_labels = 7.5f;  // lines of text, as wide as those of the timeline
 constexpr float k_lane = 4.2f;    // likewise, high
 constexpr float k_gap = 0.5f;
-constexpr ImU32 k_line = IM_COL32(0, 114, 178, 255), k_sheet = IM_COL32(255, 255, 255, 255);
-constexpr ImU32 k_quiet = IM_COL32(96, 108, 120, 255);
 
 void draw_lane(ImDrawList& list, const Player& player, Histories& histories, const PlottedValue& plot,
                Lane lane, float label_left) {
@@ -32,12 +31,12 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
   const double room = greatest > least ? 0.04 * (greatest - least) : 1;
   lane.low = least < 0 ? least - room : 0;
   lane.high = greatest > 0 || least == 0 ? greatest + room : 0;
-  list.AddRectFilled({lane.left, lane.top}, {lane.right, lane.bottom}, k_sheet);
-  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
+  list.AddRectFilled({lane.left, lane.top}, {lane.right, lane.bottom}, theme().sheet);
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
   add_curve(
-      list, lane, player.way(), [&](std::size_t i) { return samples[i]; }, k_line, 1.4f);
-  if (greatest > 0) add_text(list, lane.left + 4, lane.top + 1, k_quiet, value_text(greatest));
-  if (least < 0) add_text(list, lane.left + 4, lane.bottom - line - 1, k_quiet, value_text(least));
+      list, lane, player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);
+  if (greatest > 0) add_text(list, lane.left + 4, lane.top + 1, theme().quiet, value_text(greatest));
+  if (least < 0) add_text(list, lane.left + 4, lane.bottom - line - 1, theme().quiet, value_text(least));
 
   const auto row = player.row();
   const ImFont& font = *ImGui::GetFont();
@@ -45,13 +44,12 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
   const std::string now =
       row ? value_text(value.at(instant_of(player, *row), plot.subject.index)) + " " + value.unit : "";
   float y = lane.top;
-  for (const std::string& words :
-       {name_of(player.scene().setup.model, plot.subject), std::string(value.name), now}) {
-    add_text(list, label_left, y, k_chart_text, render::shortened(font, words, width));
+  for (const std::string& words : {name_of(player.scene().setup.model, plot.subject), say(value.name), now}) {
+    add_text(list, label_left, y, theme().text, render::shortened(font, words, width));
     y += 1.15f * line;
   }
   const float x = lane.x(player.time());
-  list.AddLine({x, lane.top}, {x, lane.bottom}, k_cursor, 1.5f);
+  list.AddLine({x, lane.top}, {x, lane.bottom}, theme().cursor, 1.5f);
 }
 
 /// Of the first plot, in a box without a heading.
@@ -89,15 +87,15 @@ PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspect
   PlotRequest request = PlotRequest::none;
   begin_panel("plots", box);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted("Plots");
+  ImGui::TextUnformatted(say(window_words::k_plots).c_str());
   ImGui::SameLine(k_labels * ImGui::GetTextLineHeight());
   if (ImGui::Button("CSV")) request = PlotRequest::csv;
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Write these values as a table");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_csv_about).c_str());
   ImGui::SameLine();
   if (ImGui::Button("PNG")) request = PlotRequest::png;
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Write these plots as a picture");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_png_about).c_str());
   ImGui::SameLine();
-  if (ImGui::Button("Close all")) inspection.plots.clear();
+  if (ImGui::Button((say(window_words::k_close_all) + "##close").c_str())) inspection.plots.clear();
   ImGui::BeginChild("lanes");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight(), step = (k_lane + k_gap) * line;
@@ -114,8 +112,8 @@ PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspect
       player.scrub((ImGui::GetIO().MousePos.x - lane.left) / (lane.right - lane.left) * player.length());
     ImGui::SetCursorScreenPos({lane.right - side, lane.top});
     if (ImGui::InvisibleButton("close", {side, side})) closed = i;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Close this plot");
-    add_text(list, lane.right - 0.85f * side, lane.top, k_quiet, "×");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(window_words::k_close_plot).c_str());
+    add_text(list, lane.right - 0.85f * side, lane.top, theme().quiet, "×");
     ImGui::PopID();
     lane.top += step;
     lane.bottom += step;
@@ -133,8 +131,8 @@ std::string plots_csv(const Player& player, Histories& histories, const Inspecti
   std::vector<const std::vector<float>*> columns;
   for (const PlottedValue& plot : inspection.plots) {
     const SubjectValue& value = values_of(plot.subject.kind)[plot.value];
-    text += fmt::format(",\"{} {}{}{}\"", name_of(model, plot.subject), value.name, *value.unit ? ", " : "",
-                        value.unit);
+    text += fmt::format(",\"{} {}{}{}\"", name_of(model, plot.subject), value.name.english,
+                        *value.unit ? ", " : "", value.unit);
     columns.push_back(&histories.of(player, plot.subject, plot.value));
   }
   for (std::size_t i = 0; i < player.way().size(); ++i) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/appearance.h"
 #include "app/bridge.h"
 #include "app/commands.h"
 #include "app/files.h"
@@ -17,6 +18,7 @@
 #include "app/replay.h"
 #include "app/subject.h"
 #include "app/window_picture.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/osmesa_context.h"
 #include "render/picture.h"
@@ -76,7 +78,7 @@ class Drawing {
         bridge_(scene, extent_),
         replay_(replay),
         context_(render::make_osmesa_context()),
-        picture_(context_->get_proc(), o.width, o.height) {}
+        picture_(context_->get_proc(), o.width, o.height, window_letters(&scene)) {}
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
@@ -176,6 +178,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
 }  // namespace
 
 int render_command(const RenderOptions& options) {
+  window_language() = options.language;
   if (io::is_recording(options.source)) {
     if (!options.overrides.empty())
       throw BadInput("--set: " + options.source + " is a recording; only a scene can be changed");

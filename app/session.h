@@ -15,12 +15,13 @@ class Session {
  public:
   /// `opened`: the file that it came from; empty: none. `wake` as of LiveRun.
   Session(LiveSource source, std::string opened, render::Stage& stage, float scale,
-          const PictureSettings& settings, std::function<void()> wake)
+          const PictureSettings& settings, const Appearance& appearance, Viewer::Keep keep,
+          std::function<void()> wake)
       : scene_(source.scene),
         replayed_(source.recording ? std::move(opened) : std::string()),
         run_(std::make_unique<LiveRun>(std::move(source), std::move(wake))),
         player_(scene_, *run_),
-        viewer_(player_, stage, scale, render::NamedView::iso, settings) {}
+        viewer_(player_, stage, scale, render::NamedView::iso, settings, appearance, std::move(keep)) {}
 
   Player& player() { return player_; }
   Viewer& viewer() { return viewer_; }

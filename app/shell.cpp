@@ -25,11 +25,14 @@ Box whole_window() {
 
 }  // namespace
 
-Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program)
+Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program,
+             const Appearance& appearance, Viewer::Keep keep)
     : stage_(stage),
       scale_(scale),
       wake_(std::move(wake)),
-      own_fonts_(set_up_interface(stage, scale)),
+      appearance_(appearance),
+      keep_(std::move(keep)),
+      own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
       chooser_(stage, wake_),
       export_(std::move(program)) {}
 
@@ -59,10 +62,12 @@ void Shell::show(LiveSource source, const std::string& path) {
     settings = session_->viewer().settings();
     settings.range = settings.range == RangePolicy::fixed ? RangePolicy::run : settings.range;
     loop = session_->player().loop();
+    appearance_ = session_->viewer().appearance();
     closing_.push_back(std::async(
         std::launch::async, [run = Session::leave(std::move(session_))] { return run->close("stopped"); }));
   }
-  session_ = std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, wake_);
+  session_ =
+      std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);
   told_failure_.clear();
   told_trouble_.clear();
@@ -83,7 +88,7 @@ void Shell::open(const std::string& source) {
   std::error_code ignored;
   const bool file = fs::exists(source, ignored);
   open_in_background(file ? fs::path(source).filename().string() : source, file ? source : "", [source] {
-    return open_source({source, {}, ""});
+    return open_source({.source = source, .overrides = {}, .recording = {}, .language = {}});
   });
 }
 

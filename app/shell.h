@@ -21,8 +21,9 @@ namespace topple::app {
 class Shell {
  public:
   /// `scale` as of Viewer. `wake` makes a waiting window look; any thread calls it. `program` draws exports.
-  Shell(render::Stage& stage, float scale, std::function<void()> wake,
-        std::string program = "/proc/self/exe");
+  /// The others as of Viewer.
+  Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program = "/proc/self/exe",
+        const Appearance& appearance = {}, Viewer::Keep keep = {});
   ~Shell();
   Shell(const Shell&) = delete;
   Shell& operator=(const Shell&) = delete;
@@ -72,6 +73,8 @@ class Shell {
   render::Stage& stage_;
   const float scale_;
   const std::function<void()> wake_;
+  Appearance appearance_;
+  const Viewer::Keep keep_;
   const render::OverlayFonts own_fonts_;  ///< of a window without a session
   Chooser chooser_;
   SaveDialog save_;

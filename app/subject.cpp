@@ -9,6 +9,7 @@
 #include "app/anchor_picture.h"
 #include "app/annotations.h"
 #include "app/row.h"
+#include "app/window_words.h"
 #include "solver/overturn.h"
 #include "solver/rotation.h"
 
@@ -116,23 +117,25 @@ double stretch_value(const Instant& now, std::size_t index) {
   return 1e3 * (span.norm() - values[2]);
 }
 
-constexpr SubjectValue k_member_values[] = {{"stress", "MPa", beam_value<BeamQuantity::stress>},
-                                            {"yield ratio", "", yield_ratio},
-                                            {"N", "N", force_value<0>},
-                                            {"Vy", "N", force_value<1>},
-                                            {"Vz", "N", force_value<2>},
-                                            {"T", "N m", force_value<3>},
-                                            {"My", "N m", force_value<4>},
-                                            {"Mz", "N m", force_value<5>}};
-constexpr SubjectValue k_body_values[] = {{"tilt", "°", tilt_value},
-                                          {"slide", "mm", slide_value},
-                                          {"angular velocity", "rad/s", angular_velocity},
-                                          {"kinetic energy", "J", kinetic_value},
-                                          {"left to overturn", "J", margin_value},
-                                          {"share left", "%", margin_share},
-                                          {"elastic displacement", "mm", displacement_value}};
-constexpr SubjectValue k_anchor_values[] = {
-    {"force", "N", anchor_value<0>}, {"stretch", "mm", stretch_value}, {"energy", "J", anchor_value<1>}};
+constexpr SubjectValue k_member_values[] = {
+    {window_words::k_short_stress, "MPa", beam_value<BeamQuantity::stress>},
+    {window_words::k_yield_ratio, "", yield_ratio},
+    {window_words::k_normal_force, "N", force_value<0>},
+    {window_words::k_shear_y, "N", force_value<1>},
+    {window_words::k_shear_z, "N", force_value<2>},
+    {window_words::k_torque, "N m", force_value<3>},
+    {window_words::k_moment_y, "N m", force_value<4>},
+    {window_words::k_moment_z, "N m", force_value<5>}};
+constexpr SubjectValue k_body_values[] = {{window_words::k_tilt, "°", tilt_value},
+                                          {window_words::k_slide, "mm", slide_value},
+                                          {window_words::k_angular_velocity, "rad/s", angular_velocity},
+                                          {window_words::k_kinetic, "J", kinetic_value},
+                                          {window_words::k_left_to_overturn, "J", margin_value},
+                                          {window_words::k_share_left, "%", margin_share},
+                                          {window_words::k_elastic_displacement, "mm", displacement_value}};
+constexpr SubjectValue k_anchor_values[] = {{window_words::k_force, "N", anchor_value<0>},
+                                            {window_words::k_stretch, "mm", stretch_value},
+                                            {window_words::k_energy, "J", anchor_value<1>}};
 
 template <typename Named>
 std::string names_of(const std::vector<Named>& all, std::size_t first, std::size_t count) {

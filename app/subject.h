@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/language.h"
 #include "app/player.h"
 
 namespace topple::app {
@@ -41,7 +42,7 @@ Instant instant_of(const Player& player, const io::FrameRow& row);
 /// One number of a subject, in `unit`; not a number where it means nothing. Of a member the greatest along
 /// it, with its sign.
 struct SubjectValue {
-  const char* name;
+  Phrase name;
   const char* unit;
   double (*at)(const Instant& instant, std::size_t index);
 };

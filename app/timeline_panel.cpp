@@ -8,24 +8,50 @@
 #include "app/body_colour.h"
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/window_words.h"
 #include "app/words.h"
 #include "render/overlay.h"
+#include "render/text_layout.h"
 #include "solver/io/edit_text.h"
 #include "solver/ladder.h"
 
 namespace topple::app {
 namespace {
 
+using namespace window_words;
+
 constexpr double k_degrees = 180 / k_pi;
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 
-constexpr ImU32 k_ghost = IM_COL32(120, 128, 136, 150);
-constexpr ImU32 k_floor_colours[] = {IM_COL32(70, 82, 94, 255), IM_COL32(140, 90, 60, 255),
-                                     IM_COL32(110, 110, 170, 255)};
+constexpr std::size_t k_told = 5;  // bodies with a colour of their own
 
-ImU32 line_colour(std::size_t body) {
-  const auto& [red, green, blue] = body_colour(body);
+/// Those that tilt most over the run, of the share that they can, in their own order; all of a few.
+std::vector<std::size_t> told_bodies(const Player& player) {
+  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+  std::vector<std::pair<double, std::size_t>> shares;
+  for (std::size_t b = 0; b < furniture; ++b) {
+    double most = 0;
+    for (const RowPtr& row : player.way()) {
+      const double critical = row->body[11 * b + 10];
+      most = std::max(most, row->body[11 * b + 7] / (critical > 0 ? critical : 1));
+    }
+    shares.emplace_back(-most, b);
+  }
+  std::ranges::sort(shares);
+  if (shares.size() > k_told) shares.resize(k_told);
+  std::vector<std::size_t> told;
+  for (const auto& [share, b] : shares) told.push_back(b);
+  std::ranges::sort(told);
+  return told;
+}
+
+ImU32 line_colour(const std::vector<std::size_t>& told, std::size_t body) {
+  const auto at = std::ranges::find(told, body);
+  if (at == told.end()) return theme().other;
+  // Where all are told of, in the colours that their paths have in the scene.
+  const auto& [red, green, blue] =
+      body_colour(told.back() < told.size() ? body : static_cast<std::size_t>(at - told.begin()));
   return IM_COL32(red, green, blue, 255);
 }
 
@@ -51,18 +77,18 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   for (int k = 0; k < 3; ++k) most = std::max(most, 1.08 * peak(rows, component(k)));
   lane.low = -most;
   lane.high = most;
-  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
   std::string moving;
   for (int k = 0; k < 3; ++k) {
     if (!rows.empty() && peak(rows, component(k)) == 0) continue;
-    add_curve(list, lane, rows, component(k), k_floor_colours[k], 1.3f);
+    add_curve(list, lane, rows, component(k), theme().floor[k], 1.3f);
     moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
   }
   const float line = ImGui::GetTextLineHeight();
-  add_text(list, label_left, lane.top, k_chart_text, "floor, gal");
-  if (!moving.empty()) add_text(list, label_left, lane.top + line, k_chart_text, moving);
+  add_text(list, label_left, lane.top, theme().text, say(k_floor_lane));
+  if (!moving.empty()) add_text(list, label_left, lane.top + line, theme().text, moving);
   const std::string top = fmt::format("{:.0f}", most);
-  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, k_chart_text, top);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, theme().text, top);
 }
 
 void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
@@ -74,11 +100,10 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   }
   lane.low = 1.08 * least;
   lane.high = greatest > least ? 1.08 * greatest : 1;
-  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, k_faint);
-  add_curve(list, lane, rows, factor, k_floor_colours[0], 1.3f);
-  add_text(list, label_left, lane.top, k_chart_text, "load factor");
-  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), k_chart_text,
-           fmt::format("up to {:.4g}", greatest));
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
+  add_curve(list, lane, rows, factor, theme().floor[0], 1.3f);
+  add_text(list, label_left, lane.top, theme().text, say(k_load_factor));
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
 
 void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
@@ -95,27 +120,36 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   }
   lane.low = 0;
   lane.high = critical > 0 ? k_tilt_room * critical : most;
-  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, k_axis);
+  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
   if (critical > 0) {
     for (float x = lane.left; x < lane.right; x += 9)
-      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, k_axis);
-    const std::string label = fmt::format("{:.1f}°", critical);
-    add_text(list, lane.left - text_width(label) - 6, lane.y(critical) - ImGui::GetTextLineHeight() / 2,
-             k_chart_text, label);
+      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
+    add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
+             fmt::format("{:.1f}°", critical));
   }
-  for (std::size_t b = 0; b < furniture; ++b) {
-    add_curve(list, lane, player.ghost_way(), tilt(b), k_ghost, 1);
-    add_curve(list, lane, rows, tilt(b), line_colour(b), 1.6f);
-  }
-  const float line = ImGui::GetTextLineHeight();
+  const std::vector<std::size_t> told = told_bodies(player);
+  const auto is_told = [&](std::size_t b) { return std::ranges::find(told, b) != told.end(); };
+  for (const bool one_of_those : {false, true})  // those told of lie on top
+    for (std::size_t b = 0; b < furniture; ++b) {
+      if (is_told(b) != one_of_those) continue;
+      add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
+      add_curve(list, lane, rows, tilt(b), one_of_those ? line_colour(told, b) : theme().other, 1.6f);
+    }
+  const float line = ImGui::GetTextLineHeight(), room = lane.left - label_left - 4;
   float y = lane.top - 2;
-  add_text(list, label_left, y, k_chart_text, critical > 0 ? "tilt" : "tilt, °");
-  for (std::size_t b = 0; b < furniture && y + 2 * line < lane.bottom + line; ++b) {
+  add_text(list, label_left, y, theme().text, say(k_tilt_lane));
+  const auto fits = static_cast<std::size_t>(std::max((lane.bottom - y) / line - 1, 0.f));
+  const bool all = told.size() == furniture && told.size() <= fits;
+  const std::size_t shown = all ? told.size() : std::min(told.size(), fits - std::min<std::size_t>(fits, 1));
+  const ImFont& font = *ImGui::GetFont();
+  for (std::size_t i = 0; i < shown; ++i) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
-                       line_colour(b));
-    add_text(list, label_left + 14, y, k_chart_text, bodies[b].name);
+                       line_colour(told, told[i]));
+    add_text(list, label_left + 14, y, theme().text,
+             render::shortened(font, bodies[told[i]].name, room - 14));
   }
+  if (!all && fits > 0) add_text(list, label_left, y + line, theme().text, say(k_more, furniture - shown));
 }
 
 /// When, of a step that has a row in a static run.
@@ -123,29 +157,29 @@ std::string when(const Player& player, std::int64_t step, double time) {
   if (!is_static(player.scene().setup)) return fmt::format("{:.3f} s", time);
   const auto at = std::find_if(player.way().begin(), player.way().end(),
                                [step](const RowPtr& row) { return row->step == step; });
-  return at == player.way().end() ? fmt::format("load step {}", step)
+  return at == player.way().end() ? say(k_load_step_number, step)
                                   : instant_in_words(player.scene().setup, **at);
 }
 
 std::string event_text(const Player& player, const io::RecordedEvent& event) {
   if (event.event.kind == Event::Kind::anchor) {
     const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
-    return fmt::format("{}: anchor {} breaks at {:.0f} N", when(player, event.step, event.time), anchor.name,
-                       std::abs(event.event.value));
+    return say(k_anchor_breaks, when(player, event.step, event.time), anchor.name,
+               std::abs(event.event.value));
   }
-  const char* what = event.event.kind == Event::Kind::uplift     ? "lifts off"
-                     : event.event.kind == Event::Kind::impact   ? "strikes the floor"
-                     : event.event.kind == Event::Kind::hinge    ? "forms a plastic hinge"
-                     : event.event.kind == Event::Kind::fracture ? "breaks a member"
-                     : event.event.kind == Event::Kind::model    ? "is computed as"
-                                                                 : "passes its critical angle";
-  const std::string model_of =
+  const Phrase& what = event.event.kind == Event::Kind::uplift     ? k_lifts
+                       : event.event.kind == Event::Kind::impact   ? k_strikes
+                       : event.event.kind == Event::Kind::hinge    ? k_hinges
+                       : event.event.kind == Event::Kind::fracture ? k_breaks
+                                                                   : k_passes;
+  const std::string words =
       event.event.kind == Event::Kind::model
-          ? fmt::format(" {} ({})", name(static_cast<Rung>(event.event.value)), name(event.event.reason))
-          : "";
+          ? say(k_computed_as, say(k_rungs[static_cast<std::size_t>(event.event.value)]),
+                say(k_rung_reasons[static_cast<std::size_t>(event.event.reason)]))
+          : say(what);
   const Model& model = player.scene().setup.model;
-  return fmt::format("{}: {} {}{}", when(player, event.step, event.time),
-                     model.bodies[static_cast<std::size_t>(event.event.body)].name, what, model_of);
+  return say(k_event, when(player, event.step, event.time),
+             model.bodies[static_cast<std::size_t>(event.event.body)].name, words);
 }
 
 std::string edit_text(const Player& player, const LoggedEdit& edit) {
@@ -156,46 +190,90 @@ std::string edit_text(const Player& player, const LoggedEdit& edit) {
       : key.type == io::KeyType::boolean
           ? std::string(v.x() != 0 ? "true" : "false")
           : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
-  return fmt::format("{}: {} = {}", when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
+  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
 }
 
-/// Marks along the top of the tilt lane; the one under the mouse says what it is.
+struct Mark {
+  Event::Kind kind;
+  const Phrase& words;
+};
+constexpr Mark k_marks[] = {{Event::Kind::uplift, k_mark_lifts},    {Event::Kind::impact, k_mark_strikes},
+                            {Event::Kind::hinge, k_mark_hinge},     {Event::Kind::fracture, k_mark_breaks},
+                            {Event::Kind::overturn, k_mark_passes}, {Event::Kind::model, k_mark_model}};
+
+void add_mark(ImDrawList& list, Event::Kind kind, ImVec2 p, float size, ImU32 colour) {
+  switch (kind) {
+    case Event::Kind::uplift:
+      list.AddTriangleFilled({p.x - size, p.y + size}, {p.x, p.y - size}, {p.x + size, p.y + size}, colour);
+      break;
+    case Event::Kind::impact:
+      list.AddLine({p.x, p.y - size}, {p.x, p.y + size}, colour, 2);
+      break;
+    case Event::Kind::hinge:
+      list.AddCircle(p, size, colour, 12, 1.5f);
+      break;
+    case Event::Kind::fracture:
+    case Event::Kind::anchor:
+      list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour, 1.5f);
+      list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, colour, 1.5f);
+      break;
+    case Event::Kind::model:
+      list.AddRect({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+      break;
+    case Event::Kind::overturn:
+      list.AddRectFilled({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+  }
+}
+
+void add_edit_mark(ImDrawList& list, ImVec2 p, float size) {
+  list.AddNgonFilled(p, size, theme().edit, 4);
+}
+
+/// What the marks of the run mean, in a row from `x` on, as far as there is room.
+void add_mark_key(ImDrawList& list, const Player& player, float x, float y, float right) {
+  const float line = ImGui::GetTextLineHeight(), size = 0.28f * line;
+  const std::vector<io::RecordedEvent> events = player.events();
+  const auto add = [&](const Phrase& words, const auto& draw) {
+    const std::string text = say(words);
+    const float width = line + text_width(text) + 0.8f * line;
+    if (x + width > right) return;
+    draw(ImVec2(x + line / 2, y + line / 2));
+    add_text(list, x + line, y, theme().text, text);
+    x += width;
+  };
+  for (const Mark& mark : k_marks) {
+    const bool there = std::ranges::any_of(events, [&](const io::RecordedEvent& event) {
+      const Event::Kind kind = event.event.kind;
+      return kind == mark.kind || (kind == Event::Kind::anchor && mark.kind == Event::Kind::fracture);
+    });
+    if (there) add(mark.words, [&](ImVec2 p) { add_mark(list, mark.kind, p, size, theme().text); });
+  }
+  if (!player.edits().empty()) add(k_mark_edit, [&](ImVec2 p) { add_edit_mark(list, p, size); });
+}
+
+/// Marks along the bottom of the tilt lane; the one under the mouse says what it is.
 void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
-  constexpr float k_size = 4;
+  const float size = 0.28f * ImGui::GetTextLineHeight();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
   const auto mark = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
     const float x = lane.x(time);
     if (x < lane.left || x > lane.right) return;
     shape(ImVec2(x, y));
-    if (std::abs(mouse.x - x) < k_size && std::abs(mouse.y - y) < 2 * k_size) hovered = text();
+    if (std::abs(mouse.x - x) < size && std::abs(mouse.y - y) < 2 * size) hovered = text();
   };
-  const float y = lane.bottom + k_size + 2;
+  const float y = lane.bottom + size + 2;
+  const std::vector<std::size_t> told = told_bodies(player);
   for (const io::RecordedEvent& event : player.events()) {
-    const ImU32 colour = line_colour(static_cast<std::size_t>(event.event.body));
+    const ImU32 colour = line_colour(told, static_cast<std::size_t>(event.event.body));
     mark(
         event.time, y, [&] { return event_text(player, event); },
-        [&](ImVec2 p) {
-          if (event.event.kind == Event::Kind::uplift)
-            list.AddTriangleFilled({p.x - k_size, p.y + k_size}, {p.x, p.y - k_size},
-                                   {p.x + k_size, p.y + k_size}, colour);
-          else if (event.event.kind == Event::Kind::impact)
-            list.AddLine({p.x, p.y - k_size}, {p.x, p.y + k_size}, colour, 2);
-          else if (event.event.kind == Event::Kind::hinge)
-            list.AddCircle(p, k_size, colour, 12, 1.5f);
-          else if (event.event.kind == Event::Kind::fracture || event.event.kind == Event::Kind::anchor) {
-            list.AddLine({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour, 1.5f);
-            list.AddLine({p.x - k_size, p.y + k_size}, {p.x + k_size, p.y - k_size}, colour, 1.5f);
-          } else if (event.event.kind == Event::Kind::model)
-            list.AddRect({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
-          else
-            list.AddRectFilled({p.x - k_size, p.y - k_size}, {p.x + k_size, p.y + k_size}, colour);
-        });
+        [&](ImVec2 p) { add_mark(list, event.event.kind, p, size, colour); });
   }
   for (const LoggedEdit& edit : player.edits())
     mark(
         edit.time, lane.top, [&] { return edit_text(player, edit); },
-        [&](ImVec2 p) { list.AddNgonFilled(p, k_size, IM_COL32(150, 60, 140, 255), 4); });
+        [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
     for (const Branch& branch : player.history().branches) {
@@ -204,7 +282,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
                                    [&](const RowPtr& row) { return row->branch == branch.id; });
       if (at == player.way().end()) continue;
       const float x = lane.x((*at)->time);
-      list.AddLine({x, lane.top}, {x, lane.bottom}, k_axis);
+      list.AddLine({x, lane.top}, {x, lane.bottom}, theme().axis);
     }
   if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
 }
@@ -219,7 +297,7 @@ void draw_timeline(Player& player, const Box& box) {
   Lane lane{box.left + 7.5f * line,
             box.left + box.width - 12,
             box.top + 8,
-            box.top + box.height - line - 14,
+            box.top + box.height - 2.2f * line - 14,
             player.length(),
             0,
             1};
@@ -235,13 +313,20 @@ void draw_timeline(Player& player, const Box& box) {
   add_axis(list, lower, player.scene().setup, label_left);
 
   const float x = lane.x(player.time());
-  list.AddLine({x, lane.top}, {x, lane.bottom}, k_cursor, 1.5f);
-  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, k_cursor);
+  list.AddLine({x, lane.top}, {x, lane.bottom}, theme().cursor, 1.5f);
+  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, theme().cursor);
   ImGui::SetCursorScreenPos({lane.left, lane.top});
   ImGui::InvisibleButton("scrub", {lane.right - lane.left, height + line});
   if (ImGui::IsItemActive())
     player.scrub((ImGui::GetIO().MousePos.x - lane.left) / (lane.right - lane.left) * player.length());
+  if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) {
+    list.AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), ImGui::GetColorU32(ImGuiCol_NavHighlight),
+                 3, 0, 2);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_LeftArrow))) player.step(-1);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_RightArrow))) player.step(1);
+  }
   add_marks(list, lower, player);
+  add_mark_key(list, player, lane.left, box.top + box.height - 1.15f * line, lane.right);
   ImGui::End();
 }
 

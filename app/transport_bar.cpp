@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -10,6 +11,8 @@
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 enum class Icon { to_start, back, play, pause, on, to_end, restart, loop };
 
@@ -67,12 +70,22 @@ void add_icon(ImDrawList& list, Icon icon, ImVec2 at, float r, ImU32 colour) {
   }
 }
 
-void tooltip(const char* text) {
-  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", text);
+/// What comes next begins a new row unless it has room on this one.
+void flow(float width) {
+  if (ImGui::GetCursorPosX() + width > ImGui::GetWindowContentRegionMax().x) ImGui::NewLine();
 }
 
-bool icon_button(const char* id, Icon icon, const char* about, bool enabled = true) {
+float button_width(const std::string& label) {
+  return ImGui::CalcTextSize(label.c_str(), nullptr, true).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+void tooltip(const Phrase& text) {
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", say(text).c_str());
+}
+
+bool icon_button(const char* id, Icon icon, const Phrase& about, bool enabled = true) {
   const float side = ImGui::GetFrameHeight();
+  flow(1.35f * side);
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button(id, {1.35f * side, side});
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
@@ -84,9 +97,10 @@ bool icon_button(const char* id, Icon icon, const char* about, bool enabled = tr
   return pressed;
 }
 
-bool text_button(const char* label, const char* about, bool enabled) {
+bool text_button(const std::string& label, const Phrase& about, bool enabled) {
+  flow(button_width(label));
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(label.c_str());
   ImGui::EndDisabled();
   tooltip(about);
   ImGui::SameLine();
@@ -106,77 +120,71 @@ void choose_branch(Player& player) {
   const auto& branches = player.history().branches;
   if (branches.size() < 2) return;
   const auto name = [&](std::int32_t id) {
-    return fmt::format("branch {}{}", id + 1,
-                       !player.replay() && id == player.status().branch ? " (live)" : "");
+    return say(!player.replay() && id == player.status().branch ? k_branch_live : k_branch, id + 1);
   };
-  ImGui::SetNextItemWidth(6.5f * ImGui::GetFrameHeight());
+  const float width = 6.5f * ImGui::GetFrameHeight();
+  flow(width);
+  ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
     for (const Branch& branch : branches)
       if (ImGui::Selectable(name(branch.id).c_str(), branch.id == player.shown_branch()))
         player.show_branch(branch.id);
     ImGui::EndCombo();
   }
-  tooltip("Which future to look at");
+  tooltip(k_branch_about);
   ImGui::SameLine();
 }
 
 }  // namespace
 
-ShellRequest draw_transport_bar(Player& player, const Box& box) {
+ShellRequest draw_transport_bar(Player& player, const Box& box, float& height) {
   begin_panel("transport", box);
   const bool loads = is_static(player.scene().setup);
-  if (icon_button("##start", Icon::to_start, "To the start (Home)")) player.to_start();
-  if (icon_button("##back", Icon::back, "One instant back ( , )")) player.step(-1);
-  if (icon_button("##play", player.playing() ? Icon::pause : Icon::play,
-                  player.playing() ? "Pause (Space)" : "Play (Space)"))
+  if (icon_button("##start", Icon::to_start, k_to_start)) player.to_start();
+  if (icon_button("##back", Icon::back, k_one_back)) player.step(-1);
+  if (icon_button("##play", player.playing() ? Icon::pause : Icon::play, player.playing() ? k_pause : k_play))
     player.toggle();
-  if (icon_button("##on", Icon::on, "One instant on ( . )")) player.step(1);
-  if (icon_button("##end", Icon::to_end, "To the newest instant (End)")) player.to_end();
-  if (icon_button(
-          "##restart", Icon::restart,
-          player.replay() ? "To the start (R)" : "Run again from the start with the sliders as they are (R)"))
+  if (icon_button("##on", Icon::on, k_one_on)) player.step(1);
+  if (icon_button("##end", Icon::to_end, k_to_end)) player.to_end();
+  if (icon_button("##restart", Icon::restart, player.replay() ? k_replay_restart : k_restart))
     player.restart();
   const bool loop = player.loop();
   if (loop) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-  if (icon_button("##loop", Icon::loop, say(window_words::k_loop_about).c_str())) player.set_loop(!loop);
+  if (icon_button("##loop", Icon::loop, k_loop_about)) player.set_loop(!loop);
   if (loop) ImGui::PopStyleColor();
   gap();
-  if (text_button("-##slower", "Half the speed ( [ )", player.speed() > k_least_speed)) player.slower();
+  if (text_button("-##slower", k_slower, player.speed() > k_least_speed)) player.slower();
+  flow(ImGui::CalcTextSize(speed_text(player.speed()).c_str()).x);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(speed_text(player.speed()).c_str());
-  tooltip(loads ? "Load paths per second, asked for" : "Simulated seconds per second, asked for");
+  tooltip(loads ? k_load_speed : k_speed);
   ImGui::SameLine();
-  if (text_button("+##faster", "Twice the speed ( ] )", player.speed() < k_most_speed)) player.faster();
+  if (text_button("+##faster", k_faster, player.speed() < k_most_speed)) player.faster();
   gap();
-  if (text_button("Continue from here", "A new branch begins at the instant shown (C)",
-                  player.can_continue()))
+  if (text_button(say(k_continue) + "##continue", k_continue_about, player.can_continue()))
     player.continue_from_here();
   choose_branch(player);
   gap();
-  if (text_button("Undo", "Takes the last change back, from now on (Ctrl+Z)", player.can_undo()))
-    player.undo();
-  if (text_button("Redo", "(Ctrl+Shift+Z)", player.can_redo())) player.redo();
+  if (text_button(say(k_undo) + "##undo", k_undo_about, player.can_undo())) player.undo();
+  if (text_button(say(k_redo) + "##redo", k_redo_about, player.can_redo())) player.redo();
   gap();
   ShellRequest asked = ShellRequest::none;
-  const std::tuple<const Phrase*, const Phrase*, ShellRequest> shell[] = {
-      {&window_words::k_scenes, &window_words::k_scenes_about, ShellRequest::scenes},
-      {&window_words::k_save, &window_words::k_save_about, ShellRequest::save},
-      {&window_words::k_export, &window_words::k_export_about, ShellRequest::export_view}};
+  const std::tuple<const Phrase&, const Phrase&, ShellRequest> shell[] = {
+      {k_scenes, k_scenes_about, ShellRequest::scenes},
+      {k_save, k_save_about, ShellRequest::save},
+      {k_export, k_export_about, ShellRequest::export_view}};
   for (const auto& [label, about, request] : shell)
-    if (text_button(say(*label).c_str(), say(*about).c_str(), true)) asked = request;
+    if (text_button(say(label), about, true)) asked = request;
   const auto row = loads ? player.row() : std::nullopt;
   const std::string clock = row     ? instant_in_words(player.scene().setup, *row)
                             : loads ? ""
-                                    : fmt::format("{:.2f} s of {:.6g} s", player.time(), player.length());
+                                    : say(k_clock, player.time(), player.length());
   const float width = ImGui::CalcTextSize(clock.c_str()).x;
-  const float right = ImGui::GetWindowContentRegionMax().x - width;
-  if (right > ImGui::GetCursorPosX()) {
-    ImGui::SetCursorPosX(right);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(clock.c_str());
-  } else {
-    ImGui::NewLine();
-  }
+  flow(width);
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(clock.c_str());
+  height = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + ImGui::GetStyle().WindowPadding.y;
   ImGui::End();
   return asked;
 }

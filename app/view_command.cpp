@@ -31,6 +31,19 @@ struct Interface {
   Interface& operator=(const Interface&) = delete;
 };
 
+Appearance window_appearance(const std::filesystem::path& settings, const std::optional<Language>& asked) {
+  std::string warning;
+  Appearance appearance = read_appearance(settings, warning);
+  if (!warning.empty()) say("warning: " + warning);
+  if (asked) {
+    appearance.language = *asked;
+  } else if (appearance.language == Language::japanese && !render::has_japanese_font()) {
+    say("warning: Japanese needs the Debian package fonts-vlgothic; the window is in English");
+    appearance.language = Language::english;
+  }
+  return appearance;
+}
+
 /// Draws while there is something to draw, until the window closes or Ctrl+C.
 void show(render::Window& window, render::Stage& stage, Shell& shell) {
   int frames_due = k_frames_of_input;
@@ -90,6 +103,11 @@ int view_command(const ViewOptions& options) {
     source = open_source(options);
   else if (!options.overrides.empty() || !options.recording.empty())
     throw BadInput("SOURCE: --set and --output are for a scene that is named");
+  const std::filesystem::path settings = settings_file();
+  const Appearance appearance = window_appearance(settings, options.language);
+  const Viewer::Keep keep = [settings](const Appearance& chosen) {
+    if (!settings.empty()) keep_appearance(settings, chosen);
+  };
   defer_interrupts();
   const Interface interface;
   render::Window window(source ? "topple: " + source->scene->name : "topple");
@@ -98,7 +116,8 @@ int view_command(const ViewOptions& options) {
   // Where a point of the desktop is several pixels, Dear ImGui's coordinates are scaled already.
   const float pixels =
       static_cast<float>(window.framebuffer_size().width) / static_cast<float>(window.size().width);
-  Shell shell(stage, window.content_scale() / pixels, &render::Window::wake);
+  Shell shell(stage, window.content_scale() / pixels, &render::Window::wake, "/proc/self/exe", appearance,
+              keep);
   const bool is_file = std::filesystem::exists(options.source);
   if (source)
     shell.show(*std::move(source), is_file ? options.source : "");

@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "app/shell_words.h"
+#include "app/theme.h"
 
 namespace topple::app {
 namespace {
@@ -14,30 +19,18 @@ constexpr double k_quiet = 0.4;          // s without change after which the sce
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
+constexpr float k_side = 320;            // px at 720 lines
+constexpr float k_most_side = 0.45f;     // of the width
+constexpr float k_least_letters = 12;    // px
 
-void set_style(float scale) {
-  ImGui::StyleColorsLight();
-  ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowRounding = 0;
-  style.WindowBorderSize = 0;
-  style.FrameRounding = 3;
-  style.GrabRounding = 3;
-  style.WindowPadding = {10, 6};
-  style.FramePadding = {7, 4};
-  style.ItemSpacing = {7, 5};
-  style.Colors[ImGuiCol_WindowBg] = {0.955f, 0.96f, 0.965f, 1};
-  style.Colors[ImGuiCol_PopupBg] = {1, 1, 1, 0.98f};
-  style.Colors[ImGuiCol_Text] = {0.14f, 0.18f, 0.22f, 1};
-  style.Colors[ImGuiCol_TextDisabled] = {0.38f, 0.43f, 0.48f, 1};
-  style.Colors[ImGuiCol_FrameBg] = {1, 1, 1, 1};
-  style.Colors[ImGuiCol_FrameBgHovered] = {0.90f, 0.94f, 0.98f, 1};
-  style.Colors[ImGuiCol_FrameBgActive] = {0.84f, 0.91f, 0.98f, 1};
-  style.Colors[ImGuiCol_Button] = {0.87f, 0.895f, 0.92f, 1};
-  style.Colors[ImGuiCol_ButtonHovered] = {0.76f, 0.86f, 0.95f, 1};
-  style.Colors[ImGuiCol_ButtonActive] = {0.62f, 0.78f, 0.92f, 1};
-  style.Colors[ImGuiCol_SliderGrab] = {0.58f, 0.77f, 0.93f, 1};
-  style.Colors[ImGuiCol_SliderGrabActive] = {0.40f, 0.65f, 0.88f, 1};
-  style.ScaleAllSizes(scale);
+/// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
+void set_keyboard_navigation(bool on) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyMap[ImGuiKey_Space] == -1) return;
+  if (on)
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
 }
 
 bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::FrameRow>& b) {
@@ -47,15 +40,21 @@ bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::
 
 }  // namespace
 
-render::OverlayFonts set_up_interface(render::Stage& stage, float scale) {
+render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
+                                      const io::Scene* scene) {
+  window_language() = appearance.language;
+  window_is_dark() = appearance.dark;
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   io.Fonts->Clear();
+  scale *= static_cast<float>(appearance.scale);
+  render::Letters letters = window_letters(scene);
+  letters.smallest = k_least_letters;
   const render::OverlayFonts fonts =
-      render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)));
+      render::add_overlay_fonts(*io.Fonts, static_cast<int>(std::lround(720 * scale)), letters);
   io.FontDefault = fonts.small;
   stage.upload_fonts(*io.Fonts);
   set_style(scale);
@@ -67,21 +66,44 @@ void begin_panel(const char* name, const Box& box) {
   ImGui::SetNextWindowSize({box.width, box.height});
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus);
 }
 
 Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view,
-               const PictureSettings& settings)
+               const PictureSettings& settings, const Appearance& appearance, Keep keep)
     : player_(player),
       stage_(stage),
-      scale_(scale),
-      fonts_(set_up_interface(stage, scale)),
+      desktop_scale_(scale),
+      appearance_(appearance),
+      keep_(std::move(keep)),
       bridge_(player.scene(), player.extent()),
       settings_(settings),
-      view_(view) {}
+      view_(view) {
+  dress();
+}
+
+void Viewer::dress() {
+  scale_ = desktop_scale_ * static_cast<float>(appearance_.scale);
+  fonts_ = set_up_interface(stage_, desktop_scale_, appearance_, &player_.scene());
+  dressed_ = appearance_;
+  scene_changed_ = true;
+}
+
+void Viewer::wear(const Appearance& appearance) {
+  appearance_ = appearance;
+  try {
+    if (keep_) keep_(appearance_);
+  } catch (const std::runtime_error& error) {
+    told_ = say(window_words::k_not_written, error.what());
+  }
+}
 
 bool Viewer::update(double wall_s) {
-  const bool news = player_.update(wall_s);
+  const bool redress = dressed_ != appearance_;
+  if (redress) dress();
+  bool news = player_.update(wall_s) || redress;
+  if (teaching_.guide && teaching_.guide->update()) news = true;
+  if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;
@@ -91,9 +113,14 @@ bool Viewer::update(double wall_s) {
 
 void Viewer::lay_out() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float side = std::min(300 * scale_, 0.45f * size.x), status = 26 * scale_, bar = 38 * scale_;
-  const float timeline = std::min(165 * scale_, 0.3f * size.y);
-  const float upper = std::max(size.y - status - bar - timeline, 16.f), line = fonts_.small->FontSize;
+  const float line = fonts_.small->FontSize;
+  const float side = std::min(k_side * scale_, k_most_side * size.x);
+  const float status = static_cast<float>(status_lines_.size()) * ImGui::GetTextLineHeightWithSpacing() +
+                       2 * ImGui::GetStyle().WindowPadding.y;
+  const float bar = transport_height_ > 0 ? transport_height_ : 38 * scale_;
+  const float timeline =
+      std::min({182 * scale_, 0.3f * size.y, 0.45f * std::max(size.y - status - bar, 0.f)});
+  const float upper = std::max(size.y - status - bar - timeline, 16.f);
   const float heading = ImGui::GetFrameHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y;
   const float plots = inspection_.plots.empty()
                           ? 0
@@ -122,9 +149,12 @@ void Viewer::report_frame_time(double ms) {
 
 void Viewer::build(const std::function<void()>& over) {
   const Box before = scene_;
+  write_status();
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
   if (!over) handle_characters();
+  set_keyboard_navigation(!over);
+  if (std::exchange(to_next_panel_, false)) focus_next_panel();
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
       refused_.clear();
@@ -136,7 +166,7 @@ void Viewer::build(const std::function<void()>& over) {
   handle_mouse();
   if (row_) draw_words(*row_);
   draw_side_panel(row_);
-  asked_ = draw_transport_bar(player_, transport_);
+  asked_ = draw_transport_bar(player_, transport_, transport_height_);
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
@@ -156,6 +186,7 @@ void Viewer::draw_scene() {
     if (picked && picked->kind == Subject::Kind::member)
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
+    frame_.dark = appearance_.dark;
     const LiveStatus& status = player_.status();
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);

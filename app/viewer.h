@@ -6,9 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
+#include "app/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
 #include "render/orbit.h"
@@ -19,13 +22,22 @@ namespace topple::app {
 
 class Viewer {
  public:
+  /// What the side panel shows.
+  enum class Tab { parameters, picture, inspect, teach };
+
+  /// Keeps how the window looks for the next start. May throw std::runtime_error.
+  using Keep = std::function<void(const Appearance&)>;
+
   /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
-  /// and panels, 1 for 720 lines. Throws std::runtime_error without the font.
+  /// and panels, 1 for 720 lines, times that of `appearance`. `keep` is called when a person changes that.
+  /// Throws std::runtime_error without the font.
   Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso,
-         const PictureSettings& settings = {});
+         const PictureSettings& settings = {}, const Appearance& appearance = {}, Keep keep = {});
 
   /// Looks closely at it; nothing: at none.
   void inspect(const std::optional<Subject>& subject);
+
+  void show(Tab tab) { tab_ = tab; }
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
@@ -42,6 +54,8 @@ class Viewer {
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
+  const TeachingState& teaching() const { return teaching_; }
+  const Appearance& appearance() const { return appearance_; }
   const render::OverlayFonts& fonts() const { return fonts_; }
   const render::Orbit& orbit() const { return orbit_; }
   const Inspection& inspection() const { return inspection_; }
@@ -52,10 +66,13 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
-  enum class Tab { parameters, picture, inspect };
   struct KeyAction;
   static std::span<const KeyAction> key_actions();
+  void dress();
+  void wear(const Appearance& appearance);
+  void resize(int direction);
   void let_go();
+  void focus_next_panel();
   void next_colour();
   void turn(bool& on);
   void lay_out();
@@ -71,13 +88,18 @@ class Viewer {
   void draw_plots_strip();
   void write_plots(PlotRequest request);
   render::Image picture_of_plots();
+  std::string pace() const;
+  void write_status();
   void draw_status();
   void draw_key_table();
   float aspect() const { return scene_.width / scene_.height; }
 
   Player& player_;
   render::Stage& stage_;
-  const float scale_;
+  const float desktop_scale_;
+  float scale_ = 1;
+  Appearance appearance_, dressed_;  // as asked for, and as shown
+  const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
   Box scene_, plots_, timeline_, transport_, side_, status_;
@@ -90,11 +112,15 @@ class Viewer {
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;
+  TeachingState teaching_;
   Tab tab_ = Tab::parameters;
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
+  float transport_height_ = 0;  // as last drawn
+  std::vector<std::string> status_lines_;
+  bool to_next_panel_ = false;
   ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;

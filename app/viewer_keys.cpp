@@ -1,11 +1,15 @@
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <span>
 
 #include "app/viewer.h"
+#include "app/window_words.h"
 
 namespace topple::app {
 namespace {
+
+using namespace window_words;
 
 bool character(char c) {
   for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters)
@@ -17,8 +21,7 @@ bool character(char c) {
 
 /// What is done with keyboard and mouse. key 0: a line of the table only.
 struct Viewer::KeyAction {
-  const char* shown;
-  const char* does;
+  Phrase shown, does;
   int key = 0;
   bool control = false, shift = false;
   void (*act)(Viewer&) = nullptr;
@@ -27,44 +30,81 @@ struct Viewer::KeyAction {
 // In one table, so that what F1 shows is what happens.
 std::span<const Viewer::KeyAction> Viewer::key_actions() {
   static constexpr KeyAction k_actions[] = {
-      {"Space", "play, pause", ' ', false, false, [](Viewer& v) { v.player_.toggle(); }},
-      {", .", "one instant back, on"},
-      {"[ ]", "half, twice the speed"},
-      {"Home", "to the start", render::key::home, false, false, [](Viewer& v) { v.player_.to_start(); }},
-      {"End", "to the newest instant", render::key::end, false, false, [](Viewer& v) { v.player_.to_end(); }},
-      {"R", "run again from the start with the sliders as they are", 'R', false, false,
-       [](Viewer& v) { v.player_.restart(); }},
-      {"L", "at the end, begin again", 'L', false, false,
-       [](Viewer& v) { v.player_.set_loop(!v.player_.loop()); }},
-      {"C", "continue from here in a new branch", 'C', false, false,
-       [](Viewer& v) { v.player_.continue_from_here(); }},
-      {"Ctrl+Z", "take a change of a parameter back", 'Z', true, false, [](Viewer& v) { v.player_.undo(); }},
-      {"Ctrl+Shift+Z", "make it again", 'Z', true, true, [](Viewer& v) { v.player_.redo(); }},
-      {"Ctrl+click on a slider", "type a value"},
-      {"1", "seen from the front", '1', false, false, [](Viewer& v) { v.look(render::NamedView::front); }},
-      {"2", "from the side", '2', false, false, [](Viewer& v) { v.look(render::NamedView::side); }},
-      {"3", "from the top", '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
-      {"4", "from a corner", '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
-      {"F", "fit that view", 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
-      {"Q", "colour by the next quantity", 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
-      {"A", "arrows of contact forces", 'A', false, false,
-       [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
-      {"P", "panels of cabinets", 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
-      {"drag", "turn the view; with Shift or the right button: move it"},
-      {"wheel", "nearer, farther"},
-      {"click", "inspect a member; once more: its body"},
-      {"Esc", "let go of it", render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
-      {"Ctrl+O", "another scene or recording"},
-      {"Ctrl+S", "save the scene as it is now"},
-      {"Ctrl+E", "export a picture, a video or tables"},
-      {"F1", "this table", render::key::f1, false, false, [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
-      {"Ctrl+Q", "close the recording and the window"},
+      {{"Space", "Space"}, k_key_play, ' ', false, false, [](Viewer& v) { v.player_.toggle(); }},
+      {{", .", ", ."}, k_key_step},
+      {{"[ ]", "[ ]"}, k_key_speed},
+      {{"Home", "Home"},
+       k_key_start,
+       render::key::home,
+       false,
+       false,
+       [](Viewer& v) { v.player_.to_start(); }},
+      {{"End", "End"}, k_key_end, render::key::end, false, false, [](Viewer& v) { v.player_.to_end(); }},
+      {{"R", "R"}, k_key_restart, 'R', false, false, [](Viewer& v) { v.player_.restart(); }},
+      {{"L", "L"}, k_key_loop, 'L', false, false, [](Viewer& v) { v.player_.set_loop(!v.player_.loop()); }},
+      {{"C", "C"}, k_key_continue, 'C', false, false, [](Viewer& v) { v.player_.continue_from_here(); }},
+      {{"Ctrl+Z", "Ctrl+Z"}, k_key_undo, 'Z', true, false, [](Viewer& v) { v.player_.undo(); }},
+      {{"Ctrl+Shift+Z", "Ctrl+Shift+Z"}, k_key_redo, 'Z', true, true, [](Viewer& v) { v.player_.redo(); }},
+      {k_ctrl_click, k_key_type},
+      {{"1", "1"}, k_key_front, '1', false, false, [](Viewer& v) { v.look(render::NamedView::front); }},
+      {{"2", "2"}, k_key_side, '2', false, false, [](Viewer& v) { v.look(render::NamedView::side); }},
+      {{"3", "3"}, k_key_top, '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
+      {{"4", "4"}, k_key_corner, '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
+      {{"F", "F"}, k_key_fit, 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
+      {{"Q", "Q"}, k_key_quantity, 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
+      {{"A", "A"}, k_key_forces, 'A', false, false, [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
+      {{"P", "P"}, k_key_panels, 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
+      {k_drag, k_key_turn},
+      {k_wheel, k_key_wheel},
+      {k_click, k_key_click},
+      {{"Esc", "Esc"}, k_key_let_go, render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
+      {{"Ctrl+O", "Ctrl+O"}, k_key_scenes},
+      {{"Ctrl+S", "Ctrl+S"}, k_key_save},
+      {{"Ctrl+E", "Ctrl+E"}, k_key_export},
+      {{"F6", "F6"}, k_key_panel, render::key::f6, false, false, [](Viewer& v) { v.to_next_panel_ = true; }},
+      {{"Tab", "Tab"},
+       k_key_tab,
+       render::key::tab,
+       false,
+       false,
+       [](Viewer& v) { v.to_next_panel_ = !ImGui::GetIO().NavActive; }},
+      {k_arrows, k_key_arrows},
+      {{"Ctrl +, Ctrl -, Ctrl+0", "Ctrl +、Ctrl -、Ctrl+0"}, k_key_size},
+      {{}, {}, '+', true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '+', true, true, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '=', true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '=', true, true, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, render::key::keypad_plus, true, false, [](Viewer& v) { v.resize(1); }},
+      {{}, {}, '-', true, false, [](Viewer& v) { v.resize(-1); }},
+      {{}, {}, render::key::keypad_minus, true, false, [](Viewer& v) { v.resize(-1); }},
+      {{}, {}, '0', true, false, [](Viewer& v) { v.resize(0); }},
+      {{"Ctrl+D", "Ctrl+D"},
+       k_key_theme,
+       'D',
+       true,
+       false,
+       [](Viewer& v) {
+         Appearance other = v.appearance_;
+         other.dark = !other.dark;
+         v.wear(other);
+       }},
+      {{"F1", "F1"},
+       k_key_table,
+       render::key::f1,
+       false,
+       false,
+       [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
+      {{"Ctrl+Q", "Ctrl+Q"}, k_key_quit},
   };
   return k_actions;
 }
 
 void Viewer::press(const render::KeyPress& press) {
-  if (ImGui::GetIO().WantTextInput) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput) return;
+  const bool for_control =
+      press.key == ' ' || press.key == render::key::home || press.key == render::key::end;
+  if (io.NavVisible && for_control) return;  // the control that has the focus takes it
   refused_.clear();
   for (const KeyAction& action : key_actions())
     if (action.act && action.key == press.key && action.control == press.control &&
@@ -83,6 +123,31 @@ void Viewer::turn(bool& on) {
   scene_changed_ = true;
 }
 
+void Viewer::resize(int direction) {
+  Appearance other = appearance_;
+  other.scale = next_scale(other.scale, direction);
+  wear(other);
+}
+
+// Dear ImGui's own way, Ctrl+Tab, shows its names of panels.
+void Viewer::focus_next_panel() {
+  static constexpr const char* k_panels[] = {"side", "transport", "timeline", "plots", "status"};
+  const ImGuiWindow* const now = ImGui::GetCurrentContext()->NavWindow;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < std::size(k_panels); ++i)
+    if (now && now->RootWindow == ImGui::FindWindowByName(k_panels[i])) next = i + 1;
+  for (std::size_t i = 0; i < std::size(k_panels); ++i) {
+    ImGuiWindow* const window = ImGui::FindWindowByName(k_panels[(next + i) % std::size(k_panels)]);
+    if (!window || !window->WasActive) continue;
+    ImGui::FocusWindow(window);
+    ImGui::NavInitWindow(window, true);
+    ImGuiContext& context = *ImGui::GetCurrentContext();
+    context.NavDisableHighlight = false;
+    context.NavDisableMouseHover = true;
+    return;
+  }
+}
+
 void Viewer::let_go() {
   keys_shown_ = false;
   inspect(std::nullopt);
@@ -98,17 +163,19 @@ void Viewer::handle_characters() {
 }
 
 void Viewer::draw_key_table() {
-  ImGui::SetNextWindowPos({scene_.left + scene_.width / 2, scene_.top + scene_.height / 2}, ImGuiCond_Always,
-                          {0.5f, 0.5f});
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.98f * size.x, 0.95f * size.y});
   ImGui::Begin(
-      "Keys", &keys_shown_,
+      (say(k_keys) + "###keys").c_str(), &keys_shown_,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const KeyAction& action : key_actions()) {
+      if (action.shown.english.empty()) continue;
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(action.shown);
+      ImGui::TextUnformatted(say(action.shown).c_str());
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(action.does);
+      ImGui::TextUnformatted(say(action.does).c_str());
     }
     ImGui::EndTable();
   }

@@ -4,64 +4,99 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "app/files.h"
 #include "app/shell_words.h"
+#include "app/theme.h"
 #include "app/viewer.h"
 #include "app/words.h"
 #include "render/canvas.h"
 #include "render/overlay.h"
+#include "render/text_layout.h"
 
 namespace topple::app {
 namespace {
 
-constexpr ImU32 k_text = IM_COL32(40, 50, 60, 255), k_quiet_text = IM_COL32(80, 92, 104, 255);
+using namespace window_words;
+
+constexpr int k_most_status_lines = 3;
+constexpr float k_most_legend = 0.3f;  // of the width
 
 }  // namespace
 
 void Viewer::draw_words(const io::FrameRow& row) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.PushClipRect({scene_.left, scene_.top}, {scene_.left + scene_.width, scene_.top + scene_.height});
-  const float margin = 14 * scale_;
-  float y = scene_.top + margin;
-  const auto line = [&](ImFont* font, ImU32 colour, const std::string& text) {
-    list.AddText(font, font->FontSize, {scene_.left + margin, y}, colour, text.c_str());
-    y += std::round(1.3f * font->FontSize);
+  const float right = scene_.left + scene_.width, bottom = scene_.top + scene_.height;
+  list.PushClipRect({scene_.left, scene_.top}, {right, bottom});
+  const float margin = 14 * scale_, legend = std::min(190 * scale_, k_most_legend * scene_.width);
+  const float room = scene_.width - legend - 2 * margin, pad = 0.5f * margin;
+  std::vector<std::pair<ImFont*, std::string>> lines;
+  float width = 0, height = 0;
+  const auto add = [&](ImFont* font, const std::string& text) {
+    for (const std::string& line : render::wrapped(*font, text, room, 2)) {
+      if (scene_.top + margin + height + 1.3f * font->FontSize > bottom) return;
+      lines.emplace_back(font, line);
+      width = std::max(width, render::text_width(*font, line));
+      height += std::round(1.3f * font->FontSize);
+    }
   };
-  line(fonts_.text, k_text, player_.scene().title);
-  line(fonts_.small, k_quiet_text,
-       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
+  add(fonts_.text, player_.scene().title);
+  add(fonts_.small,
+      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
-    line(fonts_.small, k_quiet_text, body_in_words(model, row, b));
-  for (const std::string& words : anchors_in_words(model, row)) line(fonts_.small, k_quiet_text, words);
+  for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
+  for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
+  float x = scene_.left + margin, y = scene_.top + margin;
+  list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
+  for (const auto& [font, line] : lines) {
+    list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
+                 line.c_str());
+    y += std::round(1.3f * font->FontSize);
+  }
+  // The scene may lie behind the legend, which is not drawn where it has no room.
+  list.ChannelsSplit(2);
+  list.ChannelsSetCurrent(1);
+  const float inner = right - legend, outer = inner - margin;
   render::LeftOut left_out;
-  const float legend = 190 * scale_;
-  // Here the scene may lie behind it.
-  const ImU32 clear = IM_COL32(244, 246, 248, 0), veil = IM_COL32(244, 246, 248, 215);
-  list.AddRectFilledMultiColor({scene_.left + scene_.width - legend, scene_.top},
-                               {scene_.left + scene_.width, scene_.top + scene_.height}, clear, veil, veil,
-                               clear);
-  render::draw_legend_in(list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
-                         {"", scene_.left + scene_.width - legend, scene_.top + margin,
-                          scene_.left + scene_.width - margin, scene_.top + scene_.height - margin},
-                         left_out);
+  const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
+                                            render::colour_map_for(frame_.legend, settings_.map),
+                                            {"", inner, scene_.top + margin, right - margin, bottom - margin},
+                                            frame_.dark, left_out)
+                         .has_value();
+  list.ChannelsSetCurrent(0);
+  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
+  if (drawn) {
+    list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
+    list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
+  }
+  list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
-                      {"", scene_.left, scene_.top, scene_.left + scene_.width, scene_.top + scene_.height});
+                      {"", scene_.left, scene_.top, right, bottom});
   list.PopClipRect();
 }
 
 void Viewer::draw_tabs() {
-  constexpr std::pair<const char*, Tab> k_tabs[] = {
-      {"Parameters", Tab::parameters}, {"Picture", Tab::picture}, {"Inspect", Tab::inspect}};
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float width = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
+  static constexpr std::pair<Phrase, Tab> k_tabs[] = {{k_parameters, Tab::parameters},
+                                                      {k_picture_tab, Tab::picture},
+                                                      {k_inspect, Tab::inspect},
+                                                      {k_teach, Tab::teach}};
+  constexpr auto k_count = static_cast<float>(std::size(k_tabs));
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const auto natural = [&](const Phrase& name) {
+    return ImGui::CalcTextSize(say(name).c_str()).x + 2 * style.FramePadding.x;
+  };
+  float room = ImGui::GetContentRegionAvail().x - (k_count - 1) * style.ItemSpacing.x;
+  for (const auto& [name, tab] : k_tabs) room -= natural(name);
   for (const auto& [name, tab] : k_tabs) {
     const bool chosen = tab == tab_;
-    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(name, {width, 0})) tab_ = tab;
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, style.Colors[ImGuiCol_ButtonActive]);
+    if (ImGui::Button(say(name).c_str(), {natural(name) + std::max(room, 0.f) / k_count, 0})) tab_ = tab;
     if (chosen) ImGui::PopStyleColor();
-    if (tab != Tab::inspect) ImGui::SameLine();
+    const std::size_t next = static_cast<std::size_t>(tab) + 1;
+    if (next == std::size(k_tabs)) break;
+    ImGui::SameLine();
+    if (natural(k_tabs[next].first) > ImGui::GetContentRegionAvail().x) ImGui::NewLine();
   }
   ImGui::Separator();
 }
@@ -69,27 +104,34 @@ void Viewer::draw_tabs() {
 void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   begin_panel("side", side_);
   draw_tabs();
+  ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   if (tab_ == Tab::parameters) {
     draw_parameters(player_, refused_);
   } else if (tab_ == Tab::picture) {
     if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
       scene_changed_ = true;
-    if (!player_.ghost_way().empty() && ImGui::Checkbox("ghost of the branch left", &ghost_shown_))
+    if (!player_.ghost_way().empty() && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
       scene_changed_ = true;
     ImGui::Separator();
-    const std::pair<const char*, render::NamedView> views[] = {{"Front", render::NamedView::front},
-                                                               {"Side", render::NamedView::side},
-                                                               {"Top", render::NamedView::top},
-                                                               {"Iso", render::NamedView::iso}};
+    static constexpr std::pair<Phrase, render::NamedView> views[] = {{k_front, render::NamedView::front},
+                                                                     {k_side, render::NamedView::side},
+                                                                     {k_top, render::NamedView::top},
+                                                                     {k_iso, render::NamedView::iso}};
     const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) /
                         static_cast<float>(std::size(views));
     for (const auto& [name, view] : views) {
-      if (ImGui::Button(name, {width, 0})) look(view);
+      if (ImGui::Button(say(name).c_str(), {width, 0})) look(view);
       if (view != render::NamedView::iso) ImGui::SameLine();
     }
+    ImGui::Separator();
+    Appearance appearance = appearance_;
+    if (draw_appearance(appearance)) wear(appearance);
+  } else if (tab_ == Tab::teach) {
+    draw_teaching(player_, teaching_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }
+  ImGui::EndChild();
   ImGui::End();
 }
 
@@ -115,9 +157,9 @@ void Viewer::write_plots(PlotRequest request) {
       write_whole_file(path.string(), plots_csv(player_, histories_, inspection_));
     else
       render::write_png(path, picture_of_plots());
-    told_ = "Written: " + std::filesystem::absolute(path, ignored).string();
+    told_ = say(k_written, std::filesystem::absolute(path, ignored).string());
   } catch (const std::runtime_error& error) {
-    told_ = fmt::format("Not written: {}", error.what());
+    told_ = say(k_not_written, error.what());
   }
 }
 
@@ -135,8 +177,10 @@ render::Image Viewer::picture_of_plots() {
   io.DeltaTime = 1.f / 60;
   ImGui::NewFrame();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddText({10, std::round(0.5f * line)}, k_text, player_.scene().title.c_str());
+  const bool dark = std::exchange(window_is_dark(), false);  // it is written on white
+  list.AddText({10, std::round(0.5f * line)}, theme().text, player_.scene().title.c_str());
   draw_plot_lanes(list, player_, histories_, inspection_, {0, 2 * line, io.DisplaySize.x, height});
+  window_is_dark() = dark;
   ImGui::Render();
   const render::Image image =
       stage_.sheet(static_cast<int>(io.DisplaySize.x), static_cast<int>(height), *ImGui::GetDrawData());
@@ -145,26 +189,36 @@ render::Image Viewer::picture_of_plots() {
   return image;
 }
 
-void Viewer::draw_status() {
-  begin_panel("status", status_);
+void Viewer::write_status() {
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
   if (!told_.empty()) words = told_;
-  if (!refused_.empty()) words = "Refused: " + refused_;
-  if (!status.record_failure.empty()) words += "  No longer recorded: " + status.record_failure;
+  if (!refused_.empty()) words = say(k_refused, refused_);
+  if (!status.record_failure.empty()) words += say(k_no_longer_recorded, status.record_failure);
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
+  float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
+  if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
+  status_lines_ = render::wrapped(*fonts_.small, words, room, k_most_status_lines);
+  if (status_lines_.empty()) status_lines_.emplace_back();
+}
+
+std::string Viewer::pace() const {
+  return (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
+}
+
+void Viewer::draw_status() {
+  begin_panel("status", status_);
   if (player_.can_halve_step()) {
-    if (ImGui::SmallButton(say(window_words::k_halve).c_str())) player_.halve_step_and_retry();
+    if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) player_.halve_step_and_retry();
     ImGui::SameLine();
   }
-  ImGui::TextUnformatted(words.c_str());
-  const std::string pace =
-      frame_ms_ > 0 ? fmt::format("{:.0f} ms a frame   F1: keys", frame_ms_) : "F1: keys";
-  const float right = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(pace.c_str()).x;
-  ImGui::SameLine();
-  if (right > ImGui::GetCursorPosX()) {
-    ImGui::SetCursorPosX(right);
-    ImGui::TextDisabled("%s", pace.c_str());
-  }
+  ImGui::BeginGroup();
+  for (const std::string& line : status_lines_) ImGui::TextUnformatted(line.c_str());
+  ImGui::EndGroup();
+  const std::string right = pace();
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
+  ImGui::TextDisabled("%s", right.c_str());
   ImGui::End();
 }
 

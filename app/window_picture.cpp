@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "app/window_words.h"
 #include "render/osmesa_context.h"
 
 namespace topple::app {
@@ -20,7 +21,8 @@ WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = 1.f / 60;
-  viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view, settings);
+  viewer_.emplace(player_, stage_, static_cast<float>(height) / 720, view, settings,
+                  Appearance{.language = window_language()});
   if (inspected) viewer_->inspect(inspected);
   const auto waiting = [this] {
     player_.update(0);

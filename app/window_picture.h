@@ -13,7 +13,7 @@ struct ImGuiContext;
 
 namespace topple::app {
 
-/// Shows a recording as `topple view` does.
+/// Shows a recording as `topple view` does, in the language of the window.
 class WindowPicture {
  public:
   /// Throws io::InputError, and std::runtime_error when it cannot draw.

@@ -2,36 +2,99 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
+#include "app/window_words.h"
 #include "solver/accelerogram.h"
 
 namespace topple::app {
 namespace {
 
 constexpr double k_degrees = 180 / k_pi;
-constexpr double k_upright = 0.1;  // degrees: less is standing
-constexpr double k_lying = 60;     // degrees
-constexpr double k_slid = 1e-3;    // m
+constexpr double k_upright = 0.1;      // degrees: less is standing
+constexpr double k_lying = 60;         // degrees
+constexpr double k_slid_least = 1e-3;  // m
 constexpr std::size_t k_few_anchors = 4;
+
+constexpr std::size_t k_few_bodies = 5;
+
+using namespace window_words;
+
+enum class Stance { fallen, toppling, rocking, standing };
+
+Stance stance(const io::FrameRow& row, std::size_t body) {
+  const double tilt = row.body[11 * body + 7] * k_degrees, critical = row.body[11 * body + 10] * k_degrees;
+  return tilt > k_lying     ? Stance::fallen
+         : tilt > critical  ? Stance::toppling
+         : tilt > k_upright ? Stance::rocking
+                            : Stance::standing;
+}
+
+/// Of the angle at which it would topple; of a body without one, of that at which it lies.
+double share_of_critical(const io::FrameRow& row, std::size_t body) {
+  const double critical = row.body[11 * body + 10];
+  return row.body[11 * body + 7] / (critical > 0 ? critical : k_lying / k_degrees);
+}
+
+std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t> others) {
+  static constexpr std::pair<Stance, const Phrase&> k_stances[] = {{Stance::fallen, k_count_fallen},
+                                                                   {Stance::toppling, k_count_toppling},
+                                                                   {Stance::rocking, k_count_rocking},
+                                                                   {Stance::standing, k_count_standing}};
+  std::string counts;
+  std::size_t standing = 0;
+  for (const auto& [of, words] : k_stances) {
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(others, [&](std::size_t body) { return stance(row, body) == of; }));
+    if (of == Stance::standing) standing = count;
+    if (count > 0) counts += (counts.empty() ? "" : say(k_comma)) + say(words, count);
+  }
+  if (standing < others.size()) return say(k_others, others.size(), counts);
+  return standing == 1 ? say(k_other_stands) : say(k_others_stand, standing);
+}
 
 }  // namespace
 
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body) {
   const double* const values = &row.body[11 * body];
   const double tilt = values[7] * k_degrees, slide = values[8], critical = values[10] * k_degrees;
-  std::string line = model.bodies[body].name + ": ";
-  if (critical == 0) return line + fmt::format("tilt {:.1f}°", tilt);
-  if (tilt > k_lying)
-    line += fmt::format("fallen, tilt {:.0f}°", tilt);
-  else if (tilt > critical)
-    line += fmt::format("toppling, {:.1f}° beyond {:.1f}°", tilt, critical);
-  else if (tilt > k_upright)
-    line += fmt::format("rocking, {:.1f}° of {:.1f}°", tilt, critical);
-  else
-    line += "standing";
-  if (slide > k_slid) line += fmt::format(", slid {:.0f} mm", 1e3 * slide);
+  std::string line = model.bodies[body].name + say(k_colon);
+  if (critical == 0) return line + say(k_tilted, tilt);
+  switch (stance(row, body)) {
+    case Stance::fallen:
+      line += say(k_fallen, tilt);
+      break;
+    case Stance::toppling:
+      line += say(k_toppling, tilt, critical);
+      break;
+    case Stance::rocking:
+      line += say(k_rocking, tilt, critical);
+      break;
+    case Stance::standing:
+      line += say(k_standing);
+  }
+  if (slide > k_slid_least) line += say(k_slid, 1e3 * slide);
   return line;
+}
+
+std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row) {
+  std::vector<std::size_t> bodies(static_cast<std::size_t>(model.furniture_total()));
+  std::iota(bodies.begin(), bodies.end(), 0);
+  std::size_t told = bodies.size();
+  if (bodies.size() > k_few_bodies) {
+    std::ranges::stable_sort(bodies, std::ranges::greater{},
+                             [&](std::size_t body) { return share_of_critical(row, body); });
+    const auto still =
+        std::ranges::find_if(bodies, [&](std::size_t body) { return stance(row, body) == Stance::standing; });
+    told = std::min(k_few_bodies, static_cast<std::size_t>(still - bodies.begin()));
+  }
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, row, bodies[i]));
+  if (told < bodies.size()) lines.push_back(others_in_words(row, std::span(bodies).subspan(told)));
+  return lines;
 }
 
 const char* anchor_type(const Anchor& anchor) {
@@ -39,18 +102,29 @@ const char* anchor_type(const Anchor& anchor) {
   return k_types[static_cast<std::size_t>(anchor.type)];
 }
 
+std::string anchor_type_in_words(const Anchor& anchor) {
+  static constexpr const Phrase* k_types[] = {&k_strap, &k_bracket, &k_pole};
+  return say(*k_types[static_cast<std::size_t>(anchor.type)]);
+}
+
+namespace {
+
+const Phrase& anchor_state(float state) {
+  if (state == io::k_anchor_away) return k_away;
+  if (state == io::k_anchor_slack) return k_slack;
+  return state == io::k_anchor_holds ? k_holds : k_broken_anchor;
+}
+
+}  // namespace
+
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
   const float* const values = &row.anchor[4 * k];
-  const std::string line = fmt::format("{} {}: ", anchor_type(anchor), anchor.name);
-  if (values[3] != io::k_anchor_holds)
-    return line + (values[3] == io::k_anchor_away ? "taken away" : io::anchor_word(values[3]));
+  const std::string line = anchor_type_in_words(anchor) + " " + anchor.name + say(k_colon);
+  if (values[3] != io::k_anchor_holds) return line + say(anchor_state(values[3]));
   const double force = std::abs(values[0]);
-  const std::string held = fmt::format("{} {:.0f} N", values[0] > 0 ? "pulls" : "pushes", force);
-  return line + held +
-         (std::isfinite(anchor.strength)
-              ? fmt::format(", {:.0f} % of its strength", 100 * force / anchor.strength)
-              : "");
+  return line + say(values[0] > 0 ? k_pulls : k_pushes, force) +
+         (std::isfinite(anchor.strength) ? say(k_of_strength, 100 * force / anchor.strength) : "");
 }
 
 std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row) {
@@ -64,9 +138,9 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
     int count = 0;
     for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[4 * k + 3] == state;
     if (count > 0)
-      counts += fmt::format("{} {} {}", counts.empty() ? "" : ",", count, io::anchor_word(state));
+      counts += fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(anchor_state(state)));
   }
-  lines.push_back("anchors:" + counts);
+  lines.push_back(say(k_anchors, counts));
   return lines;
 }
 
@@ -75,8 +149,7 @@ bool is_static(const Setup& setup) {
 }
 
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
-  return is_static(setup) ? fmt::format("load step {} of {}, load factor {:.4g}", row.step,
-                                        setup.run.statics.load_steps, row.load_factor)
+  return is_static(setup) ? say(k_load_instant, row.step, setup.run.statics.load_steps, row.load_factor)
                           : fmt::format("t = {:.2f} s", row.time);
 }
 
@@ -86,15 +159,13 @@ std::string shake_in_words(const Parameters& parameters) {
   const double gal = shake.amplitude / k_gal;
   switch (shake.kind) {
     case Shake::Kind::sine:
-      return fmt::format("floor: {:.4g} Hz, {:.4g} gal", shake.frequency, gal);
+      return say(k_floor_sine, shake.frequency, gal);
     case Shake::Kind::sweep:
-      return fmt::format("floor: sweep {:.4g} to {:.4g} Hz, {:.4g} gal", shake.frequency,
-                         shake.last_frequency, gal);
+      return say(k_floor_sweep, shake.frequency, shake.last_frequency, gal);
     case Shake::Kind::pulse:
-      return fmt::format("floor: pulse {:g} s, {:.4g} gal", shake.duration, gal);
+      return say(k_floor_pulse, shake.duration, gal);
     case Shake::Kind::record:
-      return fmt::format("floor: record {:.3g} s, peak {:.4g} gal", shake.record->duration,
-                         std::abs(shake.scale) * shake.record->peak / k_gal);
+      return say(k_floor_record, shake.record->duration, std::abs(shake.scale) * shake.record->peak / k_gal);
   }
   return "";
 }
@@ -104,38 +175,32 @@ std::string status_in_words(const Player& player) {
   const bool loads = is_static(player.scene().setup);
   switch (status.kind) {
     case LiveStatus::Kind::starting:
-      return "Bringing the bodies to rest under gravity …";
+      return say(k_settling);
     case LiveStatus::Kind::reading:
-      return "Reading the recording …";
+      return say(k_reading);
     case LiveStatus::Kind::ended:
-      return "This session has ended: " + status.message + ". What was recorded is kept.";
+      return say(k_ended, status.message);
     case LiveStatus::Kind::returning:
-      return "Going back to the state at this instant …";
+      return say(k_returning);
     case LiveStatus::Kind::failed:
-      if (player.at_head()) return "Stopped: " + status.message;
+      if (player.at_head()) return say(k_stopped, status.message);
       break;
     case LiveStatus::Kind::over:
       if (player.at_head())
-        return (loads ? "All load steps are done."
-                      : fmt::format("The run ended at {:.2f} s.", player.time())) +
-               " R runs it again, dragging on the timeline looks back.";
+        return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end);
       break;
     default:
       break;
   }
-  if (player.way().empty())
-    return status.message.empty() ? "The recording holds no instants." : status.message;
+  if (player.way().empty()) return status.message.empty() ? say(k_no_instants) : status.message;
   if (player.at_head())
-    return player.playing() ? loads ? "Running through the load steps."
-                                    : fmt::format("Running: {:.2f} times real time asked, {:.2f} reached.",
-                                                  player.speed(), status.achieved)
-                            : "Paused. Space goes on; parameters can be changed now and while it runs.";
-  std::string words = player.replay() ? "Recording" : "Looking back";
-  if (player.playing())
-    words += loads ? ", played" : fmt::format(", played at {:g} times real time", player.speed());
-  if (!status.message.empty()) return words + "; " + status.message;
-  return words + ". C continues from here as a new branch" +
-         (player.replay() ? "." : ", End returns to the newest instant.");
+    return !player.playing() ? say(k_paused)
+           : loads           ? say(k_running_loads)
+                             : say(k_running, player.speed(), status.achieved);
+  std::string words = say(player.replay() ? k_recording : k_looking_back);
+  if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
+  if (!status.message.empty()) return say(k_says, words, status.message);
+  return say(player.replay() ? k_can_branch : k_can_branch_or_return, words);
 }
 
 }  // namespace topple::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/player.h"
 
@@ -10,8 +11,15 @@ namespace topple::app {
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
 
-/// "strap", "bracket" or "pole".
+/// One line for each of the furniture; of many, for those that tilt most of what they can, and one that
+/// counts the others.
+std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row);
+
+/// "strap", "bracket" or "pole", as files name it.
 const char* anchor_type(const Anchor& anchor);
+
+/// The same in the language of the window.
+std::string anchor_type_in_words(const Anchor& anchor);
 
 /// "strap left: pulls 430 N, 22 % of its strength".
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t anchor);

@@ -1,5 +1,8 @@
-// The letters of the overlay: DejaVu Sans, with the Latin, Greek and technical signs that captions use.
+// The letters of the overlay: DejaVu Sans, with the Latin, Greek and technical signs that captions use, and
+// Japanese ones from VL PGothic.
 #pragma once
+
+#include <string>
 
 struct ImFont;
 struct ImFontAtlas;
@@ -13,8 +16,17 @@ struct OverlayFonts {
   ImFont* small = nullptr;
 };
 
-/// Adds the three sizes that suit a picture of `height` pixels. Throws std::runtime_error that names
-/// the Debian package when the font file is not installed.
-OverlayFonts add_overlay_fonts(ImFontAtlas& atlas, int height);
+/// What is written besides captions in Latin letters.
+struct Letters {
+  std::string more = {};  ///< holds every other letter
+  bool needed = false;    ///< nothing can be read without those
+  float smallest = 9;     ///< px
+};
+
+bool has_japanese_font();
+
+/// Adds the three sizes that suit a picture of `height` pixels and bakes them. Throws std::runtime_error that
+/// names the Debian package when a font that is needed is not installed.
+OverlayFonts add_overlay_fonts(ImFontAtlas& atlas, int height, const Letters& letters = {});
 
 }  // namespace topple::render

@@ -62,7 +62,8 @@ Mesh band_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickn
 Mesh ghost_mesh(const SceneFrame& frame, LeftOut& left_out);
 
 /// The insides of shells about the highlighted member, or about all members of the highlighted body, for an
-/// outline: what of them the members do not cover is seen around them. thickness: m for each metre from `eye`.
+/// outline: what of them the members do not cover is seen around them. thickness: m for each metre from
+/// `eye`.
 Mesh shell_mesh(const SceneFrame& frame, const Eigen::Vector3f& eye, float thickness, const Float4& colour);
 
 /// Corner of a panel: `normal` is the panel's, `uv` runs over 0..1 along its edges.

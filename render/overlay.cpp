@@ -15,13 +15,21 @@
 namespace topple::render {
 namespace {
 
-constexpr ImU32 k_title_colour = IM_COL32(24, 34, 45, 255);
-constexpr ImU32 k_text_colour = IM_COL32(44, 56, 68, 255);
-constexpr ImU32 k_quiet_colour = IM_COL32(84, 97, 110, 255);
-constexpr ImU32 k_frame_colour = IM_COL32(60, 74, 88, 150);
-constexpr ImU32 k_sheet_colour = IM_COL32(255, 255, 255, 205);
-constexpr ImU32 k_trace_colour = IM_COL32(38, 92, 140, 255);
-constexpr ImU32 k_cursor_colour = IM_COL32(200, 70, 30, 255);
+struct Colours {
+  ImU32 title, text, quiet, frame, sheet, trace, cursor, border, axis;
+};
+constexpr Colours k_light = {
+    IM_COL32(24, 34, 45, 255),  IM_COL32(44, 56, 68, 255),    IM_COL32(84, 97, 110, 255),
+    IM_COL32(60, 74, 88, 150),  IM_COL32(255, 255, 255, 205), IM_COL32(38, 92, 140, 255),
+    IM_COL32(200, 70, 30, 255), IM_COL32(60, 74, 88, 60),     IM_COL32(60, 74, 88, 90)};
+constexpr Colours k_dark = {
+    IM_COL32(240, 243, 246, 255), IM_COL32(220, 226, 232, 255), IM_COL32(186, 195, 204, 255),
+    IM_COL32(190, 200, 210, 150), IM_COL32(26, 30, 36, 205),    IM_COL32(110, 185, 240, 255),
+    IM_COL32(255, 130, 90, 255),  IM_COL32(190, 200, 210, 60),  IM_COL32(190, 200, 210, 90)};
+
+const Colours& colours(bool dark) {
+  return dark ? k_dark : k_light;
+}
 
 struct Layout {
   ImDrawList& list;
@@ -29,6 +37,7 @@ struct Layout {
   float width, height;
   float unit;  // px of the picture for one pixel of a design 720 pixels high
   float margin;
+  const Colours& colours;
   float line(const ImFont* font) const { return std::round(1.32f * font->FontSize); }
 
   void text(const ImFont* font, float x, float y, ImU32 colour, const std::string& words) const {
@@ -59,7 +68,7 @@ float draw_words(const Layout& at, const Caption& caption, float right, float bo
   if (!caption.title.empty()) {
     for (const std::string& line : wrapped(*at.fonts.title, caption.title, room, 2)) {
       if (y + at.line(at.fonts.title) > bottom) break;
-      at.text(at.fonts.title, at.margin, y, k_title_colour, line);
+      at.text(at.fonts.title, at.margin, y, at.colours.title, line);
       widest = std::max(widest, text_width(*at.fonts.title, line));
       y += at.line(at.fonts.title);
     }
@@ -72,7 +81,7 @@ float draw_words(const Layout& at, const Caption& caption, float right, float bo
   for (std::size_t i = 0; i < caption.lines.size() && y + step <= bottom; ++i) {
     const bool cut = y + 2 * step > bottom && i + 1 < caption.lines.size();
     const std::string line = shortened(*at.fonts.text, cut ? "\xe2\x80\xa6" : caption.lines[i], room);
-    at.text(at.fonts.text, at.margin, y, k_text_colour, line);
+    at.text(at.fonts.text, at.margin, y, at.colours.text, line);
     widest = std::max(widest, text_width(*at.fonts.text, line));
     y += step;
   }
@@ -90,7 +99,7 @@ float draw_note(const Layout& at, const std::string& note, std::vector<OverlayBo
   const float top = y;
   float widest = 0;
   for (const std::string& line : lines) {
-    at.text(at.fonts.small, at.margin, y, k_quiet_colour, line);
+    at.text(at.fonts.small, at.margin, y, at.colours.quiet, line);
     widest = std::max(widest, text_width(*at.fonts.small, line));
     y += at.line(at.fonts.small);
   }
@@ -113,7 +122,7 @@ void draw_colour_bar(const Layout& at, ColourMap map, float left, float top, flo
     const ImU32 high = colour((i + 1) * k_colour_map_size / k_pieces);
     at.list.AddRectFilledMultiColor({left, edge(i + 1)}, {right, edge(i)}, high, high, low, low);
   }
-  at.list.AddRect({left - 0.5f, top - 0.5f}, {right + 0.5f, bottom + 0.5f}, k_frame_colour);
+  at.list.AddRect({left - 0.5f, top - 0.5f}, {right + 0.5f, bottom + 0.5f}, at.colours.frame);
 }
 
 /// The mark at `value`, from its label at the left of the bar.
@@ -128,12 +137,12 @@ void draw_mark(const Layout& at, const Legend& legend, float column_left, float 
   if (above || below) {  // it lies beyond the bar: the triangle points there
     const float toward = above ? -size : size;
     at.list.AddTriangleFilled({tip - size, y - toward / 2}, {tip, y - toward / 2},
-                              {tip - size / 2, y + toward / 2}, k_title_colour);
+                              {tip - size / 2, y + toward / 2}, at.colours.title);
   } else {
     at.list.AddTriangleFilled({tip - size, y - 0.6f * size}, {tip, y}, {tip - size, y + 0.6f * size},
-                              k_title_colour);
+                              at.colours.title);
     at.list.AddRectFilled({bar_left, y - std::max(1.0f, at.unit)}, {bar_right, y + std::max(1.0f, at.unit)},
-                          k_title_colour);
+                          at.colours.title);
   }
   const float right = tip - size - 4 * at.unit;
   const std::vector<std::string> lines = wrapped(*at.fonts.small, legend.mark_label, right - column_left, 2);
@@ -142,7 +151,7 @@ void draw_mark(const Layout& at, const Legend& legend, float column_left, float 
   line_y =
       std::clamp(line_y, top - at.fonts.small->FontSize * 0.5f, bottom - at.fonts.small->FontSize * 0.5f);
   for (const std::string& line : lines) {
-    at.text(at.fonts.small, right - text_width(*at.fonts.small, line), line_y, k_title_colour, line);
+    at.text(at.fonts.small, right - text_width(*at.fonts.small, line), line_y, at.colours.title, line);
     line_y += at.line(at.fonts.small);
   }
 }
@@ -174,8 +183,8 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
   const float bar_bottom = std::round(std::min(bar_top + longest, lowest - below_bar));
   if (bar_bottom - bar_top < 4 * small_line) return;
 
-  for (const std::string& line : heading) add_line(at.fonts.text, k_text_colour, line);
-  add_line(at.fonts.small, k_quiet_colour, shortened(*at.fonts.small, legend.unit, right - column_left));
+  for (const std::string& line : heading) add_line(at.fonts.text, at.colours.text, line);
+  add_line(at.fonts.small, at.colours.quiet, shortened(*at.fonts.small, legend.unit, right - column_left));
 
   const Ticks ticks =
       legend.square_root ? root_ticks(legend.maximum) : nice_ticks(legend.minimum, legend.maximum, 5);
@@ -197,16 +206,16 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
     const float tick_y = std::round(bar_bottom + (bar_top - bar_bottom) * share);
     at.list.AddRectFilled({bar_right, tick_y},
                           {bar_right + std::round(4 * at.unit), tick_y + std::max(1.0f, std::round(at.unit))},
-                          k_quiet_colour);
+                          at.colours.quiet);
     at.text(at.fonts.small, bar_right + std::round(8 * at.unit), tick_y - 0.5f * at.fonts.small->FontSize,
-            k_text_colour, label_of(tick));
+            at.colours.text, label_of(tick));
   }
   if (!legend.mark_label.empty() && std::isfinite(legend.mark)) {
     draw_mark(at, legend, column_left, bar_left, bar_right, bar_top, bar_bottom);
   }
   y = bar_bottom + 0.9f * small_line;
   for (const std::string& line : below)
-    add_line(at.fonts.small, k_quiet_colour, shortened(*at.fonts.small, line, right - column_left));
+    add_line(at.fonts.small, at.colours.quiet, shortened(*at.fonts.small, line, right - column_left));
   boxes.push_back({"legend", column_left, top, right, std::max(y, bar_bottom + small_line / 2)});
 }
 
@@ -285,14 +294,13 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   const float span = samples.back().at - samples.front().at;
   if (!std::isfinite(span)) return;
 
-  at.list.AddRectFilled({left, top}, {right, bottom}, k_sheet_colour, 4 * at.unit);
-  at.list.AddRect({left + 0.5f, top + 0.5f}, {right - 0.5f, bottom - 0.5f}, IM_COL32(60, 74, 88, 60),
-                  4 * at.unit);
+  at.list.AddRectFilled({left, top}, {right, bottom}, at.colours.sheet, 4 * at.unit);
+  at.list.AddRect({left + 0.5f, top + 0.5f}, {right - 0.5f, bottom - 0.5f}, at.colours.border, 4 * at.unit);
   const float inset = std::round(9 * at.unit);
   const float plot_left = left + inset;
   const float plot_right = right - inset;
   const std::string label = shortened(*at.fonts.small, trace.label, plot_right - plot_left);
-  at.text(at.fonts.small, plot_left, top + std::round(5 * at.unit), k_text_colour, label);
+  at.text(at.fonts.small, plot_left, top + std::round(5 * at.unit), at.colours.text, label);
 
   const float plot_top = top + std::round(5 * at.unit) + small_line;
   const float plot_bottom = bottom - std::round(3 * at.unit) - small_line;
@@ -304,9 +312,9 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   }
   const float zero_y = std::round(negative ? (plot_top + plot_bottom) / 2 : plot_bottom);
   const float scale = peak > 0 ? (zero_y - plot_top) / peak : 0;
-  at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, IM_COL32(60, 74, 88, 90));
+  at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, at.colours.axis);
   const std::vector<ImVec2> points = polyline(samples, plot_left, plot_right, zero_y, scale);
-  at.list.AddPolyline(points.data(), static_cast<int>(points.size()), k_trace_colour, 0,
+  at.list.AddPolyline(points.data(), static_cast<int>(points.size()), at.colours.trace, 0,
                       std::max(1.0f, 1.3f * at.unit));
 
   const auto end_label = [&](float x) {
@@ -315,17 +323,17 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   const std::string first = end_label(samples.front().at);
   const std::string last = end_label(samples.back().at);
   const float label_y = plot_bottom + std::round(1 * at.unit);
-  at.text(at.fonts.small, plot_left, label_y, k_quiet_colour, first);
-  at.text(at.fonts.small, plot_right - text_width(*at.fonts.small, last), label_y, k_quiet_colour, last);
+  at.text(at.fonts.small, plot_left, label_y, at.colours.quiet, first);
+  at.text(at.fonts.small, plot_right - text_width(*at.fonts.small, last), label_y, at.colours.quiet, last);
 
   const float share = (trace.cursor - samples.front().at) / span;
   if (share >= 0 && share <= 1) {
     const float x = std::round(plot_left + (plot_right - plot_left) * share);
     const float half = std::max(0.5f, 0.75f * at.unit);
-    at.list.AddRectFilled({x - half, plot_top}, {x + half, plot_bottom}, k_cursor_colour);
+    at.list.AddRectFilled({x - half, plot_top}, {x + half, plot_bottom}, at.colours.cursor);
     const auto after = std::ranges::lower_bound(samples, trace.cursor, {}, &Sample::at);
     if (after != samples.end()) {
-      at.list.AddCircleFilled({x, zero_y - scale * after->value}, 3.5f * at.unit, k_cursor_colour, 16);
+      at.list.AddCircleFilled({x, zero_y - scale * after->value}, 3.5f * at.unit, at.colours.cursor, 16);
     }
   }
   boxes.push_back({"trace", left, top, right, bottom});
@@ -373,7 +381,7 @@ Ticks root_ticks(double maximum) {
 std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
                                      ColourMap map, float width, float height, LeftOut& left_out) {
   const float unit = fonts.text->FontSize / 17;
-  const Layout at{list, fonts, width, height, unit, std::round(26 * unit)};
+  const Layout at{list, fonts, width, height, unit, std::round(26 * unit), colours(frame.dark)};
   std::vector<OverlayBox> boxes;
   const bool has_legend = can_be_drawn(frame.legend, left_out);
   const float column_left = has_legend ? std::round(0.825f * width) : width - at.margin;
@@ -412,16 +420,17 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
     box.right = box.left + width;
     box.bottom = box.top + height;
     if (box.bottom > room.bottom) continue;
-    list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, k_sheet_colour, pad);
-    list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, k_title_colour,
+    list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, colours(frame.dark).sheet, pad);
+    list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, colours(frame.dark).title,
                  label.words.c_str());
     placed.push_back(box);
   }
 }
 
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
-                                         ColourMap map, const OverlayBox& room, LeftOut& left_out) {
-  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0};
+                                         ColourMap map, const OverlayBox& room, bool dark,
+                                         LeftOut& left_out) {
+  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, colours(dark)};
   std::vector<OverlayBox> boxes;
   if (can_be_drawn(legend, left_out)) {
     draw_legend(at, legend, map, {room.left, room.top, room.right, room.bottom, room.bottom - room.top},

@@ -44,9 +44,9 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
                  const OverlayBox& room);
 
-/// Adds only the legend of draw_overlay, as large as `room` allows (px; its name does not count).
-/// Returns where it lies; nothing when there is no room or no legend.
+/// Adds only the legend of draw_overlay, as large as `room` allows (px; its name does not count); dark: as on
+/// a frame that is. Returns where it lies; nothing when there is no room or no legend.
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
-                                         ColourMap map, const OverlayBox& room, LeftOut& left_out);
+                                         ColourMap map, const OverlayBox& room, bool dark, LeftOut& left_out);
 
 }  // namespace topple::render

@@ -51,7 +51,7 @@ class Words {
 }  // namespace
 
 struct Picture::Parts {
-  Parts(GetProc get_proc, int w, int h)
+  Parts(GetProc get_proc, int w, int h, const Letters& letters)
       : gl(load_gl(get_proc)),
         width(w),
         height(h),
@@ -61,7 +61,7 @@ struct Picture::Parts {
         words(w, h) {
     words.with([&] {
       // Narrow pictures take the letters of a lower one, so that lines keep their room.
-      fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, std::min(height, 3 * width / 4));
+      fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, std::min(height, 3 * width / 4), letters);
       painter.upload_fonts(*ImGui::GetIO().Fonts);
     });
     check_gl(gl, "the set-up of a picture");
@@ -91,13 +91,13 @@ struct Picture::Parts {
   std::vector<OverlayBox> boxes;
 };
 
-Picture::Picture(GetProc get_proc, int width, int height) {
+Picture::Picture(GetProc get_proc, int width, int height, const Letters& letters) {
   if (std::min(width, height) < k_least_side || std::max(width, height) > k_greatest_side) {
     throw std::runtime_error("picture of " + std::to_string(width) + " x " + std::to_string(height) +
                              " px: sides must be " + std::to_string(k_least_side) + " to " +
                              std::to_string(k_greatest_side));
   }
-  parts_ = std::make_unique<Parts>(get_proc, width, height);
+  parts_ = std::make_unique<Parts>(get_proc, width, height, letters);
 }
 
 Picture::~Picture() = default;

@@ -29,7 +29,7 @@ class Picture {
  public:
   /// Needs a current context, now and in every call, that outlives the picture. width, height: 16 to
   /// 8192 px. Throws std::runtime_error when the context, the size or the font will not do.
-  Picture(GetProc get_proc, int width, int height);
+  Picture(GetProc get_proc, int width, int height, const Letters& letters = {});
   ~Picture();
   Picture(const Picture&) = delete;
   Picture& operator=(const Picture&) = delete;

@@ -139,6 +139,7 @@ struct SceneFrame {
   std::int64_t highlighted_body = -1;    ///< Tube::body likewise
   std::vector<Station> ghost_stations;   ///< of another run, for comparison; their value does not count
   std::vector<Tube> ghost_tubes;         ///< drawn translucent grey, without a shadow
+  bool dark = false;                     ///< light words on a dark ground
   Legend legend;
   Trace trace;
   Caption caption;

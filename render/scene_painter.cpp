@@ -146,6 +146,7 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.Disable(GL_DEPTH_TEST);
   gl_.Disable(GL_BLEND);
   backdrop_.use();
+  backdrop_.set("u_dark", frame.dark ? 1 : 0);
   gl_.BindVertexArray(empty_array_.id());
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 
@@ -267,6 +268,7 @@ void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Q
       look.ground.set("u_normal", axes.normal);
       look.ground.set("u_half", half);
       look.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
+      look.ground.set("u_dark", frame.dark ? 1 : 0);
       look.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
       look.ground.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
       gl_.DepthMask(seen_from_behind ? GL_FALSE : GL_TRUE);

@@ -22,6 +22,31 @@ void drop_last_letter(std::string& text) {
   if (!text.empty()) text.pop_back();
 }
 
+/// Whether the letter there is one of Chinese or Japanese, which are written without spaces: three bytes from
+/// U+3000 on.
+bool is_ideographic(std::string_view text, std::size_t at) {
+  return static_cast<unsigned char>(text[at]) >= 0xe3 && static_cast<unsigned char>(text[at]) < 0xf0;
+}
+
+/// No line begins with these.
+bool ends_a_phrase(std::string_view text, std::size_t at) {
+  static constexpr std::string_view k_ends[] = {"、", "。", "）", "」", "：", "ー",
+                                                "ッ", "ャ", "ュ", "ョ", "ィ"};
+  return std::ranges::any_of(k_ends, [&](std::string_view end) { return text.substr(at).starts_with(end); });
+}
+
+/// Where a line may end next after `at`: at a space, or beside a letter that needs none.
+std::size_t next_break(std::string_view text, std::size_t at) {
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    if (text[i] == ' ') return i;
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) == 0x80) continue;
+    std::size_t before = i - 1;
+    while (before > 0 && (static_cast<unsigned char>(text[before]) & 0xc0) == 0x80) --before;
+    if ((is_ideographic(text, i) || is_ideographic(text, before)) && !ends_a_phrase(text, i)) return i;
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 float text_width(const ImFont& font, std::string_view text) {
@@ -50,11 +75,10 @@ std::vector<std::string> wrapped(const ImFont& font, std::string_view text, floa
       lines.push_back(shortened(font, rest, width));
       break;
     }
-    std::size_t fits = 0;  // length of the longest beginning that ends at a space and fits
-    for (std::size_t space = rest.find(' '); space != std::string_view::npos;
-         space = rest.find(' ', space + 1)) {
-      if (text_width(font, rest.substr(0, space)) > width) break;
-      fits = space;
+    std::size_t fits = 0;  // length of the longest beginning that ends where a line may and fits
+    for (std::size_t end = next_break(rest, 0); end != std::string_view::npos; end = next_break(rest, end)) {
+      if (text_width(font, rest.substr(0, end)) > width) break;
+      fits = end;
     }
     if (fits == 0) {  // one word is wider than the line
       const std::size_t space = rest.find(' ');

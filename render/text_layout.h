@@ -16,7 +16,8 @@ float text_width(const ImFont& font, std::string_view text);
 /// than `width` px.
 std::string shortened(const ImFont& font, std::string_view text, float width);
 
-/// The text broken at spaces into at most `most` lines, the last one shortened.
+/// The text broken at spaces, and between letters that are written without, into at most `most` lines, the
+/// last one shortened.
 std::vector<std::string> wrapped(const ImFont& font, std::string_view text, float width, int most);
 
 }  // namespace topple::render

@@ -95,9 +95,13 @@ struct Window::Parts {
     if (action != GLFW_PRESS || code == GLFW_KEY_UNKNOWN) return;
     // GLFW names keys after the American keyboard; what counts is what stands on them.
     const char* const name = code < 256 ? glfwGetKeyName(code, scancode) : nullptr;
-    const bool letter = name != nullptr && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0';
-    parts.keys.push_back({letter ? name[0] - 'a' + 'A' : code, (modifiers & GLFW_MOD_CONTROL) != 0,
-                          (modifiers & GLFW_MOD_SHIFT) != 0});
+    const bool one = name != nullptr && name[0] != '\0' && name[1] == '\0';
+    const bool letter = one && name[0] >= 'a' && name[0] <= 'z';
+    const bool sign = one && (name[0] == '+' || name[0] == '-');
+    parts.keys.push_back({letter ? name[0] - 'a' + 'A'
+                          : sign ? name[0]
+                                 : code,
+                          (modifiers & GLFW_MOD_CONTROL) != 0, (modifiers & GLFW_MOD_SHIFT) != 0});
   }
 
   Library library;

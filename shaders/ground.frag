@@ -8,6 +8,7 @@ uniform float u_fade_radius;
 uniform float u_line_width;    // pixels
 uniform float u_strength;      // 1, or little where the ground is seen from behind
 uniform float u_is_floor;
+uniform int u_dark;
 uniform vec4 u_wall;            // plane of the wall behind which the floor ends: normal, offset
 uniform mat4 u_contact_matrix;
 uniform float u_contact_size;   // m, side of the contact map
@@ -64,14 +65,14 @@ vec3 shaded(vec3 coded, float shade) {
 }
 
 void main() {
-  vec3 paint = u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
+  vec3 paint = u_dark == 1 ? vec3(0.285, 0.300, 0.320) : u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
   float shade = mix(0.66, 1.0, key_visibility(v_position + 0.002 * u_normal, 5.0));
   if (u_is_floor > 0.5) shade *= contact_shade(v_position);
   vec3 colour = shaded(paint, shade);
 
   vec2 p = v_plane - u_grid_origin;
   float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));
-  colour = mix(colour, vec3(0.30, 0.36, 0.43), lines);
+  colour = mix(colour, u_dark == 1 ? vec3(0.74, 0.79, 0.84) : vec3(0.30, 0.36, 0.43), lines);
 
   vec2 edge = v_plane / u_half;
   if (u_is_floor < 0.5) edge.y = max(edge.y, 0.0);   // a wall stands on the floor: no fading below

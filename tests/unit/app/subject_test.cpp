@@ -15,7 +15,7 @@ namespace {
 
 double value(const Instant& now, const Subject& subject, const std::string& name) {
   for (const SubjectValue& v : values_of(subject.kind))
-    if (name == v.name) return v.at(now, subject.index);
+    if (name == v.name.english) return v.at(now, subject.index);
   ADD_FAILURE() << name;
   return 0;
 }

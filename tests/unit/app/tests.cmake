@@ -1,10 +1,12 @@
 add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/analysis_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/appearance_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_output_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bad_scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/bridge_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/compare_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/documents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
@@ -33,3 +35,12 @@ target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple
   TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 add_dependencies(app_test topple)
 gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)
+
+# It listens to what is written: Dear ImGui's AddText.
+add_executable(window_text_test ${CMAKE_CURRENT_LIST_DIR}/window_text_test.cpp)
+target_include_directories(window_text_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
+target_link_libraries(window_text_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
+target_link_options(window_text_test PRIVATE
+  -Wl,--wrap=_ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4
+  -Wl,--wrap=_ZN10ImDrawList7AddTextERK6ImVec2jPKcS4_)
+gtest_discover_tests(window_text_test PROPERTIES TIMEOUT 120)

@@ -90,8 +90,15 @@ class ViewerTest : public ::testing::Test {
   /// Where the item of that name is in a panel, found by moving the mouse over it; of a slider, that for the
   /// edits called `of`.
   ImVec2 find(const char* panel, const char* name, const char* of = nullptr) {
-    const ImGuiWindow* const window = ImGui::FindWindowByName(panel);
-    if (!window) return {-1, -1};
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+      const std::string_view called(window->Name);
+      if (called != panel && !called.starts_with(std::string(panel) + "/")) continue;
+      const ImVec2 at = find_in(window, name, of);
+      if (at.x >= 0) return at;
+    }
+    return {-1, -1};
+  }
+  ImVec2 find_in(const ImGuiWindow* window, const char* name, const char* of) {
     ImGuiID id = ImHashStr(name, 0, window->ID);
     if (of) id = ImHashStr("##value", 0, ImHashStr(of, 0, id));
     const float across = of ? 60.f : 9.f;
@@ -103,6 +110,12 @@ class ViewerTest : public ::testing::Test {
         if (ImGui::GetHoveredID() == id) return {x, y};
       }
     return {-1, -1};
+  }
+  /// What of a panel scrolls.
+  static const ImGuiWindow* content(const std::string& panel) {
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+      if (std::string_view(window->Name).starts_with(panel + "/content")) return window;
+    return nullptr;
   }
   void press_button(const char* panel, const char* name) {
     const ImVec2 at = find(panel, name);
@@ -141,7 +154,7 @@ class ViewerTest : public ::testing::Test {
 
 TEST_F(ViewerTest, a_box_takes_an_anchor_away) {
   start(&topple::Run::advance, k_rocking + k_straps);
-  const ImGuiWindow* const side = ImGui::FindWindowByName("side");
+  const ImGuiWindow* const side = content("side");
   const ImGuiID box = ImHashStr("strong", 0, ImHashStr("anchor.2.on", 0, ImHashStr("strong", 0, side->ID)));
   hover({2, 400});
   ImVec2 at{-1, -1};
@@ -319,7 +332,7 @@ class InspectorTest : public ViewerTest {
   std::vector<ImVec2> right_buttons() {
     const ImGuiWindow* inspector = nullptr;
     for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
-      if (std::string(window->Name).starts_with("side/inspector")) inspector = window;
+      if (std::string_view(window->Name).find("/inspector") != std::string_view::npos) inspector = window;
     std::vector<ImVec2> found;
     if (!inspector) return found;
     ImGuiID last = 0;

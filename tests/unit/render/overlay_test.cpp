@@ -71,7 +71,7 @@ TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const int before = list.VtxBuffer.Size;
     const OverlayBox room{"", 700, 40, 880, 40 + height};
-    const auto box = draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, room, left_out);
+    const auto box = draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, room, false, left_out);
     ASSERT_TRUE(box.has_value());
     EXPECT_EQ(box->name, "legend");
     EXPECT_NEAR(box->bottom, room.bottom, 25);
@@ -84,11 +84,13 @@ TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
   }
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const int before = list.VtxBuffer.Size;
-  EXPECT_FALSE(draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 60}, left_out));
-  EXPECT_FALSE(draw_legend_in(list, fonts, {}, ColourMap::viridis, {"", 0, 0, 180, 600}, left_out));
+  EXPECT_FALSE(
+      draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 60}, false, left_out));
+  EXPECT_FALSE(draw_legend_in(list, fonts, {}, ColourMap::viridis, {"", 0, 0, 180, 600}, false, left_out));
   EXPECT_EQ(left_out.legends, 0);
   frame.legend.maximum = frame.legend.minimum;
-  EXPECT_FALSE(draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 600}, left_out));
+  EXPECT_FALSE(
+      draw_legend_in(list, fonts, frame.legend, ColourMap::viridis, {"", 0, 0, 180, 600}, false, left_out));
   EXPECT_EQ(left_out.legends, 1);
   EXPECT_EQ(list.VtxBuffer.Size, before);
   ImGui::EndFrame();

@@ -1,0 +1,71 @@
+#include "app/accuracy.h"
+
+#include "app/teaching_words.h"
+
+namespace topple::app {
+namespace {
+
+// Of all the work, the run at the scene's own steps: the other one makes twice as many.
+constexpr double k_first_share = 1. / 3;
+
+}  // namespace
+
+Accuracy::Accuracy(const Setup& setup) : thread_([this, setup] { work(setup); }) {}
+
+Accuracy::~Accuracy() {
+  stop_ = true;
+  thread_.join();
+}
+
+std::optional<AccuracyResult> Accuracy::result() const {
+  const std::lock_guard lock(mutex_);
+  return result_;
+}
+
+void Accuracy::work(const Setup& setup) {
+  AccuracyResult found;
+  const auto outcome_of = [&](const Setup& of, double from, double share) {
+    Run run(of);
+    while (!stop_ && run.status().ok() && !run.over()) {
+      if (!run.advance().ok()) break;
+      progress_ = from + share * run.time() / of.run.duration;
+    }
+    if (!run.status().ok()) found.failure = run.status().message(of.model);
+    return run.outcome();
+  };
+  try {
+    const Outcome outcome = outcome_of(setup, 0, k_first_share);
+    found.bodies = outcome.bodies();
+    if (found.failure.empty() && !stop_) {
+      const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
+      if (found.failure.empty() && !stop_) found.errors = study::errors(setup.model, outcome, finer);
+    }
+  } catch (const std::exception& error) {
+    found.failure = error.what();
+  }
+  if (stop_) return;
+  const std::lock_guard lock(mutex_);
+  result_ = std::move(found);
+}
+
+std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyResult& result) {
+  using namespace window_words;
+  if (!result.failure.empty()) return {say(k_estimate_failed, result.failure)};
+  std::vector<std::string> lines;
+  for (std::size_t b = 0; b < result.errors.size(); ++b) {
+    const study::BodyError& error = result.errors[b];
+    const std::string& name = model.bodies[b].name;
+    const double degrees = 180 / k_pi;
+    if (!error.same_verdict())
+      lines.push_back(say(k_unsure, name));
+    else if (error.overturned)
+      lines.push_back(
+          say(k_sure_fall, name, error.overturn_time.value_or(0), error.overturn_error.value_or(0)));
+    else
+      lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * degrees,
+                          error.peak_tilt_error.value_or(0) * degrees));
+  }
+  return lines;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,27 @@
+// Colours of the window's charts and words, light or dark.
+#pragma once
+
+#include <imgui.h>
+
+namespace topple::app {
+
+struct Theme {
+  ImU32 text, quiet;  ///< words on panels and sheets
+  ImU32 sheet;        ///< behind charts
+  ImU32 veil;         ///< behind words over the scene
+  ImU32 frame, axis, faint, cursor;
+  ImU32 line, chosen, positive, negative, hinge, edit, ghost, other;
+  ImU32 floor[3];  ///< its components
+};
+
+/// That of the window: a light one until a dark one is chosen.
+inline bool& window_is_dark() {
+  static bool dark = false;
+  return dark;
+}
+const Theme& theme();
+
+/// Dear ImGui's own colours and sizes, of letters `scale` times as large as at 720 lines.
+void set_style(float scale);
+
+}  // namespace topple::app

@@ -1,0 +1,237 @@
+// Every text that the window shows, caught on its way to Dear ImGui's draw lists: none is clipped, none lies
+// on another, each is large enough and has contrast enough. The linker leads ImDrawList::AddText here.
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "app/theme.h"
+#include "app/viewer.h"
+#include "app/window_words.h"
+#include "live.h"
+#include "render/image.h"
+#include "unit/render/off_screen.h"
+#include "unit/render/scratch.h"
+
+namespace {
+
+struct Shown {
+  const ImDrawList* list;
+  std::string words;
+  ImRect box, clip;
+  ImU32 colour;
+  float size;
+  bool scrolls;  ///< up and down: what is not seen can be reached
+};
+std::vector<Shown> shown;
+bool listening = false, mute = false;
+
+/// Whether the list is of a window that scrolls, or a part of one.
+bool scrolls(const ImDrawList* list) {
+  for (const ImGuiWindow* window : GImGui->Windows)
+    if (window->DrawList == list) return window->ScrollMax.y > 0;
+  return false;
+}
+
+}  // namespace
+
+extern "C" {
+// ImDrawList::AddText(const ImFont*, float, const ImVec2&, ImU32, const char*, const char*, float, const
+// ImVec4*)
+void __real__ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4(ImDrawList*, const ImFont*, float,
+                                                                         const ImVec2&, ImU32, const char*,
+                                                                         const char*, float, const ImVec4*);
+// ImDrawList::AddText(const ImVec2&, ImU32, const char*, const char*)
+void __real__ZN10ImDrawList7AddTextERK6ImVec2jPKcS4_(ImDrawList*, const ImVec2&, ImU32, const char*,
+                                                     const char*);
+
+void __wrap__ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4(ImDrawList* list, const ImFont* font,
+                                                                         float size, const ImVec2& at,
+                                                                         ImU32 colour, const char* begin,
+                                                                         const char* end, float wrap,
+                                                                         const ImVec4* fine) {
+  if (!font) font = GImGui->Font;
+  if (size == 0) size = GImGui->FontSize;
+  if (!end) end = begin + std::strlen(begin);
+  if (listening && end > begin) {
+    const ImVec2 extent = font->CalcTextSizeA(size, FLT_MAX, wrap, begin, end);
+    const ImVec4 c = list->_CmdHeader.ClipRect;
+    ImRect clip(c.x, c.y, c.z, c.w);
+    if (fine) clip.ClipWith(ImRect(fine->x, fine->y, fine->z, fine->w));
+    shown.push_back({list, std::string(begin, end), ImRect(at, {at.x + extent.x, at.y + extent.y}), clip,
+                     colour, size, scrolls(list)});
+  }
+  if (!mute)
+    __real__ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4(list, font, size, at, colour, begin,
+                                                                        end, wrap, fine);
+}
+
+void __wrap__ZN10ImDrawList7AddTextERK6ImVec2jPKcS4_(ImDrawList* list, const ImVec2& at, ImU32 colour,
+                                                     const char* begin, const char* end) {
+  __wrap__ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4(
+      list, list->_Data->Font, list->_Data->FontSize, at, colour, begin, end, 0, nullptr);
+}
+}
+
+namespace topple::app {
+namespace {
+
+double luminance(double r, double g, double b) {
+  const auto linear = [](double c) {
+    c /= 255;
+    return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+}
+
+/// WCAG 2.1's contrast ratio of a colour, as its alpha lets it be, on a pixel.
+double contrast(ImU32 colour, const std::uint8_t* pixel) {
+  const double alpha = ((colour >> IM_COL32_A_SHIFT) & 255) / 255.;
+  const auto mixed = [&](int shift, int k) {
+    return alpha * ((colour >> shift) & 255) + (1 - alpha) * pixel[k];
+  };
+  const double text =
+      luminance(mixed(IM_COL32_R_SHIFT, 0), mixed(IM_COL32_G_SHIFT, 1), mixed(IM_COL32_B_SHIFT, 2));
+  const double ground = luminance(pixel[0], pixel[1], pixel[2]);
+  return (std::max(text, ground) + 0.05) / (std::min(text, ground) + 0.05);
+}
+
+struct Look {
+  float width, height;
+  Appearance appearance;
+  const char* name;
+};
+
+class WindowText : public ::testing::TestWithParam<Look> {
+ protected:
+  WindowText() : interface_(ImGui::CreateContext()) {}
+  ~WindowText() override {
+    viewer_.reset();
+    player_.reset();
+    run_.reset();
+    ImGui::DestroyContext(interface_);
+    window_language() = Language::english;
+    window_is_dark() = false;
+  }
+  void start() {
+    const Look& look = GetParam();
+    const auto scene = live_scene();
+    run_.emplace(LiveSource{.scene = scene, .recording = {}, .output = {}});
+    player_.emplace(scene, *run_);
+    stage_.emplace(render::off_screen());
+    viewer_.emplace(*player_, *stage_, 1.f, render::NamedView::iso, PictureSettings{}, look.appearance);
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {look.width, look.height};
+    io.DeltaTime = 1.f / 60;
+    ASSERT_TRUE(eventually([this] { frame(); }, [this] { return player_->can_edit(); }));
+    for (int i = 0; i < 3; ++i) player_->faster();
+    player_->play();
+    ASSERT_TRUE(
+        eventually([this] { frame(); }, [this] { return player_->status().kind == LiveStatus::Kind::over; }));
+    for (int i = 0; i < 40; ++i) frame();
+  }
+  void frame() {
+    viewer_->update(1. / 60);
+    ImGui::NewFrame();
+    viewer_->build();
+  }
+  render::Image shot() { return stage_->shot(viewer_->surface(), *ImGui::GetDrawData()); }
+
+  void check(const std::string& what) {
+    SCOPED_TRACE(std::string(GetParam().name) + ", " + what);
+    for (int i = 0; i < 3; ++i) frame();
+    shown.clear();
+    listening = true;
+    frame();
+    listening = false;
+    if (const char* const folder = std::getenv("TOPPLE_LOOK"))
+      render::write_png(std::string(folder) + "/" + GetParam().name + "-" + what + ".png", shot());
+    mute = true;
+    frame();
+    mute = false;
+    const render::Image ground = shot();
+    EXPECT_GT(shown.size(), 10u);
+    for (const Shown& text : shown) check_text(text, ground);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) check_apart(shown[i], shown[j]);
+  }
+
+  static ImRect seen(const Shown& text) {
+    ImRect box = text.box;
+    box.ClipWithFull(text.clip);
+    return box;
+  }
+  static void check_text(const Shown& text, const render::Image& ground) {
+    SCOPED_TRACE("\"" + text.words + "\"");
+    EXPECT_GE(text.size, 12);
+    EXPECT_GE(text.box.Min.x, text.clip.Min.x - 0.5f);
+    EXPECT_LE(text.box.Max.x, text.clip.Max.x + 0.5f) << "it is clipped at the right";
+    if (!text.scrolls) {
+      EXPECT_GE(text.box.Min.y, text.clip.Min.y - 1.5f);
+      EXPECT_LE(text.box.Max.y, text.clip.Max.y + 1.5f) << "it is clipped below";
+    }
+    const ImRect box = seen(text);
+    int pixels = 0, poor = 0;
+    for (int y = std::max(0, static_cast<int>(box.Min.y));
+         y < std::min<int>(ground.height, static_cast<int>(box.Max.y)); ++y)
+      for (int x = std::max(0, static_cast<int>(box.Min.x));
+           x < std::min<int>(ground.width, static_cast<int>(box.Max.x)); ++x) {
+        ++pixels;
+        poor +=
+            contrast(text.colour,
+                     &ground.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(ground.width) +
+                                       static_cast<std::size_t>(x))]) < 4.5;
+      }
+    // a line or a grab may cross a word
+    EXPECT_LE(poor, 0.15 * pixels) << "contrast below 4.5";
+  }
+  static void check_apart(const Shown& a, const Shown& b) {
+    if (a.list != b.list) return;  // a popup covers what is below it
+    ImRect both = seen(a);
+    both.ClipWithFull(seen(b));
+    // boxes are as high as the tallest letter of the font: neighbours may share a row or two
+    EXPECT_FALSE(both.GetWidth() > 1.5f && both.GetHeight() > 0.25f * std::min(a.size, b.size))
+        << "\"" << a.words << "\" lies on \"" << b.words << "\"";
+  }
+  ImGuiContext* interface_;
+  std::optional<LiveRun> run_;
+  std::optional<Player> player_;
+  std::optional<render::Stage> stage_;
+  std::optional<Viewer> viewer_;
+};
+
+TEST_P(WindowText, is_read_in_every_panel) {
+  start();
+  static constexpr const char* k_tabs[] = {"parameters", "picture", "inspect", "learn"};
+  for (std::size_t tab = 0; tab < std::size(k_tabs); ++tab) {
+    viewer_->show(static_cast<Viewer::Tab>(tab));
+    check(k_tabs[tab]);
+  }
+  viewer_->inspect(Subject{Subject::Kind::member, 0});
+  check("member");
+  viewer_->inspect(Subject{Subject::Kind::body, 0});
+  check("body");
+  player_->scrub(0.4);
+  check("past");
+  viewer_->press({render::key::f1, false, false});
+  check("keys");
+}
+
+constexpr Language k_ja = Language::japanese, k_en = Language::english;
+INSTANTIATE_TEST_SUITE_P(Looks, WindowText,
+                         ::testing::Values(Look{1280, 720, {1, false, k_en}, "light"},
+                                           Look{1280, 720, {1, true, k_en}, "dark"},
+                                           Look{1280, 720, {2, false, k_en}, "large"},
+                                           Look{1280, 720, {1, false, k_ja}, "japanese"},
+                                           Look{1280, 720, {2, true, k_ja}, "large-dark-japanese"}),
+                         [](const auto& look) {
+                           std::string name = look.param.name;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace topple::app
