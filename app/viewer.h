@@ -114,6 +114,7 @@ class Viewer {
   Histories histories_;
   TeachingState teaching_;
   Tab tab_ = Tab::parameters;
+  int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
