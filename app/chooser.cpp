@@ -168,13 +168,13 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   draw_recent(fonts);
   ImGui::EndChild();
   ImGui::SameLine(0, 20 * unit);
-  ImGui::BeginGroup();
+  ImGui::BeginChild("built-in", {0, -foot}, false, plain);
   ImGui::TextUnformatted(say(ww::k_built_in).c_str());
   ImGui::Separator();
-  ImGui::BeginChild("scenes", {0, -foot}, false, plain);
+  ImGui::BeginChild("scenes", {0, 0}, false, plain);
   draw_scenes(fonts);
   ImGui::EndChild();
-  ImGui::EndGroup();
+  ImGui::EndChild();
   ImGui::TextDisabled("%s", say(ww::k_choose_keys).c_str());
   ImGui::End();
 }
@@ -233,7 +233,7 @@ void Chooser::draw_scenes(const render::OverlayFonts& fonts) {
 void Chooser::draw_card(const Entry& entry, bool selected, float width, const render::OverlayFonts& fonts) {
   const float line = fonts.small->FontSize, pad = 0.6f * line;
   const float picture = std::round(width * k_thumbnail_height / k_thumbnail_width);
-  const float height = picture + 3.4f * line;
+  const float height = picture + 4.6f * line;
   const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + width, at.y + height};
   if (ImGui::InvisibleButton("card", {width, height})) choose(entry);
   const bool hovered = ImGui::IsItemHovered();
@@ -250,10 +250,18 @@ void Chooser::draw_card(const Entry& entry, bool selected, float width, const re
     list.AddRectFilled(at, corner, ImGui::GetColorU32(ImGuiCol_Button), round, ImDrawFlags_RoundCornersTop);
   add_line(list, fonts.small, {at.x + pad, corner.y + 0.45f * line}, width - 2 * pad,
            ImGui::GetColorU32(ImGuiCol_Text), entry.source);
-  add_line(list, fonts.small, {at.x + pad, corner.y + 1.75f * line}, width - 2 * pad,
-           ImGui::GetColorU32(ImGuiCol_TextDisabled), entry.title);
+  const char* const title = entry.title.c_str();
+  const char* rest =
+      fonts.small->CalcWordWrapPositionA(1, title, title + entry.title.size(), width - 2 * pad);
+  const ImU32 quiet = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+  const float first = corner.y + 1.75f * line;
+  list.AddText(fonts.small, line, {at.x + pad, first}, quiet, title, rest);
+  while (*rest == ' ') ++rest;
+  add_line(list, fonts.small, {at.x + pad, first + 1.2f * line}, width - 2 * pad, quiet, rest);
   const ImU32 edge = selected ? IM_COL32(28, 112, 190, 255) : ImGui::GetColorU32(ImGuiCol_Border);
-  list.AddRect(at, end, edge, round, 0, selected ? 2.5f : 1);
+  const float inset = selected ? 1 : 0;
+  list.AddRect({at.x + inset, at.y + inset}, {end.x - inset, end.y - inset}, edge, round, 0,
+               selected ? 2.5f : 1);
 }
 
 }  // namespace topple::app

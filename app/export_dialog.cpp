@@ -22,6 +22,7 @@ namespace ww = window_words;
 
 constexpr int k_least_side = 64, k_most_side = 8192;  // px, as of topple render
 constexpr int k_most_rate = 240;
+constexpr std::chrono::milliseconds k_recorded{200};  // more than a recording lags behind its run
 
 /// The options of `topple render` that draw as the viewer does.
 std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
@@ -65,7 +66,7 @@ void quiet_text(const std::string& text) {
 void label(const Phrase& phrase) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(say(phrase).c_str());
-  ImGui::SameLine(9 * ImGui::GetFontSize());
+  ImGui::SameLine(10 * ImGui::GetFontSize());
 }
 
 }  // namespace
@@ -100,11 +101,11 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     std::error_code ignored;
     if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));
     require_writable_file("export", result, recording);
+    const auto due = std::chrono::steady_clock::now() + k_recorded;
     std::vector<std::string> words;
     if (what == What::tables) {
       const std::string partial = result + fmt::format(".part-{}", getpid());
-      job_.emplace(program_, std::vector<std::string>{"export", recording, "--csv", partial}, result,
-                   partial);
+      request_ = {{"export", recording, "--csv", partial}, result, partial, due};
       return;
     }
     const bool video = what == What::video;
@@ -117,13 +118,23 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     else
       add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
     for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
-    job_.emplace(program_, words, result);
+    request_ = {words, result, "", due};
+  } catch (const std::runtime_error& error) {
+    refused_ = error.what();
+  }
+}
+
+void ExportDialog::begin_job() {
+  const Request request = *std::exchange(request_, std::nullopt);
+  try {
+    job_.emplace(program_, request.words, request.result, request.partial);
   } catch (const std::runtime_error& error) {
     refused_ = error.what();
   }
 }
 
 bool ExportDialog::update() {
+  if (request_ && std::chrono::steady_clock::now() >= request_->due) begin_job();
   if (!job_ || !job_->update()) return false;
   if (job_->done()) {
     if (job_->failure().empty()) {
@@ -144,8 +155,8 @@ std::string ExportDialog::take_news() {
 
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
                         const Box& window, const render::OverlayFonts& fonts) {
-  begin_panel_over("export", window, 660, say(ww::k_export_title), fonts);
-  ImGui::BeginDisabled(job_.has_value());
+  begin_panel_over("export", window, 660, 0.46f, say(ww::k_export_title), fonts);
+  ImGui::BeginDisabled(busy());
   draw_choices(player);
   ImGui::EndDisabled();
   if (job_) draw_job();
@@ -155,9 +166,8 @@ void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::s
     ImGui::PopTextWrapPos();
   }
   ImGui::Dummy({0, 4});
-  if (button_at_right(say(ww::k_export_now), 1, !job_)) start(player, viewer, recording);
-  if (job_ ? button_at_right(say(ww::k_cancel), 0) : button_at_right(say(ww::k_close), 0))
-    job_ ? job_->cancel() : close();
+  if (button_at_right(say(ww::k_export_now), 1, !busy())) start(player, viewer, recording);
+  if (button_at_right(say(job_ ? ww::k_cancel : ww::k_close), 0)) job_ ? job_->cancel() : close();
   end_panel_over();
 }
 
@@ -191,14 +201,15 @@ void ExportDialog::draw_choices(const Player& player) {
   if (what != What::video) return;
   for (int& side : size) side += side % 2;  // as H.264 has it
   const double first = player.way().empty() ? 0 : player.way().front()->time, last = player.end();
+  const char* const unit = is_static(player.scene().setup) ? "" : "s";
   label(ww::k_from);
   ImGui::SetNextItemWidth(number);
-  ImGui::InputDouble("s##from", &from, 0, 0, "%.2f");
+  ImGui::InputDouble(fmt::format("{}##from", unit).c_str(), &from, 0, 0, "%.2f");
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::TextUnformatted(say(ww::k_to).c_str());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
-  ImGui::InputDouble("s##to", &to, 0, 0, "%.2f");
+  ImGui::InputDouble(fmt::format("{}##to", unit).c_str(), &to, 0, 0, "%.2f");
   from = std::clamp(std::isfinite(from) ? from : first, first, last);
   to = std::clamp(std::isfinite(to) ? to : last, from, last);
   label(ww::k_rate);

@@ -1,8 +1,10 @@
 // "Export…": a picture, a video or tables of what the window shows.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/export_job.h"
 #include "app/message.h"
@@ -32,21 +34,30 @@ class ExportDialog {
   What what = What::picture;
   char path[4096] = {};
   int size[2] = {1920, 1080};
-  double from = 0, to = 0;  ///< s
+  double from = 0, to = 0;  ///< s; of a static run parts of its way
   int rate = 30;            ///< pictures a second
 
   /// Begins; what is wrong is in refused().
   void start(const Player& player, const Viewer& viewer, const std::string& recording);
   const std::string& refused() const { return refused_; }
+  bool busy() const { return request_ || job_; }
   ExportJob* job() { return job_ ? &*job_ : nullptr; }
 
  private:
   void suggest_path(const Player& player);
+  void begin_job();
   void draw_choices(const Player& player);
   void draw_job();
 
   const std::string program_;
   bool open_ = false;
+  /// What becomes a job as soon as all that is shown has been recorded.
+  struct Request {
+    std::vector<std::string> words;
+    std::string result, partial;
+    std::chrono::steady_clock::time_point due;
+  };
+  std::optional<Request> request_;
   std::optional<ExportJob> job_;
   std::string refused_, news_;
 };

@@ -53,7 +53,8 @@ std::string option_head(const CLI::Option& option) {
 std::string command_section(const CLI::App& command) {
   std::string usage, list;
   for (const CLI::Option* option : options_of(command)) {
-    if (option->get_positional()) usage += option_head(*option) + " ";
+    if (option->get_positional())
+      usage += (option->get_required() ? option_head(*option) : "[" + option_head(*option) + "]") + " ";
     list += ".TP\n" + option_head(*option) + "\n" + roff(option->get_description()) + "\n";
   }
   // "Example:\n  topple run ..."

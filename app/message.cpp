@@ -36,25 +36,25 @@ std::string in_lines(const std::string& text, float width) {
 
 }  // namespace
 
-void begin_panel_over(const char* name, const Box& window, float width, const std::string& title,
-                      const render::OverlayFonts& fonts) {
+void begin_panel_over(const char* name, const Box& window, float width, float height,
+                      const std::string& title, const render::OverlayFonts& fonts) {
   constexpr ImGuiWindowFlags k_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
   const float unit = fonts.small->FontSize / 14;
   ImGui::SetNextWindowPos({window.left, window.top});
   ImGui::SetNextWindowSize({window.width, window.height});
-  ImGui::SetNextWindowBgAlpha(0.5f);
+  ImGui::SetNextWindowBgAlpha(0.4f);
   ImGui::PushStyleColor(ImGuiCol_WindowBg, {0.35f, 0.38f, 0.42f, 1});
   ImGui::Begin(name, nullptr, k_flags);
   ImGui::PopStyleColor();
   // Its height is that of what it held in the frame before.
-  const float height = ImGui::GetStateStorage()->GetFloat(ImGui::GetID("height"), 8 * fonts.text->FontSize);
+  const float tall = ImGui::GetStateStorage()->GetFloat(ImGui::GetID("height"), 8 * fonts.text->FontSize);
   const float wide = std::min(width * unit, window.width);
-  ImGui::SetCursorPos({(window.width - wide) / 2, std::max(0.46f * (window.height - height), 0.f)});
+  ImGui::SetCursorPos({(window.width - wide) / 2, std::max(height * (window.height - tall), 0.f)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * unit, 16 * unit});
   ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 6 * unit);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyle().Colors[ImGuiCol_WindowBg]);
-  ImGui::BeginChild("panel", {wide, height}, true, k_flags | ImGuiWindowFlags_AlwaysUseWindowPadding);
+  ImGui::BeginChild("panel", {wide, tall}, true, k_flags | ImGuiWindowFlags_AlwaysUseWindowPadding);
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   ImGui::PushFont(fonts.text);
@@ -83,7 +83,7 @@ bool button_at_right(const std::string& label, int place, bool enabled) {
 }
 
 Answer draw_message(const Message& message, const Box& window, const render::OverlayFonts& fonts) {
-  begin_panel_over("message", window, 640, message.title, fonts);
+  begin_panel_over("message", window, 640, 0.85f, message.title, fonts);
   const ImGuiStyle& style = ImGui::GetStyle();
   const float width = ImGui::GetContentRegionAvail().x;
   std::string lines = in_lines(message.text, width - 2 * style.FramePadding.x - style.ScrollbarSize);

@@ -8,10 +8,10 @@
 
 namespace topple::app {
 
-/// Begins a panel of this width in the middle of `window` and dims the rest, which then takes no clicks.
-/// end_panel_over() ends it.
-void begin_panel_over(const char* name, const Box& window, float width, const std::string& title,
-                      const render::OverlayFonts& fonts);
+/// Begins a panel of this width over `window` and dims the rest, which then takes no clicks. `height`: where
+/// it stands, 0 at the top, 1 at the bottom. end_panel_over() ends it.
+void begin_panel_over(const char* name, const Box& window, float width, float height,
+                      const std::string& title, const render::OverlayFonts& fonts);
 void end_panel_over();
 
 /// A button at the right edge of the panel, `place` places from the right.

@@ -77,7 +77,7 @@ void SaveDialog::press(const render::KeyPress& press) {
 
 std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, const Box& window,
                              const render::OverlayFonts& fonts) {
-  begin_panel_over("save", window, 640, say(ww::k_save_scene), fonts);
+  begin_panel_over("save", window, 640, 0.46f, say(ww::k_save_scene), fonts);
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", say(ww::k_save_scene_about).c_str());
   ImGui::PopTextWrapPos();

@@ -15,6 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 namespace ww = window_words;
 
+constexpr int k_frames_of_news =
+    4;  // a panel knows its height after it was drawn, and its picture comes later
+
 Box whole_window() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   return {0, 0, size.x, size.y};
@@ -119,6 +122,7 @@ bool Shell::finish_opening() {
 }
 
 bool Shell::update(double wall_s) {
+  const bool told_before = message_.has_value();
   bool news = finish_opening();
   if (chooser_.is_open()) news = chooser_.update() || news;
   news = export_.update() || news;
@@ -130,11 +134,11 @@ bool Shell::update(double wall_s) {
       message_ = {say(ww::k_record_broke_off), status.record_failure, ""};
     return true;
   });
-  if (session_) {
-    news = session_->viewer().update(wall_s) || news;
-    watch_trouble();
-  }
-  return news || opening_;
+  const bool seen = session_ && session_->viewer().update(wall_s);
+  if (session_) watch_trouble();
+  if (news || message_.has_value() != told_before) frames_due_ = k_frames_of_news;
+  if (frames_due_ > 0) --frames_due_;
+  return news || seen || opening_ || frames_due_ > 0;
 }
 
 // Each trouble is told once.
@@ -195,7 +199,7 @@ void Shell::build() {
     ImGui::Render();
     return;
   }
-  if (covered() || export_.job())
+  if (covered() || export_.busy())
     session_->viewer().build([this] { build_over(); });
   else
     session_->viewer().build();

@@ -44,7 +44,7 @@ class Shell {
   void build();
   render::Surface surface() const;
   void report_frame_time(double ms);
-  bool wants_to_close() const { return wants_to_close_ || (session_ && session_->viewer().wants_to_close()); }
+  bool wants_to_close() const { return wants_to_close_; }
 
   /// "topple: paper-a".
   std::string title() const;
@@ -85,6 +85,7 @@ class Shell {
   std::unique_ptr<Session> session_;
   std::vector<std::future<LiveStatus>> closing_;
   std::string told_failure_, told_trouble_;  ///< what a message was shown for
+  int frames_due_ = 0;
   bool wants_to_close_ = false;
 };
 

@@ -161,7 +161,10 @@ void Viewer::build(const std::function<void()>& over) {
       told_.clear();
     }
   std::optional<io::FrameRow> row = player_.row();
-  if (!same_instant(row, row_)) scene_changed_ = true;
+  const LiveStatus& status = player_.status();
+  const int failed = status.kind == LiveStatus::Kind::failed ? status.element : -1;
+  if (!same_instant(row, row_) || failed != failed_element_) scene_changed_ = true;
+  failed_element_ = failed;
   row_ = std::move(row);
   handle_mouse();
   if (row_) draw_words(*row_);
@@ -187,12 +190,11 @@ void Viewer::draw_scene() {
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
     frame_.dark = appearance_.dark;
-    const LiveStatus& status = player_.status();
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);
-    else if (status.kind == LiveStatus::Kind::failed && status.element >= 0)
+    else if (failed_element_ >= 0)
       frame_.highlighted_member =
-          player_.scene().setup.model.elements[static_cast<std::size_t>(status.element)].member;
+          player_.scene().setup.model.elements[static_cast<std::size_t>(failed_element_)].member;
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }

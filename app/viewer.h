@@ -51,7 +51,6 @@ class Viewer {
 
   /// What the last frame's buttons asked for.
   ShellRequest asked() const { return asked_; }
-  bool wants_to_close() const { return wants_to_close_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
@@ -115,11 +114,11 @@ class Viewer {
   Histories histories_;
   TeachingState teaching_;
   Tab tab_ = Tab::parameters;
+  int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
-  bool wants_to_close_ = false;
   float transport_height_ = 0;  // as last drawn
   std::vector<std::string> status_lines_;
   bool to_next_panel_ = false;

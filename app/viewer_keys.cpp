@@ -94,7 +94,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
        false,
        false,
        [](Viewer& v) { v.keys_shown_ = !v.keys_shown_; }},
-      {{"Ctrl+Q", "Ctrl+Q"}, k_key_quit, 'Q', true, false, [](Viewer& v) { v.wants_to_close_ = true; }},
+      {{"Ctrl+Q", "Ctrl+Q"}, k_key_quit},
   };
   return k_actions;
 }

@@ -42,8 +42,8 @@ double tilt(const BodyPose& pose);
 /// rad. Infinite for a body without a base or with supports.
 double critical_angle(const Model& model, int body, const BodyPose& pose);
 
-/// Energy that lifts the centre of gravity of a rigid body over the edge in the direction of its tilt, J; both
-/// infinite where critical_angle is.
+/// Energy that lifts the centre of gravity of a rigid body over the edge in the direction of its tilt, J;
+/// both infinite where critical_angle is.
 ///   m g R (1 - cos(critical - tilt)),  R from the edge to the centre of gravity; 0 beyond the critical angle
 struct OverturnBarrier {
   double left;   ///< from this tilt on

@@ -119,7 +119,7 @@ class Rewriting {
     const Node root = parse_toml(saved_.text, "scene");
     for (const auto& [key, index] : different(read))
       change(root, {key, index, edited_value(now_, key, index)});
-    for (std::size_t i = 0; i < now_.shakes.size(); ++i) drop_foreign(root, "shake", i, now_.shakes[i]);
+    for (std::size_t i = 0; i < now_.shakes.size(); ++i) drop_foreign(root, i);
     drop_foreign(root, read);
     if (!frames_only() && read.integrator != now_.integrator && saved_.given_up.empty())
       saved_.given_up.push_back(edit_key({Edit::Key::integrator}));
@@ -160,15 +160,17 @@ class Rewriting {
     return key.choices[static_cast<std::size_t>(number)];
   }
 
-  void drop_foreign(const Node& root, const std::string& name, std::size_t i, const Shake& shake) {
-    const Node* const list = root.find(name);
+  void drop_foreign(const Node& root, std::size_t i) {
+    const Shake& shake = now_.shakes[i];
+    const Node* const list = root.find("shake");
     if (!list || i >= list->items.size()) return;
     const Node& entry = list->items[i].value;
-    const std::vector<std::string> path{name, std::to_string(i + 1)};
-    drop(entry, name, path, "type", word(key_of(Edit::Key::type), static_cast<int>(shake.kind)));
+    const std::string number = std::to_string(i + 1);
+    drop(entry, "shake", {"shake", number}, "type",
+         word(key_of(Edit::Key::type), static_cast<int>(shake.kind)));
     const bool sweep = shake.kind == Shake::Kind::sweep;
     if (sweep && entry.find("taper") && 2 * shake.taper > shake_turns(shake, shake.start + shake.duration))
-      changes_.push_back({{name, std::to_string(i + 1), "taper"}, std::nullopt});
+      changes_.push_back({{"shake", number, "taper"}, std::nullopt});
   }
 
   void drop_foreign(const Node& root, const Parameters& read) {

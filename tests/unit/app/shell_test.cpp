@@ -312,6 +312,25 @@ TEST_F(ShellTest, a_step_that_fails_offers_half_of_it) {
   EXPECT_DOUBLE_EQ(player().parameters().time_step, step / 2);
 }
 
+TEST_F(ShellTest, where_a_step_failed_is_marked_in_the_picture) {
+  shell_->show({.scene = live_scene(k_rocking, {"run.integrator=central-difference"})}, "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  const auto scene = [&] {  // without words and panels
+    press(render::key::escape);
+    for (int i = 0; i < 60; ++i) frame();  // until it is drawn at its best
+    const render::Image image = stage_.shot(shell_->surface(), *ImGui::GetDrawData());
+    std::vector<std::uint8_t> pixels;
+    for (std::size_t y = 100; y < 450; ++y)
+      pixels.insert(pixels.end(), &image.rgba[4 * (1280 * y + 200)], &image.rgba[4 * (1280 * y + 750)]);
+    return pixels;
+  };
+  const std::vector<std::uint8_t> before = scene();
+  player().play();
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  ASSERT_EQ(player().time(), 0);
+  EXPECT_NE(scene(), before);
+}
+
 TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unasked) {
   open_rocking();
   run_to(0.1);
@@ -374,7 +393,7 @@ class ExportDialogTest : public ShellTest {
     dialog().what = what;
   }
   std::string export_failure() {
-    if (!until([&] { return !dialog().job(); })) return "it did not end";
+    if (!until([&] { return !dialog().busy(); })) return "it did not end";
     return dialog().refused();
   }
 };
@@ -438,7 +457,7 @@ TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
   dialog().rate = 240;
   start();
   ASSERT_EQ(dialog().refused(), "");
-  ASSERT_TRUE(until([&] { return !dialog().job() || dialog().job()->part() > 0; }));
+  ASSERT_TRUE(until([&] { return !dialog().busy() || (dialog().job() && dialog().job()->part() > 0); }));
   ASSERT_NE(dialog().job(), nullptr) << dialog().refused();
   click("Cancel");
   EXPECT_EQ(export_failure(), "");

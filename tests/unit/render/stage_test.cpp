@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/unit/render/off_screen.h"
+#include "tests/unit/render/scratch.h"
 #include "tests/unit/render/staged.h"
 
 namespace topple::render {
@@ -26,6 +27,21 @@ Image region(Staged& staged) {
 Image scene(Staged& staged, const SceneFrame& frame, Quality quality = Quality::still) {
   staged.draw_scene(frame, quality);
   return region(staged);
+}
+
+TEST(Stage, a_portrait_leaves_what_was_drawn_and_survives_as_a_file) {
+  Staged staged(off_screen());
+  const SceneFrame other = synthetic_cabinet(2);
+  const Image first = scene(staged, synthetic_cabinet(6));
+  const Image portrait =
+      staged.stage.portrait(other, fit_camera(NamedView::iso, other, 1.6f), ColourMap::viridis, 320, 200);
+  EXPECT_TRUE(region(staged) == first);
+  const Scratch scratch;
+  write_png(scratch / "portrait.png", portrait);
+  EXPECT_TRUE(load_png(scratch / "portrait.png") == portrait);
+  std::ofstream(scratch / "broken.png") << file_bytes(scratch / "portrait.png").substr(0, 300);
+  EXPECT_FALSE(load_png(scratch / "broken.png").has_value());
+  EXPECT_FALSE(load_png(scratch / "none.png").has_value());
 }
 
 TEST(Stage, shows_the_same_twice_whatever_was_drawn_between) {

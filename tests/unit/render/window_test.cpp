@@ -92,6 +92,21 @@ TEST(Window, a_thread_wakes_it_and_that_is_no_input) {
   EXPECT_FALSE(window.take_input());
 }
 
+TEST(Window, files_that_are_dropped_are_handed_over_once_and_are_input) {
+  Window window("topple");
+  do {
+    window.wait_events(0.2);
+  } while (window.take_input());
+  GLFWwindow* const dropped_on = glfwGetCurrentContext();
+  const GLFWdropfun on_drop = glfwSetDropCallback(dropped_on, nullptr);
+  ASSERT_NE(on_drop, nullptr);
+  const char* paths[] = {"/a scene.toml", "/地震.AT2"};
+  on_drop(dropped_on, 2, paths);
+  EXPECT_TRUE(window.take_input());
+  EXPECT_EQ(window.take_drops(), (std::vector<std::string>{"/a scene.toml", "/地震.AT2"}));
+  EXPECT_TRUE(window.take_drops().empty());
+}
+
 TEST(Window, another_size_is_input_and_reaches_dear_imgui) {
   ImGuiContext* context = ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
