@@ -19,7 +19,7 @@ bool holds(const Anchor& anchor, const AnchorState& state, double length) {
 }
 
 // What it held is gone.
-void release(const Model& model, int k, AnchorHold hold, State& state, std::vector<bool>& changed) {
+void release(const Model& model, int k, AnchorHold hold, State& state, std::vector<char>& changed) {
   const double held =
       anchor_force(model.anchors[k], state.anchors[k], anchor_point(model, state, k).at).energy;
   state.energy.anchor -= held;
@@ -93,7 +93,7 @@ std::vector<AnchorForce> anchor_forces(const Model& model, const State& state) {
 }
 
 bool switch_anchors(const Model& model, const Parameters& parameters, State& state,
-                    std::vector<bool>& changed) {
+                    std::vector<char>& changed) {
   bool any = false;
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
     AnchorState& now = state.anchors[k];
@@ -111,7 +111,7 @@ bool switch_anchors(const Model& model, const Parameters& parameters, State& sta
   return any;
 }
 
-bool break_anchors(const Model& model, State& state, std::vector<bool>& changed) {
+bool break_anchors(const Model& model, State& state, std::vector<char>& changed) {
   bool any = false;
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
     const Anchor& anchor = model.anchors[k];

@@ -58,10 +58,10 @@ std::vector<AnchorForce> anchor_forces(const Model& model, const State& state);
 /// Puts anchors in place and takes them away as `parameters` say; sets `changed` of their bodies. False:
 /// nothing changed.
 bool switch_anchors(const Model& model, const Parameters& parameters, State& state,
-                    std::vector<bool>& changed);
+                    std::vector<char>& changed);
 
 /// Breaks those that hold more than their strength. As switch_anchors.
-bool break_anchors(const Model& model, State& state, std::vector<bool>& changed);
+bool break_anchors(const Model& model, State& state, std::vector<char>& changed);
 
 /// Longest step that resolves the anchors at `state`, s: a twentieth of the period of a body on one that
 /// holds, the time until one begins to hold.

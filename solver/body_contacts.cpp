@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "solver/elastic_basis.h"
-#include "solver/step_control.h"
 
 namespace topple {
 namespace {
@@ -127,7 +126,7 @@ double BodyContacts::slope_at_rest(const ContactLaw& law) const {
 }
 
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
-  now_.count = 0;
+  now_.clear();
   shapes_.clear();
   modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
   gives_ = s.rung == Rung::elastic;
@@ -147,10 +146,7 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
       const Four gap = dot(normal, at) + (Four(height) - sides[g].gap);
       const Four::Mask touching = gap < 0;
       if (bits(touching) == 0) continue;
-      Touch& touch = now_.add();
-      touch.plane = static_cast<int>(k);
-      touch.group = static_cast<int>(g);
-      touch.touching = touching;
+      Touch& touch = now_.add(static_cast<int>(k), static_cast<int>(g), touching);
       touch.depth = choose(touching, -gap / sides[g].L, Four(0));
       touch.arm = turn * at;
       touch.stick = gather(stick.data(), sides[g].spring);
@@ -370,7 +366,8 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
 }
 
 // Travel of the stick springs after slipping, m.
-BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law, const Touch& touch) const {
+[[gnu::always_inline]] inline BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law,
+                                                                            const Touch& touch) const {
   if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
   const Points n = normal(touch), stick = mul_add(-dot(n, touch.stick), n, touch.stick);
   const Four limit = touch.limit / touch.stick_stiffness;
@@ -382,13 +379,18 @@ BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law, const Touch
 }
 
 void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
-  for (const Touch& touch : start_.list())
+  const Touch* still = now_.list().data();
+  const Touch* const end = still + now_.count;
+  for (const Touch& touch : start_.list()) {
+    while (still != end && std::tie(still->plane, still->group) < std::tie(touch.plane, touch.group)) ++still;
+    if (still != end && still->plane == touch.plane && still->group == touch.group) continue;
     for (int k = 0; k < groups_[touch.group].size; ++k) stick[side(touch).spring[k]].setZero();
+  }
   for (Touch& touch : now_.list()) {
     touch.stick = held_stick(law, touch);
     const std::array<Four, 4> rows = lanes(touch.stick);
-    for (int k = 0; k < groups_[touch.group].size; ++k)
-      store_three(stick[side(touch).spring[k]].data(), rows[k]);
+    const std::array<int, 4>& spring = side(touch).spring;
+    for (int k = 3; k >= 0; --k) store_three(stick[spring[k]].data(), rows[k]);  // the first one last
   }
 }
 
@@ -435,79 +437,6 @@ void BodyContacts::book_law_change(const ContactLaw& before, const ContactLaw& a
     change.book_end(touch.depth[which], side(touch).L[which], touch.stick_energy[which],
                     touch.alpha[which] / after.alpha);
   });
-}
-
-std::uint64_t BodyContacts::hash() const {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const Touch& touch : now_.list())
-    hash = (hash ^ (static_cast<std::uint64_t>(touch.plane) << 32 |
-                    static_cast<std::uint64_t>(touch.group) << 8 | bits(touch.touching))) *
-           1099511628211ull;
-  return hash;
-}
-
-double BodyContacts::next_landing(const BodyState& s, const Vec3& acceleration,
-                                  const Vec3& angular_acceleration, double within) const {
-  const double never = std::numeric_limits<double>::infinity();
-  const Vec3& omega = s.angular_velocity;
-  const double reach =
-      within *
-      (s.velocity.norm() + reach_ * omega.norm() +
-       within / 2 * (acceleration.norm() + reach_ * (angular_acceleration.norm() + omega.squaredNorm())));
-  Four soonest = Four(never);
-  const PackMat3 r = rotation_matrix(packed(s.rotation));
-  for (std::size_t k = 0; k < model_.planes.size(); ++k) {
-    const Plane& plane = model_.planes[k];
-    const double height = plane.normal.dot(s.position - plane.point);
-    const Vec3 normal = unpacked(transposed_times(r, packed(plane.normal)));
-    if (clearance(normal, height) > widest_[k] + reach) continue;
-    const Points n = in_all_lanes(normal), turn = in_all_lanes(Vec3(normal.cross(omega))),
-                 bend = in_all_lanes(Vec3(normal.cross(angular_acceleration) + normal.dot(omega) * omega -
-                                          omega.squaredNorm() * normal));
-    const Four speed = Four(plane.normal.dot(s.velocity)), rise = Four(plane.normal.dot(acceleration));
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const Points& at = groups_[g].place;
-      const Four gap = dot(n, at) + (Four(height) - sides_[k * groups_.size() + g].gap);
-      // gap - closing t + rises t^2/2 = 0, the first t > 0
-      const Four closing = -speed - dot(turn, at), rises = rise + dot(bend, at);
-      const Four root = closing * closing - 2 * rises * gap;
-      const Four down = closing + sqrt(choose(root < 0, Four(0), root)), when = 2 * gap / down;
-      const Four::Mask lands = (Four(0) <= gap) & (Four(0) < down) & (Four(0) <= root) & (when < soonest);
-      soonest = choose(lands, when, soonest);
-    }
-  }
-  const double first = std::min(std::min(soonest[0], soonest[1]), std::min(soonest[2], soonest[3]));
-  return first < within ? first : never;
-}
-
-double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const {
-  double stiffness = 0, limit = k_longest_step;
-  const Vec3 omega = s.rotation * s.angular_velocity;
-  const PackMat3 r = rotation_matrix(packed(s.rotation));
-  for (std::size_t k = 0; k < model_.planes.size(); ++k) {
-    const Plane& plane = model_.planes[k];
-    const double fall = -plane.normal.dot(s.velocity), height = plane.normal.dot(s.position - plane.point);
-    const Vec3 normal = unpacked(transposed_times(r, packed(plane.normal)));
-    if (clearance(normal, height) - widest_[k] >
-        (std::max(0., fall) + reach_ * omega.norm()) * k_longest_step)
-      continue;
-    const Points n = in_all_lanes(normal),
-                 turn = in_all_lanes(unpacked(transposed_times(r, packed(Vec3(plane.normal.cross(omega))))));
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const Side& side = sides_[k * groups_.size() + g];
-      const Four gap = dot(n, groups_[g].place) + height - side.gap;
-      const Four closing = fall - dot(turn, groups_[g].place);
-      for (int which = 0; which < groups_[g].size; ++which) {
-        if (gap[which] < 0)
-          stiffness += penalty_stiffness(law, -gap[which] / side.L[which], side.L[which]);
-        else if (closing[which] * k_longest_step > gap[which])
-          limit = std::min(limit, std::max(gap[which] / closing[which],
-                                           side.L[which] / (k_closing_part * closing[which])));
-      }
-    }
-  }
-  if (stiffness > 0) limit = std::min(limit, 2 * k_pi * std::sqrt(mass_ / stiffness) / k_contact_part);
-  return limit;
 }
 
 }  // namespace topple

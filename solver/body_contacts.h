@@ -115,7 +115,7 @@ class BodyContacts {
 
   bool any() const { return now_.count > 0; }
   /// The same for the same points on the same planes.
-  std::uint64_t hash() const;
+  std::uint64_t hash() const { return now_.hash; }
   /// Calls f(touch, lane, point, index into State::stick).
   template <class F>
   void each(F f) const {
@@ -155,15 +155,28 @@ class BodyContacts {
     Four L;                     // m
     Four stick;                 // 1/m, stiffness of the stick spring over alpha
     Four damping;               // its damping over sqrt(alpha)
-    std::array<int, 4> spring;  // index into State::stick; of none: that of the first
+    std::array<int, 4> spring;  // index into State::stick; where there is no point: that of the first
   };
-  // Keeps what it ever had room for.
+  static constexpr std::uint64_t k_nothing = 14695981039346656037ull;  // FNV-1a
+  // Keeps what it ever had room for. In the order of planes, then groups.
   struct Touches {
     std::vector<Touch> all;
     std::size_t count = 0;
-    Touch& add() {
+    std::uint64_t hash = k_nothing;
+    void clear() {
+      count = 0;
+      hash = k_nothing;
+    }
+    Touch& add(int plane, int group, Four::Mask touching) {
       if (count == all.size()) all.emplace_back();
-      return all[count++];
+      Touch& touch = all[count++];
+      touch.plane = plane;
+      touch.group = group;
+      touch.touching = touching;
+      hash = (hash ^ (static_cast<std::uint64_t>(plane) << 32 | static_cast<std::uint64_t>(group) << 8 |
+                      bits(touching))) *
+             1099511628211ull;
+      return touch;
     }
     std::span<const Touch> list() const { return {all.data(), count}; }
     std::span<Touch> list() { return {all.data(), count}; }

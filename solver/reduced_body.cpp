@@ -176,16 +176,17 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   return unpacked(spin);
 }
 
-// With the contacts' springs and stick springs as stiff as they get, in all directions.
-double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
+// The longest part that is stable on what touches, with its springs and stick springs as stiff as they get,
+// in all directions.
+double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
   const int m = modes(s), n = 6 + m;
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (!contacts_.any() && !anchors_.any()) return swing;
+  if (!contacts_.any() && !anchors_.any()) return swing / parameters.finer_parts;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.rung == s.rung)
-      return known.step;
+      return known.step / parameters.finer_parts;
   const Mat3 root = model_.bodies[body_].inertia.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 + k_modes, 6 + k_modes>;
   Matrix stiffness = Matrix::Zero(n, n);
@@ -208,7 +209,7 @@ double ReducedBody::stable_part(const ContactLaw& law, const BodyState& s) {
   const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
-  return step;
+  return step / parameters.finer_parts;
 }
 
 BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const {
@@ -240,19 +241,18 @@ bool ReducedBody::known(const Instant& now, const BodyState& s) const {
           ((found_at_->amplitude == s.amplitude).all() && (found_at_->rate == s.rate).all()));
 }
 
-BodyEnergy ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick) {
+void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick) {
   if (!known(now, s)) {
     contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
     respond_at(now.law, s);
   }
   anchors_.find(s);
-  return energy(now.law, s);
 }
 
 BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now, BodyState& s,
                                 std::span<const Vec3> stick) {
   found_at_.reset();
-  const BodyEnergy held = find_contacts(now, s, stick);
+  find_contacts(now, s, stick);
   const ContactLoads loads = contacts_.press<false>(
       now.law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
   s.load.setZero();
@@ -264,14 +264,23 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now
     s.force += anchors_.force();
     s.moment += anchors_.moment();
   }
-  return held;
+  return energy(now.law, s);
 }
 
-// False, and nothing is changed, when the velocity is not found.
+// False, and nothing is changed, when the velocity is not found, or when what touches at the end asks for
+// parts as short as `stable`; else that is h.
 bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                             BodyState& s, std::span<Vec3> stick, StepEnergy& booked, ReducedScratch& w) {
+                             BodyState& s, std::span<Vec3> stick, StepEnergy& booked, ReducedScratch& w,
+                             double& stable) {
+  stable = h;
+  const std::uint64_t touched = contacts_.hash();
   contacts_.begin_part();
   const BodyState before = s;
+  const auto give_up = [&] {
+    s = before;
+    contacts_.give_up_part();
+    return false;
+  };
   const double damping = damping_time(model_, parameters, body_);
   if (damping > 0 && s.rung == Rung::elastic) s.rate *= (-damping * h * basis_->frequency.square()).exp();
   const Amplitudes rate0 = s.rate;
@@ -290,6 +299,10 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   const PackMat3 r = rotation_matrix(packed(s.rotation));
   const Vec3 shift = s.position - before.position, field = parameters.gravity - end.floor;
   contacts_.find(s, r, stick);
+  if (contacts_.hash() != touched) {
+    stable = std::min(h, stable_part(parameters, start.law, s));
+    if (stable < h) return give_up();
+  }
   contacts_.follow(before, r0, s, r);
   anchors_.find(s);
   const bool tied = anchors_.any();
@@ -310,11 +323,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) free.rate += h / 2 * kick_ * pressed;
     }
-    if (!solve_velocity(end.law, inertia_at(r), h, free, u, loads, s.load, modes(s), w)) {
-      s = before;
-      contacts_.give_up_part();
-      return false;
-    }
+    if (!solve_velocity(end.law, inertia_at(r), h, free, u, loads, s.load, modes(s), w)) return give_up();
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
@@ -351,51 +360,36 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   return true;
 }
 
-// The longest part of a step of size h that is stable: on what touches, and on what will.
-double ReducedBody::stable_size(const Parameters& parameters, const ContactLaw& law, double h,
-                                const BodyState& s, std::span<const Vec3> stick) {
-  const double now = stable_part(law, s) / parameters.finer_parts,
-               size = now < h ? h / std::ceil(h / now - 1e-9) : h;
-  if (size * std::sqrt(law.alpha * greatest_stiffness(law) * contacts_.stiffest() + anchors_.stiffest()) <
-      k_stable_turn / parameters.finer_parts)
-    return size;
-  BodyState ahead = s;
-  ahead.velocity += size / 2 / mass_ * s.force;
-  if (s.rung == Rung::elastic) find_swing(size);
-  drift(size, ahead);
-  contacts_.begin_part();
-  contacts_.find(ahead, rotation_matrix(packed(ahead.rotation)), stick);
-  const double then = stable_part(law, s) / parameters.finer_parts;
-  contacts_.give_up_part();
-  return then < size ? h / std::ceil(h / then - 1e-9) : size;
-}
-
 bool ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                           BodyState& s, std::span<Vec3> stick, StepEnergy& booked, BodyEnergy& held,
                           ReducedScratch& w) {
   const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
-  double size = !touches && s.rung == Rung::rigid ? h : stable_size(parameters, start.law, h, s, stick);
-  if (s.rung == Rung::rigid && touches && (parameters.adaptive || size < h)) {
-    if (!advance_stiffly(parameters, start, end, h, s, stick, booked)) return false;
-    held = energy(end.law, s);
-    return true;
-  }
+  const auto parts_of = [](double way, double stable) {
+    return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
+  };
+  double size = !touches && s.rung == Rung::rigid ? h : parts_of(h, stable_part(parameters, start.law, s));
+  bool stiff = s.rung == Rung::rigid && touches && (parameters.adaptive || size < h);
   Instant from = start;
   double left = h, most = h;
   w.part = 0;
-  for (;;) {
+  while (!stiff) {
     const bool last = size >= left;
     const Instant to = last ? end : Instant(parameters, from.time + size);
-    if (swing_part(parameters, from, to, last ? left : size, s, stick, booked, w)) {
+    double stable;
+    if (swing_part(parameters, from, to, last ? left : size, s, stick, booked, w, stable)) {
       if (last) break;
       left -= size;
       from = to;
+      size = std::min(parts_of(left, stable_part(parameters, from.law, s)), most);
+    } else if (stable < size) {
+      stiff = s.rung == Rung::rigid;
+      size = parts_of(size, stable);
     } else {
-      most = size / 2;
+      size = most = size / 2;
       if (most < k_least_part * h) return false;
     }
-    size = std::min(stable_size(parameters, from.law, left, s, stick), most);
   }
+  if (stiff && !advance_stiffly(parameters, start, end, h, s, stick, booked)) return false;
   held = energy(end.law, s);
   return true;
 }

@@ -58,9 +58,11 @@ class ReducedBody {
 
   /// State::anchors hold from here on.
   void remember(std::span<const AnchorState> anchors) { anchors_.remember(anchors); }
-  /// Contacts of `s` with the springs `stick` (State::stick); returns what the body holds.
-  BodyEnergy find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick);
-  /// The same, and all that acts on the body into `s`.
+  /// Contacts of `s` with the springs `stick` (State::stick).
+  void find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick);
+  /// What the body holds with the contacts found last.
+  BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
+  /// Contacts anew, and all that acts on the body into `s`; returns what it holds.
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
   /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later. `energy` is
@@ -104,19 +106,16 @@ class ReducedBody {
   Vec3 angular_acceleration(const BodyState& s) const;
   void respond_at(const PreparedLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
-  BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
   template <class F>
   void each_force(const BodyState& s, F f) const;
 
   bool solve_velocity(const PreparedLaw& law, const PackMat3& inertia, double h, const BodyVelocity& free,
                       BodyVelocity& u, ContactLoads& loads, Amplitudes& load, int modes, ReducedScratch& w);
   bool swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                  BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w);
+                  BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w, double& stable);
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
-  double stable_part(const ContactLaw& law, const BodyState& s);
-  double stable_size(const Parameters& parameters, const ContactLaw& law, double h, const BodyState& s,
-                     std::span<const Vec3> stick);
+  double stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
 
   bool advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                        BodyState& s, std::span<Vec3> stick, StepEnergy& energy);

@@ -2,8 +2,10 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "solver/pack.h"
 #include "solver/rotation.h"
@@ -216,16 +218,18 @@ std::uint64_t hash(const State& state) {
 
 bool is_finite(const State& s, bool nodes) {
   Four odd(0);  // x - x is 0 or not a number
-  double odd_one = 0;
+  const auto look_at = [&](Four x) { odd = odd | (x - x); };
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
 #pragma GCC unroll 4
-    for (; k + 4 <= count; k += 4) odd = odd | (load(x + k) - load(x + k));
-    if (count < 4)
-      for (; k < count; ++k) odd_one += x[k] - x[k];
-    else if (k < count)
-      odd = odd | (load(x + count - 4) - load(x + count - 4));
+    for (; k + 4 <= count; k += 4) look_at(load(x + k));
+    if (k == count) return;
+    if (count > 4)
+      look_at(load(x + count - 4));
+    else
+      for (; k < count; ++k) look_at(Four(x[k]));
   };
+  const auto look_at_vector = [&](const Vec3& v) { look_at(Four(v.x() + v.y() + v.z())); };
   if (nodes) {
     for (const auto* array :
          {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
@@ -237,58 +241,67 @@ bool is_finite(const State& s, bool nodes) {
       look(reinterpret_cast<const double*>(s.elements.data()), 7 * s.elements.size());  // load() may alias
   }
   for (const BodyState& b : s.bodies) {
-    const double sum = b.position.sum() + b.velocity.sum() + b.angular_velocity.sum() + b.force.sum() +
-                       b.moment.sum() + b.rotation.coeffs().sum() + b.amplitude.sum() + b.rate.sum() +
-                       b.load.sum() + b.calm_since + b.part;
-    odd_one += sum - sum;
+    for (const Amplitudes* a : {&b.amplitude, &b.rate, &b.load}) look(a->data(), k_modes);
+    look_at(load(b.rotation.coeffs().data()));
+    for (const Vec3* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
+      look_at_vector(*v);
+    look_at(Four(b.calm_since + b.part));
   }
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
-  for (const MemberStick& stick : s.member_sticks) look(stick.stick.data(), 3);
-  const EnergyLedger& e = s.energy;
-  for (const double x : {s.time,
-                         s.floor_displacement.sum(),
-                         s.floor_velocity.sum(),
-                         s.step_size,
-                         s.load_factor,
-                         s.near_slack,
-                         e.input,
-                         e.kinetic,
-                         e.strain,
-                         e.gravity,
-                         e.contact,
-                         e.friction,
-                         e.normal_damping,
-                         e.numerical,
-                         e.plastic,
-                         e.damping,
-                         e.model_switch,
-                         e.anchor,
-                         e.released,
-                         e.start_total,
-                         e.largest})
-    odd_one += x - x;
-  return !any_above(odd, 0) && odd_one == 0;
+  for (const MemberStick& stick : s.member_sticks) look_at_vector(stick.stick);
+  static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
+  look(&s.energy.input, 15);
+  look_at_vector(s.floor_displacement);
+  look_at_vector(s.floor_velocity);
+  look_at(Four(s.time + s.step_size + s.load_factor + s.near_slack));
+  return !any_above(odd, 0);
 }
+
+namespace {
+
+// As assignment, for numbers that Eigen would copy one by one.
+void copy_numbers(const std::vector<Vec3>& from, std::vector<Vec3>& to) {
+  to.resize(from.size());
+  if (!from.empty()) std::memcpy(to.data()->data(), from.data()->data(), from.size() * sizeof(Vec3));
+}
+
+// Calls f(member) for the vectors that a step changes where no node moves, but for `stick`; then for the
+// rest.
+template <class F>
+void each_moved(F f) {
+  f(&State::bodies);
+  f(&State::member_sticks);
+  f(&State::near);
+  f(&State::anchors);
+  f(&State::time);
+  f(&State::step);
+  f(&State::near_slack);
+  f(&State::floor_displacement);
+  f(&State::floor_velocity);
+  f(&State::step_size);
+  f(&State::load_factor);
+  f(&State::law);
+  f(&State::energy);
+}
+
+}  // namespace
 
 void copy(const State& from, State& to, bool nodes) {
   if (nodes) {
     to = from;
     return;
   }
-  to.time = from.time;
-  to.step = from.step;
-  to.bodies = from.bodies;
-  to.stick = from.stick;
-  to.member_sticks = from.member_sticks;
-  to.near = from.near;
-  to.near_slack = from.near_slack;
-  to.anchors = from.anchors;
-  to.floor_displacement = from.floor_displacement;
-  to.floor_velocity = from.floor_velocity;
-  to.step_size = from.step_size;
-  to.load_factor = from.load_factor;
-  to.law = from.law;
-  to.energy = from.energy;
+  each_moved([&](auto member) { to.*member = from.*member; });
+  copy_numbers(from.stick, to.stick);
+}
+
+void swap(State& a, State& b, bool nodes) {
+  if (nodes) {
+    std::swap(a, b);
+    return;
+  }
+  each_moved([&](auto member) { std::swap(a.*member, b.*member); });
+  a.stick.swap(b.stick);
 }
 
 }  // namespace topple

@@ -94,5 +94,7 @@ bool is_finite(const State& state, bool nodes = true);
 /// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have
 /// their sizes.
 void copy(const State& from, State& to, bool nodes);
+/// Exchanges what copy copies.
+void swap(State& a, State& b, bool nodes);
 
 }  // namespace topple

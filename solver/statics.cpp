@@ -267,7 +267,7 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
 
 StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& state) {
   StepStatus status;
-  std::vector<bool> changed(model_->bodies.size());
+  std::vector<char> changed(model_->bodies.size());
   switch_anchors(*model_, parameters, state, changed);
   IntegratorScratch scratch;
   for (auto& system : systems_)
@@ -292,7 +292,7 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
   double done = 0, part = 1;
   int iterations = 0, rejected = 0;
   StepStatus status;
-  std::vector<bool> changed(model_->bodies.size());
+  std::vector<char> changed(model_->bodies.size());
   switch_anchors(*model_, parameters, state, changed);
   while (done < 1) {
     const Target target = settings_.control ? Target{state.load_factor, part * state.step_size}

@@ -1,0 +1,58 @@
+// What a step says when it fails.
+#include <cstdio>
+#include <string>
+
+#include "solver/step.h"
+
+namespace topple {
+namespace {
+
+std::string format(const char* pattern, double a) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, a);
+  return text;
+}
+
+}  // namespace
+
+std::string StepStatus::message(const Model& model) const {
+  if (ok()) return "ok";
+  std::string where = body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor or an energy";
+  if (element >= 0) {
+    const Member& member = model.members[model.elements[element].member];
+    where += ", member \"" + member.name + "\" (element " + std::to_string(element) + ")";
+  }
+  const std::string when = format("at %.6g s", time);
+  switch (kind) {
+    case Kind::newton_diverged:
+      return "the step " + when + " has no converged solution: " + where + "; try a smaller time_step";
+    case Kind::not_finite:
+      return "the motion is no longer finite " + when + ": " + where + "; try a smaller time_step";
+    case Kind::singular:
+      return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
+    case Kind::not_settled:
+      return "before the first step, " + when + ": " + where +
+             " does not come to rest under gravity; does it stand on something, and can alpha and the steel "
+             "carry it? settle = false starts it as it is";
+    case Kind::step_too_long:
+      return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
+             when + "; try a smaller one, or generalized-alpha";
+    case Kind::no_equilibrium:
+      return format("no stable equilibrium was found at load factor %.6g: ", load_factor) + where +
+             " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
+             "path that turns down)";
+    case Kind::passed_through:
+      return "members would pass through each other unseen in the step " + when + ": " + where +
+             "; try a smaller time_step";
+    case Kind::energy_lost:
+      return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
+             when + ": " + where + "; try a smaller time_step";
+    case Kind::uncontrolled:
+      return where + ": the loads do not move the controlled direction";
+    case Kind::ok:
+      break;
+  }
+  return "";
+}
+
+}  // namespace topple

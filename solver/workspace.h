@@ -1,0 +1,73 @@
+// Scratch of a step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solver/body_system.h"
+#include "solver/generalized_alpha.h"
+#include "solver/islands.h"
+#include "solver/ladder.h"
+#include "solver/reduced_body.h"
+#include "solver/step.h"
+
+namespace topple {
+
+/// What became of a system, or of some bodies that are not frames, in a step.
+struct PartOfStep {
+  StepEnergy exchanged;
+  BodyEnergy held;
+  StepStatus status;
+};
+
+/// What Workspace keeps between steps, for the sources of the step alone.
+struct Workspace::Impl {
+  explicit Impl(const Model& model)
+      : islands(model),
+        search(model),
+        reduced_bodies(model.bodies.size()),
+        sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {
+    moving.reserve(model.bodies.size());
+    parts.reserve(model.bodies.size());
+    contact_forces.reserve(model.contact_points.size() * model.planes.size());
+  }
+  const std::vector<BodySystem*>& systems() const { return islands.systems(); }
+  // With the anchors of `state`.
+  ReducedBody& reduced(const Model& model, const State& state, int body) {
+    if (!reduced_bodies[body]) reduced_bodies[body] = std::make_unique<ReducedBody>(model, body);
+    reduced_bodies[body]->remember(state.anchors);
+    return *reduced_bodies[body];
+  }
+
+  Islands islands;
+  NearSearch search;
+  std::vector<std::unique_ptr<ReducedBody>>
+      reduced_bodies;                              // per body, once it was on another rung than frame
+  std::vector<ReducedScratch> reduced_scratch{1};  // per worker
+  std::vector<RungChoice> base;                    // per body, for the parameters below
+  std::vector<BodyModel> base_models;
+  bool base_stress = false;
+  double base_alpha = 0, base_q = 0;
+  std::vector<char> near;                       // per body: another is
+  std::vector<char> new_frames;                 // per body: since the last step
+  std::vector<char> new_anchors;                // per body: one was switched or broke
+  std::vector<IntegratorScratch> scratches{1};  // per worker
+  ParallelFor parallel;
+  Profile profile;
+  std::vector<int> moving;  // bodies that are not frames
+  std::vector<PartOfStep> parts;
+  BodyMotion motion;
+  Contacts contacts;
+  std::vector<ContactForce> contact_forces;
+  std::vector<MemberForce> member_forces;
+  std::vector<SectionForces> sections;
+  State next;
+  int most_iterations = 0;               // of one system in the newest step
+  std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
+  int limiting_body = -1, limiting_node = -1;
+  double limit_alpha = 0, limit_q = 0;
+  std::vector<double> limit_damping;
+};
+
+}  // namespace topple
