@@ -227,11 +227,15 @@ class CommandLine {
     command.add_flag("--quiet", render_.quiet, "no progress");
     command.add_flag("--ui", render_.ui, "with the panels of the window around the scene");
     command.add_option("--lang", language_, "en (default) or ja")->type_name("LANGUAGE");
+    command
+        .add_option("--renderer", renderer_, "osmesa or egl, default osmesa, or egl where that is missing")
+        ->type_name("NAME");
     add_picture(command);
     command.callback([this, at, from, to] {
       read_size(size_, render_);
       read_camera();
       read_picture();
+      read_renderer();
       if (!language_.empty()) render_.language = chosen_language();
       if (*at) render_.at = at_;
       if (*from) render_.from = from_;
@@ -244,6 +248,13 @@ class CommandLine {
     if (language_ != "en" && language_ != "ja")
       throw BadInput("--lang: \"" + language_ + "\" is not one of en, ja");
     return language_ == "ja" ? Language::japanese : Language::english;
+  }
+
+  void read_renderer() {
+    if (renderer_.empty()) return;
+    if (renderer_ != "osmesa" && renderer_ != "egl")
+      throw BadInput("--renderer: \"" + renderer_ + "\" is not one of osmesa, egl");
+    render_.renderer = renderer_ == "egl" ? render::Renderer::egl : render::Renderer::osmesa;
   }
 
   void read_camera() {
@@ -546,7 +557,8 @@ class CommandLine {
   RenderOptions render_;
   ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
-  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_, language_;
+  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_, language_,
+              renderer_;
   bool no_panels_ = false;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;

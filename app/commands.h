@@ -10,6 +10,7 @@
 #include "app/language.h"
 #include "app/picture_settings.h"
 #include "render/camera.h"
+#include "render/off_screen.h"
 #include "render/orbit.h"
 
 namespace topple::app {
@@ -50,6 +51,7 @@ struct RenderOptions {
   Language language = Language::english;
   PictureSettings picture;  ///< all but `diagram`
   std::string inspect;      ///< BODY or BODY/MEMBER, looked at closely; empty: none
+  render::Renderer renderer = render::Renderer::any;
   bool quiet = false;
 };
 int render_command(const RenderOptions& options);

@@ -10,9 +10,9 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/off_screen.h"
 #include "app/progress.h"
 #include "app/words.h"
-#include "render/osmesa_context.h"
 #include "render/picture.h"
 #include "render/video.h"
 
@@ -109,7 +109,7 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
 int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const NamedReplay& of_b, bool quiet) {
   try {
     const Actor a(of_a), b(of_b);
-    const std::unique_ptr<render::Context> context = render::make_osmesa_context();
+    const std::unique_ptr<render::Context> context = open_off_screen();
     render::Picture picture(context->get_proc(), k_width, k_height);
     render::VideoWriter video(path, k_width, k_height, k_rate);
     const double first = std::min(a.first(), b.first()), last = std::max(a.last(), b.last());

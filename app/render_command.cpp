@@ -13,6 +13,7 @@
 #include "app/files.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/off_screen.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
@@ -20,7 +21,6 @@
 #include "app/window_picture.h"
 #include "app/window_words.h"
 #include "app/words.h"
-#include "render/osmesa_context.h"
 #include "render/picture.h"
 #include "render/video.h"
 #include "solver/io/recording.h"
@@ -70,15 +70,14 @@ std::optional<Subject> inspected_by(const RenderOptions& o, const Model& model) 
 class Drawing {
  public:
   Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene,
-          const std::optional<Subject>& inspected)
+          const std::optional<Subject>& inspected, render::Context& context)
       : options_(o),
         inspected_(inspected),
         extent_(extent_of(replay, scene)),
         scene_(scene),
         bridge_(scene, extent_),
         replay_(replay),
-        context_(render::make_osmesa_context()),
-        picture_(context_->get_proc(), o.width, o.height, window_letters(&scene)) {}
+        picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {}
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
@@ -104,7 +103,6 @@ class Drawing {
   const io::Scene& scene_;
   const Bridge bridge_;
   const Replay& replay_;
-  const std::unique_ptr<render::Context> context_;
   render::Picture picture_;
 };
 
@@ -154,12 +152,13 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   const auto inspected = inspected_by(o, scene->setup.model);
   int code = k_done;
   try {
+    const std::unique_ptr<render::Context> context = open_off_screen(o.renderer);
     std::optional<Drawing> drawing;
     std::optional<WindowPicture> window;
     if (o.ui)
-      window.emplace(scene, path, o.view, o.picture, inspected, o.width, o.height);
+      window.emplace(*context, scene, path, o.view, o.picture, inspected, o.width, o.height);
     else
-      drawing.emplace(o, replay, *scene, inspected);
+      drawing.emplace(o, replay, *scene, inspected, *context);
     const DrawAt draw_at = [&](double time) { return window ? window->at(time) : drawing->at(time); };
     code = o.still.empty() ? draw_sequence(o, draw_at, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))

@@ -6,16 +6,15 @@
 #include <thread>
 
 #include "app/window_words.h"
-#include "render/osmesa_context.h"
 
 namespace topple::app {
 
-WindowPicture::WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording,
-                             render::NamedView view, const PictureSettings& settings,
-                             const std::optional<Subject>& inspected, int width, int height)
-    : context_(render::make_osmesa_context()),
-      interface_(ImGui::CreateContext()),
-      stage_(context_->get_proc()),
+WindowPicture::WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
+                             const std::string& recording, render::NamedView view,
+                             const PictureSettings& settings, const std::optional<Subject>& inspected,
+                             int width, int height)
+    : interface_(ImGui::CreateContext()),
+      stage_(context.get_proc()),
       run_({.scene = scene, .recording = io::Recording(recording), .output = {}}),
       player_(scene, run_) {
   ImGuiIO& io = ImGui::GetIO();

@@ -16,10 +16,10 @@ namespace topple::app {
 /// Shows a recording as `topple view` does, in the language of the window.
 class WindowPicture {
  public:
-  /// Throws io::InputError, and std::runtime_error when it cannot draw.
-  WindowPicture(std::shared_ptr<const io::Scene> scene, const std::string& recording, render::NamedView view,
-                const PictureSettings& settings, const std::optional<Subject>& inspected, int width,
-                int height);
+  /// Throws io::InputError, and std::runtime_error when it cannot draw. `context` is current and outlives it.
+  WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
+                const std::string& recording, render::NamedView view, const PictureSettings& settings,
+                const std::optional<Subject>& inspected, int width, int height);
   ~WindowPicture();
   WindowPicture(const WindowPicture&) = delete;
   WindowPicture& operator=(const WindowPicture&) = delete;
@@ -30,7 +30,6 @@ class WindowPicture {
  private:
   void build();
 
-  const std::unique_ptr<render::Context> context_;
   ImGuiContext* const interface_;
   render::Stage stage_;
   LiveRun run_;

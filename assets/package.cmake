@@ -14,6 +14,6 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Loaded while it runs, so that no linker knows: OSMesa and the font for pictures, OpenGL for the window.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1, ffmpeg, gnuplot-nox, fonts-vlgothic")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1, libegl1, libegl-mesa0, ffmpeg, gnuplot-nox, fonts-vlgothic")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

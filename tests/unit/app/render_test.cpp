@@ -41,6 +41,40 @@ TEST_F(RenderTest, a_still_has_the_asked_size_and_the_same_bytes_every_time) {
   EXPECT_NE(bytes_of("d.png"), png);
 }
 
+TEST_F(RenderTest, osmesa_and_egl_draw_the_same_bytes) {
+  draw({"a.h5", "--still", "osmesa.png", "--at", "0.155", "--renderer", "osmesa"});
+  draw({"a.h5", "--still", "egl.png", "--at", "0.155", "--renderer", "egl"});
+  ASSERT_GT(bytes_of("osmesa.png").size(), 1000u);
+  // both are the same Mesa's software where this runs without a graphics card
+  EXPECT_TRUE(bytes_of("egl.png") == bytes_of("osmesa.png"));
+}
+
+TEST_F(RenderTest, a_missing_library_is_named_and_the_other_one_draws) {
+  const Circumstances without_osmesa{.set = {{"LD_LIBRARY_PATH", std::filesystem::current_path()}}};
+  const auto draw_still = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", "a.h5",  "--still", "c.png",
+                                       "--at",   "0.155", "--size",  "320x180"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return topple(arguments, without_osmesa);
+  };
+  draw({"a.h5", "--still", "a.png", "--at", "0.155"});
+  write_bytes("libOSMesa.so.8", "");  // no library
+  const Ended other = draw_still({});
+  EXPECT_EQ(other.code, 0) << other.err;
+  EXPECT_NE(other.err.find("drawing with EGL instead of OSMesa"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("libosmesa6"), std::string::npos) << other.err;
+  EXPECT_TRUE(bytes_of("c.png") == bytes_of("a.png"));
+  const Ended asked = draw_still({"--renderer", "osmesa"});
+  EXPECT_EQ(asked.code, 1) << asked.err;
+  EXPECT_NE(asked.err.find("libosmesa6"), std::string::npos) << asked.err;
+  write_bytes("libEGL.so.1", "");
+  const Ended neither = draw_still({});
+  EXPECT_EQ(neither.code, 1) << neither.err;
+  for (const char* package : {"libosmesa6", "libegl1", "libegl-mesa0"})
+    EXPECT_NE(neither.err.find(package), std::string::npos) << neither.err;
+  EXPECT_EQ(draw_still({"--renderer", "vulkan"}).code, 2);
+}
+
 TEST_F(RenderTest, a_sequence_covers_the_recording_and_is_the_same_every_time) {
   draw({"a.h5", "--png", "p", "--fps", "20"});
   draw({"s.toml", "--png", "q", "--fps", "20"});
