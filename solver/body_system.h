@@ -140,8 +140,8 @@ class BodySystem {
     int index;  ///< into Model::anchors
     int node;
     AnchorState state;
-    Vec3 arm(const Model& model, const BodyMotion& motion) const {
-      return motion.rotation[node] * model.anchors[index].arm;
+    Vec3 arm(const Model& of, const BodyMotion& motion) const {
+      return motion.rotation[node] * of.anchors[index].arm;
     }
   };
 

@@ -143,10 +143,10 @@ struct PackMatrix {
     return {dot(a.row[0], v), dot(a.row[1], v), dot(a.row[2], v)};
   }
   [[gnu::always_inline]] friend PackMatrix operator*(const PackMatrix& a, const PackMatrix& b) {
-    const auto row = [&](const PackVector<P>& r) {
+    const auto times_b = [&](const PackVector<P>& r) {
       return mul_add(r.z, b.row[2], mul_add(r.y, b.row[1], r.x * b.row[0]));
     };
-    return {{row(a.row[0]), row(a.row[1]), row(a.row[2])}};
+    return {{times_b(a.row[0]), times_b(a.row[1]), times_b(a.row[2])}};
   }
 };
 
