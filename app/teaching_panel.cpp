@@ -272,14 +272,15 @@ void draw_accuracy(const Player& player, TeachingState& state) {
   const auto result = state.accuracy ? state.accuracy->result() : std::nullopt;
   if (!state.accuracy || result) {
     ImGui::BeginDisabled(player.way().empty());
-    if (ImGui::Button((say(k_how_accurate) + "##accurate").c_str(), {-1, 0})) {
+    const bool asked = ImGui::Button((say(k_how_accurate) + "##accurate").c_str(), {-1, 0});
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_how_accurate_about).c_str());
+    if (asked) {
       Setup setup = player.scene().setup;
       for (const Edit& edit : player.edits_since_start()) apply(edit, setup.model, 0, setup.parameters);
       state.accuracy = std::make_unique<Accuracy>(setup);
       return;
     }
-    ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_how_accurate_about).c_str());
   } else {
     const auto progress = static_cast<float>(state.accuracy->progress());
     ImGui::TextUnformatted(say(k_estimating, 100 * progress).c_str());

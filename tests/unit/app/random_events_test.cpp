@@ -451,9 +451,9 @@ TEST_P(RandomEvents, leave_a_window_that_works_and_no_file_elsewhere) {
   std::set<std::pair<Language, bool>> looks;
   for (int event = 0; event < k_events; ++event) {
     ASSERT_NO_THROW(one_event()) << "event " << event << ", " << story();
-    ASSERT_TRUE(twice.empty()) << "two items are one in " << *twice.begin() << ", event " << event << ", " << story();
+    ASSERT_TRUE(twice.empty()) << "two items are one in " << *twice.begin() << ", event " << event << ", "
+                               << story();
     ASSERT_EQ(not_finite, "") << "event " << event << ", " << story();
-    if (getenv("DBG")) { static std::map<std::string,int> c; ++c[shell_->message()?"message":shell_->save_dialog().is_open()?"save":shell_->export_dialog().is_open()?"export":shell_->chooser().is_open()?"chooser":shell_->opening()?"opening":"viewer"]; if (event==1999){ for(auto&[k,v]:c) fprintf(stderr,"%s %d\n",k.c_str(),v); fprintf(stderr,"used %zu\n",used_.size()); c.clear();} }
     looks.emplace(window_language(), window_is_dark());
     if (event % 50 != 0) continue;
     const render::Surface surface = shell_->surface();
