@@ -46,6 +46,16 @@ class Viewer {
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
   /// when it changed. `over` builds what lies over it all and takes the keyboard.
   void build(const std::function<void()>& over = {});
+  /// What is done with keyboard and mouse: the lines of F1's table. key 0: a line only; nothing shown:
+  /// another key of the line above.
+  struct KeyAction {
+    Phrase shown, does;
+    int key = 0;
+    bool control = false, shift = false;
+    void (*act)(Viewer&) = nullptr;
+  };
+  static std::span<const KeyAction> key_actions();
+
   /// Where things lie, for Stage::present.
   render::Surface surface() const;
 
@@ -66,8 +76,6 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
-  struct KeyAction;
-  static std::span<const KeyAction> key_actions();
   void dress();
   void wear(const Appearance& appearance);
   void resize(int direction);

@@ -19,14 +19,6 @@ bool character(char c) {
 
 }  // namespace
 
-/// What is done with keyboard and mouse. key 0: a line of the table only.
-struct Viewer::KeyAction {
-  Phrase shown, does;
-  int key = 0;
-  bool control = false, shift = false;
-  void (*act)(Viewer&) = nullptr;
-};
-
 // In one table, so that what F1 shows is what happens.
 std::span<const Viewer::KeyAction> Viewer::key_actions() {
   static constexpr KeyAction k_actions[] = {

@@ -1,8 +1,6 @@
 // The complete window under events that nobody planned. The linker leads Dear ImGui's assertions, its items
 // and the frames that are drawn through here; what the program opens for writing is listened to as well.
 //   TOPPLE_SEEDS=20 tests/random_events_test   tries so many
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -168,31 +166,7 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
     fs::current_path(scratch_ / "work");
     setenv("HOME", (scratch_ / "home").c_str(), 1);
     setenv("XDG_CONFIG_HOME", (scratch_ / "config").c_str(), 1);
-    // as the window maps keys
-    ImGuiIO& io = ImGui::GetIO();
-    const std::pair<int, int> keys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
-                                        {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
-                                        {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
-                                        {ImGuiKey_UpArrow, GLFW_KEY_UP},
-                                        {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
-                                        {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
-                                        {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
-                                        {ImGuiKey_Home, GLFW_KEY_HOME},
-                                        {ImGuiKey_End, GLFW_KEY_END},
-                                        {ImGuiKey_Insert, GLFW_KEY_INSERT},
-                                        {ImGuiKey_Delete, GLFW_KEY_DELETE},
-                                        {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
-                                        {ImGuiKey_Space, GLFW_KEY_SPACE},
-                                        {ImGuiKey_Enter, GLFW_KEY_ENTER},
-                                        {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-                                        {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
-                                        {ImGuiKey_A, GLFW_KEY_A},
-                                        {ImGuiKey_C, GLFW_KEY_C},
-                                        {ImGuiKey_V, GLFW_KEY_V},
-                                        {ImGuiKey_X, GLFW_KEY_X},
-                                        {ImGuiKey_Y, GLFW_KEY_Y},
-                                        {ImGuiKey_Z, GLFW_KEY_Z}};
-    for (const auto& [key, code] : keys) io.KeyMap[key] = code;
+    connect_keyboard();
     std::string broken = k_rocking;
     broken.replace(broken.find("300 gal"), 7, "300 kg");
     drops_ = {write("good.toml", k_rocking),
@@ -233,8 +207,8 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
     if (said_.size() > 12) said_.pop_front();
   }
 
-  void draw() {
-    frame();
+  void frame() override {
+    ShellTest::frame();
     const ImDrawData& data = *ImGui::GetDrawData();
     for (int i = 0; i < data.CmdListsCount; ++i)
       for (const ImDrawVert& v : data.CmdLists[i]->VtxBuffer)
@@ -265,19 +239,6 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
       }
     }
   }
-  void tap(int code, bool control, bool shift) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.KeyCtrl = control;
-    io.KeyShift = shift;
-    io.KeysDown[code] = true;
-    shell_->press({code, control, shift});
-    if (code >= ' ' && code < 127 && !control)
-      io.AddInputCharacter(static_cast<unsigned>(shift || !std::isalpha(code) ? code : std::tolower(code)));
-    draw();
-    io.KeysDown[code] = false;
-    io.KeyCtrl = io.KeyShift = false;
-    draw();
-  }
   void press_mouse() {
     stay_in_folder();
     ImGuiIO& io = ImGui::GetIO();
@@ -285,16 +246,16 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
     io.KeyCtrl = one_in(12);
     io.KeyShift = one_in(12);
     io.MouseDown[which] = true;
-    draw();
+    frame();
     if (one_in(3))
       for (std::size_t i = 1 + below(4); i > 0; --i) {
         const ImVec2 to = one_in(4) ? place() : io.MousePos;
         io.MousePos = {to.x + static_cast<float>(below(101)) - 50, to.y + static_cast<float>(below(61)) - 30};
-        draw();
+        frame();
       }
     io.MouseDown[which] = false;
     io.KeyCtrl = io.KeyShift = false;
-    draw();
+    frame();
   }
 
   void some_key() {
@@ -357,7 +318,7 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
                                                     '"', '\\', 0xe9, 0x5730, 0x9707, 0x1f600};
     note("text");
     for (std::size_t i = below(6) + 1; i > 0; --i) ImGui::GetIO().AddInputCharacter(any(k_letters));
-    draw();
+    frame();
   }
   void some_size() {
     static const std::vector<ImVec2> k_sizes = {{1280, 720}, {960, 540}, {640, 360},
@@ -366,7 +327,7 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
     io.DisplaySize = any(k_sizes);
     io.DisplayFramebufferScale = one_in(6) ? ImVec2(2, 2) : ImVec2(1, 1);
     note("size " + std::to_string(io.DisplaySize.x) + " x " + std::to_string(io.DisplaySize.y));
-    draw();
+    frame();
   }
   void some_drop() {
     std::vector<std::string> dropped{any(drops_)};
@@ -374,10 +335,10 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
     if (one_in(8)) dropped.push_back(any(drops_));
     note("drop " + dropped[0]);
     shell_->drop(dropped);
-    draw();
+    frame();
     if (one_in(2))
       for (int i = 0; i < 2000 && shell_->opening(); ++i) {
-        draw();
+        frame();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
   }
@@ -393,12 +354,12 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
       viewer.inspect(Subject{Subject::Kind::member, below(model.members.size())});
     else
       viewer.inspect(Subject{Subject::Kind::body, below(static_cast<std::size_t>(model.furniture_total()))});
-    draw();
+    frame();
   }
   void some_time() {
     note("time");
     if (shell_->session() && one_in(2)) player().play();
-    for (std::size_t i = below(12); i > 0; --i) draw();
+    for (std::size_t i = below(12); i > 0; --i) frame();
   }
   void one_event() {
     const std::size_t kind = below(100);
@@ -411,12 +372,12 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
       ImGui::GetIO().MousePos = place();
       note("mouse at " + std::to_string(ImGui::GetIO().MousePos.x) + ", " +
            std::to_string(ImGui::GetIO().MousePos.y));
-      draw();
+      frame();
       if (kind >= 34) press_mouse();
     } else if (kind < 76) {
       note("wheel");
       ImGui::GetIO().MouseWheel = static_cast<float>(below(11)) - 5;
-      draw();
+      frame();
     } else if (kind < 82) {
       some_text();
     } else if (kind < 84) {
@@ -444,7 +405,7 @@ class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsi
 
 TEST_P(RandomEvents, leave_a_window_that_works_and_no_file_elsewhere) {
   shell_->choose_scene();
-  draw();
+  frame();
   shell_->open(drops_[0]);
   ASSERT_TRUE(until([&] { return ready(); }));
   player().play();

@@ -1,6 +1,8 @@
 // The complete window off screen: its content, with mouse and keyboard fed by hand, in a folder of its own.
 #pragma once
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -37,7 +39,7 @@ class ShellTest : public ::testing::Test {
     unsetenv("XDG_CACHE_HOME");
   }
 
-  void frame() {
+  virtual void frame() {
     shell_->update(1. / 60);
     ImGui::NewFrame();
     shell_->build();
@@ -45,6 +47,46 @@ class ShellTest : public ::testing::Test {
   template <typename Done>
   ::testing::AssertionResult until(Done done) {
     return eventually([this] { frame(); }, done);
+  }
+  /// Maps keys as the window does; the keyboard then moves among controls, too.
+  static void connect_keyboard() {
+    const std::pair<int, int> keys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
+                                        {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                                        {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                                        {ImGuiKey_UpArrow, GLFW_KEY_UP},
+                                        {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
+                                        {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
+                                        {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
+                                        {ImGuiKey_Home, GLFW_KEY_HOME},
+                                        {ImGuiKey_End, GLFW_KEY_END},
+                                        {ImGuiKey_Insert, GLFW_KEY_INSERT},
+                                        {ImGuiKey_Delete, GLFW_KEY_DELETE},
+                                        {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                                        {ImGuiKey_Space, GLFW_KEY_SPACE},
+                                        {ImGuiKey_Enter, GLFW_KEY_ENTER},
+                                        {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                                        {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                                        {ImGuiKey_A, GLFW_KEY_A},
+                                        {ImGuiKey_C, GLFW_KEY_C},
+                                        {ImGuiKey_V, GLFW_KEY_V},
+                                        {ImGuiKey_X, GLFW_KEY_X},
+                                        {ImGuiKey_Y, GLFW_KEY_Y},
+                                        {ImGuiKey_Z, GLFW_KEY_Z}};
+    for (const auto& [key, code] : keys) ImGui::GetIO().KeyMap[key] = code;
+  }
+  /// Presses and releases a key as a person does: Dear ImGui, the program and the text under way see it.
+  void tap(int code, bool control = false, bool shift = false) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = control;
+    io.KeyShift = shift;
+    io.KeysDown[code] = true;
+    shell_->press({code, control, shift});
+    if (code >= ' ' && code < 127 && !control)
+      io.AddInputCharacter(static_cast<unsigned>(shift || !std::isalpha(code) ? code : std::tolower(code)));
+    frame();
+    io.KeysDown[code] = false;
+    io.KeyCtrl = io.KeyShift = false;
+    frame();
   }
   void press(int key, bool control = false) {
     shell_->press({key, control, false});
