@@ -364,8 +364,8 @@ inline constexpr Phrase k_key_click{"inspect a member; once more: its body",
 inline constexpr Phrase k_key_let_go{"let go of it", "選択を解除"};
 inline constexpr Phrase k_key_panel{"to the next panel", "次のパネルへ"};
 inline constexpr Phrase k_key_tab{"to the next value of the panel", "パネル内の次の値へ"};
-inline constexpr Phrase k_key_arrows{"between controls of a panel; Space or Enter uses one",
-                                     "パネル内の移動。Space か Enter で操作"};
+inline constexpr Phrase k_key_arrows{"between controls of a panel; Space uses one, Enter types its value",
+                                     "パネル内の移動。Space で操作、Enter で数値入力"};
 inline constexpr Phrase k_key_size{"larger, smaller, usual letters", "文字を大きく、小さく、標準に"};
 inline constexpr Phrase k_key_theme{"light or dark", "ライトとダークの切り替え"};
 inline constexpr Phrase k_key_loop{"at the end, begin again", "最後まで来たら最初から繰り返す"};

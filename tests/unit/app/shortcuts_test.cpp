@@ -267,9 +267,30 @@ class Shortcut : public ShellTest {
     tap(GLFW_KEY_RIGHT);
     tap(GLFW_KEY_RIGHT);
     tap(' ');
-    EXPECT_TRUE(player().playing());  // the third button; else Space would have paused at once
-    tap(GLFW_KEY_ENTER);
+    EXPECT_TRUE(player().playing());  // the third button
+    tap(' ');
     EXPECT_FALSE(player().playing());
+  }
+  void enter_types_a_value() {
+    halted();
+    for (int i = 0; i < 5 && focused() != "side"; ++i) tap(GLFW_KEY_F6);
+    const std::vector<double> before = values();
+    for (int i = 0; i < 12 && values() == before; ++i) {
+      tap(GLFW_KEY_DOWN);
+      tap(GLFW_KEY_ENTER);
+      if (!ImGui::GetIO().WantTextInput) continue;
+      type("1.5");
+      tap(GLFW_KEY_ENTER);
+    }
+    EXPECT_NE(values(), before);
+  }
+  /// Of all that sliders change.
+  std::vector<double> values() {
+    std::vector<double> all;
+    const Parameters& now = player().parameters();
+    for (const auto& [key, shake] : editable(player().scene().setup.model, now))
+      all.push_back(edited_value(now, key, shake).x());
+    return all;
   }
   void size() {
     for (const Line& line : Viewer::key_actions()) {
@@ -344,6 +365,7 @@ class Shortcut : public ShellTest {
          [](T& t) {
            t.tab_and_arrows(GLFW_KEY_DOWN);
            t.space_uses_a_control();
+           t.enter_types_a_value();
          }},
         {"Ctrl +, Ctrl -, Ctrl+0", [](T& t) { t.size(); }},
         {"Ctrl+D", [](T& t) { t.theme(); }},
