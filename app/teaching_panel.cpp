@@ -239,16 +239,13 @@ void draw_presets(Player& player) {
   }
 }
 
-void draw_demos(Player& player, TeachingState& state) {
+void draw_demos(const Player& player, TeachingState& state) {
   ImGui::TextDisabled("%s", say(k_demos).c_str());
-  const bool can = can_shake_as_sine(player);
+  state.wanted.reset();
   for (std::size_t k = 0; k < demos().size() && !state.guide; ++k) {
-    ImGui::BeginDisabled(!can);
-    if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
-      state.guide.emplace(demos()[k], player);
-    ImGui::EndDisabled();
-    if (!can && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-      ImGui::SetTooltip("%s", say(k_sine_only).c_str());
+    if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0})) state.wanted = k;
+    if (ImGui::IsItemHovered() && player.scene().name != k_demo_scene)
+      ImGui::SetTooltip("%s", say(k_demo_opens, k_demo_scene).c_str());
   }
   if (!state.guide) return;
   DemoGuide& guide = *state.guide;

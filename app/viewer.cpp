@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/row.h"
 #include "app/shell_words.h"
 #include "app/theme.h"
 
@@ -151,7 +152,10 @@ void Viewer::build(const std::function<void()>& over) {
   const Box before = scene_;
   write_status();
   lay_out();
-  if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
+  if (before.width != scene_.width || before.height != scene_.height) {
+    camera_changed_ = true;
+    fitted_ = fitted_ && moved_;
+  }
   if (!over) handle_characters();
   set_keyboard_navigation(!over);
   if (std::exchange(to_next_panel_, false)) focus_next_panel();
@@ -198,6 +202,7 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }
+  if (follows_ && scene_changed_) follow();
   if (!fitted_) {
     look(view_);
     flight_ = 1;
@@ -215,7 +220,13 @@ void Viewer::draw_scene() {
   scene_changed_ = camera_changed_ = false;
 }
 
-// What may still fall needs room beside it.
+void Viewer::follow() {
+  const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
+  for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
+  follows_->centre = centre;
+}
+
+// What may still fall needs room beside it; words lie above and below.
 void Viewer::look(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
@@ -225,7 +236,12 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
+  const float height = frame.bounds_max[2] - frame.bounds_min[2];
+  const float whole = height / (1 - words_top_ - words_bottom_);
+  frame.bounds_max[2] += words_top_ * whole;
+  frame.bounds_min[2] -= words_bottom_ * whole;
   view_ = view;
+  moved_ = false;
   from_ = orbit_;
   to_ = render::Orbit::fit(view, frame, aspect());
   flight_ = 0;
@@ -253,6 +269,7 @@ void Viewer::handle_mouse() {
       dragged_ = dragged_ || io.MouseDragMaxDistanceSqr[button] > k_click * k_click * scale_ * scale_;
     if (dragged_ && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
       flight_ = 1;
+      moved_ = true;
       if (pan)
         orbit_.pan(io.MouseDelta.x, io.MouseDelta.y, scene_.height);
       else
@@ -268,6 +285,7 @@ void Viewer::handle_mouse() {
   if (!ImGui::IsAnyMouseDown()) dragging_ = false;
   if (inside && io.MouseWheel != 0) {
     flight_ = 1;
+    moved_ = true;
     orbit_.zoom(std::pow(1.15f, io.MouseWheel), x, y, scene_.width, scene_.height);
     camera_changed_ = true;
   }
@@ -284,6 +302,11 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
     const Subject member{Subject::Kind::member, found->member};
     inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
   }
+}
+
+void Viewer::guide(std::size_t demo) {
+  tab_ = Tab::teach;
+  teaching_.guide.emplace(demos()[demo], player_);
 }
 
 void Viewer::inspect(const std::optional<Subject>& subject) {

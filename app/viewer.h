@@ -39,6 +39,9 @@ class Viewer {
 
   void show(Tab tab) { tab_ = tab; }
 
+  /// Begins a guided demo; the floor must be one that can_shake_as_sine.
+  void guide(std::size_t demo);
+
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
   /// Does what the key is for.
@@ -83,6 +86,8 @@ class Viewer {
   void focus_next_panel();
   void next_colour();
   void turn(bool& on);
+  void toggle_following();
+  void follow();
   void lay_out();
   void handle_characters();
   void handle_mouse();
@@ -115,8 +120,15 @@ class Viewer {
   render::SceneFrame frame_;
   std::optional<io::FrameRow> row_;
   render::Orbit orbit_, from_, to_;
-  double flight_ = 1;  // of the camera from one place to the other, 0..1
-  bool fitted_ = false;
+  double flight_ = 1;                    // of the camera from one place to the other, 0..1
+  bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
+  /// What the camera goes along with, and where that was when it last did.
+  struct Followed {
+    std::size_t body;
+    Eigen::Vector3f centre;
+  };
+  std::optional<Followed> follows_;
+  float words_top_ = 0, words_bottom_ = 0;  // of the scene's height, covered by words
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;

@@ -21,7 +21,9 @@ namespace {
 using namespace window_words;
 
 constexpr int k_most_status_lines = 3;
-constexpr float k_most_legend = 0.3f;  // of the width
+constexpr float k_most_legend = 0.3f;   // of the width
+constexpr float k_narrow_words = 0.3f;  // of the width: bodies stand beside words no wider
+constexpr float k_most_words = 0.4f;    // of the height, at either end
 
 }  // namespace
 
@@ -49,6 +51,9 @@ void Viewer::draw_words(const io::FrameRow& row) {
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
+  words_top_ = margin + width > k_narrow_words * scene_.width
+                   ? std::min((margin + height + pad) / scene_.height, k_most_words)
+                   : 0;
   for (const auto& [font, line] : lines) {
     list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
                  line.c_str());
@@ -64,12 +69,19 @@ void Viewer::draw_words(const io::FrameRow& row) {
                                             {"", inner, scene_.top + margin, right - margin, bottom - margin},
                                             frame_.dark, left_out)
                          .has_value();
+  std::optional<render::OverlayBox> flat;
+  if (!drawn)
+    flat = render::draw_flat_legend_in(
+        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
+        {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
+  words_bottom_ = flat ? std::min((bottom - flat->top) / scene_.height, k_most_words) : 0;
   list.ChannelsSetCurrent(0);
   const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
   if (drawn) {
     list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
     list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
   }
+  if (flat) list.AddRectFilled({scene_.left, flat->top - pad}, {right, bottom}, veil);
   list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
                       {"", scene_.left, scene_.top, right, bottom});

@@ -353,6 +353,9 @@ inline constexpr Phrase k_key_side{"from the side", "側面から見る"};
 inline constexpr Phrase k_key_top{"from the top", "上から見る"};
 inline constexpr Phrase k_key_corner{"from a corner", "斜めから見る"};
 inline constexpr Phrase k_key_fit{"fit that view", "全体を表示"};
+inline constexpr Phrase k_key_follow{"follow the body looked at, else the first; stop following",
+                                     "選択中（なければ最初）の物体を追う、追うのをやめる"};
+inline constexpr Phrase k_follows{"The camera follows {0}; T lets go.", "カメラは{0}を追います。T で解除。"};
 inline constexpr Phrase k_key_quantity{"colour by the next quantity", "着色する量を切り替え"};
 inline constexpr Phrase k_key_forces{"arrows of contact forces", "接触力の矢印"};
 inline constexpr Phrase k_key_panels{"panels of cabinets", "側板の表示"};

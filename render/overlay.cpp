@@ -439,4 +439,43 @@ std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& f
   return boxes.empty() ? std::nullopt : std::optional(boxes.front());
 }
 
+std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFonts& fonts,
+                                              const Legend& legend, ColourMap map, const OverlayBox& room,
+                                              bool dark) {
+  if (legend.quantity.empty() || !has_value_range(legend)) return std::nullopt;
+  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, colours(dark)};
+  const ImFont* const font = fonts.small;
+  const float line = at.line(font), gap = 8 * at.unit, top = room.bottom - 2 * line;
+  const int decimals = nice_ticks(legend.minimum, legend.maximum, 5).decimals;
+  const std::string low = number(legend.minimum, decimals), high = number(legend.maximum, decimals);
+  const float left = std::round(room.left + text_width(*font, low) + gap);
+  const float right = std::round(room.right - text_width(*font, high) - gap);
+  if (top < room.top || right - left < 4 * line) return std::nullopt;
+  std::string words = legend.quantity + (legend.unit.empty() ? "" : ", " + legend.unit);
+  for (const std::string* more : {&legend.mark_label, &legend.range_policy})
+    if (!more->empty() && text_width(*font, words + "   " + *more) < room.right - room.left)
+      words += "   " + *more;
+  at.text(font, room.left, top, at.colours.text, shortened(*font, words, room.right - room.left));
+  at.text(font, room.left, top + line, at.colours.text, low);
+  at.text(font, right + gap, top + line, at.colours.text, high);
+  const float bar_top = std::round(top + 1.1f * line), bar_bottom = std::round(top + 1.7f * line);
+  const ColourTable& table = colour_table(map);
+  for (int i = 0; i + 1 < k_colour_map_size; ++i) {
+    const auto colour = [&](int k) { return IM_COL32(table[k][0], table[k][1], table[k][2], 255); };
+    const auto x = [&](int k) {
+      return left + (right - left) * static_cast<float>(k) / (k_colour_map_size - 1);
+    };
+    list.AddRectFilledMultiColor({x(i), bar_top}, {x(i + 1), bar_bottom}, colour(i), colour(i + 1),
+                                 colour(i + 1), colour(i));
+  }
+  list.AddRect({left - 0.5f, bar_top - 0.5f}, {right + 0.5f, bar_bottom + 0.5f}, at.colours.frame);
+  const bool on_bar = legend.mark >= legend.minimum && legend.mark <= legend.maximum;
+  if (!legend.mark_label.empty() && on_bar) {
+    const float x = left + (right - left) * legend_position(legend, legend.mark),
+                half = std::max(1.f, at.unit);
+    list.AddRectFilled({x - half, bar_top}, {x + half, bar_bottom + 4 * at.unit}, at.colours.title);
+  }
+  return OverlayBox{"legend", room.left, top, room.right, room.bottom};
+}
+
 }  // namespace topple::render

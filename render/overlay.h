@@ -49,4 +49,9 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
                                          ColourMap map, const OverlayBox& room, bool dark, LeftOut& left_out);
 
+/// The same along the lower edge of `room`, two lines high: where there is no room for the other.
+std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFonts& fonts,
+                                              const Legend& legend, ColourMap map, const OverlayBox& room,
+                                              bool dark);
+
 }  // namespace topple::render

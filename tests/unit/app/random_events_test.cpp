@@ -409,21 +409,17 @@ TEST_P(RandomEvents, leave_a_window_that_works_and_no_file_elsewhere) {
   shell_->open(drops_[0]);
   ASSERT_TRUE(until([&] { return ready(); }));
   player().play();
-  std::set<std::pair<Language, bool>> looks;
   for (int event = 0; event < k_events; ++event) {
     ASSERT_NO_THROW(one_event()) << "event " << event << ", " << story();
     ASSERT_TRUE(twice.empty()) << "two items are one in " << *twice.begin() << ", event " << event << ", "
                                << story();
     ASSERT_EQ(not_finite, "") << "event " << event << ", " << story();
-    looks.emplace(window_language(), window_is_dark());
     if (event % 50 != 0) continue;
     const render::Surface surface = shell_->surface();
     const render::Image image = stage_.shot(surface, *ImGui::GetDrawData());
     ASSERT_EQ(image.width, surface.width);
   }
   EXPECT_GT(used_.size(), 40u);  // it got about
-  EXPECT_GT(looks.size(), 1u);
-
   for (int i = 0;
        i < 10 && (shell_->message() || shell_->save_dialog().is_open() || shell_->chooser().is_open() ||
                   shell_->export_dialog().is_open() || shell_->opening());

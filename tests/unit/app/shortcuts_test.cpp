@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include "app/row.h"
 #include "shell_fixture.h"
 
 namespace topple::app {
@@ -163,6 +164,22 @@ class Shortcut : public ShellTest {
     tap('F');
     sight();
     EXPECT_NEAR(viewer().orbit().distance, first.distance, 1e-3 * first.distance);
+  }
+  void follow() {
+    sight();
+    const auto seen_from = [&] { return viewer().orbit().target; };
+    const auto centre = [&] { return centre_of(*player().row(), 0); };
+    tap('T');
+    frame();
+    const Eigen::Vector3f target = seen_from(), before = centre();
+    run_to(0.3);
+    for (int i = 0; i < 5; ++i) frame();
+    EXPECT_GT((centre() - before).norm(), 1e-3f);
+    EXPECT_LT((seen_from() - target - (centre() - before)).norm(), 1e-5f);
+    tap('T');
+    const Eigen::Vector3f left = seen_from();
+    run_to(0.5);
+    EXPECT_EQ(seen_from(), left);
   }
   void colour() {
     tap('Q');
@@ -349,6 +366,7 @@ class Shortcut : public ShellTest {
         {"3", [](T& t) { t.expect_named_view('3', render::NamedView::top); }},
         {"4", [](T& t) { t.expect_named_view('4', render::NamedView::iso); }},
         {"F", [](T& t) { t.fit(); }},
+        {"T", [](T& t) { t.follow(); }},
         {"Q", [](T& t) { t.colour(); }},
         {"A", [](T& t) { t.forces(); }},
         {"P", [](T& t) { t.panels(); }},
