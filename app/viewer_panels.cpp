@@ -22,6 +22,7 @@ using namespace window_words;
 
 constexpr int k_most_status_lines = 3;
 constexpr float k_most_legend = 0.3f;   // of the width
+constexpr float k_room_for_title = 16;  // lines
 constexpr float k_narrow_words = 0.3f;  // of the width: bodies stand beside words no wider
 constexpr float k_most_words = 0.4f;    // of the height, at either end
 
@@ -43,7 +44,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
       height += std::round(1.3f * font->FontSize);
     }
   };
-  add(fonts_.text, player_.scene().title);
+  if (scene_.height > k_room_for_title * fonts_.small->FontSize) add(fonts_.text, player_.scene().title);
   add(fonts_.small,
       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
@@ -84,7 +85,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   if (flat) list.AddRectFilled({scene_.left, flat->top - pad}, {right, bottom}, veil);
   list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
-                      {"", scene_.left, scene_.top, right, bottom});
+                      {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom);
   list.PopClipRect();
 }
 
