@@ -17,6 +17,7 @@ namespace {
 
 constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
+constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
@@ -226,7 +227,7 @@ void Viewer::follow() {
   follows_->centre = centre;
 }
 
-// What may still fall needs room beside it; words lie above and below.
+// What may still fall needs room beside it; words lie above, below and at the right.
 void Viewer::look(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
@@ -236,14 +237,14 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
-  const float height = frame.bounds_max[2] - frame.bounds_min[2];
-  const float whole = height / (1 - words_top_ - words_bottom_);
-  frame.bounds_max[2] += words_top_ * whole;
-  frame.bounds_min[2] -= words_bottom_ * whole;
+  const float width = std::max(scene_.width - words_right_, k_least_free * scene_.width);
+  const float height = std::max(scene_.height - words_top_ - words_bottom_, k_least_free * scene_.height);
   view_ = view;
   moved_ = false;
   from_ = orbit_;
-  to_ = render::Orbit::fit(view, frame, aspect());
+  to_ = render::Orbit::fit(view, frame, width / height);
+  to_.distance *= scene_.height / height;
+  to_.pan((width - scene_.width) / 2, (words_top_ - words_bottom_) / 2, scene_.height);
   flight_ = 0;
   camera_changed_ = true;
 }

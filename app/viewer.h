@@ -128,7 +128,7 @@ class Viewer {
     Eigen::Vector3f centre;
   };
   std::optional<Followed> follows_;
-  float words_top_ = 0, words_bottom_ = 0;  // of the scene's height, covered by words
+  float words_top_ = 0, words_bottom_ = 0, words_right_ = 0;  // px of the scene that words cover
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;

@@ -1,4 +1,9 @@
 // Choosing, opening, saving and exporting, off screen, with mouse and keyboard fed by hand.
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "shell_fixture.h"
 #include "small_disk.h"
 #include "solver/io/recording.h"
@@ -118,6 +123,33 @@ TEST_F(ShellTest, damaged_recordings_and_files_of_other_kinds_are_refused_with_t
   }
 }
 
+TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  run_to(0.1);
+  shell_->close("stopped");
+  const std::string other = (scratch_ / "other.h5").string();
+  fs::copy_file(scratch_ / "a.h5", other);
+  {
+    const hid_t file = H5Fopen(other.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
+    const int five = 5;
+    ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &five), 0);
+    H5Aclose(version);
+    H5Fclose(file);
+  }
+  open_rocking();
+  shell_->drop({other});
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_EQ(shell_->message()->text,
+            other + ": recording format 5 is not supported by this version, which reads format 6");
+  press(render::key::escape);
+  EXPECT_EQ(shell_->title(), "topple: rocking");
+  run_to(0.1);
+}
+
 TEST_F(ShellTest, an_accelerogram_becomes_the_first_shake_of_a_copy_that_starts_anew) {
   open_rocking();
   run_to(0.1);
@@ -188,6 +220,10 @@ TEST_F(ShellTest, a_step_that_fails_offers_half_of_it) {
   EXPECT_NE(shell_->message()->text.find("central-difference"), std::string::npos) << shell_->message()->text;
   ASSERT_TRUE(shell_->message()->may_halve_step);
   EXPECT_FALSE(player().playing());
+  EXPECT_GE(player().status().element, 0);
+  const auto last_good = player().row();
+  ASSERT_TRUE(last_good.has_value());
+  EXPECT_TRUE(std::ranges::all_of(last_good->position, [](float x) { return std::isfinite(x); }));
   const double step = player().parameters().time_step;
   click("Halve the step and retry");
   EXPECT_DOUBLE_EQ(player().parameters().time_step, step / 2);
@@ -233,6 +269,23 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_FALSE(shell_->save_dialog().is_open());
   EXPECT_EQ(io::load_scene(other).setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(files_like(".part"), 0);
+}
+
+TEST_F(ShellTest, what_cannot_be_saved_is_explained_in_the_dialog_which_stays) {
+  open_rocking();
+  const std::pair<std::string, std::string> targets[] = {{"/proc/nothing.toml", "/proc/nothing.toml"},
+                                                         {(scratch_ / "no/such.toml").string(), "no folder"}};
+  for (const auto& [target, reason] : targets) {
+    save_as(target);
+    EXPECT_TRUE(shell_->save_dialog().is_open());
+    EXPECT_NE(shell_->save_dialog().refused().find(reason), std::string::npos)
+        << shell_->save_dialog().refused();
+    press(render::key::escape);
+  }
+  const std::string good = (scratch_ / "good.toml").string();
+  save_as(good);
+  EXPECT_TRUE(fs::exists(good));
+  run_to(0.1);
 }
 
 TEST_F(ShellTest, accelerograms_are_saved_beside_the_scene) {
@@ -343,6 +396,22 @@ TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
   click("Cancel");
   EXPECT_EQ(export_failure(), "");
   EXPECT_EQ(files_like("view.mp4"), 0);
+}
+
+TEST_F(ExportDialogTest, a_target_that_cannot_be_written_is_told_and_the_run_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    open_export(what);
+    std::string("/proc/out.png").copy(dialog().path, 14);
+    dialog().path[13] = '\0';
+    start();
+    EXPECT_NE(export_failure().find("/proc/out.png"), std::string::npos) << dialog().refused();
+    EXPECT_TRUE(dialog().is_open());
+    press(render::key::escape);
+  }
+  run_to(player().time() + 0.05);
 }
 
 TEST_F(ExportDialogTest, a_failure_is_told_with_its_reason) {
