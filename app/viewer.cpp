@@ -103,7 +103,7 @@ void Viewer::wear(const Appearance& appearance) {
 bool Viewer::update(double wall_s) {
   const bool redress = dressed_ != appearance_;
   if (redress) dress();
-  bool news = player_.update(wall_s) || redress;
+  bool news = player_.update(wall_s) || redress || std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
   if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
   if (flight_ < 1) move_camera(wall_s);
@@ -208,7 +208,7 @@ void Viewer::draw_scene() {
     look(view_);
     flight_ = 1;
     orbit_ = to_;
-    fitted_ = true;
+    fitted_ = words_due_ = true;
   }
   orbit_.set_bounds(frame_);
   drawn_still_ = !changed;
