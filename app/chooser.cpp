@@ -150,10 +150,15 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   ImGui::PushFont(fonts.title);
   ImGui::TextUnformatted(say(ww::k_choose).c_str());
   ImGui::PopFont();
-  ImGui::SameLine(0, 18 * unit);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + fonts.title->FontSize - fonts.small->FontSize * 1.25f);
-  ImGui::TextDisabled("%s", say(ww::k_choose_about).c_str());
-  const float filter_width = 240 * unit;
+  const float filter_width = 240 * unit, gap = 18 * unit;
+  const std::string about = say(ww::k_choose_about);
+  ImGui::SameLine(0, gap);
+  const float room = ImGui::GetWindowContentRegionMax().x - filter_width - gap - ImGui::GetCursorPosX();
+  const bool beside = ImGui::CalcTextSize(about.c_str()).x <= room;
+  if (beside) {
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + fonts.title->FontSize - fonts.small->FontSize * 1.25f);
+    ImGui::TextDisabled("%s", about.c_str());
+  }
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - filter_width);
   ImGui::SetCursorPosY(18 * unit);
   ImGui::SetNextItemWidth(filter_width);
@@ -161,6 +166,7 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 1);
   ImGui::InputTextWithHint("##filter", say(ww::k_filter).c_str(), filter_, sizeof filter_);
   ImGui::PopStyleVar();
+  if (!beside) ImGui::TextDisabled("%s", about.c_str());
   ImGui::Dummy({0, 6 * unit});
   const float foot = ImGui::GetFrameHeightWithSpacing();
   const ImGuiWindowFlags plain = ImGuiWindowFlags_NoNav;

@@ -24,6 +24,9 @@ struct Demo {
 };
 std::span<const Demo> demos();
 
+/// The scene that they are made for.
+inline constexpr const char* k_demo_scene = "paper-a";
+
 /// Whether the floor can shake as a sine of another frequency and amplitude now.
 bool can_shake_as_sine(const Player& player);
 /// Makes the first shake a sine from now on. `amplitude`: gal.

@@ -275,7 +275,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
     }
     if (subject.kind == Subject::Kind::member) {
       changed = draw_member(at, subject);
-      const auto body = static_cast<std::size_t>(model.members[subject.index].body);
+      const std::size_t body = body_of(model, subject);
       if (ImGui::Button((say(k_all_of, model.bodies[body].name) + "##body").c_str())) {
         inspection.picked = Subject{Subject::Kind::body, body};
         changed = true;

@@ -24,6 +24,11 @@ inline Vec3 floor_shift(const io::FrameRow& row) {
   return Vec3(row.floor_displacement);
 }
 
+/// m, of a body, in the picture's frame.
+inline Eigen::Vector3f centre_of(const io::FrameRow& row, std::size_t body) {
+  return (Vec3(&row.body[11 * body]) + floor_shift(row)).cast<float>();
+}
+
 inline render::Float3 to_float(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }

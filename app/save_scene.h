@@ -31,6 +31,9 @@ class SaveDialog {
 
   char path[4096] = {};
 
+  /// Why it was not written; empty: nothing was refused.
+  const std::string& refused() const { return refused_; }
+
  private:
   bool open_ = false, appeared_ = false, enter_ = false;
   std::string exists_;   ///< the path that is there already, about which it asks

@@ -136,9 +136,26 @@ bool Shell::update(double wall_s) {
   });
   const bool seen = session_ && session_->viewer().update(wall_s);
   if (session_) watch_trouble();
+  if (demo_) start_demo();
   if (news || message_.has_value() != told_before) frames_due_ = k_frames_of_news;
   if (frames_due_ > 0) --frames_due_;
   return news || seen || opening_ || frames_due_ > 0;
+}
+
+// In its own scene, which is opened once unless it is there and can be shaken.
+void Shell::start_demo() {
+  if (opening_ || !session_) return;
+  Player& player = session_->player();
+  const bool there = session_->scene().name == k_demo_scene && !player.replay();
+  if (there) player.to_end();
+  if (there && can_shake_as_sine(player)) {
+    session_->viewer().guide(demo_->which);
+    demo_.reset();
+  } else if (!std::exchange(demo_->opened, true)) {
+    open(k_demo_scene);
+  } else if (!there) {
+    demo_.reset();  // something else was opened meanwhile
+  }
 }
 
 // Each trouble is told once.
@@ -203,7 +220,9 @@ void Shell::build() {
     session_->viewer().build([this] { build_over(); });
   else
     session_->viewer().build();
-  if (!covered()) ask(session_->viewer().asked());
+  if (covered()) return;
+  ask(session_->viewer().asked());
+  if (const auto& wanted = session_->viewer().teaching().wanted) demo_ = {*wanted, false};
 }
 
 void Shell::build_over() {

@@ -69,6 +69,7 @@ class Shell {
   void build_over();
   void draw_opening(const Box& window);
   void answer_message();
+  void start_demo();
 
   render::Stage& stage_;
   const float scale_;
@@ -85,6 +86,11 @@ class Shell {
   std::unique_ptr<Session> session_;
   std::vector<std::future<LiveStatus>> closing_;
   std::string told_failure_, told_trouble_;  ///< what a message was shown for
+  struct WantedDemo {
+    std::size_t which;  ///< of demos()
+    bool opened;        ///< its scene
+  };
+  std::optional<WantedDemo> demo_;  ///< begins when its scene is there
   int frames_due_ = 0;
   bool wants_to_close_ = false;
 };

@@ -162,6 +162,14 @@ std::string name_of(const Model& model, const Subject& subject) {
   return "";
 }
 
+std::size_t body_of(const Model& model, const Subject& subject) {
+  if (subject.kind == Subject::Kind::member)
+    return static_cast<std::size_t>(model.members[subject.index].body);
+  if (subject.kind == Subject::Kind::anchor)
+    return static_cast<std::size_t>(model.anchors[subject.index].body);
+  return subject.index;
+}
+
 void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame) {
   const auto index = static_cast<std::int64_t>(subject.index);
   if (subject.kind == Subject::Kind::body)

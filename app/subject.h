@@ -21,6 +21,8 @@ struct Subject {
 
 /// "free/post-1", "free", "strap".
 std::string name_of(const Model& model, const Subject& subject);
+/// The body that it is, belongs to, or holds.
+std::size_t body_of(const Model& model, const Subject& subject);
 
 /// Has it outlined.
 void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame);

@@ -239,16 +239,13 @@ void draw_presets(Player& player) {
   }
 }
 
-void draw_demos(Player& player, TeachingState& state) {
+void draw_demos(const Player& player, TeachingState& state) {
   ImGui::TextDisabled("%s", say(k_demos).c_str());
-  const bool can = can_shake_as_sine(player);
+  state.wanted.reset();
   for (std::size_t k = 0; k < demos().size() && !state.guide; ++k) {
-    ImGui::BeginDisabled(!can);
-    if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
-      state.guide.emplace(demos()[k], player);
-    ImGui::EndDisabled();
-    if (!can && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-      ImGui::SetTooltip("%s", say(k_sine_only).c_str());
+    if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0})) state.wanted = k;
+    if (ImGui::IsItemHovered() && player.scene().name != k_demo_scene)
+      ImGui::SetTooltip("%s", say(k_demo_opens, k_demo_scene).c_str());
   }
   if (!state.guide) return;
   DemoGuide& guide = *state.guide;
@@ -272,14 +269,15 @@ void draw_accuracy(const Player& player, TeachingState& state) {
   const auto result = state.accuracy ? state.accuracy->result() : std::nullopt;
   if (!state.accuracy || result) {
     ImGui::BeginDisabled(player.way().empty());
-    if (ImGui::Button((say(k_how_accurate) + "##accurate").c_str(), {-1, 0})) {
+    const bool asked = ImGui::Button((say(k_how_accurate) + "##accurate").c_str(), {-1, 0});
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_how_accurate_about).c_str());
+    if (asked) {
       Setup setup = player.scene().setup;
       for (const Edit& edit : player.edits_since_start()) apply(edit, setup.model, 0, setup.parameters);
       state.accuracy = std::make_unique<Accuracy>(setup);
       return;
     }
-    ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_how_accurate_about).c_str());
   } else {
     const auto progress = static_cast<float>(state.accuracy->progress());
     ImGui::TextUnformatted(say(k_estimating, 100 * progress).c_str());

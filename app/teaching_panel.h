@@ -22,6 +22,7 @@ struct TeachingState {
   std::shared_ptr<const Accelerogram> record;  ///< of the present place
   double scale = 1;                            ///< likewise
   std::optional<DemoGuide> guide;
+  std::optional<std::size_t> wanted;  ///< of demos(): it was asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
 };
 

@@ -35,6 +35,8 @@ inline constexpr Phrase k_sine_only{"Only where the floor can shake as a sine, a
                                     "正弦波で加振できるシーンの、最新の時刻でのみ使えます"};
 
 // guided demos
+inline constexpr Phrase k_demo_opens{"Opens {0} for it; the run that is open has been recorded.",
+                                     "デモ用に {0} を開きます。現在の計算は記録済みです。"};
 inline constexpr Phrase k_demos{"Guided demos", "解説付きデモ"};
 inline constexpr Phrase k_demo_gentle{"long and gentle", "ゆっくり大きな揺れ"};
 inline constexpr Phrase k_demo_violent{"short and violent", "速く激しい揺れ"};

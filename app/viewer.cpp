@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/row.h"
 #include "app/shell_words.h"
 #include "app/theme.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
+constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
@@ -101,7 +103,7 @@ void Viewer::wear(const Appearance& appearance) {
 bool Viewer::update(double wall_s) {
   const bool redress = dressed_ != appearance_;
   if (redress) dress();
-  bool news = player_.update(wall_s) || redress;
+  bool news = player_.update(wall_s) || redress || std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
   if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
   if (flight_ < 1) move_camera(wall_s);
@@ -151,7 +153,10 @@ void Viewer::build(const std::function<void()>& over) {
   const Box before = scene_;
   write_status();
   lay_out();
-  if (before.width != scene_.width || before.height != scene_.height) camera_changed_ = true;
+  if (before.width != scene_.width || before.height != scene_.height) {
+    camera_changed_ = true;
+    fitted_ = fitted_ && moved_;
+  }
   if (!over) handle_characters();
   set_keyboard_navigation(!over);
   if (std::exchange(to_next_panel_, false)) focus_next_panel();
@@ -198,11 +203,12 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }
+  if (follows_ && scene_changed_) follow();
   if (!fitted_) {
     look(view_);
     flight_ = 1;
     orbit_ = to_;
-    fitted_ = true;
+    fitted_ = words_due_ = true;
   }
   orbit_.set_bounds(frame_);
   drawn_still_ = !changed;
@@ -215,7 +221,13 @@ void Viewer::draw_scene() {
   scene_changed_ = camera_changed_ = false;
 }
 
-// What may still fall needs room beside it.
+void Viewer::follow() {
+  const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
+  for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
+  follows_->centre = centre;
+}
+
+// What may still fall needs room beside it; words lie above, below and at the right.
 void Viewer::look(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
@@ -225,9 +237,14 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
+  const float width = std::max(scene_.width - words_right_, k_least_free * scene_.width);
+  const float height = std::max(scene_.height - words_top_ - words_bottom_, k_least_free * scene_.height);
   view_ = view;
+  moved_ = false;
   from_ = orbit_;
-  to_ = render::Orbit::fit(view, frame, aspect());
+  to_ = render::Orbit::fit(view, frame, width / height);
+  to_.distance *= scene_.height / height;
+  to_.pan((width - scene_.width) / 2, (words_top_ - words_bottom_) / 2, scene_.height);
   flight_ = 0;
   camera_changed_ = true;
 }
@@ -253,6 +270,7 @@ void Viewer::handle_mouse() {
       dragged_ = dragged_ || io.MouseDragMaxDistanceSqr[button] > k_click * k_click * scale_ * scale_;
     if (dragged_ && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
       flight_ = 1;
+      moved_ = true;
       if (pan)
         orbit_.pan(io.MouseDelta.x, io.MouseDelta.y, scene_.height);
       else
@@ -268,6 +286,7 @@ void Viewer::handle_mouse() {
   if (!ImGui::IsAnyMouseDown()) dragging_ = false;
   if (inside && io.MouseWheel != 0) {
     flight_ = 1;
+    moved_ = true;
     orbit_.zoom(std::pow(1.15f, io.MouseWheel), x, y, scene_.width, scene_.height);
     camera_changed_ = true;
   }
@@ -284,6 +303,11 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
     const Subject member{Subject::Kind::member, found->member};
     inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
   }
+}
+
+void Viewer::guide(std::size_t demo) {
+  tab_ = Tab::teach;
+  teaching_.guide.emplace(demos()[demo], player_);
 }
 
 void Viewer::inspect(const std::optional<Subject>& subject) {

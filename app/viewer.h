@@ -39,6 +39,9 @@ class Viewer {
 
   void show(Tab tab) { tab_ = tab; }
 
+  /// Begins a guided demo; the floor must be one that can_shake_as_sine.
+  void guide(std::size_t demo);
+
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
   /// Does what the key is for.
@@ -46,6 +49,16 @@ class Viewer {
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
   /// when it changed. `over` builds what lies over it all and takes the keyboard.
   void build(const std::function<void()>& over = {});
+  /// What is done with keyboard and mouse: the lines of F1's table. key 0: a line only; nothing shown:
+  /// another key of the line above.
+  struct KeyAction {
+    Phrase shown, does;
+    int key = 0;
+    bool control = false, shift = false;
+    void (*act)(Viewer&) = nullptr;
+  };
+  static std::span<const KeyAction> key_actions();
+
   /// Where things lie, for Stage::present.
   render::Surface surface() const;
 
@@ -66,8 +79,6 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
-  struct KeyAction;
-  static std::span<const KeyAction> key_actions();
   void dress();
   void wear(const Appearance& appearance);
   void resize(int direction);
@@ -75,6 +86,8 @@ class Viewer {
   void focus_next_panel();
   void next_colour();
   void turn(bool& on);
+  void toggle_following();
+  void follow();
   void lay_out();
   void handle_characters();
   void handle_mouse();
@@ -107,8 +120,16 @@ class Viewer {
   render::SceneFrame frame_;
   std::optional<io::FrameRow> row_;
   render::Orbit orbit_, from_, to_;
-  double flight_ = 1;  // of the camera from one place to the other, 0..1
-  bool fitted_ = false;
+  double flight_ = 1;                    // of the camera from one place to the other, 0..1
+  bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
+  bool words_due_ = false;               // they were written for another camera
+  /// What the camera goes along with, and where that was when it last did.
+  struct Followed {
+    std::size_t body;
+    Eigen::Vector3f centre;
+  };
+  std::optional<Followed> follows_;
+  float words_top_ = 0, words_bottom_ = 0, words_right_ = 0;  // px of the scene that words cover
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;

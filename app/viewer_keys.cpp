@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "app/row.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
 
@@ -18,14 +19,6 @@ bool character(char c) {
 }
 
 }  // namespace
-
-/// What is done with keyboard and mouse. key 0: a line of the table only.
-struct Viewer::KeyAction {
-  Phrase shown, does;
-  int key = 0;
-  bool control = false, shift = false;
-  void (*act)(Viewer&) = nullptr;
-};
 
 // In one table, so that what F1 shows is what happens.
 std::span<const Viewer::KeyAction> Viewer::key_actions() {
@@ -51,6 +44,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {{"3", "3"}, k_key_top, '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
       {{"4", "4"}, k_key_corner, '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
       {{"F", "F"}, k_key_fit, 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
+      {{"T", "T"}, k_key_follow, 'T', false, false, [](Viewer& v) { v.toggle_following(); }},
       {{"Q", "Q"}, k_key_quantity, 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
       {{"A", "A"}, k_key_forces, 'A', false, false, [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
       {{"P", "P"}, k_key_panels, 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
@@ -110,6 +104,18 @@ void Viewer::press(const render::KeyPress& press) {
     if (action.act && action.key == press.key && action.control == press.control &&
         (action.shift == press.shift || !press.control))
       action.act(*this);
+}
+
+void Viewer::toggle_following() {
+  const Model& model = player_.scene().setup.model;
+  told_.clear();
+  if (follows_ || !row_ || model.furniture_total() == 0) {
+    follows_.reset();
+    return;
+  }
+  const std::size_t body = body_of(model, inspection_.picked.value_or(Subject{Subject::Kind::body, 0}));
+  follows_ = Followed{body, centre_of(*row_, body)};
+  told_ = say(k_follows, model.bodies[body].name);
 }
 
 void Viewer::next_colour() {

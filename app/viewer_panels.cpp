@@ -21,7 +21,10 @@ namespace {
 using namespace window_words;
 
 constexpr int k_most_status_lines = 3;
-constexpr float k_most_legend = 0.3f;  // of the width
+constexpr float k_most_legend = 0.3f;    // of the width
+constexpr float k_room_for_title = 16;   // lines
+constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
+constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
 
 }  // namespace
 
@@ -33,15 +36,16 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const float room = scene_.width - legend - 2 * margin, pad = 0.5f * margin;
   std::vector<std::pair<ImFont*, std::string>> lines;
   float width = 0, height = 0;
+  const bool low = scene_.height < k_room_for_title * fonts_.small->FontSize;
   const auto add = [&](ImFont* font, const std::string& text) {
-    for (const std::string& line : render::wrapped(*font, text, room, 2)) {
+    for (const std::string& line : render::wrapped(*font, text, room, low ? 1 : 2)) {
       if (scene_.top + margin + height + 1.3f * font->FontSize > bottom) return;
       lines.emplace_back(font, line);
       width = std::max(width, render::text_width(*font, line));
       height += std::round(1.3f * font->FontSize);
     }
   };
-  add(fonts_.text, player_.scene().title);
+  if (!low) add(fonts_.text, player_.scene().title);
   add(fonts_.small,
       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
@@ -49,6 +53,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
+  const float more = k_words_to_come * fonts_.small->FontSize;
+  words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
   for (const auto& [font, line] : lines) {
     list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
                  line.c_str());
@@ -64,15 +70,23 @@ void Viewer::draw_words(const io::FrameRow& row) {
                                             {"", inner, scene_.top + margin, right - margin, bottom - margin},
                                             frame_.dark, left_out)
                          .has_value();
+  std::optional<render::OverlayBox> flat;
+  if (!drawn)
+    flat = render::draw_flat_legend_in(
+        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
+        {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
+  words_bottom_ = flat ? bottom - flat->top + pad : 0;
+  words_right_ = drawn ? right - inner : 0;
   list.ChannelsSetCurrent(0);
   const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
   if (drawn) {
     list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
     list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
   }
+  if (flat) list.AddRectFilled({scene_.left, flat->top - pad}, {right, bottom}, veil);
   list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
-                      {"", scene_.left, scene_.top, right, bottom});
+                      {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom);
   list.PopClipRect();
 }
 

@@ -29,6 +29,7 @@ WindowPicture::WindowPicture(render::Context& context, std::shared_ptr<const io:
     return kind == LiveStatus::Kind::starting || kind == LiveStatus::Kind::reading;
   };
   while (waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  build();  // the first one shows how much room words take
 }
 
 WindowPicture::~WindowPicture() {

@@ -353,6 +353,9 @@ inline constexpr Phrase k_key_side{"from the side", "側面から見る"};
 inline constexpr Phrase k_key_top{"from the top", "上から見る"};
 inline constexpr Phrase k_key_corner{"from a corner", "斜めから見る"};
 inline constexpr Phrase k_key_fit{"fit that view", "全体を表示"};
+inline constexpr Phrase k_key_follow{"follow the body looked at, else the first; stop following",
+                                     "選択中（なければ最初）の物体を追う、追うのをやめる"};
+inline constexpr Phrase k_follows{"The camera follows {0}; T lets go.", "カメラは{0}を追います。T で解除。"};
 inline constexpr Phrase k_key_quantity{"colour by the next quantity", "着色する量を切り替え"};
 inline constexpr Phrase k_key_forces{"arrows of contact forces", "接触力の矢印"};
 inline constexpr Phrase k_key_panels{"panels of cabinets", "側板の表示"};
@@ -364,8 +367,8 @@ inline constexpr Phrase k_key_click{"inspect a member; once more: its body",
 inline constexpr Phrase k_key_let_go{"let go of it", "選択を解除"};
 inline constexpr Phrase k_key_panel{"to the next panel", "次のパネルへ"};
 inline constexpr Phrase k_key_tab{"to the next value of the panel", "パネル内の次の値へ"};
-inline constexpr Phrase k_key_arrows{"between controls of a panel; Space or Enter uses one",
-                                     "パネル内の移動。Space か Enter で操作"};
+inline constexpr Phrase k_key_arrows{"between controls of a panel; Space uses one, Enter types its value",
+                                     "パネル内の移動。Space で操作、Enter で数値入力"};
 inline constexpr Phrase k_key_size{"larger, smaller, usual letters", "文字を大きく、小さく、標準に"};
 inline constexpr Phrase k_key_theme{"light or dark", "ライトとダークの切り替え"};
 inline constexpr Phrase k_key_loop{"at the end, begin again", "最後まで来たら最初から繰り返す"};

@@ -401,7 +401,7 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
 }
 
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
-                 const OverlayBox& room) {
+                 const OverlayBox& room, float lowest) {
   const float unit = fonts.text->FontSize / 17, pad = 3 * unit, away = 9 * unit;
   const ImFont& font = *fonts.small;
   std::vector<OverlayBox> placed;
@@ -409,17 +409,17 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
     const auto at = seen_at(camera, label.at, room.right - room.left, room.bottom - room.top);
     if (!at || label.words.empty()) continue;
     const float width = text_width(font, label.words) + 2 * pad, height = font.FontSize + 2 * pad;
-    if (width > room.right - room.left || height > room.bottom - room.top) continue;
+    if (width > room.right - room.left || height > lowest - room.top) continue;
     OverlayBox box{"label", room.left + at->x + away, room.top + at->y - height / 2, 0, 0};
     box.left = std::round(std::clamp(box.left, room.left, room.right - width));
-    box.top = std::round(std::clamp(box.top, room.top, room.bottom - height));
+    box.top = std::round(std::clamp(box.top, room.top, lowest - height));
     for (const OverlayBox& other : placed)  // below those before it
       if (box.left < other.right && box.left + width > other.left && box.top < other.bottom &&
           box.top + height > other.top)
         box.top = other.bottom + 1;
     box.right = box.left + width;
     box.bottom = box.top + height;
-    if (box.bottom > room.bottom) continue;
+    if (box.bottom > lowest) continue;
     list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, colours(frame.dark).sheet, pad);
     list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, colours(frame.dark).title,
                  label.words.c_str());
@@ -437,6 +437,46 @@ std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& f
                 boxes);
   }
   return boxes.empty() ? std::nullopt : std::optional(boxes.front());
+}
+
+std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFonts& fonts,
+                                              const Legend& legend, ColourMap map, const OverlayBox& room,
+                                              bool dark) {
+  if (legend.quantity.empty() || !has_value_range(legend)) return std::nullopt;
+  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, colours(dark)};
+  const ImFont* const font = fonts.small;
+  const float line = at.line(font), gap = 8 * at.unit, top = room.bottom - line;
+  const int decimals = nice_ticks(legend.minimum, legend.maximum, 5).decimals;
+  const std::string low = number(legend.minimum, decimals), high = number(legend.maximum, decimals);
+  const float numbers = text_width(*font, low) + text_width(*font, high) + 3 * gap, least = 5 * line;
+  const std::string words =
+      shortened(*font, legend.quantity + (legend.unit.empty() ? "" : ", " + legend.unit),
+                room.right - room.left - numbers - least);
+  const float first = room.left + text_width(*font, words) + 2 * gap;
+  const float left = std::round(first + text_width(*font, low) + gap);
+  const float right = std::round(room.right - text_width(*font, high) - gap);
+  if (top < room.top || right - left < least / 2) return std::nullopt;
+  at.text(font, room.left, top, at.colours.text, words);
+  at.text(font, first, top, at.colours.text, low);
+  at.text(font, right + gap, top, at.colours.text, high);
+  const float bar_top = std::round(top + 0.1f * line), bar_bottom = std::round(top + 0.7f * line);
+  const ColourTable& table = colour_table(map);
+  for (int i = 0; i + 1 < k_colour_map_size; ++i) {
+    const auto colour = [&](int k) { return IM_COL32(table[k][0], table[k][1], table[k][2], 255); };
+    const auto x = [&](int k) {
+      return left + (right - left) * static_cast<float>(k) / (k_colour_map_size - 1);
+    };
+    list.AddRectFilledMultiColor({x(i), bar_top}, {x(i + 1), bar_bottom}, colour(i), colour(i + 1),
+                                 colour(i + 1), colour(i));
+  }
+  list.AddRect({left - 0.5f, bar_top - 0.5f}, {right + 0.5f, bar_bottom + 0.5f}, at.colours.frame);
+  const bool on_bar = legend.mark >= legend.minimum && legend.mark <= legend.maximum;
+  if (!legend.mark_label.empty() && on_bar) {
+    const float x = left + (right - left) * legend_position(legend, legend.mark),
+                half = std::max(1.f, at.unit);
+    list.AddRectFilled({x - half, bar_top}, {x + half, bar_bottom + 4 * at.unit}, at.colours.title);
+  }
+  return OverlayBox{"legend", room.left, top, room.right, room.bottom};
 }
 
 }  // namespace topple::render

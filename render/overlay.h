@@ -40,13 +40,19 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                                      ColourMap map, float width, float height, LeftOut& left_out);
 
 /// Adds the frame's labels beside their places, as `camera` sees them in a picture that fills `room` (px; its
-/// name does not count). They stay inside and do not overlap; those without room are left out.
+/// name does not count). They stay above `lowest` and inside, and do not overlap; those without room are left
+/// out.
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
-                 const OverlayBox& room);
+                 const OverlayBox& room, float lowest);
 
 /// Adds only the legend of draw_overlay, as large as `room` allows (px; its name does not count); dark: as on
 /// a frame that is. Returns where it lies; nothing when there is no room or no legend.
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
                                          ColourMap map, const OverlayBox& room, bool dark, LeftOut& left_out);
+
+/// The same along the lower edge of `room`, one line high: where there is no room for the other.
+std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFonts& fonts,
+                                              const Legend& legend, ColourMap map, const OverlayBox& room,
+                                              bool dark);
 
 }  // namespace topple::render

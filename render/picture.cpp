@@ -72,7 +72,8 @@ struct Picture::Parts {
       ImGui::NewFrame();
       if (finite(camera))
         draw_labels(*ImGui::GetBackgroundDrawList(), fonts, frame, camera,
-                    {"", 0, 0, static_cast<float>(width), static_cast<float>(height)});
+                    {"", 0, 0, static_cast<float>(width), static_cast<float>(height)},
+                    static_cast<float>(height));
       boxes = draw_overlay(*ImGui::GetBackgroundDrawList(), fonts, frame, map, static_cast<float>(width),
                            static_cast<float>(height), left_out);
       ImGui::Render();

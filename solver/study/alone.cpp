@@ -58,7 +58,8 @@ std::optional<Plane> floor_of(const Model& model) {
 
 std::string why_not_standing(const Model& model, int index) {
   const Body& body = model.bodies[index];
-  const Plane floor = floor_of(model).value();
+  const auto floor = floor_of(model);
+  if (!floor) return "has no level floor below it";
   for (const Support& support : model.supports)
     if (model.node_body[support.node] == index) return "is held by supports";
   if (body.support_polygon.size() < 3 || body.base_points.empty()) return "has no base";
@@ -70,7 +71,7 @@ std::string why_not_standing(const Model& model, int index) {
   }
   for (const int point : body.base_points) {
     const ContactPoint& contact = model.contact_points[point];
-    const double gap = model.node_position[contact.node].z() - floor.point.z() - contact.width / 2;
+    const double gap = model.node_position[contact.node].z() - floor->point.z() - contact.width / 2;
     if (std::abs(gap) < k_gap) return "";
   }
   return "does not touch the floor";

@@ -12,7 +12,7 @@ namespace topple::study {
 std::optional<Plane> floor_of(const Model& model);
 
 /// Why a body does not stand freely on the floor in its reference pose: "is held by supports". Empty: it
-/// does. The model must have a floor.
+/// does.
 std::string why_not_standing(const Model& model, int body);
 
 /// One body in its reference pose, to be settled, without the other bodies, without loads, shakes and probes.

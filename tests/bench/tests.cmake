@@ -8,4 +8,9 @@ if(benchmark_FOUND)
   endforeach()
 endif()
 
+# Likewise; window_bench build/release/topple
+add_executable(window_bench EXCLUDE_FROM_ALL ${CMAKE_CURRENT_LIST_DIR}/window_bench.cpp)
+target_link_libraries(window_bench PRIVATE topple_app PkgConfig::IMGUI GTest::gtest)
+target_include_directories(window_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/..)
+
 include(${CMAKE_CURRENT_LIST_DIR}/engines/engines.cmake)

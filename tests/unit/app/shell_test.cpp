@@ -1,133 +1,19 @@
 // Choosing, opening, saving and exporting, off screen, with mouse and keyboard fed by hand.
-#include "app/shell.h"
+#include <hdf5.h>
 
-#include <imgui.h>
-#include <imgui_internal.h>
+#include <algorithm>
+#include <cmath>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "live.h"
+#include "shell_fixture.h"
 #include "small_disk.h"
 #include "solver/io/recording.h"
-#include "unit/render/off_screen.h"
-#include "unit/render/scratch.h"
 
 namespace topple::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* k_at2 =
     "PEER NGA STRONG MOTION DATABASE RECORD\nSomewhere\nACCELERATION TIME SERIES IN UNITS OF G\n"
     "NPTS= 6, DT= .02000 SEC\n 0.0 0.1 0.2 0.1 0.0 -0.1\n";
-
-class ShellTest : public ::testing::Test {
- protected:
-  ShellTest() : interface_(ImGui::CreateContext()), stage_(render::off_screen()) {
-    setenv("XDG_STATE_HOME", (scratch_ / "state").c_str(), 1);
-    setenv("XDG_CACHE_HOME", (scratch_ / "cache").c_str(), 1);
-    ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = {1280, 720};
-    io.DeltaTime = 1.f / 60;
-    io.MousePos = {2, 400};
-    shell_.emplace(
-        stage_, 1.f, [] {}, TOPPLE_PROGRAM);
-  }
-  ~ShellTest() override {
-    shell_.reset();
-    ImGui::DestroyContext(interface_);
-    unsetenv("XDG_STATE_HOME");
-    unsetenv("XDG_CACHE_HOME");
-  }
-
-  void frame() {
-    shell_->update(1. / 60);
-    ImGui::NewFrame();
-    shell_->build();
-  }
-  template <typename Done>
-  ::testing::AssertionResult until(Done done) {
-    return eventually([this] { frame(); }, done);
-  }
-  void press(int key, bool control = false) {
-    shell_->press({key, control, false});
-    frame();
-    frame();
-  }
-  void type(const std::string& text) {
-    frame();
-    frame();  // the field has the keyboard now
-    for (const char c : text) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
-    frame();
-    frame();
-  }
-  /// Clicks the button of that name in the panel over the window.
-  void click(const std::string& name) {
-    frame();
-    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-      if (!window->Active || std::string(window->Name).find("/panel_") == std::string::npos) continue;
-      const ImGuiID id = ImHashStr(name.c_str(), 0, window->ID);
-      ImGuiIO& io = ImGui::GetIO();
-      for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
-        for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += 20) {
-          io.MousePos = {x, y};
-          frame();
-          if (ImGui::GetHoveredID() != id) continue;
-          io.MouseDown[0] = true;
-          frame();
-          io.MouseDown[0] = false;
-          frame();
-          frame();
-          return;
-        }
-    }
-    FAIL() << "there is no button " << name;
-  }
-  std::string write(const std::string& name, const std::string& text) {
-    const std::string path = (scratch_ / name.c_str()).string();
-    std::ofstream(path) << text;
-    return path;
-  }
-  static std::string read(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  }
-  Player& player() { return shell_->session()->player(); }
-  bool ready() { return shell_->session() && player().can_edit(); }
-  void open_rocking() {
-    shell_->open(write("rocking.toml", k_rocking));
-    ASSERT_TRUE(until([&] { return ready(); }));
-  }
-  void run_to(double time) {
-    player().play();
-    ASSERT_TRUE(until([&] { return player().time() >= time; }));
-    player().pause();
-    ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::halted; }));
-  }
-  void save_as(const std::string& path) {
-    shell_->press({'S', true, false});
-    path.copy(shell_->save_dialog().path, path.size());
-    shell_->save_dialog().path[path.size()] = '\0';
-    frame();  // the field has the keyboard now
-    frame();
-    press(render::key::enter);
-  }
-  int files_like(const std::string& part) {
-    int count = 0;
-    for (const auto& entry : fs::directory_iterator(scratch_ / ""))
-      count += entry.path().filename().string().find(part) != std::string::npos;
-    return count;
-  }
-
-  const render::Scratch scratch_;
-  ImGuiContext* interface_;
-  render::Stage stage_;
-  std::optional<Shell> shell_;
-};
 
 TEST_F(ShellTest, typing_filters_the_scenes_and_enter_opens_the_one_selected) {
   shell_->choose_scene();
@@ -237,6 +123,33 @@ TEST_F(ShellTest, damaged_recordings_and_files_of_other_kinds_are_refused_with_t
   }
 }
 
+TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  run_to(0.1);
+  shell_->close("stopped");
+  const std::string other = (scratch_ / "other.h5").string();
+  fs::copy_file(scratch_ / "a.h5", other);
+  {
+    const hid_t file = H5Fopen(other.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
+    const int five = 5;
+    ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &five), 0);
+    H5Aclose(version);
+    H5Fclose(file);
+  }
+  open_rocking();
+  shell_->drop({other});
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_EQ(shell_->message()->text,
+            other + ": recording format 5 is not supported by this version, which reads format 6");
+  press(render::key::escape);
+  EXPECT_EQ(shell_->title(), "topple: rocking");
+  run_to(0.1);
+}
+
 TEST_F(ShellTest, an_accelerogram_becomes_the_first_shake_of_a_copy_that_starts_anew) {
   open_rocking();
   run_to(0.1);
@@ -307,6 +220,10 @@ TEST_F(ShellTest, a_step_that_fails_offers_half_of_it) {
   EXPECT_NE(shell_->message()->text.find("central-difference"), std::string::npos) << shell_->message()->text;
   ASSERT_TRUE(shell_->message()->may_halve_step);
   EXPECT_FALSE(player().playing());
+  EXPECT_GE(player().status().element, 0);
+  const auto last_good = player().row();
+  ASSERT_TRUE(last_good.has_value());
+  EXPECT_TRUE(std::ranges::all_of(last_good->position, [](float x) { return std::isfinite(x); }));
   const double step = player().parameters().time_step;
   click("Halve the step and retry");
   EXPECT_DOUBLE_EQ(player().parameters().time_step, step / 2);
@@ -352,6 +269,23 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_FALSE(shell_->save_dialog().is_open());
   EXPECT_EQ(io::load_scene(other).setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(files_like(".part"), 0);
+}
+
+TEST_F(ShellTest, what_cannot_be_saved_is_explained_in_the_dialog_which_stays) {
+  open_rocking();
+  const std::pair<std::string, std::string> targets[] = {{"/proc/nothing.toml", "/proc/nothing.toml"},
+                                                         {(scratch_ / "no/such.toml").string(), "no folder"}};
+  for (const auto& [target, reason] : targets) {
+    save_as(target);
+    EXPECT_TRUE(shell_->save_dialog().is_open());
+    EXPECT_NE(shell_->save_dialog().refused().find(reason), std::string::npos)
+        << shell_->save_dialog().refused();
+    press(render::key::escape);
+  }
+  const std::string good = (scratch_ / "good.toml").string();
+  save_as(good);
+  EXPECT_TRUE(fs::exists(good));
+  run_to(0.1);
 }
 
 TEST_F(ShellTest, accelerograms_are_saved_beside_the_scene) {
@@ -462,6 +396,22 @@ TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
   click("Cancel");
   EXPECT_EQ(export_failure(), "");
   EXPECT_EQ(files_like("view.mp4"), 0);
+}
+
+TEST_F(ExportDialogTest, a_target_that_cannot_be_written_is_told_and_the_run_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    open_export(what);
+    std::string("/proc/out.png").copy(dialog().path, 14);
+    dialog().path[13] = '\0';
+    start();
+    EXPECT_NE(export_failure().find("/proc/out.png"), std::string::npos) << dialog().refused();
+    EXPECT_TRUE(dialog().is_open());
+    press(render::key::escape);
+  }
+  run_to(player().time() + 0.05);
 }
 
 TEST_F(ExportDialogTest, a_failure_is_told_with_its_reason) {

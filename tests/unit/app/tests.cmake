@@ -22,6 +22,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/rigid_fit_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shell_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/shortcuts_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
@@ -44,3 +45,15 @@ target_link_options(window_text_test PRIVATE
   -Wl,--wrap=_ZN10ImDrawList7AddTextEPK6ImFontfRK6ImVec2jPKcS7_fPK6ImVec4
   -Wl,--wrap=_ZN10ImDrawList7AddTextERK6ImVec2jPKcS4_)
 gtest_discover_tests(window_text_test PROPERTIES TIMEOUT 120)
+
+# Dear ImGui's assertions and items, and the frames that are drawn, pass through it.
+add_executable(random_events_test ${CMAKE_CURRENT_LIST_DIR}/random_events_test.cpp)
+target_include_directories(random_events_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
+target_link_libraries(random_events_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
+target_compile_definitions(random_events_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>")
+target_link_options(random_events_test PRIVATE
+  -Wl,--wrap=__assert_fail
+  -Wl,--wrap=_ZN5ImGui7ItemAddERK6ImRectjPS1_i
+  -Wl,--wrap=_ZN6topple6render5Stage10draw_sceneERKNS0_10SceneFrameERKNS0_6CameraENS0_9ColourMapEiiNS0_7QualityE)
+add_dependencies(random_events_test topple)
+gtest_discover_tests(random_events_test PROPERTIES TIMEOUT 300)

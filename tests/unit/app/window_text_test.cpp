@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <set>
 
+#include "app/shell.h"
 #include "app/theme.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
@@ -28,6 +31,21 @@ struct Shown {
 };
 std::vector<Shown> shown;
 bool listening = false, mute = false;
+
+/// Whether a window that is drawn later lies on it.
+bool is_covered(const ImDrawList* list, const ImRect& box) {
+  bool above = list == ImGui::GetBackgroundDrawList();
+  for (const ImGuiWindow* window : GImGui->Windows) {
+    if (window->DrawList == list) {
+      above = true;
+    } else if (above && window->Active && window->ParentWindow == nullptr) {
+      ImRect both = window->Rect();
+      both.ClipWithFull(box);
+      if (both.GetArea() > 0) return true;
+    }
+  }
+  return false;
+}
 
 /// Whether the list is of a window that scrolls, or a part of one.
 bool scrolls(const ImDrawList* list) {
@@ -109,6 +127,7 @@ class WindowText : public ::testing::TestWithParam<Look> {
  protected:
   WindowText() : interface_(ImGui::CreateContext()) {}
   ~WindowText() override {
+    shell_.reset();
     viewer_.reset();
     player_.reset();
     run_.reset();
@@ -134,11 +153,34 @@ class WindowText : public ::testing::TestWithParam<Look> {
     for (int i = 0; i < 40; ++i) frame();
   }
   void frame() {
-    viewer_->update(1. / 60);
+    shell_ ? shell_->update(1. / 60) : viewer_->update(1. / 60);
     ImGui::NewFrame();
-    viewer_->build();
+    shell_ ? shell_->build() : viewer_->build();
   }
-  render::Image shot() { return stage_->shot(viewer_->surface(), *ImGui::GetDrawData()); }
+  render::Image shot() {
+    return stage_->shot(shell_ ? shell_->surface() : viewer_->surface(), *ImGui::GetDrawData());
+  }
+  /// The complete window, with the chooser of scenes over it.
+  void start_shell() {
+    setenv("XDG_STATE_HOME", (scratch_ / "state").c_str(), 1);
+    setenv("XDG_CACHE_HOME", (scratch_ / "cache").c_str(), 1);
+    const Look& look = GetParam();
+    stage_.emplace(render::off_screen());
+    shell_.emplace(
+        *stage_, 1.f, [] {}, "", look.appearance);
+    ImGui::GetIO().DisplaySize = {look.width, look.height};
+    ImGui::GetIO().DeltaTime = 1.f / 60;
+    shell_->choose_scene();
+    for (int i = 0; i < 10; ++i) frame();
+  }
+  void open_with(char key) {
+    shell_->press({key, true, false});
+    for (int i = 0; i < 5; ++i) frame();
+  }
+  void close_over() {
+    shell_->press({render::key::escape, false, false});
+    for (int i = 0; i < 5; ++i) frame();
+  }
 
   void check(const std::string& what) {
     SCOPED_TRACE(std::string(GetParam().name) + ", " + what);
@@ -154,6 +196,8 @@ class WindowText : public ::testing::TestWithParam<Look> {
     mute = false;
     const render::Image ground = shot();
     EXPECT_GT(shown.size(), 10u);
+    std::erase_if(shown, [](const Shown& text) { return is_covered(text.list, seen(text)); });
+    EXPECT_GT(shown.size(), 2u);
     for (const Shown& text : shown) check_text(text, ground);
     for (std::size_t i = 0; i < shown.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) check_apart(shown[i], shown[j]);
@@ -201,6 +245,8 @@ class WindowText : public ::testing::TestWithParam<Look> {
   std::optional<Player> player_;
   std::optional<render::Stage> stage_;
   std::optional<Viewer> viewer_;
+  const render::Scratch scratch_;
+  std::optional<Shell> shell_;
 };
 
 TEST_P(WindowText, is_read_in_every_panel) {
@@ -218,6 +264,44 @@ TEST_P(WindowText, is_read_in_every_panel) {
   check("past");
   viewer_->press({render::key::f1, false, false});
   check("keys");
+}
+
+TEST_P(WindowText, is_read_in_the_chooser_dialogs_and_messages) {
+  start_shell();
+  check("chooser");
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(eventually([this] { frame(); }, [this] { return shell_->session()->player().can_edit(); }));
+  open_with('S');
+  check("save");
+  close_over();
+  open_with('E');
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    shell_->export_dialog().what = what;
+    check("export-" + std::to_string(static_cast<int>(what)));
+  }
+  close_over();
+  const std::string broken = (scratch_ / "broken.toml").string();
+  std::ofstream(broken) << "topple = 1\nnonsense = 2\n";
+  shell_->drop({broken});
+  ASSERT_TRUE(eventually([this] { frame(); }, [this] { return shell_->message().has_value(); }));
+  check("message");
+}
+
+TEST_P(WindowText, is_read_in_tooltips) {
+  start();
+  const ImGuiWindow* const bar = ImGui::FindWindowByName("transport");
+  std::set<std::string> seen_tips;
+  for (float y = bar->Pos.y + 20; y < bar->Pos.y + bar->Size.y; y += 30)
+    for (float x = 15; x < bar->Size.x; x += 25) {
+      ImGui::GetIO().MousePos = {x, y};
+      frame();
+      frame();
+      const ImGuiWindow* const tip = ImGui::FindWindowByName("##Tooltip_00");
+      if (!tip || !tip->Active || !seen_tips.insert(std::to_string(ImGui::GetHoveredID())).second) continue;
+      check("tooltip-" + std::to_string(seen_tips.size()));
+    }
+  EXPECT_GE(seen_tips.size(), 5u);
 }
 
 constexpr Language k_ja = Language::japanese, k_en = Language::english;

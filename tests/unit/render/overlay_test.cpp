@@ -112,7 +112,8 @@ TEST(Overlay, labels_stay_in_their_room_and_apart) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const int before = list.VtxBuffer.Size;
   const OverlayBox room{"", 100, 50, 700, 450};
-  draw_labels(list, fonts, frame, look_at({10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1.5f, 0.1f, 100), room);
+  draw_labels(list, fonts, frame, look_at({10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1.5f, 0.1f, 100), room,
+              room.bottom);
   ASSERT_GT(list.VtxBuffer.Size, before);
   for (int i = before; i < list.VtxBuffer.Size; ++i) {
     const ImVec2 p = list.VtxBuffer[i].pos;

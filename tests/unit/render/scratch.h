@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,8 +16,9 @@ class Scratch {
  public:
   Scratch() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("topple-" + std::string(info->name()) + "-" + std::to_string(getpid()));
+    std::string name = info->name();
+    std::ranges::replace(name, '/', '-');  // of a test with parameters
+    path_ = std::filesystem::temp_directory_path() / ("topple-" + name + "-" + std::to_string(getpid()));
     std::filesystem::create_directories(path_);
   }
   ~Scratch() {

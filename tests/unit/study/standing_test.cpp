@@ -140,6 +140,8 @@ TEST(Alone, what_does_not_stand_says_why) {
   EXPECT_EQ(why_not_standing(model, 0), "has its centre of gravity beside its base");
   model.bodies[0].support_polygon.clear();
   EXPECT_EQ(why_not_standing(model, 0), "has no base");
+  model.planes.clear();
+  EXPECT_EQ(why_not_standing(model, 0), "has no level floor below it");
 }
 
 /// A cabinet of paper-a on stiff contact, and what theory says of it.
