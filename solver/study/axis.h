@@ -1,6 +1,7 @@
 // Axes of a sweep: keys of a scene and the values that they take.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,19 @@ struct Axis {
 /// "log" or "lin" after N names the spacing, else it goes by k_wide. Throws io::InputError, which does not
 /// say where the text stood.
 Axis parse_axis(const std::string& text, const io::Scene& scene);
+
+/// What `option`, "--x" or "--y", says; the error begins with it.
+Axis axis_of(const std::string& option, const std::string& text, const io::Scene& scene);
+
+/// Refuses axes of the same key, and ends that no scene can have: the key of a choice that was not made, for
+/// instance. Throws io::InputError.
+void check_axes(const io::Scene& scene, const Axis& x, const Axis& y);
+
+nlohmann::ordered_json as_json(const Axis& axis);
+
+/// What rows of a study over two axes depend on, for KeptRows.
+nlohmann::ordered_json settings_of(const std::string& study, const io::Scene& scene, const Axis& x,
+                                   const Axis& y);
 
 /// Order of the points y nx + x of a grid: every s-th of both axes first, with s a power of two that halves
 /// until it is 1, and the last of an axis always; in a shuffled order, always the same, within each s.
