@@ -8,6 +8,7 @@
 #include "app/log.h"
 #include "app/study_results.h"
 #include "app/sweep.h"
+#include "app/told_scene.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"
 

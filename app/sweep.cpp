@@ -87,23 +87,6 @@ CaseWork Crew::work_of(int worker, const MakeWork& make) {
   };
 }
 
-std::vector<std::string> told(const io::Scene& scene) {
-  std::vector<std::string> parts{scene.name, scene.text};
-  for (const io::SceneFile& file : scene.files) parts.insert(parts.end(), {file.name, file.bytes});
-  return parts;
-}
-
-io::Scene scene_from(const std::vector<std::string>& told, std::size_t first) {
-  const auto read = [&](const std::string& name) {
-    for (std::size_t k = first + 2; k + 1 < told.size(); k += 2)
-      if (told[k] == name) return told[k + 1];
-    throw io::InputError(name + ": is not among the files of the scene");
-  };
-  io::Scene scene = io::parse_scene(told[first + 1], told[first], {}, read);
-  scene.name = told[first];
-  return scene;
-}
-
 SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
   const auto start = Clock::now();
   const auto in_time = [&] {

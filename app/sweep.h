@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "solver/io/scene.h"
 
 namespace topple::app {
 
@@ -52,11 +51,6 @@ class Crew {
   std::vector<Remote> remote_;
   bool told_ = false;
 };
-
-/// A scene as other ranks are told it: name, text, then name and bytes of each file.
-std::vector<std::string> told(const io::Scene& scene);
-/// Inverse of told, from place `first` on.
-io::Scene scene_from(const std::vector<std::string>& told, std::size_t first = 0);
 
 struct SweepPlan {
   std::string name;                 ///< "study overturn", of the progress

@@ -11,6 +11,7 @@
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_number.h"
+#include "solver/study/kept_rows.h"
 
 namespace topple::study {
 namespace {
@@ -69,12 +70,6 @@ void check_end(const io::Scene& scene, const Axis& axis, int i, const char* opti
   }
 }
 
-std::uint64_t fingerprint(const std::string& bytes) {  // FNV-1a
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
 }  // namespace
 
 std::vector<double> Axis::edges() const {
@@ -90,9 +85,8 @@ std::vector<double> Axis::edges() const {
   return out;
 }
 
-std::string Axis::change(int i) const {
-  return fmt::format("{}={:.6g}{}{}", key, values[static_cast<std::size_t>(i)], unit.empty() ? "" : " ",
-                     unit);
+std::string Axis::change_to(double value) const {
+  return fmt::format("{}={:.6g}{}{}", key, value, unit.empty() ? "" : " ", unit);
 }
 
 Axis parse_axis(const std::string& text, const io::Scene& scene) {
@@ -163,11 +157,14 @@ ordered_json as_json(const Axis& axis) {
 }
 
 ordered_json settings_of(const std::string& study, const io::Scene& scene, const Axis& x, const Axis& y) {
-  ordered_json files = ordered_json::object();
-  for (const io::SceneFile& file : scene.files) files[file.name] = fingerprint(file.bytes);
-  return {{"study", study},           {"scene", scene.name}, {"x", x.key},
-          {"x values", x.values},     {"y", y.key},          {"y values", y.values},
-          {"scene text", scene.text}, {"files", files}};
+  return {{"study", study},
+          {"scene", scene.name},
+          {"x", x.key},
+          {"x values", x.values},
+          {"y", y.key},
+          {"y values", y.values},
+          {"scene text", scene.text},
+          {"files", fingerprints(scene.files)}};
 }
 
 std::vector<int> coarse_to_fine(int nx, int ny) {

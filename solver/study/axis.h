@@ -31,7 +31,8 @@ struct Axis {
   /// Ends of the cells around the values, one more than these.
   std::vector<double> edges() const;
   /// "shake.1.frequency=0.5 Hz", as of --set.
-  std::string change(int i) const;
+  std::string change(int i) const { return change_to(values[static_cast<std::size_t>(i)]); }
+  std::string change_to(double value) const;
 };
 
 /// Reads "KEY=FROM..TO:N", N = 2..k_most_values values from FROM to TO, each a number in SI or with a unit;

@@ -28,7 +28,7 @@ std::string axis_scale(const char* which, const Axis& axis, double decades) {
     for (const double digit : {1., 2., 5.})
       if (const double at = digit * std::pow(10., e);
           at >= ends.front() && at <= ends.back() && (digit == 1 || !crowded))
-        tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ",", at);
+        tics += fmt::format("{0}\"{1:.6g}\" {1:.6g}", tics.empty() ? "" : ",", at);
   return out + fmt::format("set logscale {0}\nset {0}tics nomirror ({1})\n", which, tics);
 }
 
