@@ -1,5 +1,7 @@
 #include "solver/study/stability.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,10 +19,18 @@ using io::InputError;
 using nlohmann::ordered_json;
 using End = StabilityRun::End;
 
-constexpr const char* k_steps = "run.time_step=0.03 ms..30 ms:13";
-constexpr const char* k_alphas = "contact.alpha=5 kgf..50000 kgf:13";
+constexpr const char* k_steps = "run.time_step=0.03 ms..30 ms:10";
+constexpr double k_softest = 0.1, k_stiffest = 100;  // of the scene's alpha
+constexpr double k_most_alpha = 1e6;                 // kgf
 constexpr const char* k_ends[] = {"completed",   "not set up", "not settled",   "refused",
                                   "no solution", "growth",     "passed through"};
+
+/// A tenth to a hundred times what the scene has.
+std::string usual_alphas(const Setup& scene) {
+  const double own = scene.parameters.contact.alpha / k_standard_gravity;
+  return fmt::format("contact.alpha={:.6g} kgf..{:.6g} kgf:10log", k_softest * own,
+                     std::min(k_stiffest * own, k_most_alpha));
+}
 
 bool is_numerical(const Axis& axis) {
   return axis.table == "run" && (axis.name == "time_step" || axis.name == "tolerance");
@@ -169,7 +179,7 @@ StabilityPlan plan_stability(io::Scene scene, const std::string& x, const std::s
                      " has no floor or wall that is a plane");
   StabilityPlan plan{.scene = std::move(scene), .x = {}, .y = {}, .methods = {}};
   plan.x = axis_of("--x", x.empty() ? k_steps : x, plan.scene);
-  plan.y = axis_of("--y", y.empty() ? k_alphas : y, plan.scene);
+  plan.y = axis_of("--y", y.empty() ? usual_alphas(plan.scene.setup) : y, plan.scene);
   for (const auto& [option, axis] : {std::pair{"--x ", &plan.x}, std::pair{"--y ", &plan.y}})
     if (is_of_method(*axis))
       throw InputError(option + axis->key + ": is of one method; the study has several");

@@ -12,7 +12,7 @@ namespace topple::study {
 namespace {
 
 constexpr int k_columns = 3;
-constexpr double k_left = 100, k_right = 44, k_bottom = 84, k_top = 20;                   // px, of the sheet
+constexpr double k_left = 118, k_right = 44, k_bottom = 84, k_top = 20;                   // px, of the sheet
 constexpr double k_wide = 476, k_high = 372, k_between = 92, k_above = 76, k_below = 76;  // of panels
 constexpr double k_line = 23;                                                             // of text
 constexpr double k_near = 20;  // px, between tags of lines
@@ -24,15 +24,15 @@ struct Look {
   const char* meaning;
 };
 constexpr Look k_looks[] = {
-    {Fate::stable, "#edf3f7", "", "stable, right verdict"},
-    {Fate::undecided, "#d3d3d3", "pt 7 lc rgb '#666666'", "keeps its energy, verdict undecided"},
+    {Fate::stable, "#edf3f7", "", "stable, with the right verdict"},
+    {Fate::undecided, "#d3d3d3", "pt 7 lc rgb '#666666'", "no verdict to compare with"},
     {Fate::loses, "#9cc5e3", "pt 11 lc rgb '#1d4f7c'", "energy lost"},
     {Fate::wrong, "#f4b25f", "pt 4 lw 2 lc rgb '#5a2d00'", "wrong verdict"},
     {Fate::tunnels, "#b79ad3", "pt 13 lc rgb '#3a1a5e'", "tunnels"},
     {Fate::grows, "#b3243f", "pt 9 lc rgb '#ffffff'", "energy grows"},
     {Fate::no_solution, "#5b2333", "pt 2 lw 1.6 lc rgb '#ffffff'", "Newton failure"},
     {Fate::refused, "#66727d", "pt 1 lw 1.6 lc rgb '#ffffff'", "refused: above its limit"},
-    {Fate::failed, "#f5e663", "pt 3 lw 1.6 lc rgb '#000000'", "no start"},
+    {Fate::failed, "#f5e663", "pt 3 lw 1.6 lc rgb '#000000'", "no rest to start from"},
     {Fate::not_computed, "", "", "not computed"}};
 
 constexpr const char* k_dashes[] = {"1", "(18,6)", "(5,5)", "(18,5,4,5)", "(10,4)", "(2,4)", "(24,8,4,8)"};
@@ -60,7 +60,7 @@ class Chart {
     return sheet_.label(words, x, y, how);
   }
 
-  double header_height() const { return 50 + k_line * (6 + static_cast<double>(limits_.size())); }
+  double header_height() const { return 50 + k_line * (7 + static_cast<double>(limits_.size())); }
 
   std::string header(const std::string& origin) const {
     double y = sheet_.height - k_top - 22;
@@ -82,13 +82,19 @@ class Chart {
                      origin,
                      map_.run == map_.of ? fmt::format("{} runs", map_.run)
                                          : fmt::format("{} of {} runs", map_.run, map_.of)));
-    line(
-        fmt::format("Right is what {} runs as the scene has it agree on: a quarter and a half of its step, "
-                    "amplitudes ∓ {:g} %. They decide {} of {} rows of the map. All but the last map compute "
-                    "bodies as frames.",
-                    plan_.references(), 100 * k_reference_spread,
-                    std::ranges::count_if(map_.references, [](const Reference& r) { return r.decided; }),
-                    map_.references.size()));
+    line(fmt::format(
+        "Right is what {} runs as the scene has it agree on: at a quarter and at half of its step{}. They "
+        "agree at {} of {} values.",
+        plan_.references(),
+        plan_.references() > 2
+            ? fmt::format(", and with amplitudes {:g} % lower and higher", 100 * k_reference_spread)
+            : "",
+        std::ranges::count_if(map_.references, [](const Reference& r) { return r.decided; }),
+        map_.references.size()));
+    line(std::string(
+             "Maps a to d: every body a frame, fixed steps, which the implicit methods halve up to six times "
+             "before they give up.") +
+         (plan_.methods.back().of_scene() ? " The last one: bodies as the scene has them." : ""));
     line(
         fmt::format("Energy grows or is lost: {:g} % of the largest exchanged appears or vanishes, or the "
                     "integrator takes {:g} %. Tunnels: 1 - l/L > 1 and {:g} above that of the reference.",
@@ -97,13 +103,11 @@ class Chart {
     for (std::size_t k = 0; k < limits_.size(); ++k) {
       const Limit& limit = limits_[k];
       out += stroke(k_left, k_left + 56, y, k) + tag(k, k_left + 74, y);
-      out += text(plain_but_marks(limit.formula) + ":  " + limit.about + here(limit), k_left + 94, y, k_grey);
+      out += text(limit.formula + ":  " + limit.about + here(limit), k_left + 94, y, k_grey);
       y -= k_line;
     }
     return out;
   }
-
-  static std::string plain_but_marks(const std::string& words) { return words; }
 
   static std::string here(const Limit& limit) {
     return limit.at_scene ? fmt::format(" (the scene: {:.3g} {})", *limit.at_scene, limit.unit) : "";
@@ -137,7 +141,7 @@ class Chart {
   std::string legend() const {
     const MapPanel place = panel(plan_.methods.size());
     double y = place.top - 8;
-    const double first = place.left + 318;
+    const double first = place.left + 330;
     const auto column = [&](std::size_t m) { return first + 36 * static_cast<double>(m); };
     std::string out = text(bold("What became of the runs", 1), place.left, y + 30);
     for (std::size_t m = 0; m < plan_.methods.size(); ++m)
@@ -227,7 +231,7 @@ class Chart {
     out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
     out += axis_scale("x", plan_.x, 2) + axis_scale("y", plan_.y, 2);
     out += "set xlabel " + gnuplot_quoted(axis_title(plan_.x)) + " offset 0,0.2\n";
-    out += m % k_columns == 0 ? "set ylabel " + gnuplot_quoted(axis_title(plan_.y)) + " offset 1.2,0\n"
+    out += m % k_columns == 0 ? "set ylabel " + gnuplot_quoted(axis_title(plan_.y)) + " offset 0.4,0\n"
                               : std::string("unset ylabel\n");
     return out + "plot " + plot + "\nunset label\nunset arrow\nunset object\n";
   }
