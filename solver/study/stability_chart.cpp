@@ -60,7 +60,7 @@ class Chart {
     return sheet_.label(words, x, y, how);
   }
 
-  double header_height() const { return 50 + k_line * (7 + static_cast<double>(limits_.size())); }
+  double header_height() const { return 50 + k_line * (6 + static_cast<double>(limits_.size())); }
 
   std::string header(const std::string& origin) const {
     double y = sheet_.height - k_top - 22;
@@ -149,7 +149,7 @@ class Chart {
     for (const Look& look : k_looks) {
       int all = 0;
       for (std::size_t m = 0; m < plan_.methods.size(); ++m) all += map_.count(m, look.fate);
-      if (all == 0) continue;
+      if (all == 0 && look.fate == Fate::not_computed) continue;
       out += sheet_.swatch(place.left, y, look.fill, look.mark, look.meaning);
       for (std::size_t m = 0; m < plan_.methods.size(); ++m)
         out += text(std::to_string(map_.count(m, look.fate)), column(m), y, "right");
