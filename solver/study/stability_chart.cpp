@@ -84,7 +84,7 @@ class Chart {
                                          : fmt::format("{} of {} runs", map_.run, map_.of)));
     line(fmt::format(
         "Right is what {} runs as the scene has it agree on: at a quarter and at half of its step{}. They "
-        "agree at {} of {} values.",
+        "agree at {} of {} places across the step.",
         plan_.references(),
         plan_.references() > 2
             ? fmt::format(", and with amplitudes {:g} % lower and higher", 100 * k_reference_spread)
