@@ -69,7 +69,7 @@ std::string run_stability_case(const StabilityPlan& plan, int k, const std::func
 
 /// How a run ended, and what is judged.
 struct StabilityRun {
-  /// refused: central differences above their limit. growth: not finite, or more energy than a step can have.
+  /// refused: central differences above their limit. growth: not finite, or a step lost count of its energy.
   enum class End { completed, not_set_up, not_settled, refused, no_solution, growth, passed_through };
   End end = End::completed;
   std::string message = "completed";  ///< else why not

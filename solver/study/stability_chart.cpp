@@ -29,7 +29,7 @@ constexpr Look k_looks[] = {
     {Fate::loses, "#9cc5e3", "pt 11 lc rgb '#1d4f7c'", "energy lost"},
     {Fate::wrong, "#f4b25f", "pt 4 lw 2 lc rgb '#5a2d00'", "wrong verdict"},
     {Fate::tunnels, "#b79ad3", "pt 13 lc rgb '#3a1a5e'", "tunnels"},
-    {Fate::grows, "#b3243f", "pt 9 lc rgb '#ffffff'", "energy grows"},
+    {Fate::grows, "#b3243f", "pt 9 lc rgb '#ffffff'", "energy grows, contact unresolved"},
     {Fate::no_solution, "#5b2333", "pt 2 lw 1.6 lc rgb '#ffffff'", "Newton failure"},
     {Fate::refused, "#66727d", "pt 1 lw 1.6 lc rgb '#ffffff'", "refused: above its limit"},
     {Fate::failed, "#f5e663", "pt 3 lw 1.6 lc rgb '#000000'", "no rest to start from"},
@@ -225,8 +225,9 @@ class Chart {
         "'#000000' notitle";
     std::string out = data + tags;
     out += text(bold(fmt::format("{}  {}", letter(m), method.label), 1.08), at.left, at.top + 56);
-    out += text(fmt::format("{} of {} stable", map_.count(m, Fate::stable), plan_.points()), at.left,
-                at.top + 34, k_grey);
+    out += text(fmt::format("{} of {} stable", map_.count(m, Fate::stable),
+                            plan_.points() - map_.count(m, Fate::not_computed)),
+                at.left, at.top + 34, k_grey);
     out += sheet_.place(at.left, at.right, at.bottom, at.top);
     out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
     out += axis_scale("x", plan_.x, 2) + axis_scale("y", plan_.y, 2);

@@ -54,7 +54,8 @@ void add_throw(const Setup& scene, int b, Demand& out) {
   const double g = scene.parameters.gravity.norm();
   double gap = 0;
   if (const auto floor = floor_of(model); floor && !body.base_points.empty())
-    gap = std::max(0., body.base_centre.z() - floor->point.z());
+    gap = std::max(0., body.base_centre.z() - floor->point.z() -
+                           model.contact_points[body.first_contact_point].width / 2);
   const double v2 = scene.starts[b].velocity.squaredNorm() + 2 * g * gap;
   const double L = contact_width(model, body, model.planes.front());
   if (!(v2 > 0)) return;
