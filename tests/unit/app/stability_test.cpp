@@ -50,7 +50,7 @@ TEST_F(StabilityTest, gives_a_map_for_each_method_with_the_limits_of_theory) {
   EXPECT_EQ(ended.code, 0);
   EXPECT_EQ(ended.err, "");
   for (const char* part :
-       {"central-difference    4 refused", "28 of 28 runs of 0.3 s", "--quick left nothing out"})
+       {"central-difference   4 refused", "28 of 28 runs of 0.3 s", "--quick left nothing out"})
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
   EXPECT_EQ(lines_in("new/out/stability.csv"), 1 + 4 * 5);
   EXPECT_TRUE(bytes_of("new/out/stability.png").starts_with("\x89PNG"));
