@@ -92,7 +92,7 @@ class Chart {
         std::ranges::count_if(map_.references, [](const Reference& r) { return r.decided; }),
         map_.references.size()));
     line(std::string(
-             "Maps a to d: every body a frame, fixed steps, which the implicit methods halve up to six times "
+             "Maps a to d: every body a frame; the implicit methods halve a fixed step up to six times "
              "before they give up.") +
          (plan_.methods.back().of_scene() ? " The last one: bodies as the scene has them." : ""));
     line(

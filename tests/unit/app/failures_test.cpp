@@ -12,7 +12,6 @@ struct Failure {
   const char* scene;
   const char* said;       // by the error or a warning
   const char* otherwise;  // KEY=VALUE with which it works
-  bool estimate = false;  // one run cannot see it
 };
 
 constexpr Failure k_failures[] = {
@@ -20,7 +19,6 @@ constexpr Failure k_failures[] = {
     {"explicit-step", "is stable up to a time_step of", "run.time_step=4e-5"},
     {"fast-impact", "a contact is not resolved", "run.time_step=1e-4"},
     {"fast-tumbling", "has no converged solution", "run.time_step=1e-3"},
-    {"flipping-verdict", "the verdict depends on the step: cabinet overturns at", "run.time_step=1e-3", true},
     {"friction-chatter", "friction changes sides", "run.time_step=2e-3"},
     {"long-bounce", "a contact is not resolved", "run.time_step=5e-5"},
     {"newmark-rotation", "the time integration took", "run.gamma=0.5"},
@@ -40,17 +38,32 @@ TEST_F(FailuresTest, are_reported_and_are_gone_on_the_other_side_of_their_limit)
   for (const Failure& failure : k_failures) {
     SCOPED_TRACE(failure.scene);
     const std::string file = k_folder + "/" + failure.scene + ".toml";
-    std::vector<std::string> call{"run", file, "--quiet"};
-    if (failure.estimate) call.push_back("--estimate");
-    const Ended bad = topple(call);
+    const Ended bad = topple({"run", file, "--quiet"});
     EXPECT_NE(bad.err.find(failure.said), std::string::npos) << bad.err;
-    std::vector<std::string> good = call;
-    good.insert(good.end(), {"--json", "-", "--set", failure.otherwise});
+    std::vector<std::string> good{"run", file, "--quiet", "--json", "-", "--set", failure.otherwise};
     if (std::string(failure.scene) == "newmark-rotation") good.insert(good.end(), {"--set", "run.beta=0.25"});
     const Ended ended = topple(good);
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_TRUE(json_of(ended.out)["warnings"].empty()) << ended.err;
   }
+}
+
+// Which of the steps part is rounding: one of three does. At 615 gal the cabinet falls after 2 s, whatever
+// the step.
+TEST_F(FailuresTest, a_verdict_that_flips_with_the_step_is_seen_by_an_estimate) {
+  const auto open_verdicts = [](const char* amplitude) {
+    int open = 0;
+    for (const char* step : {"2 ms", "1 ms", "0.5 ms"}) {
+      const Ended ended = topple({"run", k_folder + "/flipping-verdict.toml", "--quiet", "--estimate",
+                                  "--set", std::string("run.time_step=") + step, "--set",
+                                  std::string("shake.1.amplitude=") + amplitude});
+      EXPECT_EQ(ended.code, 0) << ended.err;
+      open += ended.err.find("the verdict depends on the step: cabinet") != std::string::npos ? 1 : 0;
+    }
+    return open;
+  };
+  EXPECT_GT(open_verdicts("700 gal"), 0);
+  EXPECT_EQ(open_verdicts("615 gal"), 0);
 }
 
 TEST_F(FailuresTest, that_the_method_avoids_leave_nothing_to_warn_of) {
@@ -100,6 +113,7 @@ TEST_F(FailuresTest, a_live_change_of_alpha_does_not_throw_a_cabinet_up) {
 TEST_F(FailuresTest, say_in_their_first_line_what_fails_and_are_all_tried) {
   std::set<std::string> tried;
   for (const Failure& failure : k_failures) tried.insert(failure.scene);
+  tried.insert("flipping-verdict");
   tried.insert(std::begin(k_avoided), std::end(k_avoided));
   for (const auto& entry : std::filesystem::directory_iterator(k_folder)) {
     EXPECT_TRUE(tried.contains(entry.path().stem().string())) << entry.path();
