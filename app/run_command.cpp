@@ -94,6 +94,13 @@ nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::opt
   return error_estimate(scene.setup, run.outcome(), second.outcome());
 }
 
+void warn_of_open_verdicts(const nlohmann::ordered_json& error, nlohmann::ordered_json& warnings) {
+  if (!error.contains("disagreements")) return;
+  for (const auto& line : error["disagreements"])
+    warnings.push_back("the verdict depends on the step: " + line.get<std::string>() +
+                       "; the share of many runs says more than one (study overturn --ensemble)");
+}
+
 }  // namespace
 
 RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
@@ -129,8 +136,10 @@ RecordedRun record(const io::Scene& scene, const std::string& path, const RunMan
     bool estimated = true;
     if (manner.estimate && run.over() && run.status().ok()) {
       if (recorded) recorder->flush();
-      result.summary["error_estimate"] = estimate(scene, run, team, manner.quiet);
-      estimated = !result.summary["error_estimate"].is_null();
+      nlohmann::ordered_json& error = result.summary["error_estimate"];
+      error = estimate(scene, run, team, manner.quiet);
+      estimated = !error.is_null();
+      if (estimated) warn_of_open_verdicts(error, result.summary["warnings"]);
     }
     if (recorded) recorder->finish(status, json_text(result.summary));
     result.recorded = recorded;

@@ -6,13 +6,18 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "solver/io/scene_check.h"
+#include "solver/io/scene_document.h"
 #include "solver/io/scene_number.h"
+#include "solver/study/kept_rows.h"
 
 namespace topple::study {
 namespace {
 
 using io::InputError;
+using nlohmann::ordered_json;
 
 constexpr const char* k_form = "expected KEY=FROM..TO:N, such as shake.1.frequency=\"0.2 Hz..5 Hz:24\"";
 
@@ -53,6 +58,18 @@ void read_count(const std::string& text, int& count, std::string& spacing) {
                                  text, k_most_values));
 }
 
+void check_end(const io::Scene& scene, const Axis& axis, int i, const char* option) {
+  io::Node root = io::parse_toml(scene.text, scene.name);
+  io::apply_override(root, axis.change(i));
+  try {
+    io::check_scene(root, scene.name);
+  } catch (const InputError& error) {
+    std::string line = error.what();
+    if (line.starts_with("--set ")) line = option + line.substr(5);
+    throw InputError(line);
+  }
+}
+
 }  // namespace
 
 std::vector<double> Axis::edges() const {
@@ -68,9 +85,8 @@ std::vector<double> Axis::edges() const {
   return out;
 }
 
-std::string Axis::change(int i) const {
-  return fmt::format("{}={:.6g}{}{}", key, values[static_cast<std::size_t>(i)], unit.empty() ? "" : " ",
-                     unit);
+std::string Axis::change_to(double value) const {
+  return fmt::format("{}={:.6g}{}{}", key, value, unit.empty() ? "" : " ", unit);
 }
 
 Axis parse_axis(const std::string& text, const io::Scene& scene) {
@@ -113,6 +129,42 @@ Axis parse_axis(const std::string& text, const io::Scene& scene) {
   if (std::adjacent_find(axis.values.begin(), axis.values.end(), std::greater_equal<>()) != axis.values.end())
     throw of_key(InputError("the values are too near each other for six digits"));
   return axis;
+}
+
+Axis axis_of(const std::string& option, const std::string& text, const io::Scene& scene) {
+  try {
+    return parse_axis(text, scene);
+  } catch (const InputError& error) {
+    std::string line = error.what();
+    if (line.starts_with("--set ")) line.erase(0, 6);
+    throw InputError(option + " " + line);
+  }
+}
+
+void check_axes(const io::Scene& scene, const Axis& x, const Axis& y) {
+  if (x.table == y.table && x.name == y.name && x.entry == y.entry)
+    throw InputError("--y " + y.key + ": is the key of the x axis");
+  for (const int i : {0, x.count() - 1}) check_end(scene, x, i, "--x");
+  for (const int i : {0, y.count() - 1}) check_end(scene, y, i, "--y");
+}
+
+ordered_json as_json(const Axis& axis) {
+  return {{"key", axis.key},
+          {"unit", axis.unit},
+          {"spacing", axis.logarithmic ? "logarithmic" : "linear"},
+          {"scene", axis.own ? ordered_json(*axis.own) : ordered_json(nullptr)},
+          {"values", axis.values}};
+}
+
+ordered_json settings_of(const std::string& study, const io::Scene& scene, const Axis& x, const Axis& y) {
+  return {{"study", study},
+          {"scene", scene.name},
+          {"x", x.key},
+          {"x values", x.values},
+          {"y", y.key},
+          {"y values", y.values},
+          {"scene text", scene.text},
+          {"files", fingerprints(scene.files)}};
 }
 
 std::vector<int> coarse_to_fine(int nx, int ny) {

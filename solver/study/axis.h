@@ -1,6 +1,7 @@
 // Axes of a sweep: keys of a scene and the values that they take.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,13 +31,27 @@ struct Axis {
   /// Ends of the cells around the values, one more than these.
   std::vector<double> edges() const;
   /// "shake.1.frequency=0.5 Hz", as of --set.
-  std::string change(int i) const;
+  std::string change(int i) const { return change_to(values[static_cast<std::size_t>(i)]); }
+  std::string change_to(double value) const;
 };
 
 /// Reads "KEY=FROM..TO:N", N = 2..k_most_values values from FROM to TO, each a number in SI or with a unit;
 /// "log" or "lin" after N names the spacing, else it goes by k_wide. Throws io::InputError, which does not
 /// say where the text stood.
 Axis parse_axis(const std::string& text, const io::Scene& scene);
+
+/// What `option`, "--x" or "--y", says; the error begins with it.
+Axis axis_of(const std::string& option, const std::string& text, const io::Scene& scene);
+
+/// Refuses axes of the same key, and ends that no scene can have: the key of a choice that was not made, for
+/// instance. Throws io::InputError.
+void check_axes(const io::Scene& scene, const Axis& x, const Axis& y);
+
+nlohmann::ordered_json as_json(const Axis& axis);
+
+/// What rows of a study over two axes depend on, for KeptRows.
+nlohmann::ordered_json settings_of(const std::string& study, const io::Scene& scene, const Axis& x,
+                                   const Axis& y);
 
 /// Order of the points y nx + x of a grid: every s-th of both axes first, with s a power of two that halves
 /// until it is 1, and the last of an axis always; in a shuffled order, always the same, within each s.

@@ -19,6 +19,17 @@ std::string Sheet::label(const std::string& text, double x, double y, const std:
                      how);
 }
 
+std::string Sheet::swatch(double x, double y, const std::string& fill, const std::string& mark,
+                          const std::string& words) const {
+  std::string out = fmt::format(
+      "set object rectangle from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} {} fc rgb '{}' lw 0.6\n",
+      x / width, (y - 10) / height, (x + 24) / width, (y + 10) / height,
+      fill.empty() ? "fs pattern 4 border lc rgb '#888888'" : "fs solid border lc rgb '#888888'",
+      fill.empty() ? "#888888" : fill);
+  if (!mark.empty()) out += label("", x + 12, y, "point " + mark + " ps 0.9");
+  return out + label(words, x + 34, y, "");
+}
+
 std::string Sheet::place(double left, double right, double bottom, double top) const {
   return fmt::format(
       "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"

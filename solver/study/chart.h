@@ -15,6 +15,10 @@ struct Sheet {
   std::string begin(ChartFormat format) const;
   /// Text in gnuplot's enhanced mode; `how` as after `set label`.
   std::string label(const std::string& text, double x, double y, const std::string& how) const;
+  /// A box filled with a colour, or hatched where `fill` is empty, with a mark in it where `mark` ("pt 7") is
+  /// not, and words beside it; x: its left edge, y: its middle.
+  std::string swatch(double x, double y, const std::string& fill, const std::string& mark,
+                     const std::string& words) const;
   /// Places the axes of the next plot.
   std::string place(double left, double right, double bottom, double top) const;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solver/study/gnuplot.h"
+#include "solver/study/map_panel.h"
 
 namespace topple::study {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 constexpr int k_height = 1064, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
 constexpr int k_left = 112, k_bottom = 92, k_top = 300;           // around panels
 constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
-constexpr const char* k_grey = "textcolor rgb '#444444'";
 
 /// How a verdict is drawn: told apart in grey by luminance, and by marks.
 struct Look {
@@ -34,43 +34,6 @@ constexpr const char* k_viridis =
     "6 '#5ec962', 7 '#addc30', 8 '#fde725')\n";
 
 constexpr const char* k_dashes[] = {"1", "(14,6)", "(4,4)"};
-
-/// Range, scale and tics at 1, 2 and 5 of each decade where the axis is logarithmic.
-std::string scale(const char* which, const Axis& axis) {
-  const std::vector<double> ends = axis.edges();
-  std::string out = fmt::format("set {}range [{:.9g}:{:.9g}]\n", which, ends.front(), ends.back());
-  if (!axis.logarithmic)
-    return out + fmt::format("unset logscale {0}\nset {0}tics autofreq nomirror\n", which);
-  std::string tics;
-  for (int e = static_cast<int>(std::floor(std::log10(ends.front()))); std::pow(10., e) < ends.back(); ++e)
-    for (const double digit : {1., 2., 5.})
-      if (const double at = digit * std::pow(10., e); at >= ends.front() && at <= ends.back())
-        tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ",", at);
-  return out + fmt::format("set logscale {0}\nset {0}tics nomirror ({1})\n", which, tics);
-}
-
-std::string axis_title(const Axis& axis) {
-  return plain(axis.key) + (axis.unit.empty() ? "" : ", " + axis.unit);
-}
-
-std::string valued(const Axis& axis, double value) {
-  return fmt::format("{:.4g}{}{}", value, axis.unit.empty() ? "" : " ", axis.unit);
-}
-
-/// Where a panel is on its sheet, px, and what it shows.
-struct Panel {
-  Sheet sheet;
-  double left, right, bottom, top;
-  const Axis *x_axis, *y_axis;
-
-  static double part(const Axis& axis, double value) {
-    const std::vector<double> ends = axis.edges();
-    return axis.logarithmic ? std::log(value / ends.front()) / std::log(ends.back() / ends.front())
-                            : (value - ends.front()) / (ends.back() - ends.front());
-  }
-  double x(double value) const { return left + (right - left) * part(*x_axis, value); }
-  double y(double value) const { return bottom + (top - bottom) * part(*y_axis, value); }
-};
 
 /// Sees plan and map, knows its place on the sheet.
 class Chart {
@@ -133,18 +96,6 @@ class Chart {
     return std::ranges::any_of(map_.points, [=](const OverturnPoint& p) { return p.verdict == verdict; });
   }
 
-  std::string swatch(double x, double y, const std::string& fill, const std::string& mark,
-                     const std::string& words) const {
-    const Sheet& s = panel_.sheet;
-    std::string out = fmt::format(
-        "set object rectangle from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} {} fc rgb '{}' lw 0.6\n",
-        x / s.width, (y - 10) / s.height, (x + 24) / s.width, (y + 10) / s.height,
-        fill.empty() ? "fs pattern 4 border lc rgb '#888888'" : "fs solid border lc rgb '#888888'",
-        fill.empty() ? "#888888" : fill);
-    if (!mark.empty()) out += text("", x + 12, y, "point " + mark + " ps 0.9");
-    return out + text(words, x + 34, y, "");
-  }
-
   static double width_of(const std::string& words) { return 64 + 9.2 * static_cast<double>(words.size()); }
 
   std::string marks_of_verdicts() const {
@@ -153,10 +104,10 @@ class Chart {
     const double y = k_height - 160;
     for (const Look& look : k_looks) {
       if (!shows(look.verdict)) continue;
-      out += swatch(x, y, look.fill, look.mark, look.meaning);
+      out += panel_.sheet.swatch(x, y, look.fill, look.mark, look.meaning);
       x += width_of(look.meaning);
     }
-    if (shows(Verdict::not_computed)) out += swatch(x, y, "", "", "not computed");
+    if (shows(Verdict::not_computed)) out += panel_.sheet.swatch(x, y, "", "", "not computed");
     return out;
   }
 
@@ -165,11 +116,11 @@ class Chart {
     double x = k_left;
     const double y = k_height - 160;
     if (shows(Verdict::failed)) {
-      out += swatch(x, y, k_looks[4].fill, k_looks[4].mark, "every run failed");
+      out += panel_.sheet.swatch(x, y, k_looks[4].fill, k_looks[4].mark, "every run failed");
       x += width_of("every run failed");
     }
     if (shows(Verdict::not_computed)) {
-      out += swatch(x, y, "", "", "not computed");
+      out += panel_.sheet.swatch(x, y, "", "", "not computed");
       x += width_of("not computed");
     }
     const Sheet& s = panel_.sheet;
@@ -205,24 +156,7 @@ class Chart {
   /// Cells of the points for which `wanted` gives a value.
   template <typename Wanted>
   std::string cells(const std::string& block, Wanted wanted) const {
-    const std::vector<double> x = plan_.x.edges(), y = plan_.y.edges();
-    std::string out = "$" + block + " << END\n";
-    bool any = false;
-    for (int j = 0; j < plan_.y.count(); ++j)
-      for (int i = 0; i < plan_.x.count(); ++i)
-        if (const std::optional<double> value = wanted(point(i, j))) {
-          any = true;
-          out += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.6g}\n", plan_.x.values[i],
-                             plan_.y.values[j], x[i], x[i + 1], y[j], y[j + 1], *value);
-        }
-    return any ? out + "END\n" : out + "NaN NaN NaN NaN NaN NaN NaN\nEND\n";
-  }
-
-  /// px, of marks: smaller than the cells.
-  double mark_size() const {
-    const double cell = std::min((panel_.right - panel_.left) / plan_.x.count(),
-                                 (panel_.top - panel_.bottom) / plan_.y.count());
-    return std::clamp(cell / 26, 0.15, 1.1);
+    return panel_.cells(block, [&](int i, int j) { return wanted(point(i, j)); });
   }
 
   /// Data blocks, and what is plotted of them.
@@ -237,7 +171,7 @@ class Chart {
                           block, look.fill);
       if (*look.mark)
         plot += fmt::format("${} using 1:2 with points {} ps {:.2f} notitle, ", block, look.mark,
-                            mark_size() * (look.verdict == Verdict::rocks ? 0.45 : 0.8));
+                            panel_.mark_size() * (look.verdict == Verdict::rocks ? 0.45 : 0.8));
     }
     return {data, plot};
   }
@@ -252,7 +186,7 @@ class Chart {
     plot += fmt::format(
         "$failed using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '{0}' notitle, "
         "$failed using 1:2 with points {1} ps {2:.2f} notitle, ",
-        k_looks[4].fill, k_looks[4].mark, mark_size());
+        k_looks[4].fill, k_looks[4].mark, panel_.mark_size());
     return {data, plot};
   }
 
@@ -289,7 +223,7 @@ class Chart {
     std::string out = data + labels + own_label();
     out += panel_.sheet.place(panel_.left, panel_.right, panel_.bottom, panel_.top);
     out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
-    out += scale("x", plan_.x) + scale("y", plan_.y);
+    out += axis_scale("x", plan_.x) + axis_scale("y", plan_.y);
     out += "set xlabel " + gnuplot_quoted(axis_title(plan_.x)) + " offset 0,0.2\nset ylabel " +
            gnuplot_quoted(axis_title(plan_.y)) + " offset 1.4,0\n";
     if (plan_.ensemble > 1)
@@ -383,7 +317,7 @@ class Chart {
       out += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
                          static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
     }
-    out += "NaN NaN NaN NaN\nEND\n" + scale("x", along);
+    out += "NaN NaN NaN NaN\nEND\n" + axis_scale("x", along);
     out +=
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
         "'#dddddd' lw 0.8\n";
@@ -423,7 +357,7 @@ class Chart {
   const OverturnPlan& plan_;
   const OverturnMap& map_;
   const bool with_fragility_;
-  const Panel panel_;
+  const MapPanel panel_;
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_file.h"
 #include "solver/study/measure.h"
@@ -31,29 +30,6 @@ std::string usual_axis(const io::Scene& scene, bool is_x) {
   return is_x ? (sine ? k_frequencies : k_durations) : (sine ? k_amplitudes : k_pulses);
 }
 
-Axis axis_of(const std::string& option, const std::string& text, const io::Scene& scene) {
-  try {
-    return parse_axis(text, scene);
-  } catch (const InputError& error) {
-    std::string line = error.what();
-    if (line.starts_with("--set ")) line.erase(0, 6);
-    throw InputError(option + " " + line);
-  }
-}
-
-/// Refuses what no point can have: the key of a choice that was not made, for instance.
-void check_corner(const OverturnPlan& plan, const Axis& axis, int i, const char* option) {
-  io::Node root = io::parse_toml(plan.scene.text, plan.scene.name);
-  io::apply_override(root, axis.change(i));
-  try {
-    io::check_scene(root, plan.scene.name);
-  } catch (const InputError& error) {
-    std::string line = error.what();
-    if (line.starts_with("--set ")) line = option + line.substr(5);
-    throw InputError(line);
-  }
-}
-
 /// What the scene leaves out of [run].
 std::vector<std::string> additions(const io::Scene& scene) {
   const io::Node root = io::parse_toml(scene.text, scene.name);
@@ -62,12 +38,6 @@ std::vector<std::string> additions(const io::Scene& scene) {
   if (!run || !run->find("want")) out.push_back("run.want=[\"motion\"]");
   if (!run || !run->find("stop_when")) out.push_back("run.stop_when=all-overturned");
   return out;
-}
-
-std::uint64_t fingerprint(const std::string& bytes) {  // FNV-1a
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
 }
 
 }  // namespace
@@ -84,27 +54,15 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
       .scene = std::move(scene), .x = {}, .y = {}, .ensemble = ensemble, .spread = spread, .set = {}};
   plan.x = axis_of("--x", x.empty() ? usual_axis(plan.scene, true) : x, plan.scene);
   plan.y = axis_of("--y", y.empty() ? usual_axis(plan.scene, false) : y, plan.scene);
-  if (plan.x.table == plan.y.table && plan.x.name == plan.y.name && plan.x.entry == plan.y.entry)
-    throw InputError("--y " + plan.y.key + ": is the key of the x axis");
-  for (const int i : {0, plan.x.count() - 1}) check_corner(plan, plan.x, i, "--x");
-  for (const int i : {0, plan.y.count() - 1}) check_corner(plan, plan.y, i, "--y");
+  check_axes(plan.scene, plan.x, plan.y);
   plan.set = additions(plan.scene);
   return plan;
 }
 
 ordered_json settings_of(const OverturnPlan& plan) {
-  ordered_json files = ordered_json::object();
-  for (const io::SceneFile& file : plan.scene.files) files[file.name] = fingerprint(file.bytes);
-  return {{"study", "overturn"},
-          {"scene", plan.scene.name},
-          {"x", plan.x.key},
-          {"x values", plan.x.values},
-          {"y", plan.y.key},
-          {"y values", plan.y.values},
-          {"ensemble", plan.ensemble},
-          {"spread", plan.spread},
-          {"scene text", plan.scene.text},
-          {"files", files}};
+  ordered_json settings = settings_of("overturn", plan.scene, plan.x, plan.y);
+  settings.update({{"ensemble", plan.ensemble}, {"spread", plan.spread}});
+  return settings;
 }
 
 std::vector<int> case_order(const OverturnPlan& plan) {

@@ -18,14 +18,6 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + "_" + unit;
 }
 
-ordered_json axis_as_json(const Axis& axis) {
-  return {{"key", axis.key},
-          {"unit", axis.unit},
-          {"spacing", axis.logarithmic ? "logarithmic" : "linear"},
-          {"scene", or_null(axis.own)},
-          {"values", axis.values}};
-}
-
 /// value(point) by rows of y and columns of x.
 template <typename Value>
 ordered_json array_over(const OverturnPlan& plan, const OverturnMap& map, Value value) {
@@ -105,8 +97,8 @@ ordered_json map_as_json(const OverturnPlan& plan, const OverturnMap& map) {
   for (const Criterion& c : map.criteria.list)
     curves.push_back({{"name", c.name}, {"label", c.label}, {"about", c.about}, {"x", c.x}, {"y", c.y}});
   return {
-      {"x", axis_as_json(plan.x)},
-      {"y", axis_as_json(plan.y)},
+      {"x", as_json(plan.x)},
+      {"y", as_json(plan.y)},
       {"arrays", "rows by y, columns by x"},
       {"verdict", over([](const OverturnPoint& p) { return name(p.verdict); })},
       {"runs", over([](const OverturnPoint& p) { return p.runs; })},

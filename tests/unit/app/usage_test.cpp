@@ -80,7 +80,7 @@ TEST_F(UsageTest, empty_names_are_refused) {
 }
 
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
-  for (const char* kind : {"precision", "stability"}) {
+  for (const char* kind : {"precision"}) {
     const std::string refusal = std::string("study ") + kind + ": not supported by this version";
     expect_one_line({"study", kind}, 2, refusal);
     expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
@@ -93,7 +93,7 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"study", "frob", "-o", "out"}, 2,
-                  "\"frob\" is not a study; known: elements, overturn, penalty");
+                  "\"frob\" is not a study; known: elements, overturn, penalty, stability");
   expect_one_line({"study", "penalty", "-o", "out"}, 2,
                   "study penalty: SCENE is required (topple study --help)");
   expect_one_line({"study", "penalty", "paper-a"}, 2, "--output is required (topple study --help)");
@@ -102,6 +102,12 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study", "elements", "-o", "out", "--set", "run.elements=asi"}, 2,
                   "study elements: has no scene to --set a key of");
   expect_one_line({"study", "overturn", "-o", "out"}, 2, "study overturn: SCENE is required");
+  expect_one_line({"study", "stability", "paper-a", "-o", "out", "--ensemble", "4"}, 2,
+                  "--ensemble: not of study stability");
+  expect_one_line({"study", "stability", "paper-a", "-o", "out", "--x", "run.time_step=1..2:2"}, 2,
+                  "--x run.time_step: 1 s is outside 1e-07..0.1 s");
+  expect_one_line({"study", "stability", "portal-pushover", "-o", "out"}, 2,
+                  "study stability: portal-pushover is not dynamic");
   for (const char* kind : {"elements", "penalty"}) {
     std::vector<std::string> call{"study", kind};
     if (kind == std::string("penalty")) call.push_back("paper-a");

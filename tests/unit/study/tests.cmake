@@ -11,9 +11,12 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/refinement_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/spread_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/standing_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/team_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/theory_test.cpp)
 target_link_libraries(study_test PRIVATE topple_study GTest::gtest_main)
 target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
+set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp PROPERTIES
+  COMPILE_DEFINITIONS TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 gtest_discover_tests(study_test)
