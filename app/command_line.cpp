@@ -26,7 +26,20 @@ namespace topple::app {
 namespace {
 
 // Studies of the contract that this version does not have yet.
-constexpr std::string_view k_later_studies[] = {"precision", "stability"};
+constexpr std::string_view k_later_studies[] = {"stability"};
+
+struct Study {
+  std::string_view kind;
+  int (*run)(const StudyOptions&);
+  bool takes_scene = true;
+  bool sweeps = false;    ///< --resume, ranks
+  bool has_axes = false;  ///< --x, --y, --ensemble
+};
+constexpr Study k_studies[] = {{"elements", elements_command, false},
+                               {"overturn", overturn_command, true, true, true},
+                               {"penalty", penalty_command},
+                               {"precision", precision_command, true, true}};
+
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
 constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
 
@@ -382,10 +395,12 @@ class CommandLine {
     CLI::App& command = add_command("study", "a family of runs as table and charts",
                                     "study overturn paper-a -o overturn-study --ensemble 64 --spread 5%");
     command
-        .add_option("KIND", kind_,
-                    "overturn: what overturns over two keys of a scene, such as frequency and amplitude; "
-                    "elements: error of the three schemes against elements and CPU time; penalty: what the "
-                    "contact law of a scene does, and the alpha to take")
+        .add_option(
+            "KIND", kind_,
+            "overturn: what overturns over two keys of a scene, such as frequency and amplitude; "
+            "elements: error of the three schemes against elements and CPU time; penalty: what the "
+            "contact law of a scene does, and the alpha to take; precision: error against CPU time of a "
+            "scene's integrators, steps and models")
         ->required()
         ->type_name("");
     command
@@ -410,12 +425,13 @@ class CommandLine {
         ->type_name("PERCENT%")
         ->check(share, "", "share")
         ->needs(ensemble);
-    command.add_flag("--resume", study_.resume, "overturn: go on with the runs of one that was interrupted");
+    command.add_flag("--resume", study_.resume,
+                     "overturn, precision: go on with the runs of one that was interrupted");
     command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
     command
         .add_option("--jobs", jobs_,
-                    "runs at a time, of each rank under mpirun; default one per core, of elements and "
-                    "penalty 1, at which CPU times are undisturbed")
+                    "runs at a time, of each rank under mpirun; default one per core, of elements, "
+                    "penalty and precision 1, at which CPU times are undisturbed")
         ->type_name("N")
         ->check(job_count, "", "count");
     command.add_flag("--quiet", study_.quiet, "no progress");
@@ -424,31 +440,38 @@ class CommandLine {
       study_.jobs = whole_number<int>(jobs_);
       study_.ensemble = whole_number<int>(ensemble_).value_or(1);
       study_.spread = ensemble_.empty() ? 0 : share_in(spread_).value();
-      action_ = [this] {
-        return kind_ == "elements"  ? elements_command(study_)
-               : kind_ == "penalty" ? penalty_command(study_)
-                                    : overturn_command(study_);
-      };
+      action_ = [this] { return study_called(kind_)->run(study_); };
     });
+  }
+
+  /// Null: there is none.
+  static const Study* study_called(std::string_view kind) {
+    const Study* const found = std::ranges::find(k_studies, kind, &Study::kind);
+    return found == std::end(k_studies) ? nullptr : found;
   }
 
   void check_study() const {
     if (std::find(std::begin(k_later_studies), std::end(k_later_studies), kind_) != std::end(k_later_studies))
       refuse("study " + kind_);
-    const bool elements = kind_ == "elements", overturn = kind_ == "overturn";
-    if (!elements && !overturn && kind_ != "penalty")
-      throw BadInput("\"" + kind_ + "\" is not a study; known: elements, overturn, penalty");
-    if (elements && !study_.scene.empty())
-      throw BadInput("study elements: has scenes of its own and takes none (found \"" + study_.scene + "\")");
-    if (elements && !study_.overrides.empty())
-      throw BadInput("study elements: has no scene to --set a key of");
-    if (!elements && study_.scene.empty())
+    const Study* const study = study_called(kind_);
+    if (!study) {
+      std::string known;
+      for (const Study& each : k_studies) known += (known.empty() ? "" : ", ") + std::string(each.kind);
+      throw BadInput("\"" + kind_ + "\" is not a study; known: " + known);
+    }
+    if (!study->takes_scene && !study_.scene.empty())
+      throw BadInput("study " + kind_ + ": has scenes of its own and takes none (found \"" + study_.scene +
+                     "\")");
+    if (!study->takes_scene && !study_.overrides.empty())
+      throw BadInput("study " + kind_ + ": has no scene to --set a key of");
+    if (study->takes_scene && study_.scene.empty())
       throw BadInput("study " + kind_ + ": SCENE is required (topple study --help)");
-    for (const auto& [name, given] :
-         {std::pair{"--x", !study_.x.empty()}, std::pair{"--y", !study_.y.empty()},
-          std::pair{"--ensemble", !ensemble_.empty()}, std::pair{"--resume", study_.resume}})
-      if (given && !overturn) throw BadInput(std::string(name) + ": not of study " + kind_);
-    if (!overturn && started_ranks() > 1)
+    for (const auto& [name, given, taken] : {std::tuple{"--x", !study_.x.empty(), study->has_axes},
+                                             std::tuple{"--y", !study_.y.empty(), study->has_axes},
+                                             std::tuple{"--ensemble", !ensemble_.empty(), study->has_axes},
+                                             std::tuple{"--resume", study_.resume, study->sweeps}})
+      if (given && !taken) throw BadInput(std::string(name) + ": not of study " + kind_);
+    if (!study->sweeps && started_ranks() > 1)
       throw BadInput("mpirun: study " + kind_ +
                      " does not share its work among ranks; start it without mpirun");
     if (study_.folder.empty()) throw BadInput("--output is required (topple study --help)");

@@ -8,6 +8,7 @@
 #include "app/log.h"
 #include "app/study_results.h"
 #include "app/sweep.h"
+#include "app/told_scene.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"
 
@@ -23,24 +24,6 @@ MakeWork work_on(const study::OverturnPlan& plan) {
       return runner.run(k, give_up);
     };
   };
-}
-
-/// The scene as other ranks are told it: name, text, then name and bytes of each file.
-std::vector<std::string> told(const io::Scene& scene) {
-  std::vector<std::string> parts{scene.name, scene.text};
-  for (const io::SceneFile& file : scene.files) parts.insert(parts.end(), {file.name, file.bytes});
-  return parts;
-}
-
-io::Scene scene_from(const std::vector<std::string>& told) {
-  const auto read = [&told](const std::string& name) {
-    for (std::size_t k = 2; k + 1 < told.size(); k += 2)
-      if (told[k] == name) return told[k + 1];
-    throw io::InputError(name + ": is not among the files of the scene");
-  };
-  io::Scene scene = io::parse_scene(told[1], told[0], {}, read);
-  scene.name = told[0];
-  return scene;
 }
 
 study::OverturnPlan plan_of(const StudyOptions& options, io::Scene scene) {

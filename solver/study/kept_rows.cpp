@@ -12,8 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "solver/io/scene.h"
-
 namespace topple::study {
 namespace {
 
@@ -105,6 +103,16 @@ void KeptRows::append(const std::string& line) {
 void KeptRows::add(int k, const std::string& row) {
   append("{\"case\":" + std::to_string(k) + ",\"row\":" + row + "}");
   rows_[static_cast<std::size_t>(k)] = row;
+}
+
+ordered_json fingerprints(const std::vector<io::SceneFile>& files) {
+  ordered_json out = ordered_json::object();
+  for (const io::SceneFile& file : files) {
+    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+    for (const char c : file.bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    out[file.name] = hash;
+  }
+  return out;
 }
 
 }  // namespace topple::study

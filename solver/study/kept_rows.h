@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/io/scene.h"
+
 namespace topple::study {
 
 /// A file of lines: the settings that rows depend on, then {"case": k, "row": ...} for each case that ended,
@@ -35,5 +37,8 @@ class KeptRows {
   int file_ = -1;
   std::vector<std::string> rows_;
 };
+
+/// A hash of each file that a scene names, for the settings that rows depend on.
+nlohmann::ordered_json fingerprints(const std::vector<io::SceneFile>& files);
 
 }  // namespace topple::study

@@ -8,6 +8,7 @@
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_file.h"
+#include "solver/study/kept_rows.h"
 #include "solver/study/measure.h"
 
 namespace topple::study {
@@ -64,12 +65,6 @@ std::vector<std::string> additions(const io::Scene& scene) {
   return out;
 }
 
-std::uint64_t fingerprint(const std::string& bytes) {  // FNV-1a
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
 }  // namespace
 
 OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
@@ -93,8 +88,6 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
 }
 
 ordered_json settings_of(const OverturnPlan& plan) {
-  ordered_json files = ordered_json::object();
-  for (const io::SceneFile& file : plan.scene.files) files[file.name] = fingerprint(file.bytes);
   return {{"study", "overturn"},
           {"scene", plan.scene.name},
           {"x", plan.x.key},
@@ -104,7 +97,7 @@ ordered_json settings_of(const OverturnPlan& plan) {
           {"ensemble", plan.ensemble},
           {"spread", plan.spread},
           {"scene text", plan.scene.text},
-          {"files", files}};
+          {"files", fingerprints(plan.scene.files)}};
 }
 
 std::vector<int> case_order(const OverturnPlan& plan) {
