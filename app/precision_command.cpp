@@ -41,7 +41,7 @@ ordered_json document(const study::PrecisionPlan& plan, const study::PrecisionSt
       {"title", "Error against CPU time of " + plan.scene.name},
       {"scene_title", plan.scene.title},
       {"units",
-       {{"tilt_error", "1, root mean square until the body overturns, over its least critical angle"},
+       {{"tilt_error", "1, root mean square over the window, over the least critical angle"},
         {"overturn_time_error", "1, relative"},
         {"peak_stress_error", "1, relative"},
         {"energy_error", "1, energy that nothing explains over the largest exchanged"},

@@ -23,24 +23,22 @@ constexpr double k_usual_step = 1e-3, k_usual_tolerance = 1e-3;  // of scenes th
 constexpr int k_coarsest = 3, k_finest_reduced = -4, k_finest_frame = -5;
 constexpr int k_looser = 2, k_tighter = -4;
 constexpr int k_explicit_steps = 3;      // below the limit
-constexpr double k_most_steps = 4e6;     // of a run
 constexpr double k_most_samples = 1000;  // of a run
 
 constexpr MethodMeaning k_meanings[k_methods] = {
     {"scene", "as the scene says", BodyModel::automatic, Integrator::generalized_alpha, false},
-    {"rigid", "rigid bodies, fixed steps", BodyModel::rigid, Integrator::generalized_alpha, false},
-    {"rigid auto", "rigid bodies, steps by tolerance", BodyModel::rigid, Integrator::generalized_alpha, true},
-    {"elastic", "elastic bodies, fixed steps", BodyModel::elastic, Integrator::generalized_alpha, false},
-    {"elastic auto", "elastic bodies, steps by tolerance", BodyModel::elastic, Integrator::generalized_alpha,
-     true},
-    {"frame generalized-alpha", "frames, generalized-alpha", BodyModel::frame, Integrator::generalized_alpha,
+    {"rigid", "rigid, fixed steps", BodyModel::rigid, Integrator::generalized_alpha, false},
+    {"rigid auto", "rigid, by tolerance", BodyModel::rigid, Integrator::generalized_alpha, true},
+    {"elastic", "elastic, fixed steps", BodyModel::elastic, Integrator::generalized_alpha, false},
+    {"elastic auto", "elastic, by tolerance", BodyModel::elastic, Integrator::generalized_alpha, true},
+    {"frame generalized-alpha", "frame, generalized-alpha", BodyModel::frame, Integrator::generalized_alpha,
      false},
-    {"frame generalized-alpha auto", "frames, generalized-alpha, steps by tolerance", BodyModel::frame,
+    {"frame generalized-alpha auto", "frame, generalized-alpha, by tolerance", BodyModel::frame,
      Integrator::generalized_alpha, true},
-    {"frame newmark", "frames, Newmark, average acceleration", BodyModel::frame, Integrator::newmark, false},
-    {"frame newmark 5/6", "frames, Newmark, gamma 5/6, beta 4/9", BodyModel::frame, Integrator::newmark,
-     false, 4. / 9, 5. / 6},
-    {"frame central-difference", "frames, central differences", BodyModel::frame,
+    {"frame newmark", "frame, Newmark 1/4, 1/2", BodyModel::frame, Integrator::newmark, false},
+    {"frame newmark 5/6", "frame, Newmark 4/9, 5/6", BodyModel::frame, Integrator::newmark, false, 4. / 9,
+     5. / 6},
+    {"frame central-difference", "frame, central differences", BodyModel::frame,
      Integrator::central_difference, false}};
 
 bool moves_as(const Model& model, BodyModel asked) {
@@ -101,10 +99,12 @@ double step_cost(Method method) {
   }
 }
 
-double expected_cost(const Setting& setting) {
+/// CPU time of a run to its end, s.
+double expected_cost(const Setup& setup, const Setting& setting) {
+  constexpr double k_rigid_step = 1e-6;  // s
   const double step =
       setting.step > 0 ? setting.step : k_usual_step * std::cbrt(setting.tolerance / k_usual_tolerance);
-  return step_cost(setting.method) / step;
+  return k_rigid_step * step_cost(setting.method) * setup.model.furniture_total() * setup.run.duration / step;
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ PrecisionPlan plan_precision(io::Scene scene) {
     throw InputError("study precision: " + scene.name + " is not dynamic; it has no time steps");
   if (scene.setup.model.furniture_total() == 0)
     throw InputError("study precision: " + scene.name + " has no body that moves");
-  PrecisionPlan plan{.scene = std::move(scene), .laws = {}, .settings = {}};
+  PrecisionPlan plan{.scene = std::move(scene), .laws = {}, .settings = {}, .list = {}};
   Setup& setup = plan.scene.setup;
   Model& model = setup.model;
   for (int b = 0; b < model.furniture_total(); ++b)
@@ -133,9 +133,7 @@ PrecisionPlan plan_precision(io::Scene scene) {
   const double tolerance = own.adaptive ? own.tolerance : k_usual_tolerance;
   plan.settings.push_back({Method::scene, own.adaptive ? 0 : step, own.adaptive ? tolerance : 0});
   const auto add_steps = [&](Method method, int finest) {
-    for (int k = k_coarsest; k >= finest; --k)
-      if (const double h = std::ldexp(step, k); setup.run.duration / h <= k_most_steps)
-        plan.settings.push_back({method, h, 0});
+    for (int k = k_coarsest; k >= finest; --k) plan.settings.push_back({method, std::ldexp(step, k), 0});
   };
   const auto add_tolerances = [&](Method method) {
     for (int k = k_looser; k >= k_tighter; --k)
@@ -158,9 +156,13 @@ PrecisionPlan plan_precision(io::Scene scene) {
     // the first is beyond the limit and has a row that says so
     const int first = static_cast<int>(std::ceil(std::log2(*limit / step)));
     for (int k = 0; k <= k_explicit_steps; ++k)
-      if (const double h = std::ldexp(step, first - k); setup.run.duration / h <= k_most_steps)
-        plan.settings.push_back({Method::central_difference, h, 0});
+      plan.settings.push_back({Method::central_difference, std::ldexp(step, first - k), 0});
   }
+  for (int law = 0; law < static_cast<int>(plan.laws.size()); ++law)
+    for (int k = 0; k < static_cast<int>(plan.settings.size()); ++k)
+      if (k == 0 || expected_cost(setup, plan.settings[static_cast<std::size_t>(k)]) <=
+                        (law == 0 ? k_own_law : k_other_law))
+        plan.list.push_back({law, k});
   const double coarsest = std::ldexp(step, k_coarsest);
   plan.interval = coarsest * std::max(1., std::ceil(setup.run.duration / k_most_samples / coarsest));
   return plan;
@@ -186,7 +188,7 @@ ordered_json settings_of(const PrecisionPlan& plan) {
   ordered_json laws = ordered_json::array(), settings = ordered_json::array();
   for (int k = 0; k < static_cast<int>(plan.laws.size()); ++k)
     laws.push_back(in_words(plan.laws[static_cast<std::size_t>(k)]));
-  for (int k = 0; k < static_cast<int>(plan.settings.size()); ++k) settings.push_back(in_words(plan, k));
+  for (int k = 0; k < plan.cases(); ++k) settings.push_back(in_words(plan, k));
   return {{"study", "precision"}, {"scene", plan.scene.name},      {"laws", laws},
           {"settings", settings}, {"scene text", plan.scene.text}, {"files", fingerprints(plan.scene.files)}};
 }
@@ -194,8 +196,9 @@ ordered_json settings_of(const PrecisionPlan& plan) {
 std::vector<int> case_order(const PrecisionPlan& plan) {
   std::vector<int> order(static_cast<std::size_t>(plan.cases()));
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(
-      order, {}, [&](int k) { return std::pair(plan.law_of(k), expected_cost(plan.setting_of(k))); });
+  std::ranges::stable_sort(order, {}, [&](int k) {
+    return std::pair(plan.law_of(k), expected_cost(plan.scene.setup, plan.setting_of(k)));
+  });
   return order;
 }
 

@@ -12,11 +12,11 @@ namespace topple::study {
 namespace {
 
 // px
-constexpr Sheet k_sheet{1960, 1560};
-constexpr int k_left = 104, k_right = 34, k_gap = 100, k_columns = 3;
-constexpr int k_first = 320, k_pitch = 534,
-              k_panel = 420;    // top of the first row of panels, row to row, height
-constexpr int k_tables = 1398;  // top of the tables
+constexpr Sheet k_sheet{1800, 1510};
+constexpr int k_left = 92, k_right = 24, k_gap = 104, k_columns = 3;
+constexpr int k_first = 384, k_pitch = 486,
+              k_panel = 340;    // top of the first row of panels, row to row, height
+constexpr int k_tables = 1314;  // top of the tables
 constexpr double k_width = (k_sheet.width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
 
 constexpr const char* k_grey = "textcolor rgb '#444444'";
@@ -36,8 +36,7 @@ constexpr const char* k_front_style = "lc rgb '#f5d76e' lw 9 dt 1";
 constexpr const char* k_law_colour[] = {"#0072b2", "#d55e00", "#555555"};                // by kind
 constexpr const char* k_alpha_look[] = {"dt 1 pt 7", "dt (8,4) pt 5", "dt (2,4) pt 9"};  // by factor
 
-constexpr const char* k_titles[k_measures] = {"Tilt until it overturns", "Time of overturning", "Peak stress",
-                                              "Energy balance"};
+constexpr const char* k_titles[k_measures] = {"Tilt", "Time of overturning", "Peak stress", "Energy balance"};
 constexpr const char* k_subtitles[k_measures] = {"root mean square difference, over the critical angle",
                                                  "difference, over the time",
                                                  "difference, over the stress; rigid bodies have none",
@@ -69,6 +68,22 @@ std::string milliseconds(double seconds) {
   return fmt::format("{:.3g} ms", 1e3 * seconds);
 }
 
+/// What is drawn in a panel.
+struct Box {
+  double left = 1e300, right = 0, low = 1e300, high = 0;
+
+  void add(double x, double y) {
+    left = std::min(left, x);
+    right = std::max(right, x);
+    low = std::min(low, y);
+    high = std::max(high, y);
+  }
+  std::string ranges() const {
+    return fmt::format("set xrange [{:.4g}:{:.4g}]\nset yrange [{:.4g}:{:.4g}]\n", left / 1.4, right * 1.4,
+                       low / 2, high * 2.5);
+  }
+};
+
 class Chart {
  public:
   Chart(const PrecisionPlan& plan, const PrecisionStudy& study) : plan_(plan), study_(study) {}
@@ -77,7 +92,9 @@ class Chart {
     std::string out = k_sheet.begin(format) + header(origin) + cheapest_table() + law_table() + legend();
     if (reference(0).run < 0) return out + "unset multiplot\n";
     out +=
-        "set border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4\nset logscale xy\n"
+        "set border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4 nomirror\nset xtics nomirror\nset "
+        "ytics nomirror\n"
+        "set logscale xy\n"
         "set grid xtics ytics lc rgb '#d8d8d8' lw 0.8 dt 1\nset mxtics 10\nset format x '%g'\nset format y "
         "'%g'\n";
     for (int m = 0; m < k_measures; ++m) out += cost_panel(static_cast<Measure>(m));
@@ -87,7 +104,6 @@ class Chart {
  private:
   const Reference& reference(int law) const { return study_.references[static_cast<std::size_t>(law)]; }
   const PrecisionRow& row(int k) const { return study_.rows[static_cast<std::size_t>(k)]; }
-  int own_cases() const { return static_cast<int>(plan_.settings.size()); }
 
   /// As drawn, %.
   std::optional<double> error(int k, Measure measure) const {
@@ -111,20 +127,22 @@ class Chart {
     for (int m = 0; m < k_measures; ++m)
       if (const auto& off = r.uncertainty[static_cast<std::size_t>(m)])
         line += fmt::format("{} {} ({})", m > 0 ? "," : "", percent(*off), name(static_cast<Measure>(m)));
-    out += text(line + ". Smaller errors are drawn there, in the grey", k_left, 128, grey);
+    out += text(line, k_left, 128, grey);
     line = fmt::format("Compared over {:.4g} s", r.window);
     line += r.window < r.end - plan_.interval
-                ? fmt::format(" of {:.4g} s: then the tilts of the two part by {} of the critical angle",
+                ? fmt::format(" of {:.4g} s: then the tilts of these two part by {} of the critical angle",
                               r.end, percent(k_parted))
                 : std::string(", the whole run");
     if (plan_.scene.setup.run.stop_when == StopWhen::all_overturned)
       line += "; runs end when all bodies have overturned";
-    return out + text(line, k_left, 154, grey) +
-           text(
-               "CPU time: of the solving thread for the whole run, settling included, over the time "
-               "simulated; "
-               "of repeated runs the fastest",
-               k_left, 180, grey);
+    out += text(line, k_left, 154, grey);
+    out += text("Grey: the reference itself is not more certain, smaller errors are drawn there", k_left, 180,
+                grey);
+    return out + text(
+                     "CPU time: of the solving thread for the whole run, settling included, over the time "
+                     "simulated; "
+                     "of repeated runs the fastest",
+                     k_left, 206, grey);
   }
 
   bool has(Method method) const {
@@ -133,16 +151,16 @@ class Chart {
 
   std::string legend() const {
     std::string out =
-        k_sheet.place(k_left, k_sheet.width - k_right, k_sheet.height - 282, k_sheet.height - 198) +
+        k_sheet.place(k_left, k_sheet.width - k_right, k_sheet.height - 306, k_sheet.height - 222) +
         "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
-        "set key at graph 0,1 left top vertical maxrows 3 Left reverse samplen 4 spacing 1.2 width 1\n"
+        "set key at graph 0,1 left top vertical maxrows 3 Left reverse samplen 3 spacing 1.15 width -3 font "
+        "',12'\n"
         "plot ";
     for (int m = 1; m < k_methods; ++m)
       if (const auto method = static_cast<Method>(m); has(method))
         out += fmt::format("NaN with linespoints {} title {} noenhanced, ", k_style[m],
                            gnuplot_quoted(meaning(method).about));
-    out += std::string("NaN with lines ") + k_front_style +
-           " title 'Pareto front: nothing is cheaper and as exact', ";
+    out += std::string("NaN with lines ") + k_front_style + " title 'Pareto front', ";
     out += "NaN with points pt 6 ps 2.6 lw 3 lc rgb '#000000' title 'the scene as it is'";
     return out + "\nunset label\nunset key\nunset object\n";
   }
@@ -153,7 +171,7 @@ class Chart {
     std::string data, plot;
     for (int m = 1; m < k_methods; ++m) {
       std::string lines;
-      for (int k = 0; k < own_cases(); ++k)
+      for (int k = 0; k < plan_.cases() && plan_.law_of(k) == 0; ++k)
         if (const Setting& setting = plan_.setting_of(k); setting.method == static_cast<Method>(m))
           if (const auto x = x_of(k), e = error(k, measure); x && e)
             lines += fmt::format("{:.6g} {:.6g}\n", *x, *e);
@@ -167,18 +185,11 @@ class Chart {
   /// Ranges around what is drawn of the scene's own law, and where the reference is not certain.
   template <typename X>
   std::string ranges(Measure measure, X x_of) const {
-    double left = 1e300, right = 0, low = 1e300, high = 0;
-    for (int k = 0; k < own_cases(); ++k)
-      if (const auto x = x_of(k), e = error(k, measure); x && e) {
-        left = std::min(left, *x);
-        right = std::max(right, *x);
-        low = std::min(low, *e);
-        high = std::max(high, *e);
-      }
-    if (right == 0) return "";
-    low /= 2;
-    std::string out = fmt::format("set xrange [{:.4g}:{:.4g}]\nset yrange [{:.4g}:{:.4g}]\n", left / 1.4,
-                                  right * 1.4, low, std::min(high * 2.5, 1000.));
+    Box box;
+    for (int k = 0; k < plan_.cases() && plan_.law_of(k) == 0; ++k)
+      if (const auto x = x_of(k), e = error(k, measure); x && e) box.add(*x, *e);
+    if (box.right == 0) return "";
+    std::string out = box.ranges();
     if (const auto& off = reference(0).uncertainty[index(measure)]; off && *off > 0)
       out += fmt::format(
           "set object 1 rectangle from graph 0,graph 0 to graph 1,first {:.6g} fs solid noborder fc rgb "
@@ -218,7 +229,7 @@ class Chart {
         "$own << END\n" + (own && row(0).cost ? fmt::format("{:.6g} {:.6g}\nEND\n", 1e3 * *row(0).cost, *own)
                                               : std::string("NaN NaN\nEND\n"));
     out = data + out + range + at.axes() +
-          "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\nset ylabel 'error, %' offset 1.4,0\n";
+          "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\nset ylabel 'error, %' offset 0.6,0\n";
     return out + "plot $front with lines " + k_front_style + " notitle" + plot +
            ", $own with points pt 6 ps 2.6 lw 3 lc rgb '#000000' notitle\nunset label\nunset object 1\n";
   }
@@ -231,10 +242,9 @@ class Chart {
     };
     const std::string range = ranges(Measure::tilt, step);
     const auto [data, plot] = curves(Measure::tilt, step);
-    std::string subtitle = "tilt, fixed steps; level ends are the error of the model";
-    if (reference(0).order) subtitle += fmt::format("; order of the reference {:.2g}", *reference(0).order);
-    std::string out = data + titles(at, "How the error goes with the step", subtitle) + range + at.axes() +
-                      "set xlabel 'time step, ms' offset 0,0.3\nset ylabel 'error, %' offset 1.4,0\n";
+    std::string out =
+        data + titles(at, "How the error goes with the step", "tilt; level ends are the error of the model") +
+        range + at.axes() + "set xlabel 'time step, ms' offset 0,0.3\nset ylabel 'error, %' offset 0.6,0\n";
     return plot.empty() ? "" : out + "plot " + plot.substr(2) + "\nunset label\nunset object 1\n";
   }
 
@@ -252,11 +262,14 @@ class Chart {
   std::string laws_panel() const {
     const Place at = place(k_measures + 1);
     std::string data, plot;
+    Box box;
     for (int law = 0; law < static_cast<int>(plan_.laws.size()); ++law) {
       std::string lines;
       for (const int k : front(plan_, study_, law, Measure::tilt))
-        if (const auto e = error(k, Measure::tilt))
+        if (const auto e = error(k, Measure::tilt)) {
           lines += fmt::format("{:.6g} {:.6g}\n", 1e3 * *row(k).cost, *e);
+          box.add(1e3 * *row(k).cost, *e);
+        }
       if (lines.empty()) continue;
       const ContactLaw& of = plan_.laws[static_cast<std::size_t>(law)];
       data += fmt::format("$law{} << END\n{}END\n", law, lines);
@@ -267,19 +280,17 @@ class Chart {
     if (plot.empty()) return "";
     return data +
            titles(at, "Fronts under other laws and alpha",
-                  "tilt; each against a reference of its own law and alpha") +
-           at.axes() +
-           "set xrange [*:*]\nset yrange [*:*]\nset offsets graph 0.04,graph 0.04,graph 0.05,graph 0.05\n"
-           "set key at graph 1,1 right top Left reverse noenhanced samplen 3 spacing 1.05 font ',11' opaque "
-           "fc rgb "
-           "'#ffffff'\nset xlabel 'CPU time per simulated second, ms' offset 0,0.3\n"
-           "set ylabel 'error, %' offset 1.4,0\nplot " +
+                  "tilt, each against a reference of its own physics") +
+           box.ranges() + at.axes() +
+           "set key at graph 1.03,1.03 right top Left reverse noenhanced samplen 3 spacing 1 font ',10.5'\n"
+           "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\n"
+           "set ylabel 'error, %' offset 0.6,0\nplot " +
            plot.substr(2) + "\nunset label\nunset key\n";
   }
 
   std::string cheapest_table() const {
     if (reference(0).run < 0) return "";
-    constexpr double k_head = 92, k_column = 276;
+    constexpr double k_head = 80, k_column = 268;
     std::string out = text(bold("Cheapest setting within an error", 1.08), k_left, k_tables);
     for (int m = 0; m < k_measures; ++m) {
       const auto measure = static_cast<Measure>(m);
@@ -287,11 +298,17 @@ class Chart {
       out += text(name(measure), x, k_tables + 30, k_grey);
       for (std::size_t l = 0; l < std::size(k_levels); ++l) {
         const double y = k_tables + 58 + 48 * static_cast<double>(l);
-        if (m == 0) out += text(percent(k_levels[l]), k_left, y, "");
+        if (m == 0) out += text(percent(k_levels[l]), k_left, y);
         const std::optional<int> k = cheapest(plan_, study_, 0, measure, k_levels[l]);
-        out +=
-            text(small(k ? plain(in_words(plan_, *k)) : "none tried, or not certain"), x, y, k ? "" : k_grey);
-        if (k) out += text(small(milliseconds(*row(*k).cost) + " per simulated s"), x, y + 20, k_grey);
+        if (!k) {
+          out += text(small("none tried, or not certain"), x, y, k_grey);
+          continue;
+        }
+        const std::string setting = in_words(plan_, *k);
+        const std::size_t comma = setting.find(", ");
+        out += text(small(plain(setting.substr(0, comma))), x, y);
+        out += text(small(plain(setting.substr(comma + 2)) + "; " + milliseconds(*row(*k).cost) + "/s"), x,
+                    y + 20, k_grey);
       }
     }
     return out;
@@ -299,7 +316,7 @@ class Chart {
 
   /// What a law and alpha change, by their references.
   std::string law_table() const {
-    constexpr double k_x = 1330, k_line = 17;
+    constexpr double k_x = 1268, k_line = 17;
     std::string out = text(bold("What law and alpha change", 1.08), k_x, k_tables) +
                       text("{/*0.84 " + plain(bodies_in_words()) + "}", k_x + 164, k_tables + 25, k_grey);
     for (int law = 0; law < static_cast<int>(plan_.laws.size()); ++law) {

@@ -61,7 +61,7 @@ std::optional<double> least_critical(const Model& model, int b) {
 class Comparison {
  public:
   Comparison(const PrecisionPlan& plan, const std::vector<Course>& courses, int law)
-      : plan_(plan), courses_(courses), first_(law * static_cast<int>(plan.settings.size())) {
+      : plan_(plan), courses_(courses), law_(law) {
     choose();
     if (reference_.run < 0) return;
     const Model& model = plan.scene.setup.model;
@@ -94,9 +94,10 @@ class Comparison {
   Errors errors(const Course& other) const {
     const Course& run = course(reference_.run);
     Errors out;
-    if (!other.completed || other.samples() < samples_) return out;
+    if (!other.completed || other.samples() == 0) return out;
+    const std::size_t last = std::min(samples_, other.samples()) - 1;
     const bool same = same_verdict(other);
-    out[index(Measure::tilt)] = tilt_error(run, other);
+    out[index(Measure::tilt)] = tilt_error(run, other, samples_);
     std::optional<double> time, stress = 0;
     for (std::size_t b = 0; b < run.fell.size(); ++b) {
       if (same && within(run.fell[b]))
@@ -104,26 +105,26 @@ class Comparison {
       if (other.stress[b].empty() || run.stress[b].empty())
         stress.reset();
       else if (const double peak = run.stress[b][samples_ - 1]; stress && peak > 0)
-        stress = std::max(*stress, std::abs(other.stress[b][samples_ - 1] / peak - 1));
+        stress = std::max(*stress, std::abs(other.stress[b][last] / peak - 1));
     }
     out[index(Measure::overturn_time)] = time;
     out[index(Measure::peak_stress)] = stress;
-    out[index(Measure::energy)] = other.balance[samples_ - 1];
+    out[index(Measure::energy)] = other.balance[last];
     return out;
   }
 
  private:
-  const Course& course(int setting) const { return courses_[static_cast<std::size_t>(first_ + setting)]; }
+  const Course& course(int k) const { return courses_[static_cast<std::size_t>(k)]; }
 
   bool within(const std::optional<double>& time) const { return time && *time <= reference_.window; }
 
-  /// Settings of a method that completed, the finest first.
+  /// Cases of a method that completed, the finest first.
   std::vector<int> completed(Method method) const {
     std::vector<int> found;
-    for (int s = 0; s < static_cast<int>(plan_.settings.size()); ++s)
-      if (plan_.settings[static_cast<std::size_t>(s)].method == method && course(s).completed)
-        found.push_back(s);
-    std::ranges::sort(found, {}, [&](int s) { return plan_.settings[static_cast<std::size_t>(s)].step; });
+    for (int k = 0; k < plan_.cases(); ++k)
+      if (plan_.law_of(k) == law_ && plan_.setting_of(k).method == method && course(k).completed)
+        found.push_back(k);
+    std::ranges::sort(found, {}, [&](int k) { return plan_.setting_of(k).step; });
     return found;
   }
 
@@ -138,18 +139,11 @@ class Comparison {
     reference_.check = exact.empty() ? check[1] : check[0];
   }
 
-  /// Samples in which body b of the reference has not overturned.
-  std::size_t upright(std::size_t b) const {
-    const std::optional<double>& fell = course(reference_.run).fell[b];
-    return fell ? static_cast<std::size_t>(*fell / plan_.interval) + 1
-                : std::numeric_limits<std::size_t>::max();
-  }
-
   void find_window() {
     const Course &run = course(reference_.run), &check = course(reference_.check);
     samples_ = std::min(run.samples(), check.samples());
     for (std::size_t b = 0; b < scale_.size(); ++b)
-      for (std::size_t n = 0; n < std::min(samples_, upright(b)); ++n)
+      for (std::size_t n = 0; n < samples_; ++n)
         if (std::abs(run.tilt[b][n] - check.tilt[b][n]) > k_parted * scale_[b]) samples_ = n;
     reference_.window = static_cast<double>(samples_ - 1) * plan_.interval;
     if (samples_ > 1) return;
@@ -157,29 +151,31 @@ class Comparison {
     reference_.run = -1;
   }
 
-  double tilt_error(const Course& run, const Course& other) const {
+  /// Over `most` samples.
+  double tilt_error(const Course& run, const Course& other, std::size_t most) const {
+    const std::size_t count = std::min({most, run.samples(), other.samples()});
     double greatest = 0;
-    for (std::size_t b = 0; b < scale_.size(); ++b) {
-      const std::size_t count = std::min(samples_, upright(b));
+    for (std::size_t b = 0; b < scale_.size(); ++b)
       greatest = std::max(
           greatest, rms_difference({run.tilt[b].data(), count}, {other.tilt[b].data(), count}) / scale_[b]);
-    }
     return greatest;
   }
 
-  /// From the three finest steps of the reference's method.
+  /// From the three finest steps of the reference's method, until a body overturns: from there on errors
+  /// grow.
   std::optional<double> order() const {
-    const std::vector<int> runs = completed(plan_.settings[static_cast<std::size_t>(reference_.run)].method);
+    const std::vector<int> runs = completed(plan_.setting_of(reference_.run).method);
     if (runs.size() < 3) return std::nullopt;
-    for (int k = 0; k < 3; ++k)
-      if (course(runs[static_cast<std::size_t>(k)]).samples() < samples_) return std::nullopt;
-    return observed_order(tilt_error(course(runs[1]), course(runs[2])),
-                          tilt_error(course(runs[0]), course(runs[1])), 2);
+    std::size_t most = samples_;
+    for (const std::optional<double>& time : course(runs[0]).fell)
+      if (time) most = std::min(most, static_cast<std::size_t>(*time / plan_.interval) + 1);
+    return observed_order(tilt_error(course(runs[1]), course(runs[2]), most),
+                          tilt_error(course(runs[0]), course(runs[1]), most), 2);
   }
 
   const PrecisionPlan& plan_;
   const std::vector<Course>& courses_;
-  int first_;                  // case
+  int law_;
   std::vector<double> scale_;  // rad, per body
   std::size_t samples_ = 0;    // of the window
   Reference reference_;
@@ -255,9 +251,12 @@ std::optional<DefaultPlace> place_of_default(const PrecisionPlan& plan, const Pr
   const std::optional<double>& error = own.errors[index(measure)];
   if (!own.cost || !error) return std::nullopt;
   const double exact = floored(study.references.front(), measure, *error);
+  const bool with_stress = own.errors[index(Measure::peak_stress)].has_value();
   DefaultPlace place;
-  for (const int k : front(plan, study, 0, measure)) {
+  for (int k = 0; k < plan.cases() && plan.law_of(k) == 0; ++k) {
     const PrecisionRow& row = study.rows[static_cast<std::size_t>(k)];
+    if (!row.cost || !row.errors[index(measure)]) continue;
+    if (with_stress && !row.errors[index(Measure::peak_stress)]) continue;
     const double e = floored(study.references.front(), measure, *row.errors[index(measure)]);
     if (e <= exact) place.dearer = std::max(place.dearer, *own.cost / *row.cost);
     if (*row.cost <= *own.cost && e > 0) place.coarser = std::max(place.coarser, exact / e);

@@ -38,14 +38,13 @@ ordered_json reference_as_json(const PrecisionPlan& plan, const PrecisionStudy& 
     json["why_not"] = reference.why_not;
     return json;
   }
-  const int first = law * static_cast<int>(plan.settings.size());
   ordered_json bodies = ordered_json::array();
   for (std::size_t b = 0; b < reference.fell.size(); ++b)
     bodies.push_back({{"name", plan.scene.setup.model.bodies[b].name},
                       {"overturn_time_s", or_null(reference.fell[b])},
                       {"peak_tilt_rad", reference.peak_tilt[b]}});
-  json.update({{"run", in_words(plan, first + reference.run)},
-               {"check", in_words(plan, first + reference.check)},
+  json.update({{"run", in_words(plan, reference.run)},
+               {"check", in_words(plan, reference.check)},
                {"window_s", reference.window},
                {"end_s", reference.end},
                {"uncertainty", errors_as_json(reference.uncertainty)},
