@@ -93,7 +93,7 @@ double step_cost(Method method) {
     case Method::elastic_auto:
       return 3.5;
     case Method::central_difference:
-      return 3;
+      return 5.5;
     default:
       return 19;
   }
@@ -103,7 +103,7 @@ double step_cost(Method method) {
 double expected_cost(const Setup& setup, const Setting& setting) {
   constexpr double k_rigid_step = 1e-6;  // s
   const double step =
-      setting.step > 0 ? setting.step : k_usual_step * std::cbrt(setting.tolerance / k_usual_tolerance);
+      setting.step > 0 ? setting.step : k_usual_step * std::sqrt(setting.tolerance / k_usual_tolerance);
   return k_rigid_step * step_cost(setting.method) * setup.model.furniture_total() * setup.run.duration / step;
 }
 

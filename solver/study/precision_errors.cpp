@@ -72,6 +72,7 @@ class Comparison {
       scale_.push_back(least_critical(model, b).value_or(peak > 0 ? peak : 1));
     }
     find_window();
+    if (reference_.run < 0) return;
     reference_.fell = run.fell;
     reference_.end = run.end;
     reference_.uncertainty = errors(course(reference_.check));

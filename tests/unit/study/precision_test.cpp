@@ -42,7 +42,7 @@ struct MadeUp {
   int samples = 100;
   double shift = 0;      // rad, of the tilt
   int shifted_from = 0;  // sample
-  double fell = 1.5, stress = 2e8, balance = 1e-4, cpu = 1;
+  double fell = 0.5, stress = 2e8, balance = 1e-4, cpu = 1;
   std::string row(const PrecisionPlan& plan) const {
     ordered_json tilt = ordered_json::array(), stresses = ordered_json::array(),
                  balances = ordered_json::array();
@@ -75,7 +75,7 @@ TEST(Precision, the_reference_has_no_error_and_known_differences_are_found) {
   rows[static_cast<std::size_t>(exact)] = MadeUp{}.row(plan);
   rows[static_cast<std::size_t>(check)] = MadeUp{.shift = 0.5e-4 * limit}.row(plan);
   rows[static_cast<std::size_t>(other)] =
-      MadeUp{.shift = 0.01 * limit, .fell = 1.53, .stress = 2.1e8, .balance = 3e-4}.row(plan);
+      MadeUp{.shift = 0.01 * limit, .fell = 0.51, .stress = 2.1e8, .balance = 3e-4}.row(plan);
   rows[static_cast<std::size_t>(late)] = MadeUp{.fell = 0}.row(plan);
   const PrecisionStudy study = gather(plan, rows);
   EXPECT_EQ(study.run, 4);
@@ -106,7 +106,7 @@ TEST(Precision, the_window_ends_where_the_references_part) {
   rows[static_cast<std::size_t>(check)] =
       MadeUp{.shift = 1.5 * k_parted * limit, .shifted_from = parted, .fell = 0}.row(plan);
   rows[static_cast<std::size_t>(other)] =
-      MadeUp{.shift = 0.1 * limit, .shifted_from = parted, .fell = 3.9}.row(plan);
+      MadeUp{.shift = 0.1 * limit, .shifted_from = parted, .fell = 0.7}.row(plan);
   const PrecisionStudy study = gather(plan, rows);
   EXPECT_NEAR(study.references[0].window, (parted - 1) * plan.interval, 1e-12);
   EXPECT_EQ(error_of(study, other, Measure::tilt), 0);
@@ -166,10 +166,8 @@ TEST(Precision, cheap_cases_of_the_own_law_come_first_and_each_comes_once) {
   const std::vector<int> order = case_order(plan);
   EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), static_cast<std::size_t>(plan.cases()));
   EXPECT_TRUE(std::ranges::is_sorted(order, {}, [&](int k) { return plan.law_of(k); }));
-  EXPECT_EQ(order[static_cast<std::size_t>(
-                      std::ranges::count_if(order, [&](int k) { return plan.law_of(k) == 0; })) -
-                  1],
-            case_of(plan, Method::central_difference, 0));
+  EXPECT_EQ(plan.setting_of(order[0]).method, Method::rigid);
+  EXPECT_GT(plan.setting_of(order[0]).step, plan.setting_of(order[1]).step);
 }
 
 // The trapezoidal rule and generalized-alpha are of second order: halving the step quarters the error, to the
