@@ -33,10 +33,11 @@ struct Study {
   int (*run)(const StudyOptions&);
   bool takes_scene = true;
   bool sweeps = false;    ///< --resume, ranks
-  bool has_axes = false;  ///< --x, --y, --ensemble
+  bool has_axes = false;  ///< --x, --y
+  bool varies = false;    ///< --ensemble
 };
 constexpr Study k_studies[] = {{"elements", elements_command, false},
-                               {"overturn", overturn_command, true, true, true},
+                               {"overturn", overturn_command, true, true, true, true},
                                {"penalty", penalty_command},
                                {"precision", precision_command, true, true}};
 
@@ -468,7 +469,7 @@ class CommandLine {
       throw BadInput("study " + kind_ + ": SCENE is required (topple study --help)");
     for (const auto& [name, given, taken] : {std::tuple{"--x", !study_.x.empty(), study->has_axes},
                                              std::tuple{"--y", !study_.y.empty(), study->has_axes},
-                                             std::tuple{"--ensemble", !ensemble_.empty(), study->has_axes},
+                                             std::tuple{"--ensemble", !ensemble_.empty(), study->varies},
                                              std::tuple{"--resume", study_.resume, study->sweeps}})
       if (given && !taken) throw BadInput(std::string(name) + ": not of study " + kind_);
     if (!study->sweeps && started_ranks() > 1)
