@@ -106,16 +106,15 @@ std::string cheapest_in_words(const study::PrecisionPlan& plan, const study::Pre
 std::string default_in_words(const study::PrecisionPlan& plan, const study::PrecisionStudy& results) {
   const study::PrecisionRow& own = results.rows.front();
   if (!own.cost) return "";
-  std::string text =
-      fmt::format("the scene's own setting, {}: {:.3g} ms", in_words(plan, 0), 1e3 * *own.cost);
+  std::string text = fmt::format("{}: {:.3g} ms per simulated s\n", in_words(plan, 0), 1e3 * *own.cost);
   for (int m = 0; m < study::k_measures; ++m) {
     const auto measure = static_cast<study::Measure>(m);
     if (const auto place = place_of_default(plan, results, measure))
-      text +=
-          fmt::format("\n  {}: off by {}; as exact for {:.2g} of the cost; {:.2g} times nearer for the same",
-                      name(measure), percent(*own.errors[index(measure)]), 1 / place->dearer, place->coarser);
+      text += fmt::format(
+          "  {}: off by {}; others are as exact for {:.2g} of its cost, {:.2g} times nearer for all of it\n",
+          name(measure), percent(*own.errors[index(measure)]), 1 / place->dearer, place->coarser);
   }
-  return text + "\n";
+  return text;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "solver/step_control.h"
 #include "solver/study/kept_rows.h"
 #include "solver/study/measure.h"
+#include "solver/study/penalty.h"
 
 namespace topple::study {
 namespace {
@@ -26,7 +27,7 @@ constexpr int k_explicit_steps = 3;      // below the limit
 constexpr double k_most_samples = 1000;  // of a run
 
 constexpr MethodMeaning k_meanings[k_methods] = {
-    {"scene", "as the scene says", BodyModel::automatic, Integrator::generalized_alpha, false},
+    {"scene's own", "as the scene is", BodyModel::automatic, Integrator::generalized_alpha, false},
     {"rigid", "rigid, fixed steps", BodyModel::rigid, Integrator::generalized_alpha, false},
     {"rigid auto", "rigid, by tolerance", BodyModel::rigid, Integrator::generalized_alpha, true},
     {"elastic", "elastic, fixed steps", BodyModel::elastic, Integrator::generalized_alpha, false},
@@ -72,7 +73,7 @@ std::vector<ContactLaw> laws_of(const Setup& setup) {
   if (setup.model.contact_points.empty() || (setup.model.planes.empty() && setup.model.bodies.size() < 2))
     return laws;
   const double most = io::find_key("contact", "alpha")->most;
-  for (const ContactLawKind kind : {ContactLawKind::coulomb, ContactLawKind::paper, ContactLawKind::printed})
+  for (const ContactLawKind kind : k_laws)
     for (const double factor : k_alpha_factors) {
       ContactLaw law = own;
       law.kind = kind;
@@ -225,7 +226,7 @@ class Sampler {
     while (seen_ >= 2 && next() <= last_[k_kept - 2].time + k_least_step) take();
   }
   void finish() {
-    while (next() <= last_[k_kept - 1].time + k_least_step) take();
+    while (seen_ > 0 && next() <= last_[k_kept - 1].time + k_least_step) take();
   }
 
   ordered_json tilt() const { return tilt_; }

@@ -52,7 +52,6 @@ inline constexpr double k_alpha_factors[] = {1, 5, 25};
 inline constexpr double k_levels[] = {1e-2, 1e-3, 1e-4};  ///< errors of which the cheapest setting is named
 /// Part of the critical angle by which the tilts of the two references may differ within the window.
 inline constexpr double k_parted = 1e-4;
-
 inline constexpr double k_own_law = 60, k_other_law = 8;  ///< s, CPU time that a run may be expected to take
 
 struct PrecisionPlan {
@@ -106,7 +105,7 @@ const char* name(Measure measure);
 /// What runs of one law and alpha are compared with.
 struct Reference {
   std::string why_not;                      ///< there is none; empty: there is
-  int run = -1, check = -1;                 ///< settings
+  int run = -1, check = -1;                 ///< cases
   double window = 0, end = 0;               ///< s; of the comparison, and of the run
   Errors uncertainty;                       ///< how far the check is off: smaller errors say nothing
   std::optional<double> order;              ///< of convergence of the tilt, observed with the steps of `run`

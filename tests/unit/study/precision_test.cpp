@@ -220,6 +220,17 @@ TEST(Precision, a_case_that_fails_has_a_row_that_says_so) {
   EXPECT_EQ(table[0]["status"], "not run");
 }
 
+TEST(Precision, a_scene_that_does_not_begin_has_rows_that_say_so) {
+  const PrecisionPlan plan = plan_precision(
+      io::load_scene("tumble", {"run.settle=true", "run.gravity=[0, 0, -9.8]", "run.duration=0.1"}));
+  std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
+  rows[0] = run_case(plan, 0, k_never);
+  const PrecisionStudy study = gather(plan, rows);
+  EXPECT_NE(study.rows[0].status, "completed");
+  EXPECT_FALSE(study.rows[0].cost);
+  EXPECT_NE(study.references[0].why_not, "");
+}
+
 TEST(Precision, a_case_that_is_given_up_has_no_row) {
   EXPECT_EQ(run_case(tumbling(), 0, [] { return true; }), "");
 }
