@@ -90,13 +90,13 @@ std::string reference_in_words(const study::PrecisionPlan& plan, const study::Pr
 /// The cheapest settings of the scene's own law and alpha, a line a measure and error.
 std::string cheapest_in_words(const study::PrecisionPlan& plan, const study::PrecisionStudy& results) {
   std::string text =
-      fmt::format("{:<16}{:<8}{:<42}{}\n", "error of", "within", "cheapest", "CPU time per simulated s");
+      fmt::format("{:<16}{:<8}{:<48}{}\n", "error of", "within", "cheapest", "CPU time per simulated s");
   for (int m = 0; m < study::k_measures; ++m)
     for (const double level : study::k_levels) {
       const auto measure = static_cast<study::Measure>(m);
       const std::optional<int> k = cheapest(plan, results, 0, measure, level);
       text += fmt::format(
-          "{:<16}{:<8}{:<42}{}\n", level == study::k_levels[0] ? name(measure) : "", percent(level),
+          "{:<16}{:<8}{:<48}{}\n", level == study::k_levels[0] ? name(measure) : "", percent(level),
           k ? in_words(plan, *k) : "-",
           k ? fmt::format("{:.3g} ms", 1e3 * *results.rows[static_cast<std::size_t>(*k)].cost) : "");
     }
