@@ -111,6 +111,8 @@ int elements_command(const StudyOptions& options);
 int penalty_command(const StudyOptions& options);
 /// `topple study overturn`: who overturns over two keys.
 int overturn_command(const StudyOptions& options);
+/// `topple study precision`: error against cost of integrators, steps and models.
+int precision_command(const StudyOptions& options);
 /// `topple study stability`: where time integration fails over two keys.
 int stability_command(const StudyOptions& options);
 

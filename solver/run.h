@@ -90,6 +90,7 @@ class Run {
   const State& state() const { return point().state; }
   double time() const { return now_.state.time; }  ///< s
   std::int64_t step() const { return now_.state.step; }
+  const EnergyLedger& energy() const { return now_.state.energy; }
   const Parameters& parameters() const { return now_.parameters; }
   const StepStatus& status() const { return status_; }
   const Outcome& outcome() const { return now_.outcome; }

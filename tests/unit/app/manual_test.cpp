@@ -81,6 +81,7 @@ TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
   EXPECT_EQ(offers("topple run paper-"), (Words{"paper-a", "paper-b", "files"}));
   EXPECT_EQ(offers("topple study el"), (Words{"elements", "files"}));
   EXPECT_EQ(offers("topple study pe"), (Words{"penalty", "files"}));
+  EXPECT_EQ(offers("topple study pr"), (Words{"precision", "files"}));
   EXPECT_EQ(offers("topple study sta"), (Words{"stability", "stack", "files"}));
   EXPECT_EQ(offers("topple recover a"), (Words{"files"}));
   EXPECT_EQ(offers("topple render a.h5 --camera s"), (Words{"side"}));

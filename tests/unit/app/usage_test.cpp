@@ -80,11 +80,6 @@ TEST_F(UsageTest, empty_names_are_refused) {
 }
 
 TEST_F(UsageTest, what_a_later_version_has_is_refused_by_name) {
-  for (const char* kind : {"precision"}) {
-    const std::string refusal = std::string("study ") + kind + ": not supported by this version";
-    expect_one_line({"study", kind}, 2, refusal);
-    expect_one_line({"study", kind, "s.toml", "-o", "out", "--quick"}, 2, refusal);
-  }
   expect_one_line({"export", "a.h5", "--vtk", "x"}, 2, "--vtk: not supported by this version");
 }
 
@@ -93,7 +88,7 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
   expect_one_line({"study", "frob", "-o", "out"}, 2,
-                  "\"frob\" is not a study; known: elements, overturn, penalty, stability");
+                  "\"frob\" is not a study; known: elements, overturn, penalty, precision, stability");
   expect_one_line({"study", "penalty", "-o", "out"}, 2,
                   "study penalty: SCENE is required (topple study --help)");
   expect_one_line({"study", "penalty", "paper-a"}, 2, "--output is required (topple study --help)");
@@ -122,6 +117,12 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
     refused({"--ensemble", "4"});
     refused({"--resume"});
   }
+  expect_one_line({"study", "precision", "-o", "out"}, 2, "study precision: SCENE is required");
+  expect_one_line({"study", "precision", "paper-a"}, 2, "--output is required");
+  expect_one_line({"study", "precision", "paper-a", "-o", "out", "--x", "contact.q=1..2:2"}, 2,
+                  "--x: not of study precision");
+  expect_one_line({"study", "precision", "paper-a", "-o", "out", "--ensemble", "4"}, 2,
+                  "--ensemble: not of study precision");
   for (const char* size : {"1", "x", "10001"})
     expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--ensemble", size}, 2,
                     "--ensemble: \"" + std::string(size) + "\" is not a whole number in 2..10000");

@@ -1,6 +1,7 @@
 add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/anchors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/axis_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/convergence_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/criteria_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fragility_test.cpp
@@ -9,6 +10,7 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/kept_rows_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_map_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/precision_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/refinement_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/spread_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp

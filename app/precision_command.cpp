@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "app/interrupt.h"
+#include "app/log.h"
+#include "app/study_results.h"
+#include "app/sweep.h"
+#include "app/told_scene.h"
+#include "solver/study/measure.h"
+#include "solver/study/precision_chart.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// With --quick a run that is still under way when the time is over is given up: it may take minutes.
+MakeWork work_on(const study::PrecisionPlan& plan, bool quick) {
+  const auto start = Clock::now();
+  return [&plan, quick, start] {
+    return [&plan, quick, start](int k, const std::function<bool()>& give_up) {
+      return study::run_case(plan, k, [&] { return give_up() || (quick && seconds_since(start) > k_quick); });
+    };
+  };
+}
+
+ordered_json document(const study::PrecisionPlan& plan, const study::PrecisionStudy& results,
+                      const Crew& crew, const StudyOptions& options, double wall_s) {
+  ordered_json json{
+      {"topple", TOPPLE_VERSION},
+      {"schema", 1},
+      {"study", "precision"},
+      {"scene", plan.scene.name},
+      {"title", "Error against CPU time of " + plan.scene.name},
+      {"scene_title", plan.scene.title},
+      {"units",
+       {{"tilt_error", "1, root mean square over the window, over the least critical angle"},
+        {"overturn_time_error", "1, relative"},
+        {"peak_stress_error", "1, relative"},
+        {"energy_error", "1, energy that nothing explains over the largest exchanged"},
+        {"window_s", "s, in which runs are compared; the two references part at its end, or it is the run's"},
+        {"alpha_N", "N"},
+        {"time_step_s", "s, null: by tolerance"},
+        {"cpu_s_per_s", "1, CPU time of the solving thread, settling included, over simulated time"},
+        {"wall_s", "s"}}},
+      {"machine", machine_json()},
+      {"settings",
+       {{"jobs", crew.jobs()},
+        {"ranks", crew.ranks()},
+        {"quick", options.quick},
+        {"duration_s", plan.scene.setup.run.duration},
+        {"interval_s", plan.interval},
+        {"parted", study::k_parted},
+        {"ends",
+         "when all bodies have overturned (tilt over 60 deg for 0.5 s), unless the scene names a stop"}}},
+      {"run", results.run},
+      {"of", results.of},
+      {"wall_s", wall_s}};
+  json.update(findings_as_json(plan, results));
+  json["rows"] = rows_as_json(plan, results);
+  return json;
+}
+
+std::string percent(double share) {
+  return share == 0 ? "0 %" : fmt::format("{:.2g} %", 100 * share);
+}
+
+std::string reference_in_words(const study::PrecisionPlan& plan, const study::PrecisionStudy& results) {
+  const study::Reference& reference = results.references.front();
+  if (reference.run < 0) return "no reference: " + reference.why_not + "\n";
+  const study::Errors& off = reference.uncertainty;
+  std::string text = fmt::format("reference: {}; {} is off by", in_words(plan, reference.run),
+                                 in_words(plan, reference.check));
+  for (int m = 0; m < study::k_measures; ++m)
+    if (off[static_cast<std::size_t>(m)])
+      text += fmt::format("{} {} ({})", m > 0 ? "," : "", percent(*off[static_cast<std::size_t>(m)]),
+                          name(static_cast<study::Measure>(m)));
+  if (reference.order) text += fmt::format("; order of convergence {:.2g}", *reference.order);
+  text += fmt::format("\ncompared over {:.4g} of {:.4g} s", reference.window, reference.end);
+  return text + (reference.window < reference.end - plan.interval ? ", then the two part\n" : "\n");
+}
+
+/// The cheapest settings of the scene's own law and alpha, a line a measure and error.
+std::string cheapest_in_words(const study::PrecisionPlan& plan, const study::PrecisionStudy& results) {
+  std::string text =
+      fmt::format("{:<16}{:<8}{:<48}{}\n", "error of", "within", "cheapest", "CPU time per simulated s");
+  for (int m = 0; m < study::k_measures; ++m)
+    for (const double level : study::k_levels) {
+      const auto measure = static_cast<study::Measure>(m);
+      const std::optional<int> k = cheapest(plan, results, 0, measure, level);
+      text += fmt::format(
+          "{:<16}{:<8}{:<48}{}\n", level == study::k_levels[0] ? name(measure) : "", percent(level),
+          k ? in_words(plan, *k) : "-",
+          k ? fmt::format("{:.3g} ms", 1e3 * *results.rows[static_cast<std::size_t>(*k)].cost) : "");
+    }
+  return text;
+}
+
+std::string default_in_words(const study::PrecisionPlan& plan, const study::PrecisionStudy& results) {
+  const study::PrecisionRow& own = results.rows.front();
+  if (!own.cost) return "";
+  std::string text = fmt::format("{}: {:.3g} ms per simulated s\n", in_words(plan, 0), 1e3 * *own.cost);
+  for (int m = 0; m < study::k_measures; ++m) {
+    const auto measure = static_cast<study::Measure>(m);
+    if (const auto place = place_of_default(plan, results, measure))
+      text += fmt::format(
+          "  {}: off by {}; others are as exact for {:.2g} of its cost, {:.2g} times nearer for all of it\n",
+          name(measure), percent(*own.errors[index(measure)]), 1 / place->dearer, place->coarser);
+  }
+  return text;
+}
+
+}  // namespace
+
+int precision_command(const StudyOptions& options) {
+  Crew crew(options.jobs.value_or(1));
+  defer_interrupts();
+  if (!crew.leads()) {
+    if (const auto heard = crew.listen()) {
+      const study::PrecisionPlan plan = study::plan_precision(scene_from(*heard));
+      crew.serve(work_on(plan, options.quick));
+    }
+    return k_done;
+  }
+  const study::PrecisionPlan plan = study::plan_precision(io::load_scene(options.scene, options.overrides));
+  const std::string stem = place_for_results(options.folder, "precision"), rows_file = stem + ".rows";
+  const auto start = Clock::now();
+  ordered_json settings = settings_of(plan);
+  settings["topple"] = TOPPLE_VERSION;
+  const SweepEnd end = sweep(crew,
+                             {.name = "study precision",
+                              .file = rows_file,
+                              .settings = settings,
+                              .order = case_order(plan),
+                              .told = told(plan.scene),
+                              .make = work_on(plan, options.quick)},
+                             options);
+  if (interrupted()) {
+    say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
+                    plan.cases(), rows_file));
+    return k_interrupted;
+  }
+  const double wall_s = seconds_since(start);
+  const study::PrecisionStudy results = gather(plan, end.rows);
+  const ordered_json json = document(plan, results, crew, options, wall_s);
+  write_study(stem, json["rows"], json, [&](study::ChartFormat format) {
+    return precision_chart(plan, results, origin_text(), format);
+  });
+  if (end.complete()) std::filesystem::remove(rows_file);
+  fmt::print(
+      "{}{}{}{} of {} runs{} in {:.1f} s{}\n{}.csv, .json, .svg, .png\n", reference_in_words(plan, results),
+      cheapest_in_words(plan, results), default_in_words(plan, results), end.run, plan.cases(),
+      end.kept > 0 ? fmt::format(" ({} from before)", end.kept) : "", wall_s,
+      !options.quick   ? ""
+      : end.complete() ? ": --quick left nothing out"
+                       : fmt::format("; --quick left out the dearest, --resume goes on from {}", rows_file),
+      stem);
+  return k_done;
+}
+
+}  // namespace topple::app
