@@ -96,6 +96,15 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   const Model& model = scene_.setup.model;
   render::SceneFrame out;
   out.profiles = profiles_;
+  const double skin = 0.05 + (settings.exaggeration - 1) * extent_.top(BeamQuantity::displacement);
+  out.bounds_min = to_float(extent_.low - Vec3::Constant(skin));
+  out.bounds_max = to_float(extent_.high + Vec3::Constant(skin));
+  if (!is_finite(row)) {
+    out.caption.title = scene_.title;
+    out.caption.lines.push_back(say(window_words::k_not_finite));
+    add_grounds(Vec3::Zero(), out);
+    return out;
+  }
   const Vec3 shift = floor_shift(row);
   const RigidFit fit = rigid_fit(model, row);
   io::FrameRow drawn = row;
@@ -121,14 +130,12 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   if (settings.diagram) add_diagram(model, drawn, *settings.diagram, out);
   add_grounds(shift, out);
   add_captions(row, parameters, settings, out);
-  const double skin = 0.05 + (settings.exaggeration - 1) * extent_.top(BeamQuantity::displacement);
-  out.bounds_min = to_float(extent_.low - Vec3::Constant(skin));
-  out.bounds_max = to_float(extent_.high + Vec3::Constant(skin));
   return out;
 }
 
 void Bridge::add_ghost(const io::FrameRow& row, const PictureSettings& settings,
                        render::SceneFrame& out) const {
+  if (!is_finite(row)) return;
   io::FrameRow drawn = row;
   exaggerate(scene_.setup.model, rigid_fit(scene_.setup.model, row), settings.exaggeration, drawn);
   add_tubes(

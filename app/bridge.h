@@ -19,7 +19,8 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 class Bridge {
  public:
   Bridge(const io::Scene& scene, const RunExtent& extent);
-  /// `parameters`: those that held at the row.
+  /// `parameters`: those that held at the row. Of a row that is not finite only the floor and words that say
+  /// so.
   render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters,
                            const PictureSettings& settings = {}) const;
   /// The bodies of another row as a ghost in `out`.

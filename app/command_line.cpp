@@ -521,7 +521,8 @@ class CommandLine {
         add_command("info", "describe a scene or a recording", "info paper-a.h5 --verify --json -");
     add_path(command, "FILE", info_.file, "", "scene or recording").required();
     add_path(command, "--json", info_.json, "FILE|-", "write JSON; - for standard output");
-    command.add_flag("--verify", info_.verify, "run the recording again and compare its state hashes");
+    command.add_flag("--verify", info_.verify,
+                     "run the recording again; name the first step and element that differ");
     command.callback([this] { action_ = [this] { return info_command(info_); }; });
   }
 

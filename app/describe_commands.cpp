@@ -155,8 +155,18 @@ ordered_json verify(const io::Recording& recording) {
                    {"branches", recording.history().branches.size()},
                    {"same", rerun.differences.empty()},
                    {"differences", ordered_json::array()}};
-  for (const io::Instant& d : rerun.differences)
-    out["differences"].push_back({{"branch", d.branch}, {"step", d.step}, {"time_s", d.time}});
+  const Model model = io::recorded_scene(recording).setup.model;
+  for (const auto& [at, what, element] : rerun.differences) {
+    ordered_json difference{
+        {"branch", at.branch}, {"step", at.step}, {"time_s", at.time}, {"what", what}, {"element", nullptr}};
+    if (element >= 0) {
+      const Member& member = model.members[model.elements[element].member];
+      difference["element"] = element;
+      difference["member"] = member.name;
+      difference["body"] = model.bodies[member.body].name;
+    }
+    out["differences"].push_back(std::move(difference));
+  }
   return out;
 }
 
@@ -167,8 +177,12 @@ std::string verdict(const ordered_json& v) {
                                 counted(v["branches"].get<std::int64_t>(), "branch", "branches"),
                                 checkpoints == 1 ? "has" : "have", checkpoints == 1 ? "hash" : "hashes");
   for (const auto& d : v["differences"])
-    out += fmt::format("branch {} differs first at {:.6g} s (step {})\n", d["branch"].get<int>(),
-                       d["time_s"].get<double>(), d["step"].get<std::int64_t>());
+    out += fmt::format("branch {} differs first at {:.6g} s (step {}): {}{}\n", d["branch"].get<int>(),
+                       d["time_s"].get<double>(), d["step"].get<std::int64_t>(), d["what"].get<std::string>(),
+                       d["element"].is_null()
+                           ? ""
+                           : fmt::format(", body {}, member {} (element {})", d["body"].get<std::string>(),
+                                         d["member"].get<std::string>(), d["element"].get<int>()));
   return out;
 }
 

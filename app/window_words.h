@@ -282,6 +282,8 @@ inline constexpr Phrase k_yield_at{"yield {0:g} MPa", "降伏 {0:g} MPa"};
 inline constexpr Phrase k_yield{"yield", "降伏"};
 inline constexpr Phrase k_cannot_yield{"nothing here can yield", "降伏する部材なし"};
 inline constexpr Phrase k_deformed{"deformation ×{0:g}", "変形倍率 ×{0:g}"};
+inline constexpr Phrase k_not_finite{"not drawn: a number of this instant is not finite",
+                                     "この時刻の数値が有限でないため表示できません"};
 inline constexpr Phrase k_arrow_scale{"arrows: {0:g} N per 0.1 m", "矢印 0.1 m = {0:g} N"};
 inline constexpr Phrase k_note{"topple {0} · scene {1}{2} · deformation ×{3:g}",
                                "topple {0} · シーン {1}{2} · 変形倍率 ×{3:g}"};

@@ -98,4 +98,7 @@ struct Parameters {
   double finer_parts = 1;
 };
 
+/// No NaN, no infinity, nothing above k_largest_number.
+bool is_finite(const Parameters& parameters);
+
 }  // namespace topple

@@ -35,6 +35,8 @@ Run::Run(const Setup& setup)
   if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
   if (!status_.ok()) return;
   prepare(setup.model, now_.parameters, now_.state, workspace_);
+  status_ = look_at_numbers(setup.model, now_.parameters, now_.state, true);
+  if (!status_.ok()) return;
   placed_ = false;
   observe();
 }
@@ -44,12 +46,15 @@ Run::Run(const Setup& setup, State state, Parameters parameters)
                   .parameters = std::move(parameters),
                   .outcome = Outcome(setup.model),
                   .probes = std::vector<ProbeOutcome>(setup.probes.size())}) {
+  if (!status_.ok()) return;
   observe();
   events_.clear();
 }
 
 Run::Run(const Setup& setup, RunPoint point)
     : setup_(&setup), now_(std::move(point)), workspace_(setup.model) {
+  status_ = look_at_numbers(setup.model, now_.parameters, now_.state, true);
+  if (!status_.ok()) return;
   if (is_static()) path_.emplace(setup.model, setup.run.statics);
   resume(setup.model, now_.state, workspace_);
   see_forces();

@@ -68,7 +68,8 @@ class Run {
  public:
   /// Settles when asked to; `status()` tells what became of it.
   explicit Run(const Setup& setup);
-  /// Continues from a checkpoint of the same setup; the outcome is counted from there.
+  /// Continues from a checkpoint of the same setup; the outcome is counted from there. Over at once, with its
+  /// status, when a number of it or of the parameters is not finite.
   Run(const Setup& setup, State state, Parameters parameters);
   Run(const Setup& setup, RunPoint point);
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -13,6 +14,9 @@
 namespace topple {
 namespace {
 
+// Times it, what is above k_largest_number is infinite.
+constexpr double k_overflow = std::numeric_limits<double>::max() / k_largest_number;
+
 // The choice that a number of a checkpoint stands for.
 template <class Choice>
 Choice as(double number, Choice last) {
@@ -20,6 +24,13 @@ Choice as(double number, Choice last) {
     if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(double(k)))
       return static_cast<Choice>(k);
   throw std::invalid_argument("a checkpoint of another version");
+}
+
+Hinge as_hinge(double number) {
+  const auto hinge = std::bit_cast<std::int64_t>(number);
+  if (hinge < 0 || hinge > static_cast<std::int64_t>(Hinge::middle))
+    throw std::invalid_argument("a checkpoint of another version");
+  return static_cast<Hinge>(hinge);
 }
 
 // Calls f on every number of the state, in the order of a checkpoint; `step` and counts are handled by the
@@ -60,7 +71,7 @@ void each_number(AnyState& s, F f) {
   for (auto& e : s.elements) {
     double hinge = std::bit_cast<double>(e.hinge);
     f(hinge);
-    if constexpr (!std::is_const_v<AnyState>) e.hinge = std::bit_cast<Hinge>(hinge);
+    if constexpr (!std::is_const_v<AnyState>) e.hinge = as_hinge(hinge);
     for (auto* strain : {&e.offset.gamma, &e.offset.kappa})
       for (int k = 0; k < 3; ++k) f((*strain)[k]);
   }
@@ -131,8 +142,10 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
   s.member_sticks.resize(read_count(5));
   for (MemberStick& stick : s.member_sticks) {
     stick.elements = as_pair(read());
-    stick.place = static_cast<int>(std::bit_cast<std::int64_t>(read()));
-    if (stick.place < 0 || stick.place > 4) return false;
+    const auto place = std::bit_cast<std::int64_t>(read());
+    if (!is_element(stick.elements.a) || !is_element(stick.elements.b) || place < 0 || place > 4)
+      return false;
+    stick.place = static_cast<int>(place);
     for (int k = 0; k < 3; ++k) stick.stick[k] = read();
   }
   return next == numbers.size();
@@ -217,8 +230,11 @@ std::uint64_t hash(const State& state) {
 }
 
 bool is_finite(const State& s, bool nodes) {
-  Four odd(0);  // x - x is 0 or not a number
-  const auto look_at = [&](Four x) { odd = odd | (x - x); };
+  Four odd(0);
+  const auto look_at = [&](Four x) {
+    const Four large = x * Four(k_overflow);
+    odd = odd | (large - large);  // 0 or not a number
+  };
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
 #pragma GCC unroll 4
@@ -251,10 +267,34 @@ bool is_finite(const State& s, bool nodes) {
   for (const MemberStick& stick : s.member_sticks) look_at_vector(stick.stick);
   static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
   look(&s.energy.input, 15);
+  for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length));
   look_at_vector(s.floor_displacement);
   look_at_vector(s.floor_velocity);
   look_at(Four(s.time + s.step_size + s.load_factor + s.near_slack));
   return !any_above(odd, 0);
+}
+
+int body_not_finite(const Model& model, const State& s) {
+  const auto is_odd = [](const auto& numbers) {
+    return !(numbers.array().abs() <= k_largest_number).all();  // nor is NaN below it
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyState& own = s.bodies[b];
+    if (is_odd(own.position) || is_odd(own.rotation.coeffs()) || is_odd(own.velocity) ||
+        is_odd(own.angular_velocity) || is_odd(own.force) || is_odd(own.moment) || is_odd(own.amplitude) ||
+        is_odd(own.rate) || is_odd(own.load))
+      return static_cast<int>(b);
+    const Body& body = model.bodies[b];
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      if (is_odd(s.position[i]) || is_odd(s.rotation[i].coeffs()) || is_odd(s.velocity[i]) ||
+          is_odd(s.angular_velocity[i]) || is_odd(s.acceleration[i]) || is_odd(s.angular_acceleration[i]) ||
+          is_odd(s.algorithmic_acceleration[i]) || is_odd(s.algorithmic_angular_acceleration[i]))
+        return static_cast<int>(b);
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+      if (is_odd(s.elements[e].offset.gamma) || is_odd(s.elements[e].offset.kappa))
+        return static_cast<int>(b);
+  }
+  return -1;
 }
 
 namespace {

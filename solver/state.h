@@ -88,8 +88,12 @@ State unpack(const Model& model, std::span<const double> numbers);
 /// 64-bit FNV-1a over the bytes of pack().
 std::uint64_t hash(const State& state);
 
-/// No NaN, no infinity anywhere; without `nodes` in all but the per-node arrays.
+/// No NaN, no infinity, nothing above k_largest_number anywhere; without `nodes` in all but the per-node and
+/// per-element arrays.
 bool is_finite(const State& state, bool nodes = true);
+
+/// The first body whose motion is not finite, as is_finite has it, -1: none.
+int body_not_finite(const Model& model, const State& state);
 
 /// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have
 /// their sizes.

@@ -200,8 +200,9 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
 }
 
 StepStatus LoadPath::balance(const Parameters& parameters, State& state, Target target) {
+  StepStatus status = look_at_numbers(*model_, parameters, state, true);
+  if (!status.ok()) return status;
   const Parameters still = at_rest(parameters);
-  StepStatus status;
   double factor = target.factor;
   int iterations = 0;
   const int first = controlled_body();

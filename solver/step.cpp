@@ -48,8 +48,9 @@ Profile& Workspace::profile() {
 }
 
 StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace) {
+  StepStatus status = look_at_numbers(model, parameters, state, true);
+  if (!status.ok()) return status;
   Workspace::Impl& w = workspace.impl();
-  StepStatus status;
   start_rungs(model, parameters, state, w);
   w.new_anchors.assign(model.bodies.size(), false);
   switch_anchors(model, parameters, state, w.new_anchors);
@@ -283,7 +284,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   if (!is_finite(next, !w.systems().empty() && !is_explicit)) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
-    status.body = -1;
+    status.body = body_not_finite(model, next);
   } else if (e.balance_error() > k_lost_balance && std::abs(e.unexplained()) > k_least_energy &&
              blame_hardest_contact(model, w, status)) {
     status.kind = StepStatus::Kind::energy_lost;
@@ -394,6 +395,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
 
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until) {
+  if (const StepStatus status = look_at_numbers(model, parameters, state, false); !status.ok()) return status;
   Workspace::Impl& w = workspace.impl();
   if (parameters.adaptive) return adaptive_step(model, parameters, state, w, until);
   const double h = parameters.time_step;

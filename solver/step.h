@@ -28,7 +28,8 @@ struct StepStatus {
     no_equilibrium,
     uncontrolled,
     passed_through,
-    energy_lost
+    energy_lost,
+    bad_parameter
   };
   Kind kind = Kind::ok;
   double time = 0;  ///< s
@@ -80,6 +81,11 @@ class Workspace {
   std::unique_ptr<Impl> impl_;
 };
 
+/// bad_parameter or not_finite, with the body, where is_finite refuses the parameters or the state, without
+/// `nodes` but for the per-node and per-element arrays; else ok. Numbers that a step goes by without handing
+/// them on it would not find by itself.
+StepStatus look_at_numbers(const Model& model, const Parameters& parameters, const State& state, bool nodes);
+
 /// Brings the bodies to rest under gravity and the loads at t = 0 on floors, walls and supports: positions,
 /// rotations and stick springs of `state` change, velocities become zero. Normal penalty forces of Eq. 2 with
 /// stick springs serve for every law. not_settled: a body has nothing to rest on, tips over by itself, or
@@ -98,9 +104,10 @@ void resume(const Model& model, const State& state, Workspace& workspace);
 inline constexpr double k_lost_balance = 0.1;
 
 /// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at
-/// most. On failure `state` is as before the call. energy_lost: the step is much too long for what happens in
-/// it. The implicit methods halve their step within the call when Newton does not converge or members would
-/// pass through each other unseen: a fixed one down to 1/64, an adaptive one down to k_least_step.
+/// most. On failure `state` is as before the call. bad_parameter: is_finite refuses them. energy_lost: the
+/// step is much too long for what happens in it. The implicit methods halve their step within the call when
+/// Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64, an
+/// adaptive one down to k_least_step.
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until = std::numeric_limits<double>::infinity());
 

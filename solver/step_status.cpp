@@ -15,9 +15,22 @@ std::string format(const char* pattern, double a) {
 
 }  // namespace
 
+StepStatus look_at_numbers(const Model& model, const Parameters& parameters, const State& state, bool nodes) {
+  StepStatus status;
+  status.time = state.time;
+  if (!is_finite(parameters)) {
+    status.kind = StepStatus::Kind::bad_parameter;
+  } else if (!is_finite(state, nodes)) {
+    status.kind = StepStatus::Kind::not_finite;
+    status.body = body_not_finite(model, state);
+  }
+  return status;
+}
+
 std::string StepStatus::message(const Model& model) const {
   if (ok()) return "ok";
-  std::string where = body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor or an energy";
+  std::string where =
+      body >= 0 ? "body \"" + model.bodies[body].name + "\"" : "the floor, a contact, an anchor or an energy";
   if (element >= 0) {
     const Member& member = model.members[model.elements[element].member];
     where += ", member \"" + member.name + "\" (element " + std::to_string(element) + ")";
@@ -49,6 +62,8 @@ std::string StepStatus::message(const Model& model) const {
              when + ": " + where + "; try a smaller time_step";
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
+    case Kind::bad_parameter:
+      return "a parameter is no finite number " + when;
     case Kind::ok:
       break;
   }

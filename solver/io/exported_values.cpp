@@ -11,6 +11,7 @@ namespace topple::io {
 
 void expect_same_model(const Model& model, const FrameRow& row) {
   if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
+      row.contact_depth.size() != model.contact_points.size() * model.planes.size() ||
       row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
     throw InputError(k_another_model);
 }

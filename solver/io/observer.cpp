@@ -136,6 +136,27 @@ const char* anchor_word(float state) {
   return state == k_anchor_holds ? "holds" : "broken";
 }
 
+namespace {
+
+template <typename Numbers>
+bool all_finite(const Numbers& numbers) {
+  return std::all_of(std::begin(numbers), std::end(numbers), [](auto x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+bool is_finite(const FrameRow& row) {
+  return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
+         all_finite(row.section_force) && all_finite(row.s) && all_finite(row.contact_depth) &&
+         all_finite(row.contact_force) && all_finite(row.energy) && all_finite(row.body) &&
+         all_finite(row.floor_acceleration) && all_finite(row.floor_displacement) &&
+         std::isfinite(row.load_factor) && all_finite(row.anchor);
+}
+
+bool is_finite(const Checkpoint& checkpoint) {
+  return std::isfinite(checkpoint.time) && all_finite(checkpoint.state);
+}
+
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {
   const Body& body = model.bodies[static_cast<std::size_t>(index)];
   double energy = row.body[11 * static_cast<std::size_t>(index) + 9];

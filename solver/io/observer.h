@@ -43,6 +43,9 @@ struct FrameRow {
                               ///< state (k_anchor_away, ...)
 };
 
+/// No NaN, no infinity in it.
+bool is_finite(const FrameRow& row);
+
 /// A whole state, to go on from.
 struct Checkpoint {
   std::int32_t branch;
@@ -51,6 +54,9 @@ struct Checkpoint {
   std::uint64_t hash;
   std::vector<double> state;  ///< pack(State)
 };
+
+/// No NaN, no infinity in it; bits that are integers do not look like any.
+bool is_finite(const Checkpoint& checkpoint);
 
 struct RecordedEvent {
   std::int32_t branch;

@@ -23,6 +23,7 @@ constexpr unsigned char k_being_written = 1 | 4;  // open for writing; by SWMR
 // A block that a writer has half written is read again; one that stays wrong must not hold the reader up.
 constexpr unsigned k_metadata_attempts = 20;
 constexpr int k_open_attempts = 5;
+constexpr const char* k_not_finite = " holds a number that is not finite";
 
 /// What the file's first bytes say, before HDF5 sees it.
 struct FirstBytes {
@@ -291,6 +292,7 @@ struct Recording::Impl {
     if (checksum != record.data_checksum) {
       throw Hdf5Error("frame " + std::to_string(index) + " is damaged (checksum differs)");
     }
+    if (!is_finite(row)) throw Hdf5Error("frame " + std::to_string(index) + k_not_finite);
     return row;
   }
 
@@ -416,6 +418,7 @@ Checkpoint Recording::checkpoint(std::int64_t index) const {
     if (crc32c(std::as_bytes(std::span(checkpoint.state))) != record.data_checksum) {
       throw Hdf5Error("checkpoint " + std::to_string(index) + " is damaged (checksum differs)");
     }
+    if (!is_finite(checkpoint)) throw Hdf5Error("checkpoint " + std::to_string(index) + k_not_finite);
     return checkpoint;
   });
 }

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "solver/io/edit_text.h"
+#include "solver/io/units.h"
 
 namespace topple::io {
 namespace {
@@ -192,8 +193,16 @@ void RecordingWriter::create_rows() {
   summary_ = RowSet(file_, "summary", text_type(1), {}, k_byte_chunk);
 }
 
+// What came before is kept, and the file can still be closed.
+void RecordingWriter::refuse(const std::string& what, double time) {
+  flush();
+  throw WriteError(shown_path_ + ": cannot write the recording: " + what + " at " + short_number(time) +
+                   " s holds a number that is not finite");
+}
+
 void RecordingWriter::append(const FrameRow& row) {
   if (failure_) throw WriteError(*failure_);
+  if (!is_finite(row)) refuse("frame " + std::to_string(frames_), row.time);
   const auto fields = field_bytes(row);
   FrameRecord record{.branch = row.branch, .step = row.step, .time = row.time};
   for (std::size_t i = 0; i < k_field_count; ++i) {
@@ -212,6 +221,7 @@ void RecordingWriter::append(const FrameRow& row) {
 }
 
 void RecordingWriter::append(const Checkpoint& checkpoint) {
+  if (!is_finite(checkpoint)) refuse("the checkpoint", checkpoint.time);
   guarded([&] {
     const auto first = static_cast<std::int64_t>(checkpoint_state_.rows());
     checkpoint_state_.append(checkpoint.state.data(), checkpoint.state.size());

@@ -49,6 +49,7 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
+  /// Refuses what is not finite, with a WriteError; the recording stays sound and keeps what came before.
   void append(const FrameRow& row);
   void append(const Checkpoint& checkpoint);
   void append(const RecordedEvent& event);
@@ -65,6 +66,7 @@ class RecordingWriter {
               const std::vector<SceneFile>& files);
   void write_files(const std::vector<SceneFile>& files);
   void create_rows();
+  [[noreturn]] void refuse(const std::string& what, double time);
   void write_batch();
   void write_pending();
   template <typename Work>

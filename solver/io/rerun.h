@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "solver/io/recording.h"
@@ -13,16 +14,23 @@ namespace topple::io {
 /// be repeated.
 void check_edits(const History& history, const Setup& setup);
 
-/// What a second run came to.
-struct Rerun {
-  std::int64_t checkpoints = 0;      ///< found the same
-  std::vector<Instant> differences;  ///< of each branch the first checkpoint that has another state hash
+/// Where a recording is not what its second run gives.
+struct Difference {
+  Instant at;
+  std::string what;  ///< "position", "hinge", "state", ...
+  int element = -1;  ///< index into Model::elements, the first that it is about; -1: it is about none
 };
 
-/// Runs every branch again, from the scene text and the edits, and compares the state hashes of all its
-/// checkpoints: the root from its start, others from their parent at the fork, which is reached from the
-/// checkpoint before it. `seen` is called with the number of checkpoints passed. Throws InputError for a
-/// recording that does not belong to its scene.
+/// What a second run came to.
+struct Rerun {
+  std::int64_t checkpoints = 0;         ///< found the same
+  std::vector<Difference> differences;  ///< of each branch the first
+};
+
+/// Runs every branch again, from the scene text and the edits, and compares the numbers of all its frames
+/// and the state hashes of its checkpoints: the root from its start, others from their parent at the fork,
+/// which is reached from the checkpoint before it and not compared again. `seen` is called with the number of
+/// checkpoints passed. Throws InputError for a recording that does not belong to its scene.
 Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>& seen);
 
 }  // namespace topple::io

@@ -54,6 +54,50 @@ TEST_F(BridgeTest, members_are_drawn_from_their_first_to_their_last_node) {
   }
 }
 
+TEST_F(BridgeTest, of_a_row_that_is_not_finite_nothing_is_drawn_but_the_floor) {
+  PictureSettings settings;
+  settings.contact_forces = settings.panels = true;
+  settings.trails = Trails::run;
+  const Bridge bridge(scene_, extent_);
+  const auto expect_clean = [&](const io::FrameRow& row) {
+    render::SceneFrame frame = bridge.frame(row, scene_.setup.parameters, settings);
+    bridge.add_ghost(row, settings, frame);
+    EXPECT_TRUE(frame.tubes.empty() && frame.stations.empty() && frame.ghost_stations.empty());
+    EXPECT_TRUE(frame.panels.empty() && frame.arrows.empty() && frame.rings.empty());
+    EXPECT_FALSE(frame.grounds.empty());
+    for (const render::Ground& ground : frame.grounds)
+      for (const Float3& v : {ground.centre, ground.normal, ground.along})
+        for (const float x : v) EXPECT_TRUE(std::isfinite(x));
+    ASSERT_EQ(frame.caption.lines.size(), 1u);
+    EXPECT_EQ(frame.caption.lines[0], "not drawn: a number of this instant is not finite");
+    EXPECT_EQ(frame.caption.note, "");
+  };
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const auto each = [&](auto field) {
+      for (std::size_t k = 0; k < std::size(end_.*field); k += 7) {
+        io::FrameRow row = end_;
+        (row.*field)[k] = static_cast<std::decay_t<decltype((row.*field)[k])>>(bad);
+        expect_clean(row);
+      }
+    };
+    each(&io::FrameRow::position);
+    each(&io::FrameRow::rotation);
+    each(&io::FrameRow::section_force);
+    each(&io::FrameRow::s);
+    each(&io::FrameRow::contact_depth);
+    each(&io::FrameRow::contact_force);
+    each(&io::FrameRow::energy);
+    each(&io::FrameRow::body);
+    each(&io::FrameRow::floor_acceleration);
+    each(&io::FrameRow::floor_displacement);
+    for (double io::FrameRow::*number : {&io::FrameRow::time, &io::FrameRow::load_factor}) {
+      io::FrameRow row = end_;
+      row.*number = bad;
+      expect_clean(row);
+    }
+  }
+}
+
 TEST_F(BridgeTest, a_hinge_is_a_ring_at_its_end_and_a_broken_element_is_open) {
   const std::size_t whole = Bridge(scene_, extent_).frame(end_, scene_.setup.parameters).tubes.size();
   io::FrameRow row = end_;

@@ -1,3 +1,5 @@
+add_library(failing_writes MODULE ${CMAKE_CURRENT_LIST_DIR}/failing_writes.c)
+target_link_libraries(failing_writes PRIVATE ${CMAKE_DL_LIBS})
 add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/analysis_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/appearance_test.cpp
@@ -9,6 +11,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/documents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/failing_write_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
@@ -35,8 +38,8 @@ add_executable(app_test
 target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(app_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
 target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>"
-  TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-add_dependencies(app_test topple)
+  TOPPLE_FAILING_WRITES="$<TARGET_FILE:failing_writes>" TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+add_dependencies(app_test topple failing_writes)
 gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)
 
 # It listens to what is written: Dear ImGui's AddText.
@@ -59,3 +62,7 @@ target_link_options(random_events_test PRIVATE
   -Wl,--wrap=_ZN6topple6render5Stage10draw_sceneERKNS0_10SceneFrameERKNS0_6CameraENS0_9ColourMapEiiNS0_7QualityE)
 add_dependencies(random_events_test topple)
 gtest_discover_tests(random_events_test PROPERTIES TIMEOUT 300)
+add_executable(random_scene_test ${CMAKE_CURRENT_LIST_DIR}/random_scene_test.cpp)
+target_include_directories(random_scene_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
+target_link_libraries(random_scene_test PRIVATE topple_app GTest::gtest_main)
+gtest_discover_tests(random_scene_test PROPERTIES TIMEOUT 120)

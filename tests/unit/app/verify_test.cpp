@@ -86,11 +86,42 @@ TEST_F(VerifyTest, another_hash_is_told_with_its_branch_and_place) {
   EXPECT_EQ(ended.err, "");
   EXPECT_TRUE(
       ended.out.ends_with("re-run: 3 checkpoints of 2 branches have the same state hashes\n"
-                          "branch 1 differs first at 0.3 s (step 300)\n"))
+                          "branch 1 differs first at 0.3 s (step 300): hash of the stored state\n"))
       << ended.out;
   const Ended json = topple({"info", "a.h5", "--verify", "--json", "a.json"});
   EXPECT_EQ(json.code, 1);
   EXPECT_EQ(json_of(bytes_of("a.json"))["verify"]["differences"][0]["step"], 300);
+}
+
+TEST_F(VerifyTest, the_element_that_differs_first_is_named_with_its_member_and_body) {
+  {
+    const io::Scene scene = io::parse_scene(k_shaken, "s");
+    io::Recorder recorder("a.h5", scene.name, scene.text, scene.setup.model);
+    topple::Run run(scene.setup);
+    io::Observer observer;
+    recorder.write(observer.observe(run));
+    while (!run.over()) {
+      ASSERT_TRUE(run.advance().ok());
+      io::Observation now = observer.observe(run);
+      if (now.frame && run.step() == 120) now.frame->section_force[6 * 5] += 1;
+      recorder.write(now);
+    }
+    recorder.write(observer.last(run));
+    recorder.finish("completed", "");
+  }
+  const Ended ended = topple({"info", "a.h5", "--verify"});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_NE(
+      ended.out.find("\nbranch 0 differs first at 0.12 s (step 120): section_force, body free, member "),
+      std::string::npos)
+      << ended.out;
+  EXPECT_TRUE(ended.out.ends_with(" (element 5)\n")) << ended.out;
+  const nlohmann::ordered_json json =
+      json_of(topple({"info", "a.h5", "--verify", "--json", "-"}).out)["verify"]["differences"];
+  ASSERT_EQ(json.size(), 1u);
+  EXPECT_EQ(json[0]["step"], 120);
+  EXPECT_EQ(json[0]["element"], 5);
+  EXPECT_EQ(json[0]["body"], "free");
 }
 
 TEST_F(VerifyTest, what_cannot_be_run_again_is_told) {

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <functional>
 #include <thread>
 
 #include "recording_fixture.h"
@@ -100,6 +101,66 @@ TEST_F(RecordingTest, a_changed_bit_in_a_frame_is_seen) {
     FAIL() << "a damaged frame was shown";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(), path("a.h5") + ": cannot read: frame 57 is damaged (checksum differs)");
+  }
+}
+
+TEST_F(RecordingTest, a_frame_that_is_not_finite_is_not_read_though_its_checksum_is_right) {
+  record_small(path("a.h5"), 100);
+  change_frame(path("a.h5"), 57, [](std::vector<float>& x) { x[4] = std::nanf(""); });
+  const Recording recording(path("a.h5"));
+  EXPECT_NO_THROW(recording.frame(56));
+  try {
+    recording.frame(57);
+    FAIL() << "NaN was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), path("a.h5") + ": cannot read: frame 57 holds a number that is not finite");
+  }
+}
+
+TEST_F(RecordingTest, what_is_not_finite_is_not_written_and_what_came_before_is_kept) {
+  const auto refused = [this](const std::function<void(RecordingWriter&)>& append) {
+    std::string error;
+    {
+      RecordingWriter writer(path("a.h5"), "fake", k_text, small_model(), k_small);
+      append_small(writer, 5);
+      try {
+        append(writer);
+      } catch (const WriteError& e) {
+        error = e.what();
+      }
+    }
+    const Recording left(path("a.h5"));
+    EXPECT_EQ(left.frame_count(), 5);
+    EXPECT_FALSE(left.left_open());
+    EXPECT_EQ(left.status(), "interrupted");
+    read_all(left);
+    return error;
+  };
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const auto frame = [&](const std::function<void(FrameRow&)>& spoil) {
+      FrameRow row = fake_row(k_small, 5, 0.05);
+      spoil(row);
+      EXPECT_EQ(
+          refused([&](RecordingWriter& writer) { writer.append(row); }),
+          path("a.h5") + ": cannot write the recording: frame 5 at 0.05 s holds a number that is not finite");
+    };
+    const auto single = static_cast<float>(bad);
+    frame([&](FrameRow& row) { row.position.back() = single; });
+    frame([&](FrameRow& row) { row.rotation[2] = single; });
+    frame([&](FrameRow& row) { row.section_force[7] = single; });
+    frame([&](FrameRow& row) { row.s[1] = single; });
+    frame([&](FrameRow& row) { row.contact_depth[3] = single; });
+    frame([&](FrameRow& row) { row.contact_force[0] = single; });
+    frame([&](FrameRow& row) { row.energy[11] = bad; });
+    frame([&](FrameRow& row) { row.body[9] = bad; });
+    frame([&](FrameRow& row) { row.floor_acceleration[2] = bad; });
+    frame([&](FrameRow& row) { row.floor_displacement[0] = bad; });
+    frame([&](FrameRow& row) { row.load_factor = bad; });
+    Checkpoint checkpoint = fake_checkpoint(k_small, 5, 0.05);
+    checkpoint.state[9] = bad;
+    EXPECT_EQ(refused([&](RecordingWriter& writer) { writer.append(checkpoint); }),
+              path("a.h5") +
+                  ": cannot write the recording: the checkpoint at 0.05 s holds a number that is not finite");
   }
 }
 

@@ -137,6 +137,36 @@ inline bool same(const FrameRow& a, const FrameRow& b) {
   return a.branch == b.branch && a.step == b.step && a.time == b.time;
 }
 
+/// Writes over `old` in `bytes`, which holds it once.
+inline void replace_bytes(std::string& bytes, std::span<const std::byte> old,
+                          std::span<const std::byte> now) {
+  const std::string_view pattern(reinterpret_cast<const char*>(old.data()), old.size());
+  const std::size_t place = bytes.find(pattern);
+  ASSERT_NE(place, std::string::npos);
+  ASSERT_EQ(bytes.find(pattern, place + 1), std::string::npos);
+  std::copy_n(reinterpret_cast<const char*>(now.data()), now.size(),
+              bytes.begin() + static_cast<long>(place));
+}
+
+/// Changes the node positions of a frame in the file of a closed recording, its checksums as well.
+template <typename Change>
+void change_frame(const std::string& file, std::int64_t index, Change change) {
+  const FrameRow before = Recording(file).frame(index);
+  FrameRow after = before;
+  change(after.position);
+  const auto record = [](const FrameRow& row) {
+    FrameRecord out{.branch = row.branch, .step = row.step, .time = row.time};
+    for (const auto& bytes : field_bytes(row)) out.data_checksum = crc32c(bytes, out.data_checksum);
+    return sealed(out);
+  };
+  const FrameRecord old = record(before), now = record(after);
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  replace_bytes(bytes, std::as_bytes(std::span(before.position)), std::as_bytes(std::span(after.position)));
+  replace_bytes(bytes, std::as_bytes(std::span(&old, 1)), std::as_bytes(std::span(&now, 1)));
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
 /// A folder of its own for each test, gone afterwards.
 class RecordingTest : public ::testing::Test {
  protected:

@@ -1,4 +1,7 @@
 // Which instants a run gives to its recording, and runs repeated from what was recorded.
+#include <bit>
+#include <functional>
+
 #include "recording_fixture.h"
 #include "solver/io/rerun.h"
 
@@ -120,8 +123,9 @@ TEST_F(RerunTest, a_checkpoint_with_another_hash_is_told_with_its_branch) {
   const Rerun result = again(recording);
   EXPECT_EQ(result.checkpoints, recording.checkpoint_count() - 1);
   ASSERT_EQ(result.differences.size(), 1u);
-  EXPECT_EQ(result.differences[0].branch, 2);
-  EXPECT_EQ(result.differences[0].step, 3000);
+  EXPECT_EQ(result.differences[0].at.branch, 2);
+  EXPECT_EQ(result.differences[0].at.step, 3000);
+  EXPECT_EQ(result.differences[0].what, "hash of the stored state");
 }
 
 TEST_F(RerunTest, an_edit_that_was_not_recorded_shows_as_a_difference_of_its_branch_only) {
@@ -146,8 +150,70 @@ TEST_F(RerunTest, an_edit_that_was_not_recorded_shows_as_a_difference_of_its_bra
   const Rerun result = again(Recording(path("a.h5")));
   EXPECT_EQ(result.checkpoints, 3);
   ASSERT_EQ(result.differences.size(), 1u);
-  EXPECT_EQ(result.differences[0].branch, 1);
-  EXPECT_EQ(result.differences[0].step, 100);
+  EXPECT_EQ(result.differences[0].at.branch, 1);
+  EXPECT_EQ(result.differences[0].at.step, 100);
+  EXPECT_GE(result.differences[0].element, 0);
+}
+
+TEST_F(RerunTest, a_changed_bit_in_a_frame_with_a_checksum_that_fits_is_told_with_its_step_and_element) {
+  const Scene scene = parse_scene(k_scene, "test");
+  {
+    Session session(path("a.h5"));
+    session.go_to(300);
+    session.finish();
+  }
+  ASSERT_TRUE(again(Recording(path("a.h5"))).differences.empty());
+  change_frame(path("a.h5"), 6, [](std::vector<float>& x) {
+    x[3 * 5] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x[3 * 5]) ^ 1u);
+  });
+  const Recording recording(path("a.h5"));
+  const Rerun result = again(recording);
+  ASSERT_EQ(result.differences.size(), 1u);
+  const Difference& found = result.differences[0];
+  EXPECT_EQ(found.at.step, recording.frame(6).step);
+  EXPECT_EQ(found.what, "position");
+  const int* const node = scene.setup.model.elements.at(static_cast<std::size_t>(found.element)).node;
+  EXPECT_TRUE(node[0] == 5 || node[1] == 5);
+}
+
+// Rows of a run that this one is not.
+TEST_F(RerunTest, a_changed_number_in_a_frame_is_told_with_its_step_and_element) {
+  const Scene scene = parse_scene(k_scene, "test");
+  const Model& model = scene.setup.model;
+  const auto first_difference = [&](const std::function<void(FrameRow&)>& change) {
+    {
+      Recorder recorder(path("a.h5"), scene.name, scene.text, model);
+      topple::Run run(scene.setup);
+      Observer observer;
+      recorder.write(observer.observe(run));
+      while (run.step() < 200) {
+        EXPECT_TRUE(run.advance().ok());
+        Observation now = observer.observe(run);
+        if (now.frame && run.step() >= 100) change(*now.frame);
+        recorder.write(now);
+      }
+      recorder.write(observer.last(run));
+      recorder.finish("completed", "{}");
+    }
+    const Rerun result = again(Recording(path("a.h5")));
+    EXPECT_EQ(result.differences.size(), 1u);
+    return result.differences.empty() ? Difference{} : result.differences[0];
+  };
+  const auto step_after_100 = [](std::int64_t step) {
+    return step >= 100 && step < 125;
+  };  // 60 rows a second
+  const Difference moved = first_difference([](FrameRow& row) { row.position[3 * 5] += 1e-6f; });
+  EXPECT_TRUE(step_after_100(moved.at.step)) << moved.at.step;
+  EXPECT_EQ(moved.what, "position");
+  const int* node = model.elements.at(static_cast<std::size_t>(moved.element)).node;
+  EXPECT_TRUE(node[0] == 5 || node[1] == 5);
+  const Difference loaded = first_difference([](FrameRow& row) { row.section_force[6 * 7 + 2] += 1; });
+  EXPECT_EQ(loaded.what, "section_force");
+  EXPECT_EQ(loaded.element, 7);
+  const Difference yielded = first_difference([](FrameRow& row) { row.hinge[3] = 1; });
+  EXPECT_EQ(yielded.what, "hinge");
+  EXPECT_EQ(yielded.element, 3);
+  EXPECT_TRUE(step_after_100(yielded.at.step));
 }
 
 /// The scene of a cabinet that a record shakes, read from memory.
