@@ -29,7 +29,7 @@ constexpr Look k_looks[] = {
     {Fate::loses, "#9cc5e3", "pt 11 lc rgb '#1d4f7c'", "energy lost"},
     {Fate::wrong, "#f4b25f", "pt 4 lw 2 lc rgb '#5a2d00'", "wrong verdict"},
     {Fate::tunnels, "#b79ad3", "pt 13 lc rgb '#3a1a5e'", "tunnels"},
-    {Fate::grows, "#b3243f", "pt 9 lc rgb '#ffffff'", "energy grows, contact unresolved"},
+    {Fate::grows, "#b3243f", "pt 9 lc rgb '#ffffff'", "energy grows"},
     {Fate::no_solution, "#5b2333", "pt 2 lw 1.6 lc rgb '#ffffff'", "Newton failure"},
     {Fate::refused, "#66727d", "pt 1 lw 1.6 lc rgb '#ffffff'", "refused: above its limit"},
     {Fate::failed, "#f5e663", "pt 3 lw 1.6 lc rgb '#000000'", "no rest to start from"},
