@@ -38,7 +38,7 @@ static enum Fate fate_of(int file) {
   return counts ? next_fate() : goes_well;
 }
 
-#define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
+#define REAL(name) (__extension__(__typeof__(&name)) dlsym(RTLD_NEXT, #name))
 
 static size_t half(enum Fate fate, size_t size) {
   return fate == is_short && size > 1 ? size / 2 : size;
