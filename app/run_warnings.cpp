@@ -82,7 +82,9 @@ void warn_of_step(const Run& run, Warnings& list) {
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
-  const char* const finer = run.parameters().adaptive ? "try a smaller tolerance" : "try a smaller time_step";
+  const bool by_tolerance =
+      run.parameters().adaptive && run.parameters().integrator != Integrator::central_difference;
+  const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
   if (const double balance = e.balance_error(); balance > k_good_balance)
     list.push_back(
         fmt::format("energy balance error {:.1e} is above {:.0e}; {}", balance, k_good_balance, finer));
