@@ -82,9 +82,12 @@ void warn_of_step(const Run& run, Warnings& list) {
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
+  const bool by_tolerance =
+      run.parameters().adaptive && run.parameters().integrator != Integrator::central_difference;
+  const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
   if (const double balance = e.balance_error(); balance > k_good_balance)
-    list.push_back(fmt::format("energy balance error {:.1e} is above {:.0e}; try a smaller time_step",
-                               balance, k_good_balance));
+    list.push_back(
+        fmt::format("energy balance error {:.1e} is above {:.0e}; {}", balance, k_good_balance, finer));
   const double share = std::abs(e.numerical) / e.largest;
   if (e.largest < k_numbers_of_interest || share < k_numerical) return;
   const Parameters& p = run.parameters();
@@ -93,7 +96,7 @@ void warn_of_energy(const Run& run, Warnings& list) {
                              e.numerical > 0 ? "took" : "gave", std::abs(e.numerical), 100 * share,
                              e.numerical > 0 && damping_newmark
                                  ? "gamma above 1/2 damps rigid motion too, generalized-alpha does not"
-                                 : "try a smaller time_step"));
+                                 : finer));
 }
 
 }  // namespace

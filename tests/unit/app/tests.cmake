@@ -1,4 +1,4 @@
-add_library(failing_writes MODULE ${CMAKE_CURRENT_LIST_DIR}/failing_writes.c)
+add_library(failing_writes MODULE ${CMAKE_CURRENT_LIST_DIR}/failing_writes.cpp)
 target_link_libraries(failing_writes PRIVATE ${CMAKE_DL_LIBS})
 add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/analysis_test.cpp
