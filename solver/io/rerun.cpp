@@ -34,17 +34,17 @@ std::optional<Checkpoint> checkpoint_before(const Recording& recording, const Br
 
 /// The branch where it begins. Nothing when that cannot be reached.
 std::optional<topple::Run> start(const Recording& recording, const Setup& setup, const Branch& branch) {
-  State state;
-  if (branch.parent < 0) {
-    topple::Run settled(setup);
-    if (!settled.status().ok()) return std::nullopt;
-    state = settled.state();
-  } else {
-    const std::optional<Checkpoint> checkpoint = checkpoint_before(recording, branch);
-    if (!checkpoint) return std::nullopt;
-    state = state_of(setup.model, *checkpoint);
-  }
   const History& history = recording.history();
+  if (branch.parent < 0) {
+    topple::Run run(setup);
+    if (!run.status().ok()) return std::nullopt;
+    for (const LoggedEdit& logged : history.edits_on_way_to(branch.id))
+      if (logged.step <= run.step()) run.edit(logged.edit);
+    return run;
+  }
+  const std::optional<Checkpoint> checkpoint = checkpoint_before(recording, branch);
+  if (!checkpoint) return std::nullopt;
+  State state = state_of(setup.model, *checkpoint);
   Parameters parameters = parameters_at(setup, history, branch.id, state.step);
   topple::Run run(setup, std::move(state), std::move(parameters));
   if (!repeat(run, history, branch.id, branch.fork_step)) return std::nullopt;
