@@ -103,14 +103,15 @@ void Viewer::wear(const Appearance& appearance) {
 bool Viewer::update(double wall_s) {
   const bool redress = dressed_ != appearance_;
   if (redress) dress();
-  bool news = player_.update(wall_s) || redress || std::exchange(words_due_, false);
+  bool news = player_.update(wall_s) || redress;
+  const bool words = std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
   if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;
   const bool refine = stage_.software() && !drawn_still_ && quiet_ > k_quiet && !player_.playing();
-  return news || moved || refine;
+  return news || words || moved || refine;
 }
 
 void Viewer::lay_out() {

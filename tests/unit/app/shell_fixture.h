@@ -100,11 +100,11 @@ class ShellTest : public ::testing::Test {
     frame();
     frame();
   }
-  /// Clicks the button of that name in the panel over the window.
-  void click(const std::string& name) {
+  /// Clicks the button of that name in a panel: by default the one over the window.
+  void click(const std::string& name, const std::string& panel = "/panel_") {
     frame();
     for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-      if (!window->Active || std::string(window->Name).find("/panel_") == std::string::npos) continue;
+      if (!window->Active || std::string(window->Name).find(panel) == std::string::npos) continue;
       const ImGuiID id = ImHashStr(name.c_str(), 0, window->ID);
       ImGuiIO& io = ImGui::GetIO();
       for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
@@ -138,11 +138,14 @@ class ShellTest : public ::testing::Test {
     shell_->open(write("rocking.toml", k_rocking));
     ASSERT_TRUE(until([&] { return ready(); }));
   }
+  /// Slowly: the run must not be over before a slow machine draws the next frame.
   void run_to(double time) {
+    for (int i = 0; i < 3; ++i) player().slower();
     player().play();
     ASSERT_TRUE(until([&] { return player().time() >= time; }));
     player().pause();
     ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::halted; }));
+    for (int i = 0; i < 3; ++i) player().faster();
   }
   void save_as(const std::string& path) {
     shell_->press({'S', true, false});

@@ -69,6 +69,7 @@ TEST_F(ShellTest, files_that_were_opened_come_first_and_missing_ones_cannot_be_c
 TEST_F(ShellTest, another_scene_closes_the_recording_of_the_one_that_runs) {
   open_rocking();
   run_to(0.1);
+  for (int i = 0; i < 4; ++i) player().slower();  // it is under way when the other one is there
   player().play();
   const std::string recording = shell_->session()->recording();
   ASSERT_FALSE(recording.empty());
@@ -148,6 +149,19 @@ TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goe
   press(render::key::escape);
   EXPECT_EQ(shell_->title(), "topple: rocking");
   run_to(0.1);
+}
+
+TEST_F(ShellTest, a_guided_demo_opens_its_own_scene_and_what_was_open_stays_recorded) {
+  open_rocking();
+  run_to(0.1);
+  const std::string recording = shell_->session()->recording();
+  shell_->session()->viewer().show(Viewer::Tab::teach);
+  click(std::string(demos()[0].name.english) + "##demo0", "side/content");
+  const auto begun = [&] { return shell_->session()->viewer().teaching().guide.has_value(); };
+  ASSERT_TRUE(until(begun));
+  EXPECT_EQ(shell_->title(), "topple: paper-a");
+  EXPECT_EQ(player().parameters().shakes[0].frequency, demos()[0].frequency);
+  ASSERT_TRUE(until([&] { return io::Recording(recording).status() == "stopped"; }));
 }
 
 TEST_F(ShellTest, an_accelerogram_becomes_the_first_shake_of_a_copy_that_starts_anew) {
