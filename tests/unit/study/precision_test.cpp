@@ -228,6 +228,7 @@ TEST(Precision, a_scene_that_does_not_begin_has_rows_that_say_so) {
   rows[0] = run_case(plan, 0, k_never);
   const PrecisionStudy study = gather(plan, rows);
   EXPECT_NE(study.rows[0].status, "completed");
+  EXPECT_TRUE(ordered_json::parse(rows[0])["balance"].empty());
   EXPECT_FALSE(study.rows[0].cost);
   EXPECT_NE(study.references[0].why_not, "");
 }
