@@ -222,11 +222,13 @@ TEST(Precision, a_case_that_fails_has_a_row_that_says_so) {
 
 TEST(Precision, a_scene_that_does_not_begin_has_rows_that_say_so) {
   const PrecisionPlan plan = plan_precision(
-      io::load_scene("tumble", {"run.settle=true", "run.gravity=[0, 0, -9.8]", "run.duration=0.1"}));
+      io::load_scene("tumble", {"run.settle=true", "run.gravity=[0, 0, -9.8]", "run.duration=0.1",
+                                "cabinet.tumbler.angular_velocity=[0, 0, 0]"}));
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   rows[0] = run_case(plan, 0, k_never);
   const PrecisionStudy study = gather(plan, rows);
   EXPECT_NE(study.rows[0].status, "completed");
+  EXPECT_TRUE(ordered_json::parse(rows[0])["balance"].empty());
   EXPECT_FALSE(study.rows[0].cost);
   EXPECT_NE(study.references[0].why_not, "");
 }
