@@ -56,7 +56,8 @@ class XdmfFile {
  public:
   explicit XdmfFile(const std::string& file) : xml_(file), data_(file + ".h5") {
     guarded([this] {
-      h5_ = Handle(H5Fcreate(data_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+      h5_ =
+          Handle(H5Fcreate(data_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unbuffered_access()), H5Fclose);
       link_ = Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
       checked(H5Pset_create_intermediate_group(link_, 1));
       creation_ = Handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);

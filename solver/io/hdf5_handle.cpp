@@ -100,6 +100,12 @@ std::int32_t read_int_attribute(hid_t object, const char* name) {
   return number;
 }
 
+Handle unbuffered_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  checked(H5Pset_sieve_buf_size(access, 0));
+  return access;
+}
+
 void write_fixed(hid_t group, const char* name, hid_t type, const std::vector<hsize_t>& dims,
                  const void* data, std::string_view units, std::string_view columns) {
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);

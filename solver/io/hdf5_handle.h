@@ -72,6 +72,10 @@ class Handle {
   Close close_ = nullptr;
 };
 
+/// How files are made: data go to the file when they are written. Small data sets would wait until they are
+/// closed, where a write that fails is not told.
+Handle unbuffered_access();
+
 /// CRC-32C (Castagnoli, as in iSCSI) of `bytes`, continuing from `before`.
 std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before = 0);
 

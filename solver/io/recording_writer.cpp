@@ -134,7 +134,7 @@ void RecordingWriter::guarded(Work&& work) {
 
 void RecordingWriter::create(const std::string& scene_name, const std::string& scene_text, const Model& model,
                              const std::vector<SceneFile>& files) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Handle access = unbuffered_access();
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
   file_ = Handle(H5Fcreate(part_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access), H5Fclose);

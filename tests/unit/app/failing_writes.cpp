@@ -1,10 +1,11 @@
 // Preloaded into a program: one of its writes to regular files fails.
-//   TOPPLE_FAILING_WRITE  which, from 1
-//   TOPPLE_FAILURE        EIO: this one alone; ENOSPC: this one and all after it; short: half of it is
-//   written
-// Everything that changes a file counts: write, pwrite, writev, fwrite, fclose, ftruncate, fsync, rename.
-// What has no bytes to be short of is done when the failure is "short".
+//   TOPPLE_FAILING_WRITE   which, from 1
+//   TOPPLE_FAILURE         EIO: it alone; ENOSPC: it and all after it; short: half of it is written
+//   TOPPLE_WRITES_COUNTED  a file that gets their number at the end
+// Counted is what changes a file: write, pwrite, writev, fwrite, fclose, ftruncate, fsync, rename. Those that
+// have no bytes to be short of are done when the failure is "short".
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -19,8 +20,9 @@ namespace {
 
 enum class Fate { goes_well, fails, is_short };
 
+std::atomic<long> count{0};
+
 Fate next_fate() {
-  static std::atomic<long> count{0};
   const char* const which = std::getenv("TOPPLE_FAILING_WRITE");
   const char* const failure = std::getenv("TOPPLE_FAILURE");
   if (!which || !failure) return Fate::goes_well;
@@ -38,6 +40,12 @@ Fate fate_of(int file) {
   const bool counts = file > STDERR_FILENO && fstat(file, &status) == 0 && S_ISREG(status.st_mode);
   errno = saved;
   return counts ? next_fate() : Fate::goes_well;
+}
+
+[[gnu::destructor]] void tell_count() {
+  const char* const file = std::getenv("TOPPLE_WRITES_COUNTED");
+  const int out = file ? open(file, O_WRONLY | O_CREAT | O_TRUNC, 0600) : -1;
+  if (out >= 0) dprintf(out, "%ld", count.load());
 }
 
 std::size_t part(Fate fate, std::size_t size) {
