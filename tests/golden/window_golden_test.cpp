@@ -25,6 +25,7 @@ class GoldenWindow : public ShellTest {
     player().play();
     ASSERT_TRUE(until([&] { return player().status().kind == LiveStatus::Kind::over; }));
     for (int i = 0; i < 3; ++i) player().slower();
+    press('4');  // framed beside the words that stand there now, whenever the run came to its end
   }
   /// When nothing moves any more.
   render::Image shot() {
