@@ -92,7 +92,7 @@ TEST(Run, ends_with_the_status_of_the_step_that_failed) {
   const std::uint64_t before = hash(run.state());
   EXPECT_FALSE(run.advance().ok());
   EXPECT_TRUE(run.over());
-  EXPECT_EQ(run.status().kind, StepStatus::Kind::not_finite);
+  EXPECT_EQ(run.status().kind, StepStatus::Kind::newton_diverged);
   EXPECT_EQ(hash(run.state()), before);
 }
 
