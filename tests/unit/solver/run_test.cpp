@@ -90,10 +90,9 @@ TEST(Run, ends_with_the_status_of_the_step_that_failed) {
   topple::Run run(setup);
   ASSERT_FALSE(run.over());
   const std::uint64_t before = hash(run.state());
-  const StepStatus failed = run.advance();
-  EXPECT_FALSE(failed.ok());
+  EXPECT_FALSE(run.advance().ok());
   EXPECT_TRUE(run.over());
-  EXPECT_EQ(run.status().message(setup.model), failed.message(setup.model));
+  EXPECT_EQ(run.status().kind, StepStatus::Kind::newton_diverged);
   EXPECT_EQ(hash(run.state()), before);
 }
 
