@@ -3,19 +3,16 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
+#include "solver/overflow.h"
 #include "solver/pack.h"
 #include "solver/rotation.h"
 
 namespace topple {
 namespace {
-
-// Times it, what is above k_largest_number is infinite.
-constexpr double k_overflow = std::numeric_limits<double>::max() / k_largest_number;
 
 // The choice that a number of a checkpoint stands for.
 template <class Choice>
