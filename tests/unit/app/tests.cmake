@@ -61,7 +61,7 @@ target_link_options(random_events_test PRIVATE
   -Wl,--wrap=_ZN5ImGui7ItemAddERK6ImRectjPS1_i
   -Wl,--wrap=_ZN6topple6render5Stage10draw_sceneERKNS0_10SceneFrameERKNS0_6CameraENS0_9ColourMapEiiNS0_7QualityE)
 add_dependencies(random_events_test topple)
-gtest_discover_tests(random_events_test PROPERTIES TIMEOUT 300)
+gtest_discover_tests(random_events_test PROPERTIES TIMEOUT 900)
 add_executable(random_scene_test ${CMAKE_CURRENT_LIST_DIR}/random_scene_test.cpp)
 target_include_directories(random_scene_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(random_scene_test PRIVATE topple_app GTest::gtest_main)
