@@ -14,7 +14,7 @@ class RenderTest : public ProgramTest {
   }
   static void draw(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "render");
-    for (const char* more : {"--size", "320x180"}) arguments.emplace_back(more);
+    for (const char* more : {"--size", "320x180", "--quiet"}) arguments.emplace_back(more);
     const Ended ended = topple(arguments);
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_EQ(ended.out + ended.err, "");
