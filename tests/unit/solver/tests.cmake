@@ -1,5 +1,5 @@
 file(GLOB solver_test_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*_test.cpp)
-# one that counts allocations has a program of its own, and one that takes long
+# one that counts allocations has a program of its own, and one that steps from every number spoiled
 list(FILTER solver_test_sources EXCLUDE REGEX "(allocation|containment)_test")
 add_executable(solver_test ${solver_test_sources})
 target_link_libraries(solver_test PRIVATE topple_solver GTest::gtest_main)
