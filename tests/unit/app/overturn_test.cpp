@@ -5,6 +5,7 @@
 
 #include "program.h"
 #include "scenes.h"
+#include "study_rows.h"
 
 namespace topple::app {
 namespace {
@@ -29,17 +30,7 @@ class OverturnTest : public ProgramTest {
     words.insert(words.end(), options.begin(), options.end());
     return words;
   }
-  /// overturn.csv without its last column, the CPU time.
-  static std::string rows(const std::string& folder) {
-    std::istringstream lines(bytes_of(folder + "/overturn.csv"));
-    std::string text;
-    for (std::string line; std::getline(lines, line);) text += line.substr(0, line.rfind(',')) + "\n";
-    return text;
-  }
-  static int lines_in(const std::string& file) {
-    const std::string text = bytes_of(file);
-    return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-  }
+  static std::string rows(const std::string& folder) { return rows_of(folder + "/overturn.csv"); }
 };
 
 TEST_F(OverturnTest, an_ensemble_gives_probabilities_charts_and_a_fragility) {

@@ -5,6 +5,7 @@
 
 #include "program.h"
 #include "scenes.h"
+#include "study_rows.h"
 
 namespace topple::app {
 namespace {
@@ -24,17 +25,7 @@ class PrecisionTest : public ProgramTest {
     words.insert(words.end(), options.begin(), options.end());
     return words;
   }
-  /// precision.csv without its last column, the CPU time.
-  static std::string rows(const std::string& folder) {
-    std::istringstream lines(bytes_of(folder + "/precision.csv"));
-    std::string text;
-    for (std::string line; std::getline(lines, line);) text += line.substr(0, line.rfind(',')) + "\n";
-    return text;
-  }
-  static int lines_in(const std::string& file) {
-    const std::string text = bytes_of(file);
-    return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-  }
+  static std::string rows(const std::string& folder) { return rows_of(folder + "/precision.csv"); }
 };
 
 TEST_F(PrecisionTest, gives_numbers_charts_a_reference_and_the_cheapest_settings) {

@@ -5,6 +5,7 @@
 
 #include "program.h"
 #include "scenes.h"
+#include "study_rows.h"
 
 namespace topple::app {
 namespace {
@@ -32,17 +33,7 @@ class StabilityTest : public ProgramTest {
     words.insert(words.end(), options.begin(), options.end());
     return words;
   }
-  /// stability.csv without its last column, the CPU time.
-  static std::string rows(const std::string& folder) {
-    std::istringstream lines(bytes_of(folder + "/stability.csv"));
-    std::string text;
-    for (std::string line; std::getline(lines, line);) text += line.substr(0, line.rfind(',')) + "\n";
-    return text;
-  }
-  static int lines_in(const std::string& file) {
-    const std::string text = bytes_of(file);
-    return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-  }
+  static std::string rows(const std::string& folder) { return rows_of(folder + "/stability.csv"); }
 };
 
 TEST_F(StabilityTest, gives_a_map_for_each_method_with_the_limits_of_theory) {
