@@ -30,6 +30,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shell_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shortcuts_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/soak_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/subject_test.cpp
