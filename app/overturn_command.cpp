@@ -6,8 +6,8 @@
 
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/present_studies.h"
 #include "app/study_results.h"
-#include "app/sweep.h"
 #include "app/told_scene.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"
@@ -17,14 +17,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-MakeWork work_on(const study::OverturnPlan& plan) {
-  return [&plan] {
-    return [runner = study::OverturnRunner(plan)](int k, const std::function<bool()>& give_up) mutable {
-      return runner.run(k, give_up);
-    };
-  };
-}
 
 study::OverturnPlan plan_of(const StudyOptions& options, io::Scene scene) {
   return study::plan_overturn(std::move(scene), options.x, options.y, options.ensemble, options.spread);

@@ -106,7 +106,9 @@ bool Viewer::update(double wall_s) {
   bool news = player_.update(wall_s) || redress;
   const bool words = std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
-  if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
+  const bool computes = (teaching_.accuracy && !teaching_.accuracy->over()) ||
+                        (teaching_.map.search && !teaching_.map.search->over());
+  if (std::exchange(computes_, computes) || computes) news = true;  // how far it is is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;

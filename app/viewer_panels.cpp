@@ -141,7 +141,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     Appearance appearance = appearance_;
     if (draw_appearance(appearance)) wear(appearance);
   } else if (tab_ == Tab::teach) {
-    draw_teaching(player_, teaching_);
+    draw_teaching(player_, teaching_, refused_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }
