@@ -58,23 +58,6 @@ const study::OverturnPoint& point(const OverturnFound& found, int i, int j) {
   return found.map.points[static_cast<std::size_t>(j * found.plan->x.count() + i)];
 }
 
-/// The same parameters but for those of the axes.
-bool is_stale(const Player& player, const OverturnFound& found, const Parameters& of) {
-  const Parameters& now = player.parameters();
-  const auto of_axis = [&](Edit::Key key, int index) {
-    return std::ranges::any_of(std::initializer_list<const Axis*>{&found.plan->x, &found.plan->y},
-                               [&](const Axis* axis) {
-                                 return io::edit_key({key, index}) == axis->key;
-                               });
-  };
-  const auto keys = editable(player.scene().setup.model, now);
-  return keys != editable(player.scene().setup.model, of) ||
-         std::ranges::any_of(keys, [&](const auto& entry) {
-           const auto [key, index] = entry;
-           return edited_value(now, key, index) != edited_value(of, key, index) && !of_axis(key, index);
-         });
-}
-
 /// Shakes from now on as at this point; one thing to undo.
 void load(Player& player, const study::OverturnPlan& plan, int i, int j, std::string& refused) {
   player.begin_edit();
@@ -241,7 +224,12 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   ImGui::TextWrapped(
       "%s", (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j))).c_str());
   draw_steps(player, *found, refused);
-  if (is_stale(player, *found, state.of)) ImGui::TextWrapped("%s", say(k_map_stale).c_str());
+  const auto of_axis = [&](Edit::Key of, int index) {
+    const std::string name = io::edit_key({of, index});
+    return name == plan.x.key || name == plan.y.key;
+  };
+  if (parameters_differ(player.scene().setup.model, player.parameters(), state.of, of_axis))
+    ImGui::TextWrapped("%s", say(k_map_stale).c_str());
   return true;
 }
 
@@ -257,8 +245,8 @@ void draw_map_controls(const Player& player, MapState& state) {
   if (found && !found->failure.empty()) ImGui::TextWrapped("%s", say(k_map_failed, found->failure).c_str());
   const bool can = can_have_map(player);
   ImGui::BeginDisabled(!can);
-  const bool asked =
-      ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(), {found ? 0.f : -1.f, 0});
+  const bool asked = ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(),
+                                   {found ? 0.f : -1.f, 0});
   ImGui::EndDisabled();
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());

@@ -114,4 +114,13 @@ std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const 
   });
 }
 
+bool parameters_differ(const Model& model, const Parameters& a, const Parameters& b,
+                       const std::function<bool(Edit::Key key, int index)>& of_study) {
+  const auto keys = editable(model, a);
+  return keys != editable(model, b) || std::ranges::any_of(keys, [&](const auto& entry) {
+           const auto& [key, index] = entry;
+           return edited_value(a, key, index) != edited_value(b, key, index) && !of_study(key, index);
+         });
+}
+
 }  // namespace topple::app

@@ -7,6 +7,7 @@
 
 #include "app/background.h"
 #include "app/sweep.h"
+#include "solver/edit.h"
 #include "solver/study/overturn_map.h"
 #include "solver/study/precision.h"
 
@@ -38,5 +39,9 @@ using PrecisionSearch = Background<PrecisionFound>;
 
 /// With the scene's own contact alone, cheap settings first, for as long as `topple study precision --quick`.
 std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const Parameters& now);
+
+/// Whether parameters of a model differ in a value that can be edited, but for those that `of_study` names.
+bool parameters_differ(const Model& model, const Parameters& a, const Parameters& b,
+                       const std::function<bool(Edit::Key key, int index)>& of_study);
 
 }  // namespace topple::app

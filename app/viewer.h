@@ -11,6 +11,7 @@
 #include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
+#include "app/precision_panel.h"
 #include "app/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
@@ -68,6 +69,7 @@ class Viewer {
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
   const TeachingState& teaching() const { return teaching_; }
+  const PrecisionState& precision() const { return precision_; }
   const Appearance& appearance() const { return appearance_; }
   const render::OverlayFonts& fonts() const { return fonts_; }
   const render::Orbit& orbit() const { return orbit_; }
@@ -135,6 +137,7 @@ class Viewer {
   Inspection inspection_;
   Histories histories_;
   TeachingState teaching_;
+  PrecisionState precision_;
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;

@@ -1,4 +1,5 @@
 // Every panel of the window, as it is drawn off screen.
+#include "app/teaching_words.h"
 #include "tests/golden/golden.h"
 #include "tests/unit/app/shell_fixture.h"
 
@@ -101,6 +102,16 @@ TEST_F(GoldenWindow, learn) {
   show_run();
   viewer().show(Viewer::Tab::teach);
   render::expect_golden(side(), "window-learn.png");
+}
+
+TEST_F(GoldenWindow, overturning_map) {
+  show_run();
+  viewer().show(Viewer::Tab::teach);
+  click(say(window_words::k_overturning_map) + "##map", "side/content");
+  const MapState& map = viewer().teaching().map;
+  ASSERT_TRUE(until([&] { return map.search && map.search->over(); }));
+  ImGui::GetIO().MousePos = {2, 400};
+  render::expect_golden(side(), "window-map.png");
 }
 
 TEST_F(GoldenWindow, picture_settings) {
