@@ -119,14 +119,13 @@ std::vector<ChartCurve> curves_of(const LogChart& chart, const study::Criteria& 
   return curves;
 }
 
-std::string cell_in_words(const OverturnFound& found, int i, int j) {
+/// x, y: as they are told.
+std::string cell_in_words(const OverturnFound& found, int i, int j, double x, double y) {
   const study::OverturnPoint& at = point(found, i, j);
   std::string verdict = say(words_of(at.verdict));
   if (const auto time = at.time(0.5)) verdict += say(k_map_first_at, *time);
   if (at.verdict == Verdict::failed) verdict += say(k_colon) + at.status;
-  const Axis &x = found.plan->x, &y = found.plan->y;
-  return say(k_map_cell, x.values[static_cast<std::size_t>(i)], x.unit, y.values[static_cast<std::size_t>(j)],
-             y.unit, verdict);
+  return say(k_map_cell, x, found.plan->x.unit, y, found.plan->y.unit, verdict);
 }
 
 /// The cell below the mouse: told, and loaded by a click.
@@ -141,7 +140,12 @@ void handle_mouse(Player& player, const LogChart& chart, const OverturnFound& fo
   const int i = place_on(found.plan->x, value(chart.x, (at.x - chart.left) / (chart.right - chart.left)));
   const int j = place_on(found.plan->y, value(chart.y, (chart.bottom - at.y) / (chart.bottom - chart.top)));
   if (i < 0 || j < 0) return;
-  ImGui::SetTooltip("%s\n%s", cell_in_words(found, i, j).c_str(),
+  const float gap = 4 * ImGui::GetTextLineHeight();
+  ImGui::SetNextWindowPos({chart.left - gap, at.y}, ImGuiCond_Always, {1, 0.5f});  // beside the cells
+  ImGui::SetTooltip("%s\n%s",
+                    cell_in_words(found, i, j, found.plan->x.values[static_cast<std::size_t>(i)],
+                                  found.plan->y.values[static_cast<std::size_t>(j)])
+                        .c_str(),
                     say(player.can_edit() ? k_map_click : k_map_no_click).c_str());
   if (ImGui::IsMouseClicked(0) && player.can_edit()) load(player, *found.plan, i, j, refused);
 }
@@ -217,12 +221,14 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
     add_mark(list, at, line, verdict);
   }
   if (!curves.empty()) key.lines(curves);
+  add_present(list, key.entry(say(k_present)));
   key.end();
   ImGui::TextWrapped(
       "%s", (curves.empty() ? say(k_map_no_lines) : say(k_map_lines, found->map.criteria.bodies)).c_str());
   const int i = place_on(plan.x, x), j = place_on(plan.y, y);
   ImGui::TextWrapped(
-      "%s", (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j))).c_str());
+      "%s",
+      (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j, x, y))).c_str());
   draw_steps(player, *found, refused);
   const auto of_axis = [&](Edit::Key of, int index) {
     const std::string name = io::edit_key({of, index});

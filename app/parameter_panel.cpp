@@ -114,7 +114,9 @@ class Row {
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
     const auto word = [&](int k) { return std::string(key_.choices[static_cast<std::size_t>(k)]); };
-    if (ImGui::BeginCombo("##value", word(now).c_str())) {
+    const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
+    const bool narrow = ImGui::CalcTextSize(word(now).c_str()).x + ImGui::GetStyle().FramePadding.x > room;
+    if (ImGui::BeginCombo("##value", word(now).c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
       for (int k = 0; k < count; ++k)
         if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
       ImGui::EndCombo();

@@ -22,7 +22,7 @@ using study::Method;
 constexpr float k_reach = 0.7f;  // lines of text, from the mouse to a point
 
 /// A mark; open where steps follow a tolerance.
-enum class Sign { none, circle, square, triangle, diamond, turned_triangle, cross };
+enum class Sign { circle, square, triangle, diamond, turned_triangle, cross };
 struct Look {
   Sign sign;
   bool open;
@@ -32,7 +32,7 @@ struct Look {
 constexpr ImU32 k_vermilion = IM_COL32(213, 94, 0, 255), k_green = IM_COL32(0, 158, 115, 255),
                 k_blue = IM_COL32(0, 114, 178, 255), k_sky = IM_COL32(86, 180, 233, 255);
 constexpr Look k_looks[study::k_methods] = {
-    {Sign::none, false, 0, 0},
+    {Sign::diamond, true, IM_COL32(17, 17, 17, 255), IM_COL32(240, 240, 240, 255)},
     {Sign::circle, false, k_vermilion, k_vermilion},
     {Sign::circle, true, k_vermilion, k_vermilion},
     {Sign::square, false, k_green, k_green},
@@ -56,8 +56,6 @@ void add_sign(ImDrawList& list, ImVec2 at, Method method) {
       list.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), ink);
   };
   switch (look.sign) {
-    case Sign::none:
-      return;
     case Sign::circle:
       look.open ? list.AddCircle(at, 0.9f * r, ink, 16, thin) : list.AddCircleFilled(at, r, ink, 16);
       return;
@@ -154,9 +152,7 @@ void draw_chart(const PrecisionFound& found, int present, PrecisionState& state,
     const ImVec2 at = point.at = place(point.k);
     const Method method = found.plan->setting_of(point.k).method;
     add_sign(list, at, method);
-    if (k_looks[static_cast<int>(method)].sign == Sign::none ||
-        std::exchange(named[static_cast<std::size_t>(method)], true))
-      continue;
+    if (std::exchange(named[static_cast<std::size_t>(method)], true)) continue;
     add_sign(list, key.entry(say(k_methods[static_cast<int>(method)])), method);
   }
   const ImVec2 at = key.entry(front.name);
@@ -269,9 +265,10 @@ void draw_precision(Player& player, PrecisionState& state, std::string& refused)
   }
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 room = ImGui::GetIO().DisplaySize;
-  const ImVec2 size{std::min(46 * line, 0.97f * room.x), std::min(36 * line, 0.94f * room.y)};
-  ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
-  ImGui::SetNextWindowPos({room.x / 2, room.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
+  const float height = std::clamp(0.94f * room.y - 19 * line, 10 * line, 21 * line);
+  ImGui::SetNextWindowSize({std::min(46 * line, 0.97f * room.x), 0});  // as high as what is in it
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {room.x, 0.96f * room.y});
+  ImGui::SetNextWindowPos({room.x / 2, 0.02f * room.y}, ImGuiCond_Appearing, {0.5f, 0});
   ImGui::Begin((say(k_precision) + "###precision").c_str(), &state.open,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   const auto found = state.search->result();
@@ -281,7 +278,7 @@ void draw_precision(Player& player, PrecisionState& state, std::string& refused)
   } else if (found) {
     draw_measure(state.measure);
     const int present = present_case(player, *found, state.measure);
-    draw_chart(*found, present, state, std::max(12 * line, size.y - 15 * line));
+    draw_chart(*found, present, state, height);
     handle_mouse(player, *found, points, state.measure, refused);
     const study::Reference& reference = found->study.references.front();
     if (reference.run < 0)

@@ -7,9 +7,9 @@ namespace topple::app::window_words {
 
 inline constexpr Phrase k_precision{"Error against cost", "誤差と計算時間"};
 inline constexpr Phrase k_precision_about{
-    "Computes the scene as it is now with other integrators, steps and models, beside the window, and draws "
+    "Computes the scene as it is now with other integrators, steps and models\nbeside the window, and draws "
     "error against CPU time",
-    "現在の設定のシーンを、ほかの積分法・時間刻み・計算モデルで計算し、誤差と CPU 時間の関係を描く"};
+    "現在の設定のシーンを、ほかの積分法・時間刻み・計算モデルで計算し、\n誤差と CPU 時間の関係を描く"};
 inline constexpr Phrase k_error_of{"error of", "誤差"};
 inline constexpr Phrase k_measures[] = {
     {"tilt, rms over the critical angle", "傾斜（限界角に対する二乗平均）"},
@@ -18,7 +18,7 @@ inline constexpr Phrase k_measures[] = {
     {"energy balance", "エネルギー収支"}};
 inline constexpr Phrase k_error_axis{"error, %", "誤差 [%]"};
 inline constexpr Phrase k_cost_axis{"CPU time per simulated second, ms", "1秒分の計算の CPU 時間 [ms]"};
-inline constexpr Phrase k_methods[] = {{"as it was", "開始時の設定"},
+inline constexpr Phrase k_methods[] = {{"the scene's own", "シーンの設定"},
                                        {"rigid", "剛体"},
                                        {"rigid, by tolerance", "剛体（許容誤差）"},
                                        {"elastic", "弾性"},
@@ -36,7 +36,6 @@ inline constexpr Phrase k_setting_now{"Now {0}.", "現在 {0}。"};
 inline constexpr Phrase k_setting_not_there{"The present setting is not among those computed.",
                                             "現在の設定は計算に含まれていません。"};
 inline constexpr Phrase k_pareto{"none cheaper is as exact", "最も安価な設定"};
-inline constexpr Phrase k_present{"now", "現在"};
 inline constexpr Phrase k_setting_click{"A click computes like this from now on.",
                                         "クリックすると現時刻からこの設定で計算します。"};
 inline constexpr Phrase k_setting_in_scene{"Tolerances and Newmark's β and γ are set in the scene.",

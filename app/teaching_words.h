@@ -39,9 +39,9 @@ inline constexpr Phrase k_overturning_map{"Overturning map", "転倒マップ"};
 inline constexpr Phrase k_map_again{"Compute again", "再計算"};
 inline constexpr Phrase k_map_close{"Close the map", "マップを閉じる"};
 inline constexpr Phrase k_map_about{
-    "Computes the scene as it is now from its start at 24 by 24 frequencies and amplitudes (of a pulse: "
-    "durations and amplitudes), beside the window",
-    "現在の設定のシーンを、周波数（パルスでは継続時間）と加速度振幅を24×24通りに変えて最初から計算する"};
+    "Computes the scene as it is now from its start, beside the window,\nat 24 by 24 frequencies (of a "
+    "pulse: durations) and amplitudes",
+    "現在の設定のシーンを、周波数（パルスでは継続時間）と\n加速度振幅を24×24通りに変えて最初から計算する"};
 inline constexpr Phrase k_map_needs{"Only where furniture is shaken first by a sine or a pulse",
                                     "最初の加振が正弦波またはパルスで、家具があるシーンでのみ使えます"};
 inline constexpr Phrase k_map_progress{"Map: {0} of {1} runs", "マップ：{0}/{1} 件を計算"};
@@ -60,6 +60,7 @@ inline constexpr Phrase k_map_no_click{"Only the newest instant can be shaken ot
 inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床に自立する {0}"};
 inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines.",
                                        "判定基準を適用できないため、線はありません。"};
+inline constexpr Phrase k_present{"now", "現在"};
 inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
 inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};
 inline constexpr Phrase k_one_pulse{"this pulse, exact", "このパルス（厳密解）"};

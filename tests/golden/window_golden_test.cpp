@@ -105,11 +105,16 @@ TEST_F(GoldenWindow, learn) {
 }
 
 TEST_F(GoldenWindow, overturning_map) {
-  show_run();
+  shell_->open(write("rocking.toml", k_rocking));
+  ASSERT_TRUE(until([&] { return ready(); }));
+  run_on();
   viewer().show(Viewer::Tab::teach);
   click(say(window_words::k_overturning_map) + "##map", "side/content");
   const MapState& map = viewer().teaching().map;
-  ASSERT_TRUE(until([&] { return map.search && map.search->over(); }));
+  bool computed = false;  // 576 runs
+  for (int round = 0; round < 4 && !computed; ++round)
+    computed = static_cast<bool>(until([&] { return map.search && map.search->over(); }));
+  ASSERT_TRUE(computed);
   ImGui::GetIO().MousePos = {2, 400};
   render::expect_golden(side(), "window-map.png");
 }

@@ -69,16 +69,9 @@ class PresentPanels : public ShellTest {
   }
   const MapState& map() { return viewer().teaching().map; }
   const PrecisionState& precision() { return viewer().precision(); }
-  void click_at(ImVec2 at) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.MousePos = at;
-    frame();
-    frame();
-    io.MouseDown[0] = true;
-    frame();
-    io.MouseDown[0] = false;
-    frame();
-    io.MousePos = {2, 400};
+  void click_there(ImVec2 at) {
+    click_at(at, [this] { frame(); });
+    ImGui::GetIO().MousePos = {2, 400};
     frame();
   }
   ImVec2 middle_of(int i, int j) {
@@ -97,7 +90,7 @@ TEST_F(PresentPanels, a_click_on_a_cell_shakes_like_it_and_one_undo_takes_it_bac
   frame();
   const Shake before = player().parameters().shakes[0];
   for (const auto& [i, j] : {std::pair(0, 0), std::pair(7, 19), std::pair(23, 23)}) {
-    click_at(middle_of(i, j));
+    click_there(middle_of(i, j));
     const study::OverturnPlan& plan = *map().search->result()->plan;
     EXPECT_EQ(player().parameters().shakes[0].frequency, plan.x.in_si(i));
     EXPECT_EQ(player().parameters().shakes[0].amplitude, plan.y.in_si(j));
@@ -113,7 +106,7 @@ TEST_F(PresentPanels, the_buttons_below_the_map_go_to_the_next_cells) {
   open("\"0.05 s\"");
   begin_map();
   ASSERT_TRUE(until([&] { return map().search && map().search->over(); }));
-  click_at(middle_of(10, 10));
+  click_there(middle_of(10, 10));
   const study::OverturnPlan& plan = *map().search->result()->plan;
   click("##higher", "side/content");
   click("##weaker", "side/content");
@@ -151,7 +144,7 @@ TEST_F(PresentPanels, the_chart_of_precision_opens_beside_the_step_and_a_click_l
     });
     const auto edits = edits_to(player(), wanted);
     if (!alone || !edits || edits->empty()) continue;
-    click_at(point.at);
+    click_there(point.at);
     EXPECT_EQ(player().parameters().time_step, wanted.time_step) << point.k;
     EXPECT_EQ(player().parameters().integrator, wanted.integrator) << point.k;
     EXPECT_EQ(player().parameters().models, wanted.models) << point.k;
