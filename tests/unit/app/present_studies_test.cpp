@@ -22,16 +22,23 @@ TEST(PresentStudies, the_map_has_the_rows_of_the_study_of_the_changed_scene) {
   Parameters now = scene->setup.parameters;
   apply({Edit::Key::friction, 0, Vec3(0.2, 0, 0)}, scene->setup.model, 0, now);
   const auto search = search_overturning(*scene, now);
+  ASSERT_TRUE(eventually([] {}, [&] { return search->result() && search->result()->map.run >= 8; }));
+  search->stop();
   ASSERT_TRUE(eventually([] {}, [&] { return search->over(); }));
   const auto found = search->result();
   ASSERT_EQ(found->failure, "");
-  EXPECT_EQ(found->map.run, 576);
 
   const auto changed = live_scene(k_rocking, {"run.duration=0.3", "contact.friction=0.2"});
   const study::OverturnPlan plan = study::plan_overturn(*changed, "", "", 1, 0);
   study::OverturnRunner runner(plan);
-  std::vector<std::string> rows;
-  for (int k = 0; k < plan.cases(); ++k) rows.push_back(runner.run(k, [] { return false; }));
+  std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
+  int computed = 0;
+  for (int k = 0; k < plan.cases(); ++k)
+    if (found->map.points[static_cast<std::size_t>(k)].runs > 0) {
+      rows[static_cast<std::size_t>(k)] = runner.run(k, [] { return false; });
+      ++computed;
+    }
+  EXPECT_EQ(computed, found->map.run);
   EXPECT_EQ(rows_of(*found->plan, found->map), rows_of(plan, gather(plan, rows)));
 }
 
@@ -67,6 +74,14 @@ class PresentPanels : public ShellTest {
     viewer().show(Viewer::Tab::teach);
     click(say(window_words::k_overturning_map) + "##map", "side/content");
   }
+  /// A map of which a part is there.
+  void have_map() {
+    begin_map();
+    ASSERT_TRUE(until([&] { return map().search->result() && map().search->result()->map.run > 0; }));
+    click(say(window_words::k_cancel) + "##cancel-map", "side/content");
+    ASSERT_TRUE(until([&] { return map().search->over(); }));
+    frame();
+  }
   const MapState& map() { return viewer().teaching().map; }
   const PrecisionState& precision() { return viewer().precision(); }
   void click_there(ImVec2 at) {
@@ -85,9 +100,7 @@ class PresentPanels : public ShellTest {
 
 TEST_F(PresentPanels, a_click_on_a_cell_shakes_like_it_and_one_undo_takes_it_back) {
   open("\"0.05 s\"");
-  begin_map();
-  ASSERT_TRUE(until([&] { return map().search && map().search->over(); }));
-  frame();
+  have_map();
   const Shake before = player().parameters().shakes[0];
   for (const auto& [i, j] : {std::pair(0, 0), std::pair(7, 19), std::pair(23, 23)}) {
     click_there(middle_of(i, j));
@@ -104,8 +117,7 @@ TEST_F(PresentPanels, a_click_on_a_cell_shakes_like_it_and_one_undo_takes_it_bac
 
 TEST_F(PresentPanels, the_buttons_below_the_map_go_to_the_next_cells) {
   open("\"0.05 s\"");
-  begin_map();
-  ASSERT_TRUE(until([&] { return map().search && map().search->over(); }));
+  have_map();
   click_there(middle_of(10, 10));
   const study::OverturnPlan& plan = *map().search->result()->plan;
   click("##higher", "side/content");
@@ -116,10 +128,7 @@ TEST_F(PresentPanels, the_buttons_below_the_map_go_to_the_next_cells) {
 
 TEST_F(PresentPanels, cancel_stops_the_map_and_leaves_what_there_is_until_it_is_closed) {
   open("\"60 s\"");
-  begin_map();
-  ASSERT_TRUE(until([&] { return map().search->result() && map().search->result()->map.run > 0; }));
-  click(say(window_words::k_cancel) + "##cancel-map", "side/content");
-  ASSERT_TRUE(until([&] { return map().search->over(); }));
+  have_map();
   EXPECT_LT(map().search->result()->map.run, 576);
   click(say(window_words::k_map_close) + "##close-map", "side/content");
   EXPECT_EQ(map().search, nullptr);
@@ -129,7 +138,9 @@ TEST_F(PresentPanels, the_chart_of_precision_opens_beside_the_step_and_a_click_l
   open("\"0.05 s\"");
   click(say(window_words::k_precision) + "##precision", "side/content");
   ASSERT_TRUE(viewer().precision().open);
-  ASSERT_TRUE(until([&] { return precision().search && precision().search->over(); }));
+  ASSERT_TRUE(until([&] { return precision().points.size() > 10; }));
+  click(say(window_words::k_cancel) + "##cancel-precision", "###precision");
+  ASSERT_TRUE(until([&] { return precision().search->over(); }));
   frame();
   frame();
   const auto found = precision().search->result();
@@ -153,7 +164,7 @@ TEST_F(PresentPanels, the_chart_of_precision_opens_beside_the_step_and_a_click_l
     EXPECT_EQ(player().parameters().models, before.models);
     ++loaded;
   }
-  EXPECT_GT(loaded, 5);
+  EXPECT_GT(loaded, 3);
   press(render::key::escape);
   EXPECT_FALSE(viewer().precision().open);
 }
