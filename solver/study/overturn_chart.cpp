@@ -367,19 +367,22 @@ class Chart {
   }
 
   static std::string median_in_words(const Lognormal& fit, const std::string& what, const std::string& unit) {
-    const Interval median = fit.median_interval(), beta = fit.beta_interval();
-    return fmt::format("{}median {:.4g} {} (95 %: {:.4g} to {:.4g}), β = {:.3g} ({:.2g} to {:.2g})", what,
-                       fit.median, unit, median.low, median.high, fit.beta, beta.low, beta.high);
+    const Interval range = fit.median_interval();
+    return fmt::format("{}median {:.4g} {} ({:.4g} to {:.4g})", what, fit.median, unit, range.low,
+                       range.high);
   }
 
-  /// Two lines at most.
+  /// Three lines at most.
   static std::vector<std::string> fit_in_words(const Fragility& f, const std::string& what,
                                                const std::string& unit) {
     constexpr std::size_t k_line = 58;
-    if (f.fit)
+    if (f.fit) {
+      const Interval beta = f.fit->beta_interval();
       return {median_in_words(*f.fit, what, unit),
-              fmt::format("lognormal, deviance {:.3g} with {} degrees of freedom", f.fit->deviance,
-                          f.fit->freedom)};
+              fmt::format("lognormal, β = {:.3g} ({:.2g} to {:.2g}); in brackets 95 %", f.fit->beta, beta.low,
+                          beta.high),
+              fmt::format("deviance {:.3g} with {} degrees of freedom", f.fit->deviance, f.fit->freedom)};
+    }
     const std::string words = plain("no lognormal: " + f.why_not);
     const std::size_t blank = words.size() > k_line ? words.rfind(' ', k_line) : std::string::npos;
     if (blank == std::string::npos) return {words};
