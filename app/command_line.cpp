@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "app/commands.h"
+#include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/ranks.h"
@@ -609,6 +610,7 @@ void read_commands(const std::function<void(const CLI::App&)>& read) {
 }
 
 int run_command_line(int argc, char** argv) {
+  if (argc == 3 && argv[1] == k_read_apart) return read_apart(argv[2]);
   catch_interrupts();
   try {
     const int code = CommandLine().carry_out(argc, argv);

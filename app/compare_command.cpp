@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "app/ghost_video.h"
 #include "app/interrupt.h"
 #include "app/log.h"
@@ -46,7 +47,7 @@ Side open_side(const std::string& source) {
     side.scene = io::load_scene(source);
     return side;
   }
-  side.recording = std::make_unique<io::Recording>(source);
+  side.recording = std::make_unique<io::Recording>(open_foreign_recording(source));
   side.scene = io::recorded_scene(*side.recording);
   io::check_edits(side.recording->history(), side.scene.setup);
   side.edits = side.recording->history().edits_on_way_to(side.recording->newest_branch()).size();

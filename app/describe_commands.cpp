@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/summary.h"
@@ -251,7 +252,7 @@ int info_command(const InfoOptions& options) {
   if (!json.empty() && json != "-") require_writable_text("--json", json, file);
   ordered_json description;
   if (io::is_recording(file)) {
-    const io::Recording recording(file);
+    const io::Recording recording = open_foreign_recording(file);
     description = describe(recording);
     if (verified) description["verify"] = verify(recording);
   } else {

@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "solver/io/export_xdmf.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
@@ -16,7 +17,7 @@ int export_command(const ExportOptions& options) {
       if (scene.name == options.recording)
         throw BadInput(
             fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
-  const io::Recording recording(options.recording);
+  const io::Recording recording = open_foreign_recording(options.recording);
   if (!options.xdmf.empty()) {
     for (const std::string& file : {options.xdmf, options.xdmf + ".h5"})
       require_writable_file("--xdmf", file, options.recording);

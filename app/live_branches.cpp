@@ -46,10 +46,8 @@ void LiveRun::Worker::read_rows() {
     if (!stop_) wake_();
   };
   try {
-    while (static_cast<std::int64_t>(read_rows_.size()) < from.frame_count() && !stop_) {
-      read_rows_.push_back(
-          std::make_shared<const io::FrameRow>(from.frame(static_cast<std::int64_t>(read_rows_.size()))));
-      rows.push_back(read_rows_.back());
+    for (; read_rows_ < from.frame_count() && !stop_; ++read_rows_) {
+      rows.push_back(std::make_shared<const io::FrameRow>(from.frame(read_rows_)));
       if (rows.size() == k_rows_at_once) tell_rows();
     }
   } catch (const io::InputError& error) {  // what came before the damage can be seen
@@ -141,7 +139,7 @@ void LiveRun::Worker::fork(const Fork& from) {
 
 // The new file holds all of the one that was replayed, and goes on from there.
 void LiveRun::Worker::carry_on_recording() {
-  const std::vector<io::RecordedEvent> events = source_.recording->events();
+  const io::Recording from = std::move(*source_.recording);
   source_.recording.reset();
   start_recording();
   if (recorder_) {
@@ -150,11 +148,10 @@ void LiveRun::Worker::carry_on_recording() {
     for (const LoggedEdit& edit : history_.edits) recorder_->post(edit);
     for (const io::Checkpoint& checkpoint : read_checkpoints_)
       recorder_->post(io::Observation{.frame = {}, .checkpoint = checkpoint, .events = {}});
-    for (const RowPtr& row : read_rows_)
-      recorder_->post(io::Observation{.frame = *row, .checkpoint = {}, .events = {}});
-    recorder_->post(io::Observation{.frame = {}, .checkpoint = {}, .events = events});
+    for (std::int64_t i = 0; i < read_rows_; ++i)
+      recorder_->post(io::Observation{.frame = from.frame(i), .checkpoint = {}, .events = {}});
+    recorder_->post(io::Observation{.frame = {}, .checkpoint = {}, .events = from.events()});
   }
-  read_rows_.clear();
 }
 
 }  // namespace topple::app

@@ -5,6 +5,7 @@
 
 #include "app/live_worker.h"
 #include "app/summary.h"
+#include "app/thinning.h"
 
 namespace topple::app {
 namespace {
@@ -167,7 +168,11 @@ void LiveRun::Worker::run_some() {
 }
 
 void LiveRun::Worker::record(io::Observation observation) {
-  if (observation.checkpoint) points_.push_back({status_.branch, run_->point()});
+  if (observation.checkpoint) {
+    points_.push_back({status_.branch, run_->point()});
+    if (points_.size() * observation.checkpoint->state.size() * sizeof(double) > k_most_point_bytes)
+      thin_older_half(points_);
+  }
   tell([&observation](LiveReport& report) {
     if (observation.frame) report.rows.push_back(std::make_shared<const io::FrameRow>(*observation.frame));
     report.events.insert(report.events.end(), observation.events.begin(), observation.events.end());

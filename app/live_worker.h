@@ -144,7 +144,7 @@ class LiveRun::Worker {
   io::Observer observer_;
   History history_;
   std::vector<Point> points_;
-  std::vector<RowPtr> read_rows_;  // of the recording that is replayed
+  std::int64_t read_rows_ = 0;  // of the recording that is replayed
   std::vector<io::Checkpoint> read_checkpoints_;
   std::size_t read_events_ = 0, read_edits_ = 0, read_branches_ = 0;
   bool going_ = false;

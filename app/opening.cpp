@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "app/run_extent.h"
 #include "solver/io/rerun.h"
 #include "solver/io/scene_save.h"
@@ -59,12 +60,12 @@ std::string cache_folder() {
   return user_folder("XDG_CACHE_HOME", ".cache");
 }
 
-LiveSource open_source(const ViewOptions& o) {
+LiveSource open_source(const ViewOptions& o, const std::string& program) {
   LiveSource source;
   if (io::is_recording(o.source)) {
     if (!o.overrides.empty())
       throw BadInput("--set: " + o.source + " is a recording; only a scene can be changed");
-    source.recording.emplace(o.source);
+    source.recording = open_foreign_recording(o.source, program);
     source.scene = std::make_shared<const io::Scene>(io::recorded_scene(*source.recording));
     if (source.recording->frame_count() == 0) throw BadInput(o.source + ": holds no frames");
     const Setup& setup = source.scene->setup;

@@ -17,8 +17,8 @@ std::string state_folder();
 std::string cache_folder();
 
 /// Reads a scene or a recording. Where no file is named for it, a run is recorded in state_folder(); without
-/// one, nowhere. Throws io::InputError, BadInput.
-LiveSource open_source(const ViewOptions& options);
+/// one, nowhere. `program` as of open_foreign_recording. Throws io::InputError, BadInput.
+LiveSource open_source(const ViewOptions& options, const std::string& program = "/proc/self/exe");
 
 /// `present` with accelerograms as the record of its first shake. Throws io::InputError.
 LiveSource open_records(const io::Scene& present, const std::vector<std::string>& files);

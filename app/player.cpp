@@ -38,8 +38,8 @@ double nearest_time(const Rows& rows, double time) {
 
 }  // namespace
 
-Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run)
-    : scene_(std::move(scene)), run_(run), parameters_(scene_->setup.parameters) {}
+Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes)
+    : scene_(std::move(scene)), run_(run), most_bytes_(most_bytes), parameters_(scene_->setup.parameters) {}
 
 bool Player::update(double wall_s) {
   wall_s = std::min(wall_s, k_longest_pause);
@@ -101,11 +101,28 @@ void Player::take(LiveReport&& report) {
   events_.insert(events_.end(), report.events.begin(), report.events.end());
   if (report.head) head_ = std::move(report.head);
   for (RowPtr& row : report.rows) {
-    std::vector<RowPtr>& own = rows_[row->branch];
-    own.push_back(row);
-    if (row->branch == shown_ && !rebuild) extend_way(own.back());
+    if (row->branch == shown_ && !rebuild) extend_way(row);
+    keep(std::move(row));
   }
   if (rebuild) rebuild_way();
+}
+
+void Player::keep(RowPtr row) {
+  const std::size_t most = most_bytes_ / memory_of(*row);
+  std::vector<RowPtr>& own = rows_[row->branch];
+  own.push_back(std::move(row));
+  if (++row_count_ > most) thin();
+}
+
+// What the extent knows of rows that go stays true.
+void Player::thin() {
+  row_count_ = 0;
+  for (auto& [branch, rows] : rows_) {
+    thin_older_half(rows);
+    row_count_ += rows.size();
+  }
+  way_ = rows_on_way_to(shown_);
+  if (!ghost_way_.empty()) ghost_way_ = rows_on_way_to(left_);
 }
 
 std::vector<RowPtr> Player::rows_on_way_to(std::int32_t branch) const {

@@ -9,6 +9,7 @@
 
 #include "app/bridge.h"
 #include "app/live_run.h"
+#include "app/thinning.h"
 
 namespace topple::app {
 
@@ -17,7 +18,8 @@ inline constexpr double k_least_speed = 1. / 64, k_most_speed = 8;
 
 class Player {
  public:
-  Player(std::shared_ptr<const io::Scene> scene, LiveRun& run);
+  /// `most_bytes` of rows are kept.
+  Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes = k_most_row_bytes);
 
   /// Takes in what was reported and lets a replay go on by `wall_s`. True when anything changed.
   bool update(double wall_s);
@@ -104,6 +106,8 @@ class Player {
   void set_speed(double speed);
   void post(const Edit& edit);
   void take(LiveReport&& report);
+  void keep(RowPtr row);
+  void thin();
   void rebuild_way();
   void extend_way(const RowPtr& row);
   void update_parameters();
@@ -111,9 +115,11 @@ class Player {
 
   const std::shared_ptr<const io::Scene> scene_;
   LiveRun& run_;
+  const std::size_t most_bytes_;
   LiveStatus status_;
   History history_;
   std::map<std::int32_t, std::vector<RowPtr>> rows_;  // by branch
+  std::size_t row_count_ = 0;
   std::vector<io::RecordedEvent> events_;
   RowPtr head_;
   std::int32_t shown_ = 0;

@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "solver/io/recover.h"
 
 namespace topple::app {
@@ -20,7 +21,7 @@ std::string recovered_name(const std::string& recording) {
 
 int recover_command(const RecoverOptions& options) {
   const std::string& from = options.recording;
-  const io::Recording recording(from);
+  const io::Recording recording = open_foreign_recording(from);
   const io::SoundRows rows = io::sound_rows(recording);
   if (rows.frames.empty())
     throw BadInput(from + ": holds no frame that can be read; nothing can be recovered");

@@ -11,6 +11,7 @@
 #include "app/bridge.h"
 #include "app/commands.h"
 #include "app/files.h"
+#include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/off_screen.h"
@@ -140,7 +141,7 @@ int draw_sequence(const RenderOptions& o, const DrawAt& draw_at, double from, do
 }
 
 int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const io::Scene> scene) {
-  const io::Recording recording(path);
+  const io::Recording recording = scene ? io::Recording(path) : open_foreign_recording(path);
   if (!scene) scene = std::make_shared<const io::Scene>(io::recorded_scene(recording));
   io::check_edits(recording.history(), scene->setup);
   const Replay replay(recording);

@@ -30,11 +30,12 @@ Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std:
     : stage_(stage),
       scale_(scale),
       wake_(std::move(wake)),
+      program_(std::move(program)),
       appearance_(appearance),
       keep_(std::move(keep)),
       own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
       chooser_(stage, wake_),
-      export_(std::move(program)) {}
+      export_(program_) {}
 
 Shell::~Shell() {
   close("interrupted");
@@ -87,9 +88,10 @@ void Shell::open_in_background(const std::string& what, const std::string& path,
 void Shell::open(const std::string& source) {
   std::error_code ignored;
   const bool file = fs::exists(source, ignored);
-  open_in_background(file ? fs::path(source).filename().string() : source, file ? source : "", [source] {
-    return open_source({.source = source, .overrides = {}, .recording = {}, .language = {}});
-  });
+  open_in_background(
+      file ? fs::path(source).filename().string() : source, file ? source : "", [source, program = program_] {
+        return open_source({.source = source, .overrides = {}, .recording = {}, .language = {}}, program);
+      });
 }
 
 void Shell::drop(const std::vector<std::string>& paths) {

@@ -20,8 +20,8 @@ namespace topple::app {
 
 class Shell {
  public:
-  /// `scale` as of Viewer. `wake` makes a waiting window look; any thread calls it. `program` draws exports.
-  /// The others as of Viewer.
+  /// `scale` as of Viewer. `wake` makes a waiting window look; any thread calls it. `program` draws exports
+  /// and reads recordings first. The others as of Viewer.
   Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program = "/proc/self/exe",
         const Appearance& appearance = {}, Viewer::Keep keep = {});
   ~Shell();
@@ -74,6 +74,7 @@ class Shell {
   render::Stage& stage_;
   const float scale_;
   const std::function<void()> wake_;
+  const std::string program_;
   Appearance appearance_;
   const Viewer::Keep keep_;
   const render::OverlayFonts own_fonts_;  ///< of a window without a session

@@ -18,11 +18,12 @@ class PlayerTest : public ::testing::Test {
   void start(const std::string& text = k_rocking, LiveRun::Advance advance = &topple::Run::advance) {
     start({.scene = live_scene(text), .recording = {}, .output = path("live.h5")}, std::move(advance));
   }
-  void start(LiveSource source, LiveRun::Advance advance = &topple::Run::advance) {
+  void start(LiveSource source, LiveRun::Advance advance = &topple::Run::advance,
+             std::size_t most_bytes = k_most_row_bytes) {
     const auto scene = source.scene;
     run_.emplace(
         std::move(source), [] {}, std::move(advance));
-    player_.emplace(scene, *run_);
+    player_.emplace(scene, *run_, most_bytes);
     ASSERT_TRUE(until([this] { return player().can_edit() || player().can_continue(); }));
   }
   template <typename Done>
@@ -407,6 +408,25 @@ TEST_F(PlayerTest, a_failed_step_keeps_the_last_good_state_and_may_be_tried_agai
   EXPECT_TRUE(player().status().message.empty());
   run_->close("stopped");
   EXPECT_EQ(io::Recording(path("live.h5")).status(), "completed");
+}
+
+TEST_F(PlayerTest, rows_in_memory_are_bounded_and_old_instants_can_still_be_seen_and_branched_from) {
+  start({.scene = live_scene(), .recording = {}, .output = path("live.h5")});
+  const std::size_t most = 30 * memory_of(*player().way().front());
+  start({.scene = live_scene(), .recording = {}, .output = path("bounded.h5")}, &topple::Run::advance, most);
+  run_to_end();
+  const std::vector<RowPtr>& way = player().way();
+  EXPECT_LE(way.size() * memory_of(*way.front()), most);
+  EXPECT_EQ(way.front()->step, 0);
+  for (std::size_t i = 1; i < way.size(); ++i) EXPECT_LT(way[i - 1]->time, way[i]->time);
+  EXPECT_GT(way[2]->step - way[1]->step, way.back()->step - way[way.size() - 2]->step);
+  EXPECT_GT(io::Recording(path("bounded.h5")).frame_count(), 3 * static_cast<std::int64_t>(way.size()));
+
+  player().scrub(way[1]->time);
+  const RowPtr there = way[1];
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit() && player().shown_branch() == 1; }));
+  expect_same_motion(*player().row(), *there);
 }
 
 TEST_F(PlayerTest, nobody_waits_for_a_step_that_takes_long) {

@@ -1,5 +1,7 @@
 add_library(failing_writes MODULE ${CMAKE_CURRENT_LIST_DIR}/failing_writes.cpp)
 target_link_libraries(failing_writes PRIVATE ${CMAKE_DL_LIBS})
+add_library(failing_hdf5 MODULE ${CMAKE_CURRENT_LIST_DIR}/failing_hdf5.cpp)
+target_link_libraries(failing_hdf5 PRIVATE PkgConfig::HDF5)
 add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/analysis_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/appearance_test.cpp
@@ -14,6 +16,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/failing_write_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/manual_test.cpp
@@ -28,6 +31,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/run_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shell_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/shortcuts_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/soak_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/subject_test.cpp
@@ -39,8 +43,9 @@ add_executable(app_test
 target_include_directories(app_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(app_test PRIVATE topple_app PkgConfig::IMGUI GTest::gtest_main)
 target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>"
-  TOPPLE_FAILING_WRITES="$<TARGET_FILE:failing_writes>" TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-add_dependencies(app_test topple failing_writes)
+  TOPPLE_FAILING_WRITES="$<TARGET_FILE:failing_writes>" TOPPLE_FAILING_HDF5="$<TARGET_FILE:failing_hdf5>"
+  TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+add_dependencies(app_test topple failing_writes failing_hdf5)
 gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)
 
 # It listens to what is written: Dear ImGui's AddText.
