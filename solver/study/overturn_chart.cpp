@@ -326,7 +326,12 @@ class Chart {
                          static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
     }
     out += "NaN NaN NaN NaN\nEND\n" + axis_scale("x", along);
-    if (ground) out += axis_above(axis_over(pgv, peaks));
+    const auto proportional = [&](const FloorPeak& peak) {
+      return std::abs(peak.velocity * peaks[0].acceleration - peaks[0].velocity * peak.acceleration) <
+             1e-6 * peak.velocity * peaks[0].acceleration;
+    };
+    const bool above = ground && std::ranges::all_of(peaks, proportional);
+    if (above) out += axis_above(axis_over(pgv, peaks));
     out +=
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
         "'#dddddd' lw 0.8\n";
@@ -334,7 +339,7 @@ class Chart {
     out += std::string(
                "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset "
                "1.2,0\nset border ") +
-           (ground ? "7\n" : "3\n");
+           (above ? "7\n" : "3\n");
     std::string plot = "$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle";
     if (at.fit) {
       out += "$fit << END\n";
@@ -361,7 +366,7 @@ class Chart {
     return axis;
   }
 
-  /// A second scale above the panel; both grow alike.
+  /// A second scale above the panel, in proportion to the first.
   static std::string axis_above(const Axis& axis) {
     return axis_scale("x2", axis) + "set x2label " + gnuplot_quoted(axis_title(axis)) + " offset 0,-0.4\n";
   }
