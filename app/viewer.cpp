@@ -106,7 +106,10 @@ bool Viewer::update(double wall_s) {
   bool news = player_.update(wall_s) || redress;
   const bool words = std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
-  if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
+  const bool computes = (teaching_.accuracy && !teaching_.accuracy->over()) ||
+                        (teaching_.map.search && !teaching_.map.search->over()) ||
+                        (precision_.search && !precision_.search->over());
+  if (std::exchange(computes_, computes) || computes) news = true;  // how far it is is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;
@@ -179,6 +182,7 @@ void Viewer::build(const std::function<void()>& over) {
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
+  if (precision_.open) draw_precision(player_, precision_, refused_);
   if (keys_shown_) draw_key_table();
   if (over) over();
   ImGui::Render();

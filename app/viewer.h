@@ -11,6 +11,7 @@
 #include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
+#include "app/precision_panel.h"
 #include "app/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
@@ -68,6 +69,7 @@ class Viewer {
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
   const TeachingState& teaching() const { return teaching_; }
+  const PrecisionState& precision() const { return precision_; }
   const Appearance& appearance() const { return appearance_; }
   const render::OverlayFonts& fonts() const { return fonts_; }
   const render::Orbit& orbit() const { return orbit_; }
@@ -123,6 +125,7 @@ class Viewer {
   double flight_ = 1;                    // of the camera from one place to the other, 0..1
   bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
   bool words_due_ = false;               // they were written for another camera
+  bool computes_ = false;                // beside the window
   /// What the camera goes along with, and where that was when it last did.
   struct Followed {
     std::size_t body;
@@ -134,6 +137,7 @@ class Viewer {
   Inspection inspection_;
   Histories histories_;
   TeachingState teaching_;
+  PrecisionState precision_;
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;

@@ -120,7 +120,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   draw_tabs();
   ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   if (tab_ == Tab::parameters) {
-    draw_parameters(player_, refused_);
+    if (draw_parameters(player_, refused_)) precision_.open = true;
   } else if (tab_ == Tab::picture) {
     if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
       scene_changed_ = true;
@@ -141,7 +141,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     Appearance appearance = appearance_;
     if (draw_appearance(appearance)) wear(appearance);
   } else if (tab_ == Tab::teach) {
-    draw_teaching(player_, teaching_);
+    draw_teaching(player_, teaching_, refused_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }

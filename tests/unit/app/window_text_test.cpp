@@ -10,11 +10,14 @@
 #include <fstream>
 #include <set>
 
+#include "app/precision_words.h"
 #include "app/shell.h"
+#include "app/teaching_words.h"
 #include "app/theme.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
 #include "live.h"
+#include "mouse.h"
 #include "render/image.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/scratch.h"
@@ -264,6 +267,28 @@ TEST_P(WindowText, is_read_in_every_panel) {
   check("past");
   viewer_->press({render::key::f1, false, false});
   check("keys");
+}
+
+TEST_P(WindowText, is_read_in_studies_of_the_present_scene) {
+  start();
+  const auto draw = [this] { frame(); };
+  viewer_->show(Viewer::Tab::teach);
+  ASSERT_TRUE(click_button(say(window_words::k_overturning_map) + "##map", "side/content", draw));
+  const auto map = [&] { return viewer_->teaching().map.search->result(); };
+  ASSERT_TRUE(eventually(draw, [&] { return map() && map()->map.run > 15; }));
+  check("map-under-way");
+  ASSERT_TRUE(click_button(say(window_words::k_cancel) + "##cancel-map", "side/content", draw));
+  ASSERT_TRUE(eventually(draw, [&] { return viewer_->teaching().map.search->over(); }));
+  check("map");
+  const Box& cells = viewer_->teaching().map.cells;
+  ImGui::GetIO().MousePos = {cells.left + cells.width / 2, cells.top + cells.height / 3};
+  check("map-cell");
+  ImGui::GetIO().MousePos = {2, 400};
+  viewer_->show(Viewer::Tab::parameters);
+  ASSERT_TRUE(click_button(say(window_words::k_precision) + "##precision", "side/content", draw));
+  check("precision-under-way");
+  ASSERT_TRUE(eventually(draw, [&] { return viewer_->precision().points.size() > 15; }));
+  check("precision");
 }
 
 TEST_P(WindowText, is_read_in_the_chooser_dialogs_and_messages) {
