@@ -204,7 +204,7 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }
-  if (follows_ && scene_changed_) follow();
+  if (follows_ && scene_changed_) go_along();
   if (!fitted_) {
     look(view_);
     flight_ = 1;
@@ -222,7 +222,13 @@ void Viewer::draw_scene() {
   scene_changed_ = camera_changed_ = false;
 }
 
-void Viewer::follow() {
+void Viewer::follow(const std::optional<std::size_t>& body) {
+  follows_.reset();
+  if (body && row_) follows_ = Followed{*body, centre_of(*row_, *body)};
+}
+
+void Viewer::go_along() {
+  if (!is_finite(*row_)) return;
   const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
   for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
   follows_->centre = centre;

@@ -39,6 +39,13 @@ class Viewer {
 
   void show(Tab tab) { tab_ = tab; }
 
+  /// From the instant that was drawn last on the camera goes along with this body; nothing: it stays.
+  void follow(const std::optional<std::size_t>& body);
+  /// The body that the camera goes along with.
+  std::optional<std::size_t> followed() const {
+    return follows_ ? std::optional(follows_->body) : std::nullopt;
+  }
+
   /// Begins a guided demo; the floor must be one that can_shake_as_sine.
   void guide(std::size_t demo);
 
@@ -87,7 +94,7 @@ class Viewer {
   void next_colour();
   void turn(bool& on);
   void toggle_following();
-  void follow();
+  void go_along();
   void lay_out();
   void handle_characters();
   void handle_mouse();
