@@ -18,6 +18,7 @@ namespace {
 constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
 constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
+constexpr float k_least_beside = 0.3f;   // the same of its width, where there is little height
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
@@ -234,7 +235,8 @@ void Viewer::go_along() {
   follows_->centre = centre;
 }
 
-// What may still fall needs room beside it; words lie above, below and at the right.
+// What may still fall needs room beside it; words lie above, below and at the right. Where they leave little
+// height, bodies stand beside them.
 void Viewer::look(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
@@ -244,14 +246,17 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
-  const float width = std::max(scene_.width - words_right_, k_least_free * scene_.width);
-  const float height = std::max(scene_.height - words_top_ - words_bottom_, k_least_free * scene_.height);
+  const bool low = scene_.height - words_top_ - words_bottom_ < k_least_free * scene_.height;
+  const bool beside = low && scene_.width - words_left_ - words_right_ > k_least_beside * scene_.width;
+  const float left = beside ? words_left_ : 0, top = beside ? 0 : words_top_;
+  const float width = std::max(scene_.width - left - words_right_, k_least_beside * scene_.width);
+  const float height = std::max(scene_.height - top - words_bottom_, k_least_free * scene_.height);
   view_ = view;
   moved_ = false;
   from_ = orbit_;
   to_ = render::Orbit::fit(view, frame, width / height);
   to_.distance *= scene_.height / height;
-  to_.pan((width - scene_.width) / 2, (words_top_ - words_bottom_) / 2, scene_.height);
+  to_.pan(left + (width - scene_.width) / 2, (top - words_bottom_) / 2, scene_.height);
   flight_ = 0;
   camera_changed_ = true;
 }

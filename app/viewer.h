@@ -137,6 +137,7 @@ class Viewer {
   };
   std::optional<Followed> follows_;
   float words_top_ = 0, words_bottom_ = 0, words_right_ = 0;  // px of the scene that words cover
+  float words_left_ = 0;                                      // the same instead of words_top_
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;
