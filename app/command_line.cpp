@@ -323,7 +323,7 @@ class CommandLine {
     command.add_option("--exaggerate", exaggerate_, "deformation drawn so many times as large, 1 to 200")
         ->type_name("FACTOR");
     command.add_flag("--forces", render_.picture.contact_forces,
-                     "arrows of what floors and walls do to bodies");
+                     "arrows of what floors, walls and other bodies do to bodies");
     command.add_flag("--no-panels", no_panels_, "without the sheets of cabinets");
     command
         .add_option("--trails", trails_,

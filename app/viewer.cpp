@@ -210,7 +210,7 @@ void Viewer::draw_scene() {
     look(view_);
     flight_ = 1;
     orbit_ = to_;
-    fitted_ = words_due_ = true;
+    fitted_ = true;
   }
   orbit_.set_bounds(frame_);
   drawn_still_ = !changed;
@@ -220,6 +220,7 @@ void Viewer::draw_scene() {
                     std::min(static_cast<int>(std::lround(scene_.width * pixel.x)), surface.width),
                     std::min(static_cast<int>(std::lround(scene_.height * pixel.y)), surface.height),
                     drawn_still_ ? render::Quality::still : render::Quality::interactive);
+  words_due_ = words_due_ || changed;  // legend and labels were written for what was drawn before
   scene_changed_ = camera_changed_ = false;
 }
 

@@ -129,7 +129,7 @@ class Viewer {
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;                    // of the camera from one place to the other, 0..1
   bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
-  bool words_due_ = false;               // they were written for another camera
+  bool words_due_ = false;               // they were written for another camera or instant
   /// What the camera goes along with, and where that was when it last did.
   struct Followed {
     std::size_t body;

@@ -213,7 +213,8 @@ struct Recording::Impl {
     shape = {.nodes = first(fields[0]),
              .elements = first(fields[2]),
              .contacts = first(fields[5]),
-             .bodies = first(fields[8]),
+             .touched = first(fields[7]),
+             .bodies = first(fields[9]),
              .anchors = anchors ? first(fields.back()) : 0};
     const auto expected = frame_fields(shape);
     for (std::size_t i = 0; i < fields.size(); ++i) {

@@ -145,7 +145,7 @@ TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goe
   shell_->drop({other});
   ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
   EXPECT_EQ(shell_->message()->text,
-            other + ": recording format 5 is not supported by this version, which reads format 6");
+            other + ": recording format 5 is not supported by this version, which reads format 7");
   press(render::key::escape);
   EXPECT_EQ(shell_->title(), "topple: rocking");
   run_to(0.1);
