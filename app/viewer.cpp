@@ -85,10 +85,15 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
   dress();
 }
 
+Appearance Viewer::fitting() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return app::fitting(appearance_, desktop_scale_, size.x, size.y);
+}
+
 void Viewer::dress() {
-  scale_ = desktop_scale_ * static_cast<float>(appearance_.scale);
-  fonts_ = set_up_interface(stage_, desktop_scale_, appearance_, &player_.scene());
-  dressed_ = appearance_;
+  dressed_ = fitting();
+  scale_ = desktop_scale_ * static_cast<float>(dressed_.scale);
+  fonts_ = set_up_interface(stage_, desktop_scale_, dressed_, &player_.scene());
   scene_changed_ = true;
 }
 
@@ -99,10 +104,12 @@ void Viewer::wear(const Appearance& appearance) {
   } catch (const std::runtime_error& error) {
     told_ = say(window_words::k_not_written, error.what());
   }
+  if (const double scale = fitting().scale; scale < appearance_.scale)
+    told_ = say(window_words::k_letters_too_large, 100 * appearance_.scale, 100 * scale);
 }
 
 bool Viewer::update(double wall_s) {
-  const bool redress = dressed_ != appearance_;
+  const bool redress = dressed_ != fitting();
   if (redress) dress();
   bool news = player_.update(wall_s) || redress;
   const bool words = std::exchange(words_due_, false);

@@ -86,6 +86,7 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
+  Appearance fitting() const;
   void dress();
   void wear(const Appearance& appearance);
   void resize(int direction);
@@ -118,7 +119,7 @@ class Viewer {
   render::Stage& stage_;
   const float desktop_scale_;
   float scale_ = 1;
-  Appearance appearance_, dressed_;  // as asked for, and as shown
+  Appearance appearance_, dressed_;  // as asked for, and as shown, where there is room
   const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
