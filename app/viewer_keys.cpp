@@ -110,11 +110,11 @@ void Viewer::toggle_following() {
   const Model& model = player_.scene().setup.model;
   told_.clear();
   if (follows_ || !row_ || model.furniture_total() == 0) {
-    follows_.reset();
+    follow(std::nullopt);
     return;
   }
   const std::size_t body = body_of(model, inspection_.picked.value_or(Subject{Subject::Kind::body, 0}));
-  follows_ = Followed{body, centre_of(*row_, body)};
+  follow(body);
   told_ = say(k_follows, model.bodies[body].name);
 }
 

@@ -55,6 +55,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;
   words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
+  words_left_ = margin + width + pad;
   for (const auto& [font, line] : lines) {
     list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
                  line.c_str());
