@@ -91,14 +91,15 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
   const study::Axis& along = map.fragility_along_y ? plan.y : plan.x;
   const study::Axis& other = map.fragility_along_y ? plan.x : plan.y;
   const study::Fragility& at = map.fragility[static_cast<std::size_t>(map.own_column)];
-  const std::string where =
-      "fragility at " + other.key + " = " +
-      study::valued(other, other.values[static_cast<std::size_t>(map.own_column)]) + ":";
+  const std::string where = "fragility at " + other.key + " = " +
+                            study::valued(other, other.values[static_cast<std::size_t>(map.own_column)]) +
+                            ":";
   if (!at.fit) return where + " none, " + at.why_not + "\n";
   const auto told = [](const study::Lognormal& fit, const std::string& what, const std::string& unit) {
     const study::Interval median = fit.median_interval(), beta = fit.beta_interval();
     return fmt::format("  {} median {:.4g}{} (95 %: {:.4g} to {:.4g}), beta {:.3g} ({:.2g} to {:.2g})\n",
-                       what, fit.median, unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta, beta.low, beta.high);
+                       what, fit.median, unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta,
+                       beta.low, beta.high);
   };
   std::string text = where + "\n" + told(*at.fit, along.key + ":", along.unit);
   const std::vector<study::FloorPeak> peaks = floor_peaks(plan, map, map.own_column);
