@@ -222,16 +222,17 @@ TEST(MemberContact, tangent_without_friction_is_the_second_derivative_of_the_ene
   const ContactLaw law = elastic_law();
   const double height = 0.6 * k_width;
   const std::vector<std::vector<Vec3>> ends = {
-      {{-0.2, 0, height}, {0.3, 0, height}, {0, -0.2, 0}, {0.01, 0.2, 0}},         // between all ends
-      {{-0.2, 0, height}, {0.3, 0, height}, {0.02, 0.004, 0}, {0.05, 0.2, 0}},     // b's first over a
-      {{0.02, 0.004, height}, {0.05, 0.2, height}, {-0.2, 0, 0}, {0.3, 0.01, 0}},  // a's first over b
-      {{0, 0.004, height}, {0, 0.2, height}, {0.005, 0, 0}, {0.3, 0.01, 0}}};      // both
+      {{-0.2, 0, height}, {0.3, 0, height}, {0, -0.2, 0}, {0.01, 0.2, 0}},      // between all ends
+      {{-0.2, 0, height}, {0.3, 0, height}, {0.02, 0.004, 0}, {0.05, 0.2, 0}},  // b's first over a
+      {{0.02, 0.004, height}, {0.05, 0.2, height}, {-0.2, 0, 0}, {0.3, 0, 0}},  // a's first over b
+      {{0, 0.004, height}, {0, 0.2, height}, {0.005, 0, 0}, {0.3, 0.01, 0}}};   // both
   const bool free[][2] = {{true, true}, {true, false}, {false, true}, {false, false}};
   for (std::size_t k = 0; k < ends.size(); ++k) {
     Pair pair(ends[k]);
     const Quat turn = random_rotation(rng);
     for (Vec3& x : pair.position) x = turn * x;
     for (int i = 0; i < 4; ++i) pair.pairs[0].start[i] = pair.position[i];
+    pair.velocity[0] = pair.velocity[1] = Vec3(0.1, 0.2, 0.3);  // it slides, at no cost
     const MemberContacts found = pair.find(law);
     ASSERT_EQ(found.touches.size(), 1u);
     ASSERT_EQ(found.touches[0].at.s_free, free[k][0]) << k;

@@ -121,9 +121,9 @@ TEST(Proximity, nearest_points_do_not_depend_on_the_unit_of_length) {
 TEST(Proximity, grid_of_many_cells_finds_the_pairs_that_comparing_all_finds) {
   std::mt19937 rng(8);
   Model model = steel_model();
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 500; ++k) {
     BodyBuilder builder(model, "bar-" + std::to_string(k));
-    const Vec3 x = random_vector(rng, 2), along = 0.25 * random_direction(rng);
+    const Vec3 x = random_vector(rng, 1.8), along = 0.25 * random_direction(rng);
     builder.line("bar", x - along, x + along, 1, 2, 0, 0, Vec3(0.1, 0.2, 0.3));
     builder.add_material_mass();
     builder.close();
