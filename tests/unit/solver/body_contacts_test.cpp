@@ -169,6 +169,31 @@ TEST(BodyContacts, no_point_below_a_face_is_overlooked_in_any_pose) {
   }
 }
 
+TEST(BodyContacts, each_plane_has_its_own_width_and_springs) {
+  Model model = lopsided();
+  model.planes.push_back({"wall", Vec3::Zero(), Vec3::UnitX(), 0.05});
+  model.planes.push_back({"side", Vec3::Zero(), Vec3::UnitY(), 0.07});
+  BodyContacts contacts(model, 0);
+  const std::size_t planes = model.planes.size();
+  const std::vector<Vec3> stick(model.contact_points.size() * planes, Vec3::Zero());
+  BodyState s;
+  s.rung = Rung::rigid;
+  s.position = model.bodies[0].centre_of_gravity - Vec3::Constant(3);  // all points beyond all faces
+  contacts.find(s, rotation_matrix(packed(s.rotation)), stick);
+  std::vector<int> met(stick.size(), 0);
+  contacts.each([&](const BodyContacts::Touch& touch, int lane, int point, std::size_t spring) {
+    const double width = model.contact_points[point].width, L = (width + model.planes[touch.plane].width) / 2;
+    EXPECT_NEAR(contacts.length(touch, lane), L, 1e-15);
+    const double gap =
+        model.node_position[model.contact_points[point].node].dot(model.planes[touch.plane].normal) - 3 -
+        width / 2;
+    EXPECT_NEAR(touch.depth[lane], -gap / L, 1e-12 / L);
+    EXPECT_EQ(spring, point * planes + touch.plane);
+    ++met[spring];
+  });
+  EXPECT_EQ(met, std::vector<int>(stick.size(), 1));
+}
+
 TEST(BodyContacts, bound_of_their_stiffness_does_not_depend_on_the_unit_of_length) {
   const Model model = lopsided();
   Model twice = model;
