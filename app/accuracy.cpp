@@ -8,27 +8,13 @@ namespace {
 // Of all the work, the run at the scene's own steps: the other one makes twice as many.
 constexpr double k_first_share = 1. / 3;
 
-}  // namespace
-
-Accuracy::Accuracy(const Setup& setup) : thread_([this, setup] { work(setup); }) {}
-
-Accuracy::~Accuracy() {
-  stop_ = true;
-  thread_.join();
-}
-
-std::optional<AccuracyResult> Accuracy::result() const {
-  const std::lock_guard lock(mutex_);
-  return result_;
-}
-
-void Accuracy::work(const Setup& setup) {
+void work(const Setup& setup, Accuracy& desk) {
   AccuracyResult found;
   const auto outcome_of = [&](const Setup& of, double from, double share) {
     Run run(of);
-    while (!stop_ && run.status().ok() && !run.over()) {
+    while (!desk.stopped() && run.status().ok() && !run.over()) {
       if (!run.advance().ok()) break;
-      progress_ = from + share * run.time() / of.run.duration;
+      desk.tell(from + share * run.time() / of.run.duration);
     }
     if (!run.status().ok()) found.failure = run.status().message(of.model);
     return run.outcome();
@@ -36,16 +22,20 @@ void Accuracy::work(const Setup& setup) {
   try {
     const Outcome outcome = outcome_of(setup, 0, k_first_share);
     found.bodies = outcome.bodies();
-    if (found.failure.empty() && !stop_) {
+    if (found.failure.empty() && !desk.stopped()) {
       const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
-      if (found.failure.empty() && !stop_) found.errors = study::errors(setup.model, outcome, finer);
+      if (found.failure.empty() && !desk.stopped()) found.errors = study::errors(setup.model, outcome, finer);
     }
   } catch (const std::exception& error) {
     found.failure = error.what();
   }
-  if (stop_) return;
-  const std::lock_guard lock(mutex_);
-  result_ = std::move(found);
+  if (!desk.stopped()) desk.show(std::move(found));
+}
+
+}  // namespace
+
+std::unique_ptr<Accuracy> estimate_accuracy(const Setup& setup) {
+  return std::make_unique<Accuracy>([setup](Accuracy& desk) { work(setup, desk); });
 }
 
 std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyResult& result) {

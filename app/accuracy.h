@@ -1,13 +1,11 @@
 // How far a scene's run is from itself at finer steps, computed beside the window.
 #pragma once
 
-#include <atomic>
-#include <mutex>
-#include <optional>
+#include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "app/background.h"
 #include "solver/study/refinement.h"
 
 namespace topple::app {
@@ -19,28 +17,9 @@ struct AccuracyResult {
   std::vector<study::BodyError> errors;
 };
 
-/// Runs a setup as it is and refined, on a thread of its own.
-class Accuracy {
- public:
-  explicit Accuracy(const Setup& setup);
-  /// Stops at the next step.
-  ~Accuracy();
-  Accuracy(const Accuracy&) = delete;
-  Accuracy& operator=(const Accuracy&) = delete;
-
-  double progress() const { return progress_; }  ///< 0..1
-  /// Nothing while it goes on.
-  std::optional<AccuracyResult> result() const;
-
- private:
-  void work(const Setup& setup);
-
-  std::atomic<double> progress_ = 0;
-  std::atomic<bool> stop_ = false;
-  mutable std::mutex mutex_;
-  std::optional<AccuracyResult> result_;
-  std::thread thread_;
-};
+/// Runs a setup as it is and refined.
+using Accuracy = Background<AccuracyResult>;
+std::unique_ptr<Accuracy> estimate_accuracy(const Setup& setup);
 
 /// One line for each of the furniture, in the language of the window.
 std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyResult& result);

@@ -116,13 +116,17 @@ double newtons_per_decimetre(const RunExtent& extent) {
 
 void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons,
                         render::SceneFrame& out) {
-  const std::size_t planes = model.planes.size();
-  for (std::size_t c = 0; c < model.contact_points.size() * planes; ++c) {
-    const Vec3 force(row.contact_force[3 * c], row.contact_force[3 * c + 1], row.contact_force[3 * c + 2]);
-    const Vec3 arrow = 0.1 / newtons * force;
-    if (arrow.norm() < k_least_arrow) continue;
-    const Vec3 from = position(row, model.contact_points[c / planes].node) + floor_shift(row);
+  const auto add = [&](const Vec3& from, const float* force) {
+    const Vec3 arrow = 0.1 / newtons * Vec3(force[0], force[1], force[2]);
+    if (arrow.norm() < k_least_arrow) return;
     out.arrows.push_back({to_float(from), to_float(from + arrow), k_force_colour});
+  };
+  const std::size_t planes = model.planes.size();
+  for (std::size_t c = 0; c < model.contact_points.size() * planes; ++c)
+    add(position(row, model.contact_points[c / planes].node) + floor_shift(row), &row.contact_force[3 * c]);
+  for (std::size_t e = 0; 4 * e < row.member_contact.size(); ++e) {
+    if (model.bodies[model.members[model.elements[e].member].body].ground) continue;
+    add(element_curve(model, row, e).place(row.member_contact[4 * e + 3]), &row.member_contact[4 * e]);
   }
 }
 

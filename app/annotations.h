@@ -20,7 +20,8 @@ double component_of(const SectionForces& forces, std::size_t component);
 /// pale and has no head. `row`: as it is drawn.
 void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame& out);
 
-/// Arrows of what floors and walls do to bodies, from the points of contact on, at `newtons` for each 0.1 m.
+/// Arrows of what floors, walls and members of other bodies do to bodies, from the points of contact on, at
+/// `newtons` for each 0.1 m. Between two bodies there is one on each.
 void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons, render::SceneFrame& out);
 
 /// N for each 0.1 m of an arrow, a round number, so that most forces of the run are a third as long as what

@@ -65,6 +65,17 @@ double next_scale(double scale, int direction) {
   return at == std::begin(k_scales) ? k_least_scale : *(at - 1);
 }
 
+Appearance fitting(Appearance appearance, float desktop_scale, float width, float height) {
+  constexpr float k_least_width = 640, k_least_height = 360;  // px
+  if (!(width > 0) || !(height > 0)) return appearance;
+  const double room = std::min(width / k_least_width, height / k_least_height) / desktop_scale;
+  double largest = 1;
+  for (const double scale : k_scales)
+    if (scale <= room) largest = std::max(largest, scale);
+  appearance.scale = std::min(appearance.scale, largest);
+  return appearance;
+}
+
 fs::path settings_file() {
   const char* const config = std::getenv("XDG_CONFIG_HOME");
   const char* const home = std::getenv("HOME");

@@ -22,6 +22,11 @@ struct Appearance {
 /// The next larger (1) or smaller (-1) scale of a person's steps; 0: the usual one.
 double next_scale(double scale, int direction);
 
+/// With letters no larger than a window of width x height px has room for, at least 640 x 360 px at scale 1
+/// times `desktop_scale`, and one of a person's steps; never smaller than usual for that. A size of 0 or less
+/// is not known yet.
+Appearance fitting(Appearance appearance, float desktop_scale, float width, float height);
+
 /// "$XDG_CONFIG_HOME/topple/settings"; empty when there is no place for it.
 std::filesystem::path settings_file();
 /// What is kept there; of what is not, the usual, in the language of the locale. A line that says what cannot

@@ -62,6 +62,7 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.section_force, b.section_force, out.section_force);
   mix(a.contact_depth, b.contact_depth, out.contact_depth);
   mix(a.contact_force, b.contact_force, out.contact_force);
+  mix(a.member_contact, b.member_contact, out.member_contact);
   mix(a.energy, b.energy, out.energy);
   mix(a.body, b.body, out.body);
   mix(a.floor_acceleration, b.floor_acceleration, out.floor_acceleration);

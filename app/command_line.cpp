@@ -233,8 +233,11 @@ class CommandLine {
         ->check(rate, "", "rate");
     command
         .add_option("--camera", camera_,
-                    "front, side, top or iso (default); or AZIMUTH,ELEVATION,DISTANCE,X,Y,Z: of the eye from "
-                    "the point looked at, in degrees and m")
+                    "front, side, top, iso (default) or follow: iso, going along with the body of --inspect "
+                    "or the first; "
+                    "or AZIMUTH,ELEVATION,DISTANCE,X,Y,Z: of the eye from the point looked at, in degrees "
+                    "and m; each "
+                    "may end in ,follow or ,follow:BODY")
         ->type_name("NAME");
     add_set(command, render_.overrides);
     command.add_flag("--quiet", render_.quiet, "no progress");
@@ -271,14 +274,23 @@ class CommandLine {
   }
 
   void read_camera() {
-    if (const auto view = render::view_named(camera_)) {
+    std::string camera = camera_;
+    if (const std::size_t at = camera.find("follow");
+        at == 0 || (at < camera.size() && camera[at - 1] == ',')) {
+      const std::string body = camera.substr(at + std::strlen("follow"));
+      if (body.empty() || (body.front() == ':' && body.size() > 1)) {
+        render_.follow = body.empty() ? "" : body.substr(1);
+        camera = at == 0 ? "iso" : camera.substr(0, at - 1);
+      }
+    }
+    if (const auto view = render::view_named(camera)) {
       render_.view = *view;
       return;
     }
     std::vector<float> numbers;
-    for (std::size_t at = 0; at <= camera_.size();) {
-      const std::size_t end = std::min(camera_.find(',', at), camera_.size());
-      const auto number = whole_number<float>(std::string_view(camera_).substr(at, end - at));
+    for (std::size_t at = 0; at <= camera.size();) {
+      const std::size_t end = std::min(camera.find(',', at), camera.size());
+      const auto number = whole_number<float>(std::string_view(camera).substr(at, end - at));
       numbers.push_back(number.value_or(std::numeric_limits<float>::quiet_NaN()));
       at = end + 1;
     }
@@ -286,10 +298,11 @@ class CommandLine {
                       std::ranges::all_of(numbers, [](float x) { return std::abs(x) <= k_farthest; }) &&
                       std::abs(numbers[1]) <= 90 && numbers[2] > 0;
     if (!good)
-      throw BadInput("--camera: \"" + camera_ +
-                     "\" is not one of front, side, top, iso, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
-                     "elevation of -90..90 and a distance above 0");
-    if (render_.ui) throw BadInput("--camera: with --ui, one of front, side, top, iso");
+      throw BadInput(
+          "--camera: \"" + camera_ +
+          "\" is not one of front, side, top, iso, follow, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
+          "elevation of -90..90 and a distance above 0");
+    if (render_.ui) throw BadInput("--camera: with --ui, one of front, side, top, iso, follow");
     constexpr float radians = std::numbers::pi_v<float> / 180;
     render_.orbit = render::Orbit{.target = {numbers[3], numbers[4], numbers[5]},
                                   .distance = numbers[2],
@@ -311,7 +324,7 @@ class CommandLine {
     command.add_option("--exaggerate", exaggerate_, "deformation drawn so many times as large, 1 to 200")
         ->type_name("FACTOR");
     command.add_flag("--forces", render_.picture.contact_forces,
-                     "arrows of what floors and walls do to bodies");
+                     "arrows of what floors, walls and other bodies do to bodies");
     command.add_flag("--no-panels", no_panels_, "without the sheets of cabinets");
     command
         .add_option("--trails", trails_,

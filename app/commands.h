@@ -46,6 +46,7 @@ struct RenderOptions {
   int fps = 30;
   render::NamedView view = render::NamedView::iso;
   std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
+  std::optional<std::string> follow;   ///< body the camera goes along with; empty: of `inspect`, or first
   std::optional<double> from, to;      ///< s
   bool ui = false;                     ///< with the panels of the window
   Language language = Language::english;

@@ -45,10 +45,9 @@ bool can_shake_as_sine(const Player& player) {
 }
 
 void shake_as_sine(Player& player, double frequency, double amplitude) {
+  player.begin_edit();
   const auto post = [&](Edit::Key key, const Vec3& value) {
-    if (edited_value(player.parameters(), key, 0) == value) return;
-    player.begin_edit();
-    player.edit({key, 0, value});
+    if (edited_value(player.parameters(), key, 0) != value) player.edit({key, 0, value});
   };
   post(Edit::Key::type, Vec3(static_cast<double>(Shake::Kind::sine), 0, 0));
   post(Edit::Key::on, Vec3(1, 0, 0));

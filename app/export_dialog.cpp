@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/files.h"
+#include "app/row.h"
 #include "app/shell_words.h"
 #include "app/words.h"
 
@@ -27,12 +28,18 @@ constexpr std::chrono::milliseconds k_recorded{200};  // more than a recording l
 /// The options of `topple render` that draw as the viewer does.
 std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
   const PictureSettings& s = viewer.settings();
+  const Model& model = player.scene().setup.model;
   const render::Orbit& orbit = viewer.orbit();
+  const std::optional<std::size_t> body = viewer.followed();
+  Eigen::Vector3f target = orbit.target;  // at the first instant, of a camera that follows
+  if (const auto row = player.row(); body && row)
+    target -= centre_of(*row, *body) - centre_of(*player.way().front(), *body);
   constexpr double degrees = 180 / k_pi;
   std::vector<std::string> words{
       "--camera",
-      fmt::format("{},{},{},{},{},{}", orbit.sight.azimuth * degrees, orbit.sight.elevation * degrees,
-                  orbit.distance, orbit.target.x(), orbit.target.y(), orbit.target.z()),
+      fmt::format("{},{},{},{},{},{}{}", orbit.sight.azimuth * degrees, orbit.sight.elevation * degrees,
+                  orbit.distance, target.x(), target.y(), target.z(),
+                  body ? ",follow:" + model.bodies[*body].name : ""),
       "--colour",
       name_of(s.colour).option,
       "--map",
@@ -52,7 +59,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
   const auto& picked = viewer.inspection().picked;
   if (picked && picked->kind != Subject::Kind::anchor) {
     words.push_back("--inspect");
-    words.push_back(name_of(player.scene().setup.model, *picked));
+    words.push_back(name_of(model, *picked));
   }
   return words;
 }

@@ -58,7 +58,9 @@ void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float labe
   const float apart = 6 * ImGui::GetTextLineHeight();
   const render::Ticks ticks = render::nice_ticks(
       0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / apart)));
-  float written = lane.left;  // as far as labels reach
+  const float label_top =
+      lane.bottom + 0.57f * ImGui::GetTextLineHeight() + 3;  // below marks of the timeline
+  float written = lane.left;                                 // as far as labels reach
   for (double t : ticks.values) {
     t += 0.;  // makes 0 of -0
     if (steps && t != std::round(t)) continue;
@@ -67,11 +69,11 @@ void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float labe
     const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
     const float at = std::min(x + 3, lane.right - text_width(label));
     if (at < written) continue;
-    add_text(list, at, lane.bottom + 11, theme().text, label);
+    add_text(list, at, label_top, theme().text, label);
     written = at + text_width(label) + 4;
   }
   if (loads)
-    add_text(list, label_left, lane.bottom + 11, theme().text,
+    add_text(list, label_left, label_top, theme().text,
              say(steps ? window_words::k_load_step : window_words::k_load_factor));
 }
 

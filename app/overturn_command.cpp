@@ -6,9 +6,10 @@
 
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/present_studies.h"
 #include "app/study_results.h"
-#include "app/sweep.h"
 #include "app/told_scene.h"
+#include "solver/study/map_panel.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"
 
@@ -17,14 +18,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-MakeWork work_on(const study::OverturnPlan& plan) {
-  return [&plan] {
-    return [runner = study::OverturnRunner(plan)](int k, const std::function<bool()>& give_up) mutable {
-      return runner.run(k, give_up);
-    };
-  };
-}
 
 study::OverturnPlan plan_of(const StudyOptions& options, io::Scene scene) {
   return study::plan_overturn(std::move(scene), options.x, options.y, options.ensemble, options.spread);
@@ -98,11 +91,24 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
   const study::Axis& along = map.fragility_along_y ? plan.y : plan.x;
   const study::Axis& other = map.fragility_along_y ? plan.x : plan.y;
   const study::Fragility& at = map.fragility[static_cast<std::size_t>(map.own_column)];
-  const std::string where = fmt::format("fragility at {} = {:.5g} {}: ", other.key,
-                                        other.values[static_cast<std::size_t>(map.own_column)], other.unit);
-  if (!at.fit) return where + "none, " + at.why_not + "\n";
-  return where + fmt::format("median {:.4g} +- {:.2g} {}, beta {:.3g} +- {:.2g}\n", at.fit->median,
-                             at.fit->median_error, along.unit, at.fit->beta, at.fit->beta_error);
+  const std::string where =
+      "fragility at " + other.key + " = " +
+      study::valued(other, other.values[static_cast<std::size_t>(map.own_column)]) + ":";
+  if (!at.fit) return where + " none, " + at.why_not + "\n";
+  const auto told = [](const study::Lognormal& fit, const std::string& what, const std::string& unit) {
+    const study::Interval median = fit.median_interval(), beta = fit.beta_interval();
+    return fmt::format("  {} median {:.4g}{} (95 %: {:.4g} to {:.4g}), beta {:.3g} ({:.2g} to {:.2g})\n",
+                       what, fit.median, unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta, beta.low, beta.high);
+  };
+  std::string text = where + "\n" + told(*at.fit, along.key + ":", along.unit);
+  const std::vector<study::FloorPeak> peaks = floor_peaks(plan, map, map.own_column);
+  if (peaks.empty()) return text;
+  for (const study::GroundMeasure& measure : study::k_ground_measures)
+    if (const study::Fragility over =
+            study::fit_fragility(levels_over(measure, levels(plan, map, map.own_column), peaks));
+        over.fit)
+      text += told(*over.fit, std::string(measure.title) + ":", measure.unit);
+  return text;
 }
 
 }  // namespace

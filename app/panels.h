@@ -45,8 +45,9 @@ ShellRequest draw_transport_bar(Player& player, const Box& box, float& height);
 /// events, edits and forks; dragging scrubs.
 void draw_timeline(Player& player, const Box& box);
 
-/// Sliders of what may be edited. What was refused, and why, is left in `refused`.
-void draw_parameters(Player& player, std::string& refused);
+/// Sliders of what may be edited. What was refused, and why, is left in `refused`. True when the chart of
+/// error against cost is asked for.
+bool draw_parameters(Player& player, std::string& refused);
 
 /// Colours by another quantity; a fixed range, which had the unit of the last one, becomes that of the run.
 void choose_colour(PictureSettings& settings, BeamQuantity colour);

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "app/panels.h"
-#include "app/window_words.h"
+#include "app/precision_words.h"
 #include "app/words.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/scene.h"
@@ -114,7 +114,9 @@ class Row {
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
     const auto word = [&](int k) { return std::string(key_.choices[static_cast<std::size_t>(k)]); };
-    if (ImGui::BeginCombo("##value", word(now).c_str())) {
+    const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
+    const bool narrow = ImGui::CalcTextSize(word(now).c_str()).x + ImGui::GetStyle().FramePadding.x > room;
+    if (ImGui::BeginCombo("##value", word(now).c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
       for (int k = 0; k < count; ++k)
         if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
       ImGui::EndCombo();
@@ -268,14 +270,21 @@ bool is_dynamic(Edit::Key key) {
          group_of(key) == Group::bodies || group_of(key) == Group::integration;
 }
 
+bool draw_precision_button() {
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6.2f * ImGui::GetFontSize());
+  const bool pressed = ImGui::Button((say(k_precision) + "##precision").c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_precision_about).c_str());
+  return pressed;
+}
+
 }  // namespace
 
-void draw_parameters(Player& player, std::string& refused) {
+bool draw_parameters(Player& player, std::string& refused) {
   const Parameters& parameters = player.parameters();
   const Setup& setup = player.scene().setup;
   ImGui::BeginDisabled(!player.can_edit());
   std::optional<std::pair<Group, int>> heading;
-  bool open = true;
+  bool open = true, precision = false;
   for (const auto& [key, index] : editable(setup.model, parameters)) {
     if (is_static(setup) && is_dynamic(key)) continue;
     const Group group = group_of(key);
@@ -283,9 +292,11 @@ void draw_parameters(Player& player, std::string& refused) {
     if (heading != of) open = draw_heading(group, index, parameters);
     heading = of;
     if (open) draw_row(player, key, index, refused);
+    if (key == Edit::Key::time_step) precision = draw_precision_button();
   }
   ImGui::EndDisabled();
   if (!player.can_edit() && !player.way().empty()) ImGui::TextWrapped("%s", say(k_past_values).c_str());
+  return precision;
 }
 
 }  // namespace topple::app

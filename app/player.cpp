@@ -326,11 +326,17 @@ void Player::post(const Edit& edit) {
 void Player::edit(const Edit& edit) {
   if (!can_edit()) return;
   io::check_edit(edit, parameters_, scene_->setup.model);
-  if (new_undo_ || undo_.empty())
-    undo_.push_back({{edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)}, edit});
-  else
-    undo_.back().again = edit;
+  if (new_undo_ || undo_.empty()) undo_.emplace_back();
   new_undo_ = false;
+  Undo& undo = undo_.back();
+  const auto same = std::ranges::find_if(
+      undo.again, [&](const Edit& other) { return other.key == edit.key && other.shake == edit.shake; });
+  if (same != undo.again.end()) {
+    *same = edit;
+  } else {
+    undo.back.push_back({edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)});
+    undo.again.push_back(edit);
+  }
   redo_.clear();
   post(edit);
 }
@@ -338,7 +344,7 @@ void Player::edit(const Edit& edit) {
 void Player::undo() {
   if (!can_undo()) return;
   new_undo_ = true;
-  post(undo_.back().back);
+  for (auto edit = undo_.back().back.rbegin(); edit != undo_.back().back.rend(); ++edit) post(*edit);
   redo_.push_back(undo_.back());
   undo_.pop_back();
 }
@@ -346,7 +352,7 @@ void Player::undo() {
 void Player::redo() {
   if (!can_redo()) return;
   new_undo_ = true;
-  post(redo_.back().again);
+  for (const Edit& edit : redo_.back().again) post(edit);
   undo_.push_back(redo_.back());
   redo_.pop_back();
 }

@@ -64,7 +64,8 @@ class Player {
 
   // Edits, at the head of the live branch only.
   bool can_edit() const;
-  /// The next edit is a new thing to undo. Further ones go on with it, as while a slider is dragged.
+  /// The next edit is a new thing to undo. Further ones go on with it, as while a slider is dragged, or where
+  /// several keys belong together.
   void begin_edit() { new_undo_ = true; }
   /// Throws io::InputError for what a scene would be refused for.
   void edit(const Edit& edit);
@@ -95,7 +96,7 @@ class Player {
 
  private:
   struct Undo {
-    Edit back, again;
+    std::vector<Edit> back, again;  // an entry a key
   };
   bool busy() const;
   bool nothing_goes_on() const;

@@ -56,7 +56,7 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
 Lane first_lane(const Player& player, const Box& box) {
   const float line = ImGui::GetTextLineHeight();
   return {box.left + k_labels * line,
-          box.left + box.width - 12,
+          box.left + box.width - 1.2f * ImGui::GetStyle().WindowPadding.x,
           box.top,
           box.top + k_lane * line,
           player.length(),
@@ -73,7 +73,8 @@ float plots_height(const Inspection& inspection) {
 void draw_plot_lanes(ImDrawList& list, const Player& player, Histories& histories,
                      const Inspection& inspection, const Box& box) {
   Lane lane = first_lane(player, box);
-  const float step = (k_lane + k_gap) * ImGui::GetTextLineHeight(), label_left = box.left + 10;
+  const float step = (k_lane + k_gap) * ImGui::GetTextLineHeight(),
+              label_left = box.left + ImGui::GetStyle().WindowPadding.x;
   for (const PlottedValue& plot : inspection.plots) {
     draw_lane(list, player, histories, plot, lane, label_left);
     lane.top += step;
@@ -101,9 +102,11 @@ PlotRequest draw_plots(Player& player, Histories& histories, Inspection& inspect
   const float line = ImGui::GetTextLineHeight(), step = (k_lane + k_gap) * line;
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   Lane lane = first_lane(player, {box.left, origin.y, box.width, 0});
+  lane.right = std::min(lane.right, origin.x + ImGui::GetContentRegionAvail().x);  // left of a scroll bar
   std::size_t closed = inspection.plots.size();
   for (std::size_t i = 0; i < inspection.plots.size(); ++i) {
-    draw_lane(list, player, histories, inspection.plots[i], lane, box.left + 10);
+    draw_lane(list, player, histories, inspection.plots[i], lane,
+              box.left + ImGui::GetStyle().WindowPadding.x);
     ImGui::PushID(static_cast<int>(i));
     const float side = 1.2f * line;
     ImGui::SetCursorScreenPos({lane.left, lane.top});

@@ -18,6 +18,7 @@
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
+#include "app/row.h"
 #include "app/subject.h"
 #include "app/window_picture.h"
 #include "app/window_words.h"
@@ -58,27 +59,43 @@ void check_outputs(const RenderOptions& o) {
   require_writable_folder(o.png, o.png);
 }
 
+Subject subject_of(const char* option, const std::string& name, const Model& model) {
+  try {
+    return subject_named(model, name);
+  } catch (const io::InputError& error) {
+    throw BadInput(std::string(option) + ": " + error.what());
+  }
+}
+
 std::optional<Subject> inspected_by(const RenderOptions& o, const Model& model) {
   if (o.inspect.empty()) return std::nullopt;
-  try {
-    return subject_named(model, o.inspect);
-  } catch (const io::InputError& error) {
-    throw BadInput(std::string("--inspect: ") + error.what());
-  }
+  return subject_of("--inspect", o.inspect, model);
+}
+
+std::optional<std::size_t> followed_by(const RenderOptions& o, const Model& model,
+                                       const std::optional<Subject>& inspected) {
+  if (!o.follow) return std::nullopt;
+  if (model.bodies.empty()) throw BadInput("--camera: there is no body to follow");
+  if (!o.follow->empty()) return body_of(model, subject_of("--camera", *o.follow, model));
+  return inspected ? body_of(model, *inspected) : 0;
 }
 
 /// Draws one instant after the other.
 class Drawing {
  public:
   Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene,
-          const std::optional<Subject>& inspected, render::Context& context)
+          const std::optional<Subject>& inspected, const std::optional<std::size_t>& followed,
+          render::Context& context)
       : options_(o),
         inspected_(inspected),
+        followed_(followed),
         extent_(extent_of(replay, scene)),
         scene_(scene),
         bridge_(scene, extent_),
         replay_(replay),
-        picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {}
+        picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {
+    if (followed_) start_ = centre_of(replay.frame(0), *followed_);
+  }
 
   render::Image at(double time) {
     const io::FrameRow row = replay_.at(time);
@@ -87,19 +104,25 @@ class Drawing {
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
-    return picture_.draw(frame, camera(frame), {.map = options_.picture.map});
+    return picture_.draw(frame, camera(frame, row), {.map = options_.picture.map});
   }
 
  private:
-  render::Camera camera(const render::SceneFrame& frame) const {
-    if (!options_.orbit) return render::fit_camera(options_.view, frame, picture_.aspect());
+  render::Camera camera(const render::SceneFrame& frame, const io::FrameRow& row) const {
+    Eigen::Vector3f moved{0, 0, 0};
+    if (followed_ && is_finite(row)) moved = centre_of(row, *followed_) - start_;
+    if (!options_.orbit)
+      return render::carried(render::fit_camera(options_.view, frame, picture_.aspect()), moved);
     render::Orbit orbit = *options_.orbit;
+    orbit.target += moved;
     orbit.set_bounds(frame);
     return orbit.camera(picture_.aspect());
   }
 
   const RenderOptions& options_;
   const std::optional<Subject> inspected_;
+  const std::optional<std::size_t> followed_;  // body
+  Eigen::Vector3f start_{0, 0, 0};             // where it was at first
   const RunExtent extent_;
   const io::Scene& scene_;
   const Bridge bridge_;
@@ -151,15 +174,16 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   defer_interrupts();
   check_outputs(o);
   const auto inspected = inspected_by(o, scene->setup.model);
+  const auto followed = followed_by(o, scene->setup.model, inspected);
   int code = k_done;
   try {
     const std::unique_ptr<render::Context> context = open_off_screen(o.renderer);
     std::optional<Drawing> drawing;
     std::optional<WindowPicture> window;
     if (o.ui)
-      window.emplace(*context, scene, path, o.view, o.picture, inspected, o.width, o.height);
+      window.emplace(*context, scene, path, o.view, o.picture, inspected, followed, o.width, o.height);
     else
-      drawing.emplace(o, replay, *scene, inspected, *context);
+      drawing.emplace(o, replay, *scene, inspected, followed, *context);
     const DrawAt draw_at = [&](double time) { return window ? window->at(time) : drawing->at(time); };
     code = o.still.empty() ? draw_sequence(o, draw_at, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))
@@ -186,7 +210,7 @@ int render_command(const RenderOptions& options) {
   }
   const auto scene = std::make_shared<const io::Scene>(io::load_scene(options.source, options.overrides));
   check_times(options, is_static(scene->setup), 0, scene->setup.run.duration, "the scene");
-  inspected_by(options, scene->setup.model);
+  followed_by(options, scene->setup.model, inspected_by(options, scene->setup.model));
   defer_interrupts();
   check_outputs(options);
   if (options.png.empty())

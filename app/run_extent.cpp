@@ -16,6 +16,7 @@ void expect_same_model(const Model& model, const io::FrameRow& row) {
   if (row.position.size() != 3 * nodes || row.rotation.size() != 4 * nodes || row.s.size() != elements ||
       row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
       row.contact_force.size() != 3 * model.contact_points.size() * model.planes.size() ||
+      row.member_contact.size() != (model.bodies.size() > 1 ? 4 * elements : 0) ||
       row.body.size() != 11 * model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
     throw io::InputError(io::k_another_model);
 }
@@ -56,9 +57,12 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
   const std::array<double, k_beam_quantities> peaks = peaks_of(model, row);
   for (std::size_t q = 0; q < k_beam_quantities; ++q) peak_[q].push_back(peaks[q]);
   double contact = 0;
-  for (std::size_t c = 0; c + 2 < row.contact_force.size(); c += 3)
-    contact = std::max<double>(
-        contact, std::hypot(row.contact_force[c], row.contact_force[c + 1], row.contact_force[c + 2]));
+  const auto add_contacts = [&](const std::vector<float>& values, std::size_t stride) {
+    for (std::size_t c = 0; c + 2 < values.size(); c += stride)
+      contact = std::max<double>(contact, std::hypot(values[c], values[c + 1], values[c + 2]));
+  };
+  add_contacts(row.contact_force, 3);
+  add_contacts(row.member_contact, 4);
   peak_contact_.push_back(contact);
   bodies_ = static_cast<std::size_t>(model.furniture_total());
   for (std::size_t b = 0; b < bodies_; ++b) points_.push_back(body_points(model, row, b));

@@ -32,6 +32,7 @@ Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std:
       wake_(std::move(wake)),
       program_(std::move(program)),
       appearance_(appearance),
+      dressed_(appearance),
       keep_(std::move(keep)),
       own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
       chooser_(stage, wake_),
@@ -126,6 +127,12 @@ bool Shell::finish_opening() {
 bool Shell::update(double wall_s) {
   const bool told_before = message_.has_value();
   bool news = finish_opening();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != dressed_) {
+    own_fonts_ = set_up_interface(stage_, scale_, fits, nullptr);
+    dressed_ = fits;
+    news = true;
+  }
   if (chooser_.is_open()) news = chooser_.update() || news;
   news = export_.update() || news;
   if (const std::string words = export_.take_news(); !words.empty() && session_)

@@ -75,9 +75,9 @@ class Shell {
   const float scale_;
   const std::function<void()> wake_;
   const std::string program_;
-  Appearance appearance_;
+  Appearance appearance_, dressed_;  ///< dressed_: as own_fonts_ are
   const Viewer::Keep keep_;
-  const render::OverlayFonts own_fonts_;  ///< of a window without a session
+  render::OverlayFonts own_fonts_;  ///< of a window without a session
   Chooser chooser_;
   SaveDialog save_;
   ExportDialog export_;

@@ -34,9 +34,9 @@ std::vector<std::string> told_plan(const study::StabilityPlan& plan) {
   return parts;
 }
 
-ordered_json limits_as_json(const std::vector<study::Limit>& limits) {
+ordered_json limits_as_json(const std::vector<study::StabilityLimit>& limits) {
   ordered_json list = ordered_json::array();
-  for (const study::Limit& limit : limits)
+  for (const study::StabilityLimit& limit : limits)
     list.push_back({{"name", limit.name},
                     {"formula", limit.formula},
                     {"about", limit.about},
@@ -49,8 +49,8 @@ ordered_json limits_as_json(const std::vector<study::Limit>& limits) {
 }
 
 ordered_json document(const study::StabilityPlan& plan, const study::StabilityMap& map,
-                      const std::vector<study::Limit>& limits, const Crew& crew, const StudyOptions& options,
-                      double wall_s) {
+                      const std::vector<study::StabilityLimit>& limits, const Crew& crew,
+                      const StudyOptions& options, double wall_s) {
   const io::Scene& scene = plan.scene;
   ordered_json json{
       {"topple", TOPPLE_VERSION},
@@ -102,9 +102,9 @@ std::string counts_in_words(const study::StabilityPlan& plan, const study::Stabi
   return text;
 }
 
-std::string limits_in_words(const std::vector<study::Limit>& limits) {
+std::string limits_in_words(const std::vector<study::StabilityLimit>& limits) {
   std::string text;
-  for (const study::Limit& limit : limits)
+  for (const study::StabilityLimit& limit : limits)
     if (limit.at_scene)
       text += fmt::format("{:<20} {} = {:.3g} {}\n", limit.name, limit.formula, *limit.at_scene, limit.unit);
   return text;
@@ -147,7 +147,7 @@ int stability_command(const StudyOptions& options) {
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   const study::StabilityMap map = gather(plan, end.rows);
-  const std::vector<study::Limit> limits = stability_limits(plan);
+  const std::vector<study::StabilityLimit> limits = stability_limits(plan);
   const ordered_json json = document(plan, map, limits, crew, options, wall_s);
   write_study(stem, json["rows"], json, [&](study::ChartFormat format) {
     return stability_chart(plan, map, limits, origin_text(), format);

@@ -4,10 +4,12 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/accuracy.h"
 #include "app/demo.h"
+#include "app/map_panel.h"
 
 namespace topple::app {
 
@@ -24,8 +26,13 @@ struct TeachingState {
   std::optional<DemoGuide> guide;
   std::optional<std::size_t> wanted;  ///< of demos(): it was asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
+  MapState map;
 };
 
-void draw_teaching(Player& player, TeachingState& state);
+/// Amplitude over frequency with the present shake: criteria of overturning, or the map.
+void draw_excitation(Player& player, TeachingState& state, std::string& refused);
+
+/// All of the panel.
+void draw_teaching(Player& player, TeachingState& state, std::string& refused);
 
 }  // namespace topple::app

@@ -34,6 +34,42 @@ inline constexpr Phrase k_preset_about{"{0:g} Hz, {1:g} gal, from now on", "現�
 inline constexpr Phrase k_sine_only{"Only where the floor can shake as a sine, at the newest instant",
                                     "正弦波で加振できるシーンの、最新の時刻でのみ使えます"};
 
+// overturning map
+inline constexpr Phrase k_overturning_map{"Overturning map", "転倒マップ"};
+inline constexpr Phrase k_map_again{"Compute again", "再計算"};
+inline constexpr Phrase k_map_close{"Close the map", "マップを閉じる"};
+inline constexpr Phrase k_map_about{
+    "Computes the scene as it is now from its start, beside the window,\nat 24 by 24 frequencies (of a "
+    "pulse: durations) and amplitudes",
+    "現在の設定のシーンを、周波数（パルスでは継続時間）と\n加速度振幅を24×24通りに変えて最初から計算する"};
+inline constexpr Phrase k_map_needs{"Only where furniture is shaken first by a sine or a pulse",
+                                    "最初の加振が正弦波またはパルスで、家具があるシーンでのみ使えます"};
+inline constexpr Phrase k_map_progress{"Map: {0} of {1} runs", "マップ：{0}/{1} 件を計算"};
+inline constexpr Phrase k_map_failed{"No map: {0}", "マップを作成できません：{0}"};
+inline constexpr Phrase k_map_stale{"Other parameters have changed since; compute it again.",
+                                    "ほかのパラメーターが変更されました。再計算してください。"};
+inline constexpr Phrase k_map_cell{"{0:.3g} {1}, {2:.4g} {3}: {4}", "{0:.3g} {1}、{2:.4g} {3}：{4}"};
+inline constexpr Phrase k_map_first_at{", the first at {0:.2f} s", "（最初は {0:.2f} s）"};
+inline constexpr Phrase k_map_here{"Now {0}.", "現在 {0}。"};
+inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",
+                                      "現在の加振はマップの範囲外です。"};
+inline constexpr Phrase k_map_click{"A click shakes like this from now on; R runs it from the start.",
+                                    "クリックすると現時刻からこの加振に変更。R で最初から計算します。"};
+inline constexpr Phrase k_map_no_click{"Only the newest instant can be shaken otherwise: End, or C.",
+                                       "加振を変更できるのは最新の時刻だけです（End または C）。"};
+inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床に自立する {0}"};
+inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines.",
+                                       "判定基準を適用できないため、線はありません。"};
+inline constexpr Phrase k_present{"now", "現在"};
+inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
+inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};
+inline constexpr Phrase k_one_pulse{"this pulse, exact", "このパルス（厳密解）"};
+inline constexpr Phrase k_all_overturn{"all overturn", "すべて転倒"};
+inline constexpr Phrase k_some_overturn{"some overturn", "一部が転倒"};
+inline constexpr Phrase k_stands_still{"does not lift", "浮き上がらない"};
+inline constexpr Phrase k_run_failed{"run failed", "計算失敗"};
+inline constexpr Phrase k_not_computed{"not computed", "未計算"};
+
 // guided demos
 inline constexpr Phrase k_demo_opens{"Opens {0} for it; the run that is open has been recorded.",
                                      "デモ用に {0} を開きます。現在の計算は記録済みです。"};

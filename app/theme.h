@@ -5,13 +5,19 @@
 
 namespace topple::app {
 
+/// A cell of the overturning map and the mark in it.
+struct CellLook {
+  ImU32 fill, mark;
+};
+
 struct Theme {
   ImU32 text, quiet;  ///< words on panels and sheets
   ImU32 sheet;        ///< behind charts
   ImU32 veil;         ///< behind words over the scene
   ImU32 frame, axis, faint, cursor;
   ImU32 line, chosen, positive, negative, hinge, edit, ghost, other;
-  ImU32 floor[3];  ///< its components
+  ImU32 floor[3];       ///< its components
+  CellLook verdict[6];  ///< by study::Verdict
 };
 
 /// That of the window: a light one until a dark one is chosen.

@@ -293,11 +293,12 @@ void draw_timeline(Player& player, const Box& box) {
   begin_panel("timeline", box);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight();
-  const float label_left = box.left + 10;
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  const float label_left = box.left + padding;
   Lane lane{box.left + 7.5f * line,
-            box.left + box.width - 12,
+            box.left + box.width - 1.2f * padding,
             box.top + 8,
-            box.top + box.height - 2.2f * line - 14,
+            box.top + box.height - 2.77f * line - 6,
             player.length(),
             0,
             1};

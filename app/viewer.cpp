@@ -18,6 +18,7 @@ namespace {
 constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
 constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
+constexpr float k_least_beside = 0.3f;   // the same of its width, where there is little height
 constexpr float k_click = 4;             // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
@@ -84,10 +85,15 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
   dress();
 }
 
+Appearance Viewer::fitting() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return app::fitting(appearance_, desktop_scale_, size.x, size.y);
+}
+
 void Viewer::dress() {
-  scale_ = desktop_scale_ * static_cast<float>(appearance_.scale);
-  fonts_ = set_up_interface(stage_, desktop_scale_, appearance_, &player_.scene());
-  dressed_ = appearance_;
+  dressed_ = fitting();
+  scale_ = desktop_scale_ * static_cast<float>(dressed_.scale);
+  fonts_ = set_up_interface(stage_, desktop_scale_, dressed_, &player_.scene());
   scene_changed_ = true;
 }
 
@@ -98,15 +104,20 @@ void Viewer::wear(const Appearance& appearance) {
   } catch (const std::runtime_error& error) {
     told_ = say(window_words::k_not_written, error.what());
   }
+  if (const double scale = fitting().scale; scale < appearance_.scale)
+    told_ = say(window_words::k_letters_too_large, 100 * appearance_.scale, 100 * scale);
 }
 
 bool Viewer::update(double wall_s) {
-  const bool redress = dressed_ != appearance_;
+  const bool redress = dressed_ != fitting();
   if (redress) dress();
   bool news = player_.update(wall_s) || redress;
   const bool words = std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
-  if (tab_ == Tab::teach && teaching_.accuracy) news = true;  // its progress is shown
+  const bool computes = (teaching_.accuracy && !teaching_.accuracy->over()) ||
+                        (teaching_.map.search && !teaching_.map.search->over()) ||
+                        (precision_.search && !precision_.search->over());
+  if (std::exchange(computes_, computes) || computes) news = true;  // how far it is is shown
   if (flight_ < 1) move_camera(wall_s);
   const bool moved = row_ && camera_changed_;
   quiet_ = news || moved ? 0 : quiet_ + wall_s;
@@ -179,6 +190,7 @@ void Viewer::build(const std::function<void()>& over) {
   draw_timeline(player_, timeline_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
+  if (precision_.open) draw_precision(player_, precision_, refused_);
   if (keys_shown_) draw_key_table();
   if (over) over();
   ImGui::Render();
@@ -204,12 +216,12 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }
-  if (follows_ && scene_changed_) follow();
+  if (follows_ && scene_changed_) go_along();
   if (!fitted_) {
     look(view_);
     flight_ = 1;
     orbit_ = to_;
-    fitted_ = words_due_ = true;
+    fitted_ = true;
   }
   orbit_.set_bounds(frame_);
   drawn_still_ = !changed;
@@ -219,16 +231,24 @@ void Viewer::draw_scene() {
                     std::min(static_cast<int>(std::lround(scene_.width * pixel.x)), surface.width),
                     std::min(static_cast<int>(std::lround(scene_.height * pixel.y)), surface.height),
                     drawn_still_ ? render::Quality::still : render::Quality::interactive);
+  words_due_ = words_due_ || changed;  // legend and labels were written for what was drawn before
   scene_changed_ = camera_changed_ = false;
 }
 
-void Viewer::follow() {
+void Viewer::follow(const std::optional<std::size_t>& body) {
+  follows_.reset();
+  if (body && row_) follows_ = Followed{*body, centre_of(*row_, *body)};
+}
+
+void Viewer::go_along() {
+  if (!is_finite(*row_)) return;
   const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
   for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
   follows_->centre = centre;
 }
 
-// What may still fall needs room beside it; words lie above, below and at the right.
+// What may still fall needs room beside it; words lie above, below and at the right. Where they leave little
+// height, bodies stand beside them.
 void Viewer::look(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
@@ -238,14 +258,17 @@ void Viewer::look(render::NamedView view) {
       frame.bounds_max[k] += room;
     }
   }
-  const float width = std::max(scene_.width - words_right_, k_least_free * scene_.width);
-  const float height = std::max(scene_.height - words_top_ - words_bottom_, k_least_free * scene_.height);
+  const bool low = scene_.height - words_top_ - words_bottom_ < k_least_free * scene_.height;
+  const bool beside = low && scene_.width - words_left_ - words_right_ > k_least_beside * scene_.width;
+  const float left = beside ? words_left_ : 0, top = beside ? 0 : words_top_;
+  const float width = std::max(scene_.width - left - words_right_, k_least_beside * scene_.width);
+  const float height = std::max(scene_.height - top - words_bottom_, k_least_free * scene_.height);
   view_ = view;
   moved_ = false;
   from_ = orbit_;
   to_ = render::Orbit::fit(view, frame, width / height);
   to_.distance *= scene_.height / height;
-  to_.pan((width - scene_.width) / 2, (words_top_ - words_bottom_) / 2, scene_.height);
+  to_.pan(left + (width - scene_.width) / 2, (top - words_bottom_) / 2, scene_.height);
   flight_ = 0;
   camera_changed_ = true;
 }

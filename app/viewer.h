@@ -11,6 +11,7 @@
 #include "app/appearance.h"
 #include "app/panels.h"
 #include "app/player.h"
+#include "app/precision_panel.h"
 #include "app/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
@@ -38,6 +39,13 @@ class Viewer {
   void inspect(const std::optional<Subject>& subject);
 
   void show(Tab tab) { tab_ = tab; }
+
+  /// From the instant that was drawn last on the camera goes along with this body; nothing: it stays.
+  void follow(const std::optional<std::size_t>& body);
+  /// The body that the camera goes along with.
+  std::optional<std::size_t> followed() const {
+    return follows_ ? std::optional(follows_->body) : std::nullopt;
+  }
 
   /// Begins a guided demo; the floor must be one that can_shake_as_sine.
   void guide(std::size_t demo);
@@ -68,6 +76,7 @@ class Viewer {
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
   const TeachingState& teaching() const { return teaching_; }
+  const PrecisionState& precision() const { return precision_; }
   const Appearance& appearance() const { return appearance_; }
   const render::OverlayFonts& fonts() const { return fonts_; }
   const render::Orbit& orbit() const { return orbit_; }
@@ -79,6 +88,7 @@ class Viewer {
   void report_frame_time(double ms);
 
  private:
+  Appearance fitting() const;
   void dress();
   void wear(const Appearance& appearance);
   void resize(int direction);
@@ -87,7 +97,7 @@ class Viewer {
   void next_colour();
   void turn(bool& on);
   void toggle_following();
-  void follow();
+  void go_along();
   void lay_out();
   void handle_characters();
   void handle_mouse();
@@ -111,7 +121,7 @@ class Viewer {
   render::Stage& stage_;
   const float desktop_scale_;
   float scale_ = 1;
-  Appearance appearance_, dressed_;  // as asked for, and as shown
+  Appearance appearance_, dressed_;  // as asked for, and as shown, where there is room
   const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
@@ -122,7 +132,8 @@ class Viewer {
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;                    // of the camera from one place to the other, 0..1
   bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
-  bool words_due_ = false;               // they were written for another camera
+  bool words_due_ = false;               // they were written for another camera or instant
+  bool computes_ = false;                // beside the window
   /// What the camera goes along with, and where that was when it last did.
   struct Followed {
     std::size_t body;
@@ -130,10 +141,12 @@ class Viewer {
   };
   std::optional<Followed> follows_;
   float words_top_ = 0, words_bottom_ = 0, words_right_ = 0;  // px of the scene that words cover
+  float words_left_ = 0;                                      // the same instead of words_top_
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;
   TeachingState teaching_;
+  PrecisionState precision_;
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;

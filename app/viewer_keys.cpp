@@ -110,11 +110,11 @@ void Viewer::toggle_following() {
   const Model& model = player_.scene().setup.model;
   told_.clear();
   if (follows_ || !row_ || model.furniture_total() == 0) {
-    follows_.reset();
+    follow(std::nullopt);
     return;
   }
   const std::size_t body = body_of(model, inspection_.picked.value_or(Subject{Subject::Kind::body, 0}));
-  follows_ = Followed{body, centre_of(*row_, body)};
+  follow(body);
   told_ = say(k_follows, model.bodies[body].name);
 }
 
@@ -137,7 +137,8 @@ void Viewer::resize(int direction) {
 
 // Dear ImGui's own way, Ctrl+Tab, shows its names of panels.
 void Viewer::focus_next_panel() {
-  static constexpr const char* k_panels[] = {"side", "transport", "timeline", "plots", "status"};
+  static constexpr const char* k_panels[] = {"side",  "transport", "timeline",
+                                             "plots", "status",    "###precision"};
   const ImGuiWindow* const now = ImGui::GetCurrentContext()->NavWindow;
   std::size_t next = 0;
   for (std::size_t i = 0; i < std::size(k_panels); ++i)
@@ -155,7 +156,8 @@ void Viewer::focus_next_panel() {
 }
 
 void Viewer::let_go() {
-  keys_shown_ = false;
+  keys_shown_ = precision_.open = false;
+  if (precision_.search) precision_.search->stop();
   inspect(std::nullopt);
 }
 

@@ -55,6 +55,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;
   words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
+  words_left_ = margin + width + pad;
   for (const auto& [font, line] : lines) {
     list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
                  line.c_str());
@@ -120,7 +121,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   draw_tabs();
   ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   if (tab_ == Tab::parameters) {
-    draw_parameters(player_, refused_);
+    if (draw_parameters(player_, refused_)) precision_.open = true;
   } else if (tab_ == Tab::picture) {
     if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
       scene_changed_ = true;
@@ -141,7 +142,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     Appearance appearance = appearance_;
     if (draw_appearance(appearance)) wear(appearance);
   } else if (tab_ == Tab::teach) {
-    draw_teaching(player_, teaching_);
+    draw_teaching(player_, teaching_, refused_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
     scene_changed_ = true;
   }

@@ -12,7 +12,7 @@ namespace topple::app {
 WindowPicture::WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
                              const std::string& recording, render::NamedView view,
                              const PictureSettings& settings, const std::optional<Subject>& inspected,
-                             int width, int height)
+                             const std::optional<std::size_t>& followed, int width, int height)
     : interface_(ImGui::CreateContext()),
       stage_(context.get_proc()),
       run_({.scene = scene, .recording = io::Recording(recording), .output = {}}),
@@ -30,6 +30,9 @@ WindowPicture::WindowPicture(render::Context& context, std::shared_ptr<const io:
   };
   while (waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   build();  // the first one shows how much room words take
+  if (!followed) return;
+  build();  // as it is seen at the first instant
+  viewer_->follow(followed);
 }
 
 WindowPicture::~WindowPicture() {

@@ -16,10 +16,12 @@ namespace topple::app {
 /// Shows a recording as `topple view` does, in the language of the window.
 class WindowPicture {
  public:
-  /// Throws io::InputError, and std::runtime_error when it cannot draw. `context` is current and outlives it.
+  /// followed: body that the camera goes along with from the first instant on. Throws io::InputError, and
+  /// std::runtime_error when it cannot draw. `context` is current and outlives it.
   WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
                 const std::string& recording, render::NamedView view, const PictureSettings& settings,
-                const std::optional<Subject>& inspected, int width, int height);
+                const std::optional<Subject>& inspected, const std::optional<std::size_t>& followed,
+                int width, int height);
   ~WindowPicture();
   WindowPicture(const WindowPicture&) = delete;
   WindowPicture& operator=(const WindowPicture&) = delete;

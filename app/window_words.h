@@ -173,6 +173,9 @@ inline constexpr Phrase k_japanese{"日本語", "日本語"};
 inline constexpr Phrase k_needs_font{"Japanese needs the Debian package fonts-vlgothic",
                                      "日本語表示には Debian パッケージ fonts-vlgothic が必要です"};
 inline constexpr Phrase k_letters{"size", "文字の倍率"};
+inline constexpr Phrase k_letters_too_large{
+    "Letters of {0:.0f} % need a larger window; in this one they are {1:.0f} %.",
+    "文字 {0:.0f} % には窓が狭いため、{1:.0f} % で表示しています。"};
 inline constexpr Phrase k_letters_about{"Of letters and panels (Ctrl +, Ctrl -, Ctrl+0)",
                                         "文字とパネルの倍率（Ctrl +、Ctrl -、Ctrl+0）"};
 

@@ -97,6 +97,13 @@ Camera fit_box(const Matrix3f& axes, const Vector3f& low, const Vector3f& high, 
   return camera_at(eye, axes, aspect, near, back - foremost + 30 * size);
 }
 
+Camera carried(const Camera& camera, const Vector3f& by) {
+  Camera there = camera;
+  there.eye += by;
+  there.view.topRightCorner<3, 1>() -= camera.view.topLeftCorner<3, 3>() * by;
+  return there;
+}
+
 bool finite(const Camera& camera) {
   return camera.view.allFinite() && camera.projection.allFinite() && camera.eye.allFinite();
 }

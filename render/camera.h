@@ -65,6 +65,9 @@ struct Room {
 Camera fit_box(const Eigen::Matrix3f& axes, const Eigen::Vector3f& low, const Eigen::Vector3f& high,
                const Room& room, float aspect);
 
+/// The same camera, carried `by`, m.
+Camera carried(const Camera& camera, const Eigen::Vector3f& by);
+
 /// No number of it is infinite or not a number.
 bool finite(const Camera& camera);
 

@@ -50,7 +50,8 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
                                          ColourMap map, const OverlayBox& room, bool dark, LeftOut& left_out);
 
-/// The same along the lower edge of `room`, one line high: where there is no room for the other.
+/// The same along the lower edge of `room`: where there is no room for the other. Quantity and range policy,
+/// beside them the bar above its numbers, and below a line for a mark on the bar and notes if there are any.
 std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFonts& fonts,
                                               const Legend& legend, ColourMap map, const OverlayBox& room,
                                               bool dark);

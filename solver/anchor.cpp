@@ -87,6 +87,7 @@ AnchorPoint anchor_point(const Model& model, const State& state, int k) {
 
 std::vector<AnchorForce> anchor_forces(const Model& model, const State& state) {
   std::vector<AnchorForce> forces;
+  forces.reserve(model.anchors.size());
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k)
     forces.push_back(anchor_force(model.anchors[k], state.anchors[k], anchor_point(model, state, k).at));
   return forces;

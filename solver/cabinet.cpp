@@ -302,8 +302,8 @@ class CabinetBuilder {
       problem.target.tail<3>() = factor * inertia - Vec3::Constant(rotary_sum);
       return fit_masses(problem).has_value();
     };
-    double least = 0, most = 0;
-    for (double factor = 1e-3; factor < 1e3; factor *= 1.02)
+    double least = 0, most = 0, factor = 1e-3;
+    for (int i = 0; i < 698; ++i, factor *= 1.02)  // to 1e3
       if (fits(factor)) {
         if (least == 0) least = factor;
         most = factor;

@@ -182,8 +182,7 @@ bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, Sta
     scatter(omega, trial.angular_velocity.data(), pack.node);
     scatter(acceleration, w.acceleration.data(), pack.node);
     scatter(angular, w.angular_acceleration.data(), pack.node);
-    const PackVector<Four> all = acceleration + angular;
-    odd = odd + (all - all);
+    odd = odd + 0. * (acceleration + angular);
   }
   s.put(trial.position, state.position);
   s.put(trial.rotation, state.rotation);

@@ -45,7 +45,7 @@ double Passage::share(double t) const {
 }
 
 Vec3 shake_amplitude(const Shake& shake, double t) {
-  const Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
+  Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
   if (shake.passage.over == 0) return now;
   const double share = shake.passage.share(t);
   return (1 - share) * shake.amplitude_before + share * now;

@@ -88,6 +88,29 @@ void fill_contacts(const Run& run, FrameRow& row) {
   }
 }
 
+void fill_member_contacts(const Run& run, FrameRow& row) {
+  struct Resultant {
+    Vec3 force = Vec3::Zero();
+    double size = 0, moment = 0;  // sums of |force| and of |force| times place
+  };
+  std::vector<Resultant> all(row.member_contact.size() / 4);
+  const auto add = [&](int element, const Vec3& force, double place) {
+    Resultant& on = all[static_cast<std::size_t>(element)];
+    on.force += force;
+    on.size += force.norm();
+    on.moment += force.norm() * place;
+  };
+  for (const MemberForce& contact : run.member_contacts()) {
+    add(contact.elements.a, contact.force, contact.s);
+    add(contact.elements.b, -contact.force, contact.t);
+  }
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    if (!(all[e].size > 0)) continue;
+    for (int k = 0; k < 3; ++k) row.member_contact[4 * e + k] = static_cast<float>(all[e].force[k]);
+    row.member_contact[4 * e + 3] = static_cast<float>(all[e].moment / all[e].size);
+  }
+}
+
 void fill_bodies(const Run& run, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -148,8 +171,8 @@ bool all_finite(const Numbers& numbers) {
 bool is_finite(const FrameRow& row) {
   return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
          all_finite(row.section_force) && all_finite(row.s) && all_finite(row.contact_depth) &&
-         all_finite(row.contact_force) && all_finite(row.energy) && all_finite(row.body) &&
-         all_finite(row.floor_acceleration) && all_finite(row.floor_displacement) &&
+         all_finite(row.contact_force) && all_finite(row.member_contact) && all_finite(row.energy) &&
+         all_finite(row.body) && all_finite(row.floor_acceleration) && all_finite(row.floor_displacement) &&
          std::isfinite(row.load_factor) && all_finite(row.anchor);
 }
 
@@ -183,6 +206,7 @@ FrameRow frame_row(const Run& run) {
   fill_nodes(state, row);
   fill_elements(run, row);
   fill_contacts(run, row);
+  fill_member_contacts(run, row);
   fill_bodies(run, row);
   const EnergyLedger& e = state.energy;
   const double energies[] = {e.input,   e.kinetic,  e.strain,         e.gravity,

@@ -111,7 +111,8 @@ Handle record_type<ResultRecord>() {
 }
 
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
-  const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, b = shape.bodies, a = shape.anchors;
+  const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, t = shape.touched;
+  const hsize_t b = shape.bodies, a = shape.anchors;
   const hid_t f32 = H5T_IEEE_F32LE, f64 = H5T_IEEE_F64LE, u8 = H5T_STD_U8LE;
   return {
       {{"position", f32, {n, 3}, "m", "x,y,z"},
@@ -125,6 +126,7 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
         ""},
        {"contact_depth", f32, {c}, "1", ""},
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
+       {"member_contact", f32, {t, 4}, "N,N,N,1", "x,y,z,place"},
        {"energy",
         f64,
         {a > 0 ? 14u : 12u},
@@ -161,6 +163,7 @@ RowShape row_shape(const Model& model) {
   return {.nodes = model.node_position.size(),
           .elements = model.elements.size(),
           .contacts = model.contact_points.size() * model.planes.size(),
+          .touched = model.bodies.size() > 1 ? model.elements.size() : 0,
           .bodies = model.bodies.size(),
           .anchors = model.anchors.size()};
 }
@@ -174,6 +177,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.hinge.resize(shape.elements);
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
+  row.member_contact.resize(4 * shape.touched);
   row.energy.resize(shape.anchors > 0 ? 14 : 12);
   row.body.resize(11 * shape.bodies);
   row.rung.resize(shape.bodies);

@@ -27,7 +27,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 6;
+inline constexpr std::int32_t k_format_version = 7;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// Rows per chunk of the frame fields, and rows gathered before they are handed to HDF5.
@@ -35,7 +35,7 @@ inline constexpr hsize_t k_chunk_rows = 32;
 
 /// Sizes that all rows of one recording share.
 struct RowShape {
-  std::size_t nodes = 0, elements = 0, contacts = 0, bodies = 0, anchors = 0;
+  std::size_t nodes = 0, elements = 0, contacts = 0, touched = 0, bodies = 0, anchors = 0;
 };
 /// Of a model's rows.
 RowShape row_shape(const Model& model);
@@ -113,7 +113,7 @@ struct FrameField {
   const char* units;
   const char* columns;  ///< names along the last dimension, comma-separated
 };
-inline constexpr std::size_t k_field_count = 14;
+inline constexpr std::size_t k_field_count = 15;
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape);
 std::size_t row_bytes(const FrameField& field);
 /// Of the data sets that there are: the last, `anchor`, when the model has anchors.
@@ -137,6 +137,7 @@ auto field_bytes(Row& row) {
                                           bytes(row.hinge),
                                           bytes(row.contact_depth),
                                           bytes(row.contact_force),
+                                          bytes(row.member_contact),
                                           bytes(row.energy),
                                           bytes(row.body),
                                           bytes(row.rung),

@@ -213,7 +213,8 @@ struct Recording::Impl {
     shape = {.nodes = first(fields[0]),
              .elements = first(fields[2]),
              .contacts = first(fields[5]),
-             .bodies = first(fields[8]),
+             .touched = first(fields[7]),
+             .bodies = first(fields[9]),
              .anchors = anchors ? first(fields.back()) : 0};
     const auto expected = frame_fields(shape);
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -251,6 +252,7 @@ struct Recording::Impl {
   template <typename Record>
   static std::vector<Instant> instants(const std::vector<Record>& records) {
     std::vector<Instant> result;
+    result.reserve(records.size());
     for (const Record& r : records) result.push_back({r.branch, r.step, r.time});
     return result;
   }

@@ -6,7 +6,7 @@
 namespace topple::study {
 namespace {
 
-Trial failed(const StepStatus& status) {
+ContactTrial failed(const StepStatus& status) {
   switch (status.kind) {
     case StepStatus::Kind::not_settled:
       return {{}, "not settled"};
@@ -19,7 +19,7 @@ Trial failed(const StepStatus& status) {
 
 }  // namespace
 
-Trial settled_depth(const Setup& body) {
+ContactTrial settled_depth(const Setup& body) {
   const Run run(body);
   if (!run.status().ok()) return failed(run.status());
   double deepest = 0;
@@ -27,7 +27,7 @@ Trial settled_depth(const Setup& body) {
   return {deepest};
 }
 
-Trial creep(const Setup& body, double duration) {
+ContactTrial creep(const Setup& body, double duration) {
   Setup setup = body;
   setup.run.duration = duration;
   Run run(setup);
@@ -40,7 +40,7 @@ Trial creep(const Setup& body, double duration) {
   return {way};
 }
 
-Trial settled_frequency(const Setup& body, double expected) {
+ContactTrial settled_frequency(const Setup& body, double expected) {
   constexpr int k_steps = 100, k_periods = 4;  // a period
   constexpr double k_heavier = 1.05;
   Setup setup = body;
@@ -73,7 +73,7 @@ Trial settled_frequency(const Setup& body, double expected) {
   return {(upturns - 1) / (last - first)};
 }
 
-Trial settled_tipping_limit(const Setup& body, const Standing& theory) {
+ContactTrial settled_tipping_limit(const Setup& body, const Standing& theory) {
   constexpr double k_exact = 1e-4;
   Setup setup = body;
   StepStatus status;
@@ -91,7 +91,7 @@ Trial settled_tipping_limit(const Setup& body, const Standing& theory) {
   return {(low + high) / 2};
 }
 
-Trial fall_back(const Setup& body, const Standing& theory) {
+ContactTrial fall_back(const Setup& body, const Standing& theory) {
   Setup setup = body;
   setup.run.settle = false;
   setup.run.duration = 10 / theory.p();
@@ -108,10 +108,10 @@ Trial fall_back(const Setup& body, const Standing& theory) {
     before = lean;
     time = now;
   }
-  return run.status().ok() ? Trial{{}, "no return"} : failed(run.status());
+  return run.status().ok() ? ContactTrial{{}, "no return"} : failed(run.status());
 }
 
-Trial overturning_half_sine(const Setup& body, const Standing& theory, double ratio, double expected) {
+ContactTrial overturning_half_sine(const Setup& body, const Standing& theory, double ratio, double expected) {
   constexpr double k_exact = 1e-3;
   constexpr double k_tried[] = {0.96, 0.88, 0.75, 0.55, 0.3};  // of what is expected, downwards
   Setup setup = body;

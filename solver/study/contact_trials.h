@@ -10,29 +10,29 @@
 namespace topple::study {
 
 /// What a trial gave. Without value `status` says why.
-struct Trial {
+struct ContactTrial {
   std::optional<double> value;
   std::string status = "completed";
 };
 
 /// Greatest depth 1 - l/L of the contacts of a body at rest.
-Trial settled_depth(const Setup& body);
+ContactTrial settled_depth(const Setup& body);
 
 /// Greatest way of a node, m, within `duration` s after settling.
-Trial creep(const Setup& body, double duration);
+ContactTrial creep(const Setup& body, double duration);
 
 /// Frequency of a body's vertical motion on its contacts, Hz, when its weight grows by a twentieth after
 /// settling; contacts without loss. `expected`: Hz, sets the step.
-Trial settled_frequency(const Setup& body, double expected);
+ContactTrial settled_frequency(const Setup& body, double expected);
 
 /// Greatest steady acceleration towards the edge, over g, under which the body settles.
-Trial settled_tipping_limit(const Setup& body, const Standing& theory);
+ContactTrial settled_tipping_limit(const Setup& body, const Standing& theory);
 
 /// Time, s, until a body let go at rest at half of its critical angle is upright.
-Trial fall_back(const Setup& body, const Standing& theory);
+ContactTrial fall_back(const Setup& body, const Standing& theory);
 
 /// Least amplitude, over g, of a half-sine of circular frequency ratio p towards the edge that overturns the
 /// body before it falls back. `expected`: over g; found to 1e-3 of it.
-Trial overturning_half_sine(const Setup& body, const Standing& theory, double ratio, double expected);
+ContactTrial overturning_half_sine(const Setup& body, const Standing& theory, double ratio, double expected);
 
 }  // namespace topple::study

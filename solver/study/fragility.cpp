@@ -80,6 +80,16 @@ double Lognormal::probability(double intensity) const {
   return normal(std::log(intensity / median) / beta);
 }
 
+Interval Lognormal::median_interval() const {
+  const double factor = std::exp(k_95 * median_error / median);
+  return {median / factor, median * factor};
+}
+
+Interval Lognormal::beta_interval() const {
+  const double factor = std::exp(k_95 * beta_error / beta);
+  return {beta / factor, beta * factor};
+}
+
 Fragility fit_fragility(const std::vector<Level>& all) {
   constexpr int k_most_steps = 100;
   std::vector<Level> levels;

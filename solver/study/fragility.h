@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/study/spread.h"
+
 namespace topple::study {
 
 /// Runs at one intensity.
@@ -22,6 +24,9 @@ struct Lognormal {
   int freedom;          ///< levels with runs, less two: what the deviance is near when the curve fits
 
   double probability(double intensity) const;
+  /// 95 % by the standard errors of the logarithms of both.
+  Interval median_interval() const;
+  Interval beta_interval() const;
 };
 
 struct Fragility {

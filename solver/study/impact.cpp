@@ -74,7 +74,7 @@ double restitution(const ContactLaw& law, double speed) {
   return high / speed;
 }
 
-Trial impact(const ImpactMass& body, const Parameters& scene, double speed) {
+ContactTrial impact(const ImpactMass& body, const Parameters& scene, double speed) {
   constexpr double k_long = 40;  // contact times
   const Model model = bar(body.mass * k_nodes / body.contacts, body.L);
   Parameters parameters = scene;

@@ -21,6 +21,6 @@ struct ImpactMass {
 
 /// The same through the solver: a body that meets a plane flat, with the integrator and step of `parameters`.
 /// Its status tells when it does not leave the floor.
-Trial impact(const ImpactMass& body, const Parameters& parameters, double speed);
+ContactTrial impact(const ImpactMass& body, const Parameters& parameters, double speed);
 
 }  // namespace topple::study

@@ -138,8 +138,8 @@ class Chart {
     if (!map_.criteria.why_not.empty())
       return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190, k_grey);
     std::vector<std::string> lines{fmt::format(
-        "Curves: a rigid block like {}, b = {:.0f} mm, h = {:.0f} mm, that does not slip (friction "
-        "of the scene: {:g})",
+        "Curves: a rigid block like {} alone on the floor, b = {:.0f} mm, h = {:.0f} mm, that does not slip "
+        "(friction of the scene: {:g})",
         plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base, 1e3 * map_.criteria.body.height,
         plan_.scene.setup.parameters.contact.friction)};
     for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
@@ -298,33 +298,48 @@ class Chart {
              "unset border\nunset tics\nunset xlabel\nunset ylabel\nset xrange [0:1]\nset yrange "
              "[0:1]\nunset "
              "logscale\nplot NaN notitle\n";
-    const Axis& along = map_.fragility_along_y ? plan_.y : plan_.x;
     const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
-    const Fragility& at = map_.fragility[static_cast<std::size_t>(map_.own_column)];
-    std::vector<std::string> lines = fit_in_words(at, along);
+    const std::vector<FloorPeak> peaks = floor_peaks(plan_, map_, map_.own_column);
+    const std::vector<Level> own = levels(plan_, map_, map_.own_column);
+    const GroundMeasure &pga = k_ground_measures[0], &pgv = k_ground_measures[1];
+    const bool ground = !peaks.empty() && peaks.front().acceleration > 0;
+    const Axis along = ground ? axis_over(pga, peaks) : map_.fragility_along_y ? plan_.y : plan_.x;
+    const std::vector<Level> over = ground ? levels_over(pga, own, peaks) : own;
+    const Fragility at = fit_fragility(over);
+    std::vector<std::string> lines = fit_in_words(at, ground ? "PGA: " : "", along.unit);
+    if (const Fragility by_velocity = fit_fragility(ground ? levels_over(pgv, own, peaks) : own);
+        ground && by_velocity.fit)
+      lines.insert(lines.begin() + 1, median_in_words(*by_velocity.fit, "PGV: ", pgv.unit));
     if (other.own)
       lines.insert(lines.begin(), "the value nearest to the scene's " + valued(other, *other.own));
-    double y = k_height - k_top - 6 + 24 * static_cast<double>(lines.size());
+    double y = k_height - k_top + (ground ? 46 : -6) + 24 * static_cast<double>(lines.size());
     out += text(bold(plain("At " + other.key + " = " +
                            valued(other, other.values[static_cast<std::size_t>(map_.own_column)])),
                      1.08),
                 k_second_left, y + 28);
     for (const std::string& line : lines) out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
     out += "$shares << END\n";
-    for (const Level& level : levels(plan_, map_, map_.own_column)) {
+    for (const Level& level : over) {
       if (level.runs == 0) continue;
       const Interval bounds = wilson(level.hits, level.runs);
       out += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
                          static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
     }
     out += "NaN NaN NaN NaN\nEND\n" + axis_scale("x", along);
+    const auto proportional = [&](const FloorPeak& peak) {
+      return std::abs(peak.velocity * peaks[0].acceleration - peaks[0].velocity * peak.acceleration) <
+             1e-6 * peak.velocity * peaks[0].acceleration;
+    };
+    const bool above = ground && std::ranges::all_of(peaks, proportional);
+    if (above) out += axis_above(axis_over(pgv, peaks));
     out +=
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
         "'#dddddd' lw 0.8\n";
     out += "set xlabel " + gnuplot_quoted(axis_title(along)) + " offset 0,0.2\n";
-    out +=
-        "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset 1.2,0\nset "
-        "border 3\n";
+    out += std::string(
+               "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset "
+               "1.2,0\nset border ") +
+           (above ? "7\n" : "3\n");
     std::string plot = "$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle";
     if (at.fit) {
       out += "$fit << END\n";
@@ -341,13 +356,38 @@ class Chart {
     return out + "plot " + plot + "\n";
   }
 
-  /// Two lines at most.
-  static std::vector<std::string> fit_in_words(const Fragility& f, const Axis& along) {
+  /// The intensity axis in a measure of the floor's motion.
+  Axis axis_over(const GroundMeasure& measure, const std::vector<FloorPeak>& peaks) const {
+    Axis axis = map_.fragility_along_y ? plan_.y : plan_.x;
+    axis.key = measure.title;
+    axis.unit = measure.unit;
+    axis.own.reset();
+    for (std::size_t i = 0; i < peaks.size(); ++i) axis.values[i] = peaks[i].*measure.value / measure.si;
+    return axis;
+  }
+
+  /// A second scale above the panel, in proportion to the first.
+  static std::string axis_above(const Axis& axis) {
+    return axis_scale("x2", axis) + "set x2label " + gnuplot_quoted(axis_title(axis)) + " offset 0,-0.4\n";
+  }
+
+  static std::string median_in_words(const Lognormal& fit, const std::string& what, const std::string& unit) {
+    const Interval range = fit.median_interval();
+    return fmt::format("{}median {:.4g} {} ({:.4g} to {:.4g})", what, fit.median, unit, range.low,
+                       range.high);
+  }
+
+  /// Three lines at most.
+  static std::vector<std::string> fit_in_words(const Fragility& f, const std::string& what,
+                                               const std::string& unit) {
     constexpr std::size_t k_line = 58;
-    if (f.fit)
-      return {fmt::format("lognormal: median {:.4g} ± {:.2g} {}, β = {:.3g} ± {:.2g}", f.fit->median,
-                          f.fit->median_error, along.unit, f.fit->beta, f.fit->beta_error),
+    if (f.fit) {
+      const Interval beta = f.fit->beta_interval();
+      return {median_in_words(*f.fit, what, unit),
+              fmt::format("lognormal, β = {:.3g} ({:.2g} to {:.2g}); in brackets 95 %", f.fit->beta, beta.low,
+                          beta.high),
               fmt::format("deviance {:.3g} with {} degrees of freedom", f.fit->deviance, f.fit->freedom)};
+    }
     const std::string words = plain("no lognormal: " + f.why_not);
     const std::size_t blank = words.size() > k_line ? words.rfind(' ', k_line) : std::string::npos;
     if (blank == std::string::npos) return {words};

@@ -5,6 +5,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "solver/io/edit_text.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_file.h"
 #include "solver/study/measure.h"
@@ -217,6 +218,33 @@ std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int 
     out.push_back({axis.values[static_cast<std::size_t>(i)], at.runs, at.overturned});
   }
   return out;
+}
+
+std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k) {
+  constexpr double k_before = -1e9;  // s: at once, since nothing shakes yet
+  const Model& model = plan.scene.setup.model;
+  const Axis &along = map.fragility_along_y ? plan.y : plan.x,
+             &other = map.fragility_along_y ? plan.x : plan.y;
+  std::vector<FloorPeak> out;
+  for (int i = 0; i < along.count(); ++i) {
+    Parameters parameters = plan.scene.setup.parameters;
+    for (const auto& [axis, place] : {std::pair(&other, k), std::pair(&along, i)}) {
+      if (axis->table != "shake") continue;
+      std::optional<Edit> edit = io::parse_edit_key(axis->key);
+      if (!edit) return {};
+      edit->value = edited_value(parameters, edit->key, edit->shake);
+      edit->value.x() = axis->in_si(place);
+      apply(*edit, model, k_before, parameters);
+    }
+    out.push_back(floor_peak(parameters.shakes, plan.scene.setup.run.duration));
+  }
+  return out;
+}
+
+std::vector<Level> levels_over(const GroundMeasure& measure, std::vector<Level> levels,
+                               const std::vector<FloorPeak>& peaks) {
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i].intensity = peaks[i].*measure.value / measure.si;
+  return levels;
 }
 
 OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& rows) {

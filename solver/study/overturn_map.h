@@ -10,6 +10,7 @@
 #include "solver/io/scene.h"
 #include "solver/study/axis.h"
 #include "solver/study/criteria.h"
+#include "solver/study/floor_peak.h"
 #include "solver/study/fragility.h"
 #include "solver/study/spread.h"
 
@@ -96,6 +97,24 @@ OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& row
 
 /// Runs at the values of the intensity axis, at place k of the other one.
 std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int k);
+
+/// How strong the floor shakes at those values, without the spread of an ensemble; empty: an axis changes the
+/// shake by a key that no edit has.
+std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k);
+
+/// Intensities that fragility is told over besides the axis's own.
+struct GroundMeasure {
+  const char *name, *title, *unit;  ///< "pga", "peak ground acceleration", "gal"
+  double FloorPeak::*value;
+  double si;
+};
+inline constexpr GroundMeasure k_ground_measures[] = {
+    {"pga", "peak ground acceleration", "gal", &FloorPeak::acceleration, k_gal},
+    {"pgv", "peak ground velocity", "cm/s", &FloorPeak::velocity, 0.01}};
+
+/// `levels` with a measure of the floor's motion, in its unit, as their intensity.
+std::vector<Level> levels_over(const GroundMeasure& measure, std::vector<Level> levels,
+                               const std::vector<FloorPeak>& peaks);
 
 /// The points as a list of flat objects: the content of overturn.csv.
 nlohmann::ordered_json rows_as_json(const OverturnPlan& plan, const OverturnMap& map);

@@ -31,6 +31,16 @@ ordered_json array_over(const OverturnPlan& plan, const OverturnMap& map, Value 
   return rows;
 }
 
+ordered_json fit_as_json(const Fragility& at) {
+  if (!at.fit) return {{"why_not", at.why_not}};
+  const Interval median = at.fit->median_interval(), beta = at.fit->beta_interval();
+  return {{"median", at.fit->median},     {"median_standard_error", at.fit->median_error},
+          {"median_low", median.low},     {"median_high", median.high},
+          {"beta", at.fit->beta},         {"beta_standard_error", at.fit->beta_error},
+          {"beta_low", beta.low},         {"beta_high", beta.high},
+          {"deviance", at.fit->deviance}, {"degrees_of_freedom", at.fit->freedom}};
+}
+
 ordered_json fragility_as_json(const OverturnPlan& plan, const OverturnMap& map) {
   if (map.fragility.empty()) return nullptr;
   const Axis& along = map.fragility_along_y ? plan.y : plan.x;
@@ -39,24 +49,22 @@ ordered_json fragility_as_json(const OverturnPlan& plan, const OverturnMap& map)
   for (int k = 0; k < other.count(); ++k) {
     const Fragility& at = map.fragility[static_cast<std::size_t>(k)];
     ordered_json entry{{"at", other.values[static_cast<std::size_t>(k)]}};
-    if (at.fit)
-      entry.update({{"median", at.fit->median},
-                    {"median_standard_error", at.fit->median_error},
-                    {"beta", at.fit->beta},
-                    {"beta_standard_error", at.fit->beta_error},
-                    {"deviance", at.fit->deviance},
-                    {"degrees_of_freedom", at.fit->freedom}});
-    else
-      entry["why_not"] = at.why_not;
+    entry.update(fit_as_json(at));
+    if (const std::vector<FloorPeak> peaks = floor_peaks(plan, map, k); !peaks.empty())
+      for (const GroundMeasure& measure : k_ground_measures)
+        entry[measure.name] = fit_as_json(fit_fragility(levels_over(measure, levels(plan, map, k), peaks)));
     fits.push_back(std::move(entry));
   }
-  return {{"intensity", along.key},
-          {"unit", along.unit},
-          {"at", other.key},
-          {"at_unit", other.unit},
-          {"curve", "P = Phi(ln(intensity/median)/beta), by maximum likelihood; of any body"},
-          {"nearest_to_scene", map.own_column},
-          {"fits", fits}};
+  return {
+      {"intensity", along.key},
+      {"unit", along.unit},
+      {"at", other.key},
+      {"at_unit", other.unit},
+      {"curve", "P = Phi(ln(intensity/median)/beta), by maximum likelihood; of any body; low, high: 95 %"},
+      {"pga", "the same over the peak horizontal acceleration of the floor, gal"},
+      {"pgv", "over its peak horizontal velocity, cm/s"},
+      {"nearest_to_scene", map.own_column},
+      {"fits", fits}};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr int k_modes = 12;
 /// A row and the run that fills it; without run it is filled already.
 struct Entry {
   PenaltyRow row;
-  std::function<Trial()> trial;
+  std::function<ContactTrial()> trial;
 };
 
 std::vector<BodyGroup> groups_of(const Setup& scene) {
@@ -122,7 +122,7 @@ class Lister {
  private:
   const Standing& theory(int g) const { return study_.groups[g].theory; }
 
-  PenaltyRow& add(Case kind, int group, const ContactLaw& law, std::function<Trial()> trial = {}) {
+  PenaltyRow& add(Case kind, int group, const ContactLaw& law, std::function<ContactTrial()> trial = {}) {
     entries_.push_back(
         {{.kind = kind, .group = group, .law = law, .at = {}, .reference = {}}, std::move(trial)});
     return entries_.back().row;
@@ -274,7 +274,7 @@ PenaltyStudy study_penalty(const std::string& name, const std::string& title, co
       study.of, settings.jobs,
       [&](int k, int) {
         Entry& entry = *runs[static_cast<std::size_t>(k)];
-        const Trial trial = entry.trial();
+        const ContactTrial trial = entry.trial();
         entry.row.computed = trial.value;
         entry.row.status = trial.status;
       },

@@ -57,7 +57,7 @@ double least_period(const PenaltyStudy& study, double alpha) {
   return period;
 }
 
-std::string judged(const Verdict& verdict, const std::string& whose) {
+std::string judged(const AlphaVerdict& verdict, const std::string& whose) {
   const std::string begin = whose + ", " + kgf_text(verdict.alpha) + ", ";
   if (!verdict.missed.empty())
     return begin +
@@ -113,14 +113,14 @@ void add_step(const PenaltyStudy& study, double alpha, Advice& advice) {
     return least_period(study, tried) < k_period_steps * study.time_step;
   });
   if (above == study.alphas.begin()) return;
-  const Verdict best = verdict(study, *std::prev(above));
+  const AlphaVerdict best = verdict(study, *std::prev(above));
   advice.reasons.push_back(
       fmt::format("No alpha keeps the bounds with {:g} steps of {:.3g} ms a bounce; the stiffest tried with "
                   "them, {}, misses: {}.",
                   k_period_steps, 1e3 * study.time_step, kgf_text(best.alpha), fmt::join(best.missed, "; ")));
 }
 
-ordered_json verdict_as_json(const Verdict& verdict) {
+ordered_json verdict_as_json(const AlphaVerdict& verdict) {
   return {{"alpha_N", verdict.alpha},
           {"keeps_bounds", verdict.complete         ? ordered_json(verdict.missed.empty())
                            : verdict.missed.empty() ? ordered_json(nullptr)
@@ -131,8 +131,8 @@ ordered_json verdict_as_json(const Verdict& verdict) {
 
 }  // namespace
 
-Verdict verdict(const PenaltyStudy& study, double alpha) {
-  Verdict found{alpha, true, {}, {}};
+AlphaVerdict verdict(const PenaltyStudy& study, double alpha) {
+  AlphaVerdict found{alpha, true, {}, {}};
   for (const PenaltyRow& row : study.rows) {
     if (!decides(row, alpha)) continue;
     if (row.status == "not run")
@@ -147,7 +147,7 @@ Advice advise(const PenaltyStudy& study) {
   Advice advice;
   advice.of_scene = verdict(study, study.law.alpha);
   advice.of_default = verdict(study, ContactLaw().alpha);
-  std::vector<Verdict> tried;
+  std::vector<AlphaVerdict> tried;
   for (const double alpha : study.alphas) tried.push_back(verdict(study, alpha));
   for (std::size_t k = 0; k < tried.size() && !advice.alpha; ++k)
     if (tried[k].good() && (k + 1 == tried.size() || tried[k + 1].good())) advice.alpha = tried[k].alpha;
@@ -155,7 +155,7 @@ Advice advise(const PenaltyStudy& study) {
   if (advice.alpha) {
     reasons.push_back(fmt::format("It is the smallest tried that keeps every bound: {}.",
                                   fmt::join(verdict(study, *advice.alpha).kept, "; ")));
-  } else if (std::any_of(tried.begin(), tried.end(), [](const Verdict& v) { return v.undecided(); })) {
+  } else if (std::any_of(tried.begin(), tried.end(), [](const AlphaVerdict& v) { return v.undecided(); })) {
     reasons.push_back("Runs are missing that would decide it.");
   } else {
     reasons.push_back(fmt::format("No alpha from {} to {} keeps every bound; the last misses: {}.",

@@ -11,7 +11,7 @@
 namespace topple::study {
 
 /// What one alpha does, over all bodies.
-struct Verdict {
+struct AlphaVerdict {
   double alpha = 0;                 ///< N
   bool complete = false;            ///< every run that its bounds need was made
   std::vector<std::string> kept;    ///< "cabinet: depth at rest 0.44 % of L"
@@ -26,12 +26,12 @@ struct Advice {
   std::optional<double> alpha;
   /// s, the greatest that resolves its bounce, at most the scene's; none with an adaptive step.
   std::optional<double> time_step;
-  bool resolved = false;             ///< the scene's own step does
-  std::vector<std::string> reasons;  ///< sentences
-  Verdict of_scene, of_default;      ///< what the scene's alpha and the program's do
+  bool resolved = false;              ///< the scene's own step does
+  std::vector<std::string> reasons;   ///< sentences
+  AlphaVerdict of_scene, of_default;  ///< what the scene's alpha and the program's do
 };
 
-Verdict verdict(const PenaltyStudy& study, double alpha);
+AlphaVerdict verdict(const PenaltyStudy& study, double alpha);
 Advice advise(const PenaltyStudy& study);
 nlohmann::ordered_json advice_as_json(const Advice& advice);
 

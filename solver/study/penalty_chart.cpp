@@ -146,7 +146,7 @@ class Chart {
       lines.push_back(begun > 2 ? line + "…" : line);
     };
     if (advice_.alpha) add(kgf_text(*advice_.alpha) + ": ", verdict(study_, *advice_.alpha).kept);
-    const Verdict& scene = advice_.of_scene;
+    const AlphaVerdict& scene = advice_.of_scene;
     const std::string begin = "The scene's " + kgf_text(scene.alpha) + ": ";
     if (!scene.missed.empty())
       add(begin + "not within bounds: ", scene.missed);

@@ -278,6 +278,7 @@ class Chart {
                           gnuplot_quoted(in_words(of)));
     }
     if (plot.empty()) return "";
+    box.high *= std::pow(box.high / box.low, 0.25);  // for the key
     return data +
            titles(at, "Fronts under other laws and alpha",
                   "tilt, each against a reference of its own physics") +

@@ -8,7 +8,7 @@
 namespace topple::study {
 
 Interval wilson(int hits, int trials) {
-  constexpr double z = 1.959964;
+  constexpr double z = k_95;
   const double n = trials, p = hits / n;
   const double middle = p + z * z / (2 * n);
   const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));

@@ -8,13 +8,15 @@
 
 namespace topple::study {
 
-/// Bounds of a share.
+/// Of the normal distribution, for two-sided intervals of 95 %.
+inline constexpr double k_95 = 1.959964;
+
 struct Interval {
   double low, high;
 };
 
 /// Confidence interval of a proportion of which `hits` of `trials` >= 1 were seen, by Wilson's score:
-///   (p + z^2/2n -+ z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),  z = 1.959964 (95 %).
+///   (p + z^2/2n -+ z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),  z = k_95.
 /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22, 1927, 209-212.
 Interval wilson(int hits, int trials);
 

@@ -42,15 +42,15 @@ bool is_of_method(const Axis& axis) {
          (axis.name == "beta" || axis.name == "gamma" || axis.name == "spectral_radius");
 }
 
-std::vector<Method> methods_for(const Setup& scene) {
-  std::vector<Method> list{
+std::vector<SteppingMethod> methods_for(const Setup& scene) {
+  std::vector<SteppingMethod> list{
       {"central-difference", "Central differences", Integrator::central_difference},
       {"newmark", "Newmark, β = 1/4, γ = 1/2 (trapezoidal rule)", Integrator::newmark, 1. / 4, 1. / 2},
       {"newmark-5/6", "Newmark, β = 4/9, γ = 5/6", Integrator::newmark, 4. / 9, 5. / 6},
       {"generalized-alpha", "Generalized-α, spectral radius 0.8", Integrator::generalized_alpha}};
   const Parameters& p = scene.parameters;
   bool known = false;
-  for (const Method& m : list)
+  for (const SteppingMethod& m : list)
     known |= m.integrator == p.integrator &&
              (m.integrator != Integrator::newmark || (m.beta == p.beta && m.gamma == p.gamma)) &&
              (m.integrator != Integrator::generalized_alpha || p.spectral_radius == m.spectral_radius);
@@ -212,7 +212,8 @@ std::vector<int> case_order(const StabilityPlan& plan) {
   return order;
 }
 
-Setup stepped_by(const StabilityPlan& plan, const Method& method, const std::vector<std::string>& changes) {
+Setup stepped_by(const StabilityPlan& plan, const SteppingMethod& method,
+                 const std::vector<std::string>& changes) {
   Setup setup = with_changes(plan, changes);
   if (method.of_scene()) return setup;
   Parameters& p = setup.parameters;
@@ -248,8 +249,8 @@ std::string run_stability_case(const StabilityPlan& plan, int k, const std::func
   return as_row(out).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-Reference agree(const std::vector<StabilityRun>& runs) {
-  Reference out{.decided = true, .why_not = "", .fell = runs.front().fell};
+Agreement agree(const std::vector<StabilityRun>& runs) {
+  Agreement out{.decided = true, .why_not = "", .fell = runs.front().fell};
   for (const StabilityRun& run : runs) {
     out.penetration = std::max(out.penetration, run.penetration);
     if (!out.decided) continue;
@@ -271,7 +272,7 @@ const char* name(Fate fate) {
   return k_names[static_cast<int>(fate)];
 }
 
-Fate judge(const StabilityRun& run, const Reference& reference) {
+Fate judge(const StabilityRun& run, const Agreement& reference) {
   switch (run.end) {
     case End::completed:
       break;
@@ -312,7 +313,7 @@ StabilityMap gather(const StabilityPlan& plan, const std::vector<std::string>& r
       if (const std::string& row = rows[static_cast<std::size_t>(k)]; !row.empty())
         runs.push_back(from_row(row));
     const bool whole = static_cast<int>(runs.size()) == plan.references();
-    map.references.push_back(whole ? agree(runs) : Reference{});
+    map.references.push_back(whole ? agree(runs) : Agreement{});
   }
   const std::size_t first = static_cast<std::size_t>(plan.groups() * plan.references());
   for (std::size_t m = 0; m < plan.methods.size(); ++m) {

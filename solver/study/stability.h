@@ -21,7 +21,7 @@ inline constexpr double k_through = 0.5;
 inline constexpr double k_reference_spread = 0.02, k_after_fall = 1;
 
 /// A way to step a scene.
-struct Method {
+struct SteppingMethod {
   std::string name;                                       ///< "newmark-5/6"; "scene": as the scene has it
   std::string label;                                      ///< "Newmark, β = 4/9, γ = 5/6"
   Integrator integrator = Integrator::generalized_alpha;  ///< with every body a frame; not of "scene"
@@ -35,7 +35,7 @@ struct Method {
 struct StabilityPlan {
   io::Scene scene;
   Axis x, y;
-  std::vector<Method> methods;
+  std::vector<SteppingMethod> methods;
   double horizon =
       0;  ///< s, length of the runs: that of the scene, or until everything that falls has fallen
 
@@ -62,7 +62,8 @@ nlohmann::ordered_json settings_of(const StabilityPlan& plan);
 std::vector<int> case_order(const StabilityPlan& plan);
 
 /// The scene with KEY=VALUE changes as the method steps it. Throws io::InputError when there is none.
-Setup stepped_by(const StabilityPlan& plan, const Method& method, const std::vector<std::string>& changes);
+Setup stepped_by(const StabilityPlan& plan, const SteppingMethod& method,
+                 const std::vector<std::string>& changes);
 
 /// Runs case k: a row of JSON in one line. Empty: give_up() came true.
 std::string run_stability_case(const StabilityPlan& plan, int k, const std::function<bool()>& give_up);
@@ -83,7 +84,7 @@ struct StabilityRun {
 };
 
 /// What the runs of a group agree on.
-struct Reference {
+struct Agreement {
   bool decided = false;
   std::string why_not = "not all reference runs were done";  ///< "": it is decided
   std::vector<bool> fell = {};                               ///< of the finest run
@@ -91,7 +92,7 @@ struct Reference {
 };
 /// Decided where all completed, none left more than k_stable_balance unexplained, and the same bodies
 /// overturned in all.
-Reference agree(const std::vector<StabilityRun>& runs);
+Agreement agree(const std::vector<StabilityRun>& runs);
 
 /// From the worst to the best that is known.
 enum class Fate {
@@ -110,7 +111,7 @@ inline constexpr int k_fates = static_cast<int>(Fate::stable) + 1;
 /// "energy grows".
 const char* name(Fate fate);
 /// The first of these that holds.
-Fate judge(const StabilityRun& run, const Reference& reference);
+Fate judge(const StabilityRun& run, const Agreement& reference);
 
 struct StabilityMap {
   std::vector<std::string> bodies;  ///< furniture
@@ -119,7 +120,7 @@ struct StabilityMap {
     Fate fate = Fate::not_computed;
   };
   std::vector<std::vector<Cell>> cells;  ///< per method, per point
-  std::vector<Reference> references;     ///< per group
+  std::vector<Agreement> references;     ///< per group
   int run = 0, of = 0;                   ///< cases
 
   int count(std::size_t method, Fate fate) const;

@@ -39,7 +39,7 @@ constexpr const char* k_dashes[] = {"1", "(18,6)", "(5,5)", "(18,5,4,5)", "(10,4
 
 class Chart {
  public:
-  Chart(const StabilityPlan& plan, const StabilityMap& map, const std::vector<Limit>& limits)
+  Chart(const StabilityPlan& plan, const StabilityMap& map, const std::vector<StabilityLimit>& limits)
       : plan_(plan),
         map_(map),
         limits_(limits),
@@ -89,7 +89,7 @@ class Chart {
         plan_.references() > 2
             ? fmt::format(", and with amplitudes {:g} % lower and higher", 100 * k_reference_spread)
             : "",
-        std::ranges::count_if(map_.references, [](const Reference& r) { return r.decided; }),
+        std::ranges::count_if(map_.references, [](const Agreement& r) { return r.decided; }),
         map_.references.size()));
     line(std::string(
              "Maps a to d: every body a frame; the implicit methods halve a fixed step up to six times "
@@ -101,7 +101,7 @@ class Chart {
                     100 * k_stable_balance, 100 * k_stable_damping, k_through));
     y -= 6;
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-      const Limit& limit = limits_[k];
+      const StabilityLimit& limit = limits_[k];
       out += stroke(k_left, k_left + 56, y, k) + tag(k, k_left + 74, y);
       out += text(limit.formula + ":  " + limit.about + here(limit), k_left + 94, y, k_grey);
       y -= k_line;
@@ -109,7 +109,7 @@ class Chart {
     return out;
   }
 
-  static std::string here(const Limit& limit) {
+  static std::string here(const StabilityLimit& limit) {
     return limit.at_scene ? fmt::format(" (the scene: {:.3g} {})", *limit.at_scene, limit.unit) : "";
   }
 
@@ -166,7 +166,7 @@ class Chart {
   struct TagPlace {
     double x, y;
   };
-  static std::optional<TagPlace> end_of(const Limit& limit, const MapPanel& panel) {
+  static std::optional<TagPlace> end_of(const StabilityLimit& limit, const MapPanel& panel) {
     std::optional<TagPlace> best;
     for (std::size_t n = 0; n < limit.x.size(); ++n) {
       const double x = panel.x(limit.x[n]), y = panel.y(limit.y[n]);
@@ -180,7 +180,7 @@ class Chart {
 
   std::string map_of(std::size_t m) const {
     const MapPanel at = panel(m);
-    const Method& method = plan_.methods[m];
+    const SteppingMethod& method = plan_.methods[m];
     std::string data, plot, tags;
     for (const Look& look : k_looks) {
       const std::string block = fmt::format("fate{}", static_cast<int>(look.fate));
@@ -198,7 +198,7 @@ class Chart {
     }
     std::vector<TagPlace> taken;
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-      const Limit& limit = limits_[k];
+      const StabilityLimit& limit = limits_[k];
       if (std::ranges::find(limit.methods, method.name) == limit.methods.end()) continue;
       data += fmt::format("$limit{} << END\n", k);
       for (std::size_t n = 0; n < limit.x.size(); ++n)
@@ -247,7 +247,7 @@ class Chart {
 
   const StabilityPlan& plan_;
   const StabilityMap& map_;
-  const std::vector<Limit>& limits_;
+  const std::vector<StabilityLimit>& limits_;
   const int rows_;
   Sheet sheet_{};
 };
@@ -255,7 +255,8 @@ class Chart {
 }  // namespace
 
 std::string stability_chart(const StabilityPlan& plan, const StabilityMap& map,
-                            const std::vector<Limit>& limits, const std::string& origin, ChartFormat format) {
+                            const std::vector<StabilityLimit>& limits, const std::string& origin,
+                            ChartFormat format) {
   return Chart(plan, map, limits).script(origin, format);
 }
 

@@ -13,6 +13,7 @@ namespace topple::study {
 /// A map for each method with the limits of theory over it, and how often each fate was met. `origin`:
 /// version and machine.
 std::string stability_chart(const StabilityPlan& plan, const StabilityMap& map,
-                            const std::vector<Limit>& limits, const std::string& origin, ChartFormat format);
+                            const std::vector<StabilityLimit>& limits, const std::string& origin,
+                            ChartFormat format);
 
 }  // namespace topple::study

@@ -121,7 +121,7 @@ class Places {
   }
 
   /// Where `value` is `limit`, both SI; 0: there is none.
-  void draw(Limit& line, const std::function<double(const Place&)>& limit,
+  void draw(StabilityLimit& line, const std::function<double(const Place&)>& limit,
             const std::function<double(const Place&)>& value) const {
     const auto add = [&](double x, double y) {
       line.x.push_back(x);
@@ -188,10 +188,10 @@ double step_of_chatter(const ContactLaw& law, double gravity) {
   return 2 * law.slip_speed / (law.friction * gravity);
 }
 
-std::vector<Limit> stability_limits(const StabilityPlan& plan) {
+std::vector<StabilityLimit> stability_limits(const StabilityPlan& plan) {
   std::vector<std::string> implicit, all, smooth;
-  std::vector<const Method*> damping;
-  for (const Method& m : plan.methods) {
+  std::vector<const SteppingMethod*> damping;
+  for (const SteppingMethod& m : plan.methods) {
     all.push_back(m.name);
     if (m.of_scene() || m.integrator == Integrator::central_difference) continue;
     implicit.push_back(m.name);
@@ -199,11 +199,11 @@ std::vector<Limit> stability_limits(const StabilityPlan& plan) {
   }
   const Places steps(plan, "run", "time_step"), alphas(plan, "contact", "alpha");
   const Place own = *place_at(plan, {}, {});
-  std::vector<Limit> list;
+  std::vector<StabilityLimit> list;
   const auto add_step = [&](const char* name, const char* formula, const char* about,
                             const std::vector<std::string>& methods,
                             const std::function<double(const Place&)>& limit) {
-    Limit line{name, formula, about, methods, {}, {}, {}, "ms"};
+    StabilityLimit line{name, formula, about, methods, {}, {}, {}, "ms"};
     if (const double at = limit(own); at > 0) line.at_scene = 1e3 * at;
     steps.draw(line, limit, [](const Place& p) { return p.step; });
     if (line.at_scene || !line.x.empty()) list.push_back(std::move(line));
@@ -217,7 +217,7 @@ std::vector<Limit> stability_limits(const StabilityPlan& plan) {
            implicit, [](const Place& p) { return step_of_impact_error(1, p.demand.bounce); });
   add_step("tunnelling", "h = L/v", "a landing corner crosses the contact width L in one step", implicit,
            [](const Place& p) { return p.demand.landing; });
-  for (const Method* m : damping)
+  for (const SteppingMethod* m : damping)
     add_step("damping", "h = 0.105/(2(γ - 1/2)∫ω^2 dt)", "takes 10 % of the energy of a fall or rotation",
              {m->name}, [m](const Place& p) {
                return p.demand.turning > 0 ? step_of_damping(k_stable_damping, m->gamma, p.demand.turning)
@@ -229,14 +229,15 @@ std::vector<Limit> stability_limits(const StabilityPlan& plan) {
                         ? step_of_chatter(p.law, p.gravity)
                         : 0;
            });
-  Limit capacity{"capacity",
-                 "α = E (q + 1)/(n L)",
-                 "a fall or throw of energy E sinks past the floor's centre line below it, by any method",
-                 all,
-                 {},
-                 {},
-                 {},
-                 "kgf"};
+  StabilityLimit capacity{
+      "capacity",
+      "α = E (q + 1)/(n L)",
+      "a fall or throw of energy E sinks past the floor's centre line below it, by any method",
+      all,
+      {},
+      {},
+      {},
+      "kgf"};
   const auto least = [](const Place& p) { return p.demand.alpha; };
   if (least(own) > 0) capacity.at_scene = least(own) / k_standard_gravity;
   alphas.draw(capacity, least, [](const Place& p) { return p.law.alpha; });

@@ -40,7 +40,7 @@ double step_of_damping(double share, double gamma, double turning);
 double step_of_chatter(const ContactLaw& law, double gravity);
 
 /// A line over the map: polyline in the axes' units, clipped by nothing.
-struct Limit {
+struct StabilityLimit {
   std::string name;                  ///< "explicit"
   std::string formula, about;        ///< "h = 2/ω", what lies beyond it
   std::vector<std::string> methods;  ///< names of those that it is a limit of
@@ -48,6 +48,6 @@ struct Limit {
   std::optional<double> at_scene;  ///< where the scene itself stands, in `unit`
   std::string unit;                ///< "ms", "kgf"
 };
-std::vector<Limit> stability_limits(const StabilityPlan& plan);
+std::vector<StabilityLimit> stability_limits(const StabilityPlan& plan);
 
 }  // namespace topple::study

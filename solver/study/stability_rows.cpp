@@ -53,7 +53,7 @@ ordered_json rows_as_json(const StabilityPlan& plan, const StabilityMap& map) {
   for (std::size_t m = 0; m < plan.methods.size(); ++m)
     for (int p = 0; p < plan.points(); ++p) {
       const Cell& cell = map.cells[m][static_cast<std::size_t>(p)];
-      const Reference& reference = map.references[static_cast<std::size_t>(plan.group(p))];
+      const Agreement& reference = map.references[static_cast<std::size_t>(plan.group(p))];
       ordered_json row{
           {"method", plan.methods[m].name},
           {with_unit(plan.x), plan.x.values[static_cast<std::size_t>(p % plan.x.count())]},
@@ -83,7 +83,7 @@ ordered_json rows_as_json(const StabilityPlan& plan, const StabilityMap& map) {
 
 ordered_json map_as_json(const StabilityPlan& plan, const StabilityMap& map) {
   ordered_json references = ordered_json::array(), methods = ordered_json::array();
-  for (const Reference& reference : map.references)
+  for (const Agreement& reference : map.references)
     references.push_back({{"decided", reference.decided},
                           {"why_not", reference.why_not},
                           {"overturned", verdict(map, reference.fell)},

@@ -1,4 +1,5 @@
 // Every panel of the window, as it is drawn off screen.
+#include "app/teaching_words.h"
 #include "tests/golden/golden.h"
 #include "tests/unit/app/shell_fixture.h"
 
@@ -101,6 +102,21 @@ TEST_F(GoldenWindow, learn) {
   show_run();
   viewer().show(Viewer::Tab::teach);
   render::expect_golden(side(), "window-learn.png");
+}
+
+TEST_F(GoldenWindow, overturning_map) {
+  shell_->open(write("rocking.toml", k_rocking));
+  ASSERT_TRUE(until([&] { return ready(); }));
+  run_on();
+  viewer().show(Viewer::Tab::teach);
+  click(say(window_words::k_overturning_map) + "##map", "side/content");
+  const MapState& map = viewer().teaching().map;
+  bool computed = false;  // 576 runs
+  for (int round = 0; round < 4 && !computed; ++round)
+    computed = static_cast<bool>(until([&] { return map.search && map.search->over(); }));
+  ASSERT_TRUE(computed);
+  ImGui::GetIO().MousePos = {2, 400};
+  render::expect_golden(side(), "window-map.png");
 }
 
 TEST_F(GoldenWindow, picture_settings) {

@@ -65,6 +65,20 @@ TEST(Scales, go_from_75_to_300_percent_and_back_to_the_usual_one) {
   EXPECT_EQ(next_scale(scale, 0), 1);
 }
 
+TEST(Scales, are_no_larger_than_the_window_has_room_for_but_never_below_the_usual_one_for_that) {
+  const auto fitted = [](double scale, float desktop, float width, float height) {
+    return fitting({.scale = scale}, desktop, width, height).scale;
+  };
+  EXPECT_EQ(fitted(3, 1, 1920, 1080), 3);
+  EXPECT_EQ(fitted(3, 1, 1920, 1070), 2.5);
+  EXPECT_EQ(fitted(3, 1, 1280, 720), 2);
+  EXPECT_EQ(fitted(3, 2, 1280, 720), 1);
+  EXPECT_EQ(fitted(1.1, 1, 1280, 720), 1.1);
+  EXPECT_EQ(fitted(1, 1, 200, 100), 1);
+  EXPECT_EQ(fitted(0.75, 1, 200, 100), 0.75);
+  EXPECT_EQ(fitted(3, 1, -1, -1), 3);
+}
+
 TEST(PhraseTables, hold_every_letter_of_a_phrase) {
   const std::string tables = phrase_tables();
   EXPECT_NE(tables.find(window_words::k_rocking.japanese), std::string::npos);

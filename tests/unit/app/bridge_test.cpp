@@ -86,6 +86,7 @@ TEST_F(BridgeTest, of_a_row_that_is_not_finite_nothing_is_drawn_but_the_floor) {
     each(&io::FrameRow::s);
     each(&io::FrameRow::contact_depth);
     each(&io::FrameRow::contact_force);
+    each(&io::FrameRow::member_contact);
     each(&io::FrameRow::energy);
     each(&io::FrameRow::body);
     each(&io::FrameRow::floor_acceleration);
@@ -349,6 +350,52 @@ TEST_F(BridgeTest, arrows_of_a_resting_body_add_up_to_its_weight) {
   const double weight = model().bodies[0].mass * scene_.setup.parameters.gravity.norm();
   EXPECT_NEAR(sum * newtons_per_decimetre(extent_) / 0.1, weight, 0.01 * weight);
   EXPECT_TRUE(bridge.frame(start_, scene_.setup.parameters).arrows.empty());
+}
+
+// One bar falls across another, 0.3 m from their ends: on each of them stands the force that the solver has.
+TEST(MemberArrows, between_two_members_are_equal_and_opposite_and_those_of_the_solver) {
+  const io::Scene scene = io::parse_scene(R"(topple = 1
+title = "bars"
+[run]
+duration = "1 s"
+settle = false
+[contact]
+alpha = "50 kgf"
+)" + k_library + R"(
+[[frame]]
+name = "below"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 2, up = [0, 0, 1] }]
+supports = [{ node = 0, fix = "xyzXYZ" }, { node = 1, fix = "xyzXYZ" }]
+[[frame]]
+name = "above"
+nodes = [[0.3, -0.3, 0.031], [0.3, 0.7, 0.031]]
+members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 2, up = [0, 0, 1] }]
+)",
+                                          "bars.toml");
+  topple::Run run(scene.setup);
+  while (run.time() < 0.3 && run.member_contacts().empty()) ASSERT_TRUE(run.advance().ok());
+  ASSERT_EQ(run.member_contacts().size(), 1u);
+  const MemberForce& touch = run.member_contacts()[0];
+  const io::FrameRow row = io::frame_row(run);
+  RunExtent extent;
+  extent.add(scene.setup.model, scene.setup.parameters, row);
+  const render::SceneFrame frame =
+      Bridge(scene, extent).frame(row, scene.setup.parameters, {.contact_forces = true});
+  ASSERT_EQ(frame.arrows.size(), 2u);
+  const double newtons = newtons_per_decimetre(extent) / 0.1;
+  for (int k = 0; k < 3; ++k)
+    for (const int on : {0, 1}) {
+      const render::Arrow& arrow = frame.arrows[on];
+      const double force = (on == 0 ? 1 : -1) * touch.force[k];
+      EXPECT_NEAR((arrow.to[k] - arrow.from[k]) * newtons, force, 1e-4 * touch.force.norm());  // of floats
+    }
+  EXPECT_GT(frame.arrows[1].to[2], frame.arrows[1].from[2]);  // the upper one is pushed up
+  for (const render::Arrow& arrow : frame.arrows) {
+    EXPECT_NEAR(arrow.from[0], 0.3, 1e-3);
+    EXPECT_NEAR(arrow.from[1], 0, 1e-3);
+  }
+  EXPECT_NEAR(frame.arrows[1].from[2] - frame.arrows[0].from[2], 0.03 * (1 - touch.depth), 1e-4);
 }
 
 TEST_F(BridgeTest, panels_are_left_out_when_they_are_switched_off) {

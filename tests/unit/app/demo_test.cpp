@@ -85,14 +85,14 @@ TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
   while (!run.over()) run.advance();
   while (!finer.over()) finer.advance();
   const auto expected = study::errors(scene->setup.model, run.outcome(), finer.outcome());
-  Accuracy accuracy(scene->setup);
-  ASSERT_TRUE(eventually([] {}, [&] { return accuracy.result().has_value(); }));
-  const AccuracyResult result = *accuracy.result();
+  const auto accuracy = estimate_accuracy(scene->setup);
+  ASSERT_TRUE(eventually([] {}, [&] { return accuracy->over(); }));
+  const AccuracyResult result = *accuracy->result();
   ASSERT_EQ(result.errors.size(), expected.size());
   EXPECT_EQ(result.failure, "");
   EXPECT_EQ(result.errors[0].peak_tilt_error, expected[0].peak_tilt_error);
   EXPECT_EQ(result.bodies[0].peak_tilt, run.outcome().bodies()[0].peak_tilt);
-  EXPECT_GT(accuracy.progress(), 0.9);
+  EXPECT_GT(accuracy->progress(), 0.9);
   const auto words = accuracy_in_words(scene->setup.model, result);
   ASSERT_EQ(words.size(), 1u);
   EXPECT_NE(words[0].find("does not overturn"), std::string::npos) << words[0];
@@ -101,7 +101,7 @@ TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
 TEST(AccuracyTest, it_is_given_up_at_once) {
   const auto scene = live_scene(k_rocking, {"run.duration=1000"});
   const auto before = std::chrono::steady_clock::now();
-  { const Accuracy accuracy(scene->setup); }
+  estimate_accuracy(scene->setup).reset();
   EXPECT_LT(std::chrono::steady_clock::now() - before,
             std::chrono::seconds(20));  // the run would take minutes
 }

@@ -85,6 +85,7 @@ TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
   EXPECT_EQ(offers("topple study sta"), (Words{"stability", "stack", "files"}));
   EXPECT_EQ(offers("topple recover a"), (Words{"files"}));
   EXPECT_EQ(offers("topple render a.h5 --camera s"), (Words{"side"}));
+  EXPECT_EQ(offers("topple render a.h5 --camera f"), (Words{"front", "follow"}));
   EXPECT_EQ(offers("topple render a.h5 --range ''"), (Words{"run", "instant"}));
   EXPECT_EQ(offers("topple report paper-a --lang ''"), (Words{"en", "ja"}));
   EXPECT_EQ(offers("topple render a.h5 --png ''"), (Words{"files-d"}));

@@ -70,10 +70,13 @@ TEST_F(PrecisionTest, gives_numbers_charts_a_reference_and_the_cheapest_settings
   EXPECT_EQ(too_long, 1);
 }
 
-TEST_F(PrecisionTest, rows_are_the_same_on_one_thread_and_on_two) {
+TEST_F(PrecisionTest, rows_are_the_same_on_one_thread_on_two_and_on_two_ranks) {
   ASSERT_EQ(topple(call("one", {"--jobs", "1"})).code, 0);
   ASSERT_EQ(topple(call("two", {"--jobs", "2"})).code, 0);
   EXPECT_EQ(rows("one"), rows("two"));
+  if (!run_on_two_ranks(call("ranks", {"--jobs", "1"}))) return;
+  EXPECT_EQ(rows("one"), rows("ranks"));
+  EXPECT_EQ(json_of(bytes_of("ranks/precision.json"))["settings"]["ranks"], 2);
 }
 
 TEST_F(PrecisionTest, an_interrupted_study_resumes_to_the_same_rows) {

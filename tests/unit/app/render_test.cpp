@@ -1,9 +1,23 @@
 // Pictures and videos: the same every time, from a scene as from its recording.
+#include <cstdlib>
+
 #include "program.h"
+#include "render/image.h"
 #include "scenes.h"
 
 namespace topple::app {
 namespace {
+
+/// Nothing but a cabinet, which flies off sideways and falls. At 0.4 s it is 0.9 m away.
+const std::string k_flying = R"(topple = 1
+title = "x"
+[run]
+duration = "0.4 s"
+settle = false
+)" + k_library + k_cabinet + R"(
+model = "rigid"
+velocity = [1, 0.5, 0]
+)";
 
 class RenderTest : public ProgramTest {
  protected:
@@ -24,6 +38,27 @@ class RenderTest : public ProgramTest {
     int side = 0;
     for (std::size_t k = 0; k < 4; ++k) side = 256 * side + static_cast<unsigned char>(png.at(at + k));
     return side;
+  }
+  /// Where the picture at 0.4 s differs from that at 0 in the middle, where there are no words. Pixels.
+  static int moved_pixels(const std::string& camera, bool ui) {
+    std::vector<render::Image> images;
+    for (const char* at : {"0", "0.4"}) {
+      std::vector<std::string> words{"render", "f.toml",  "--still", "f.png",    "--at", at,
+                                     "--size", "960x540", "--quiet", "--camera", camera};
+      if (ui) words.emplace_back("--ui");
+      EXPECT_EQ(topple(words).code, 0);
+      images.push_back(render::load_png("f.png").value());
+    }
+    int moved = 0;
+    for (std::size_t y = 110; y < 300; ++y)
+      for (std::size_t x = 260; x < 520; ++x)
+        for (std::size_t k = 0; k < 3; ++k)
+          if (const std::size_t i = 4 * (960 * y + x) + k;
+              std::abs(images[0].rgba[i] - images[1].rgba[i]) > 30) {
+            ++moved;
+            break;
+          }
+    return moved;
   }
 };
 
@@ -136,6 +171,39 @@ TEST_F(RenderTest, cameras_differ) {
     pictures.push_back(bytes_of("a.png"));
     EXPECT_EQ(std::count(pictures.begin(), pictures.end(), pictures.back()), 1) << camera;
   }
+}
+
+TEST_F(RenderTest, a_body_that_is_followed_stays_where_it_is_in_the_picture) {
+  constexpr int k_rounding = 20;  // pixels on edges
+  write_bytes("f.toml", k_flying);
+  for (const char* camera : {"follow", "side,follow", "follow:free", "30,20,6,0,0,1,follow"})
+    EXPECT_LT(moved_pixels(camera, false), k_rounding) << camera;
+  EXPECT_LT(moved_pixels("side,follow", true), k_rounding);
+  for (const char* camera : {"iso", "side", "30,20,6,0,0,1"})
+    EXPECT_GT(moved_pixels(camera, false), 1000) << camera;
+  EXPECT_GT(moved_pixels("side", true), 1000);
+}
+
+TEST_F(RenderTest, the_body_of_inspect_is_followed_else_the_first) {
+  write_bytes("f.toml", k_flying + R"(
+[[cabinet]]
+name = "other"
+at = [0, 3]
+size = ["380 mm", "880 mm", "1790 mm"]
+mass = "40 kg"
+section = "post"
+material = "steel"
+model = "rigid"
+)");
+  const auto picture = [](std::vector<std::string> more) {
+    std::vector<std::string> words{"f.toml", "--still", "f.png", "--at", "0.4", "--camera"};
+    words.insert(words.end(), more.begin(), more.end());
+    draw(words);
+    return bytes_of("f.png");
+  };
+  EXPECT_EQ(picture({"follow"}), picture({"follow:free"}));
+  EXPECT_NE(picture({"follow"}), picture({"follow:other"}));
+  EXPECT_EQ(picture({"follow", "--inspect", "other"}), picture({"follow:other", "--inspect", "other"}));
 }
 
 TEST_F(RenderTest, every_option_of_the_picture_changes_it) {

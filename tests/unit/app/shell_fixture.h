@@ -13,6 +13,7 @@
 
 #include "app/shell.h"
 #include "live.h"
+#include "mouse.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/scratch.h"
 
@@ -102,25 +103,7 @@ class ShellTest : public ::testing::Test {
   }
   /// Clicks the button of that name in a panel: by default the one over the window.
   void click(const std::string& name, const std::string& panel = "/panel_") {
-    frame();
-    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-      if (!window->Active || std::string(window->Name).find(panel) == std::string::npos) continue;
-      const ImGuiID id = ImHashStr(name.c_str(), 0, window->ID);
-      ImGuiIO& io = ImGui::GetIO();
-      for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
-        for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += 20) {
-          io.MousePos = {x, y};
-          frame();
-          if (ImGui::GetHoveredID() != id) continue;
-          io.MouseDown[0] = true;
-          frame();
-          io.MouseDown[0] = false;
-          frame();
-          frame();
-          return;
-        }
-    }
-    FAIL() << "there is no button " << name;
+    ASSERT_TRUE(click_button(name, panel, [this] { frame(); })) << "there is no button " << name;
   }
   std::string write(const std::string& name, const std::string& text) {
     const std::string path = (scratch_ / name.c_str()).string();

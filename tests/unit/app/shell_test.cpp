@@ -145,7 +145,7 @@ TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goe
   shell_->drop({other});
   ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
   EXPECT_EQ(shell_->message()->text,
-            other + ": recording format 5 is not supported by this version, which reads format 6");
+            other + ": recording format 5 is not supported by this version, which reads format 7");
   press(render::key::escape);
   EXPECT_EQ(shell_->title(), "topple: rocking");
   run_to(0.1);
@@ -384,6 +384,28 @@ TEST_F(ExportDialogTest, a_picture_is_seen_from_where_the_window_sees_it) {
   }
   EXPECT_NE(pictures[0], pictures[1]);
   EXPECT_EQ(pictures[0], pictures[2]);
+}
+
+TEST_F(ExportDialogTest, a_camera_that_follows_is_where_the_window_has_it) {
+  open_rocking();
+  press('T');
+  run_to(0.3);
+  player().scrub(0.25);  // a recorded instant
+  frame();
+  std::vector<std::vector<std::uint8_t>> pictures;
+  for (const char* name : {"follows.png", "stays.png"}) {
+    open_export(ExportDialog::What::picture);
+    set_path(name);
+    start();
+    EXPECT_EQ(export_failure(), "");
+    pictures.push_back(render::load_png(scratch_ / name).value().rgba);
+    press('T');  // lets go
+  }
+  ASSERT_EQ(pictures[0].size(), pictures[1].size());
+  int different = 0;  // a byte here and there, by rounding, on edges; most of the body, had it moved
+  for (std::size_t i = 0; i < pictures[0].size(); ++i)
+    different += std::abs(pictures[0][i] - pictures[1][i]) > 30;
+  EXPECT_LT(different, 100);
 }
 
 TEST_F(ExportDialogTest, tables_appear_as_a_whole_folder) {

@@ -77,13 +77,7 @@ TEST_F(StabilityTest, rows_are_the_same_on_one_thread_on_two_and_on_two_ranks) {
   ASSERT_EQ(topple(call("one", {"--jobs", "1"})).code, 0);
   ASSERT_EQ(topple(call("two", {"--jobs", "2"})).code, 0);
   EXPECT_EQ(rows("one"), rows("two"));
-  if (std::system("command -v mpirun >/dev/null") != 0) return;
-  std::string line =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 2 " TOPPLE_PROGRAM;
-  for (const std::string& word : call("ranks", {"--jobs", "1"})) line += " '" + word + "'";
-  const int code = std::system((line + " >out 2>err").c_str());
-  if (bytes_of("err").find("this build of topple has no MPI") != std::string::npos) return;
-  ASSERT_EQ(code, 0) << bytes_of("err");
+  if (!run_on_two_ranks(call("ranks", {"--jobs", "1"}))) return;
   EXPECT_EQ(rows("one"), rows("ranks"));
   EXPECT_EQ(json_of(bytes_of("ranks/stability.json"))["settings"]["ranks"], 2);
 }

@@ -191,10 +191,12 @@ TEST_F(UsageTest, instants_outside_the_scene_are_refused_before_it_runs) {
 }
 
 TEST_F(UsageTest, unknown_cameras_are_refused) {
-  for (const char* camera :
-       {"", "up", "Front", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,99,3,0,0,0", "1,2,0,0,0,0", "1,2,3,nan,0,0"})
+  for (const char* camera : {"", "up", "Front", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,99,3,0,0,0", "1,2,0,0,0,0",
+                             "1,2,3,nan,0,0", "up,follow", "sidefollow", "follow:", "follow,side", ",follow"})
     expect_one_line({"render", "s.toml", "--png", "p", "--camera", camera}, 2,
                     "--camera: \"" + std::string(camera) + "\" is not one of front, side, top, iso");
+  expect_one_line({"render", "s.toml", "--png", "p", "--camera", "follow:nobody"}, 2,
+                  "--camera: nobody: there is no body of that name; there are free");
 }
 
 TEST_F(UsageTest, overrides_that_do_not_fit_are_refused) {

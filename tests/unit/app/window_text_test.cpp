@@ -10,11 +10,14 @@
 #include <fstream>
 #include <set>
 
+#include "app/precision_words.h"
 #include "app/shell.h"
+#include "app/teaching_words.h"
 #include "app/theme.h"
 #include "app/viewer.h"
 #include "app/window_words.h"
 #include "live.h"
+#include "mouse.h"
 #include "render/image.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/scratch.h"
@@ -182,6 +185,37 @@ class WindowText : public ::testing::TestWithParam<Look> {
     for (int i = 0; i < 5; ++i) frame();
   }
 
+  /// Points everywhere in `box` and reads what tooltips appear; how many different ones.
+  std::size_t tooltips(const ImRect& box) {
+    std::set<std::string> seen_tips;
+    const float scale = ImGui::GetFontSize() / 14;
+    for (float y = box.Min.y + 4; y < box.Max.y; y += 13 * scale)
+      for (float x = box.Min.x + 6; x < box.Max.x; x += 20 * scale) {
+        ImGui::GetIO().MousePos = {x, y};
+        frame();
+        shown.clear();
+        listening = true;
+        frame();
+        listening = false;
+        const ImGuiWindow* const tip = ImGui::FindWindowByName("##Tooltip_00");
+        if (!tip || !tip->Active) continue;
+        std::string words;
+        for (const Shown& text : shown)
+          if (text.list == tip->DrawList) words += text.words;
+        if (words == say(window_words::k_plot)) plot_place_ = ImVec2(x, y);
+        if (seen_tips.insert(words).second) check("tooltip-" + words.substr(0, 12));
+      }
+    return seen_tips.size();
+  }
+  void click(const ImVec2& at) {
+    ImGui::GetIO().MousePos = at;
+    for (const bool down : {false, true, false}) {
+      ImGui::GetIO().MouseDown[0] = down;
+      frame();
+      frame();
+    }
+  }
+
   void check(const std::string& what) {
     SCOPED_TRACE(std::string(GetParam().name) + ", " + what);
     for (int i = 0; i < 3; ++i) frame();
@@ -241,6 +275,7 @@ class WindowText : public ::testing::TestWithParam<Look> {
         << "\"" << a.words << "\" lies on \"" << b.words << "\"";
   }
   ImGuiContext* interface_;
+  std::optional<ImVec2> plot_place_;  // of the last sign that plots a value
   std::optional<LiveRun> run_;
   std::optional<Player> player_;
   std::optional<render::Stage> stage_;
@@ -266,6 +301,28 @@ TEST_P(WindowText, is_read_in_every_panel) {
   check("keys");
 }
 
+TEST_P(WindowText, is_read_in_studies_of_the_present_scene) {
+  start();
+  const auto draw = [this] { frame(); };
+  viewer_->show(Viewer::Tab::teach);
+  ASSERT_TRUE(click_button(say(window_words::k_overturning_map) + "##map", "side/content", draw));
+  const auto map = [&] { return viewer_->teaching().map.search->result(); };
+  ASSERT_TRUE(eventually(draw, [&] { return map() && map()->map.run > 15; }));
+  check("map-under-way");
+  ASSERT_TRUE(click_button(say(window_words::k_cancel) + "##cancel-map", "side/content", draw));
+  ASSERT_TRUE(eventually(draw, [&] { return viewer_->teaching().map.search->over(); }));
+  check("map");
+  const Box& cells = viewer_->teaching().map.cells;
+  ImGui::GetIO().MousePos = {cells.left + cells.width / 2, cells.top + cells.height / 3};
+  check("map-cell");
+  ImGui::GetIO().MousePos = {2, 400};
+  viewer_->show(Viewer::Tab::parameters);
+  ASSERT_TRUE(click_button(say(window_words::k_precision) + "##precision", "side/content", draw));
+  check("precision-under-way");
+  ASSERT_TRUE(eventually(draw, [&] { return viewer_->precision().points.size() > 15; }));
+  check("precision");
+}
+
 TEST_P(WindowText, is_read_in_the_chooser_dialogs_and_messages) {
   start_shell();
   check("chooser");
@@ -288,20 +345,31 @@ TEST_P(WindowText, is_read_in_the_chooser_dialogs_and_messages) {
   check("message");
 }
 
-TEST_P(WindowText, is_read_in_tooltips) {
+TEST_P(WindowText, is_read_in_tooltips_of_the_panels) {
   start();
-  const ImGuiWindow* const bar = ImGui::FindWindowByName("transport");
-  std::set<std::string> seen_tips;
-  for (float y = bar->Pos.y + 20; y < bar->Pos.y + bar->Size.y; y += 30)
-    for (float x = 15; x < bar->Size.x; x += 25) {
-      ImGui::GetIO().MousePos = {x, y};
-      frame();
-      frame();
-      const ImGuiWindow* const tip = ImGui::FindWindowByName("##Tooltip_00");
-      if (!tip || !tip->Active || !seen_tips.insert(std::to_string(ImGui::GetHoveredID())).second) continue;
-      check("tooltip-" + std::to_string(seen_tips.size()));
-    }
-  EXPECT_GE(seen_tips.size(), 5u);
+  const auto box_of = [](const char* name) {
+    const ImGuiWindow* const window = ImGui::FindWindowByName(name);
+    return window ? window->Rect() : ImRect();
+  };
+  EXPECT_GE(tooltips(box_of("transport")), 5u);
+  EXPECT_GE(tooltips(box_of("timeline")), 1u);
+  viewer_->show(Viewer::Tab::picture);
+  EXPECT_GE(tooltips(box_of("side")), 1u);
+  viewer_->show(Viewer::Tab::teach);
+  tooltips(box_of("side"));
+  viewer_->show(Viewer::Tab::parameters);
+  EXPECT_GE(tooltips(box_of("side")), 3u);
+  viewer_->inspect(Subject{Subject::Kind::member, 0});
+  EXPECT_GE(tooltips(box_of("side")), 3u);
+  ASSERT_TRUE(plot_place_.has_value());
+  click(*plot_place_);
+  EXPECT_GE(tooltips(box_of("plots")), 2u);
+}
+
+TEST_P(WindowText, is_read_in_tooltips_of_the_chooser) {
+  start_shell();
+  const Look& look = GetParam();
+  EXPECT_GE(tooltips({0, 0, look.width, look.height}), 1u);
 }
 
 constexpr Language k_ja = Language::japanese, k_en = Language::english;
@@ -309,6 +377,9 @@ INSTANTIATE_TEST_SUITE_P(Looks, WindowText,
                          ::testing::Values(Look{1280, 720, {1, false, k_en}, "light"},
                                            Look{1280, 720, {1, true, k_en}, "dark"},
                                            Look{1280, 720, {2, false, k_en}, "large"},
+                                           Look{1280, 720, {0.75, false, k_en}, "small"},
+                                           Look{1920, 1080, {3, false, k_en}, "huge"},
+                                           Look{1280, 720, {3, true, k_en}, "too-large"},
                                            Look{1280, 720, {1, false, k_ja}, "japanese"},
                                            Look{1280, 720, {2, true, k_ja}, "large-dark-japanese"}),
                          [](const auto& look) {

@@ -22,7 +22,7 @@ namespace topple::io::testing {
 
 /// About a cabinet: 52 nodes, 96 elements.
 inline constexpr RowShape k_cabinet{.nodes = 52, .elements = 96, .contacts = 16, .bodies = 1};
-inline constexpr RowShape k_small{.nodes = 3, .elements = 2, .contacts = 4, .bodies = 2};
+inline constexpr RowShape k_small{.nodes = 3, .elements = 2, .contacts = 4, .touched = 2, .bodies = 2};
 inline constexpr const char* k_text = "topple = 1\ntitle = \"fake\"\n";
 
 /// A cabinet that tips over within two seconds; a step of 0.7 ms divides neither 1 s nor the row interval.
@@ -106,6 +106,7 @@ inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) 
   fill(row.hinge);
   fill(row.contact_depth);
   fill(row.contact_force);
+  fill(row.member_contact);
   fill(row.energy);
   fill(row.body);
   fill(row.rung);

@@ -97,6 +97,56 @@ TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
   ImGui::DestroyContext();
 }
 
+TEST(Overlay, a_flat_legend_has_quantity_policy_ticks_mark_and_notes_in_its_room) {
+  ImGui::CreateContext();
+  ImGui::GetIO().DisplaySize = {1280, 720};
+  const OverlayFonts fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, 1440);
+  ImGui::GetIO().Fonts->Build();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::NewFrame();
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto vertices = [&](const Legend& legend, const OverlayBox& room) {
+    const int before = list.VtxBuffer.Size;
+    const auto box = draw_flat_legend_in(list, fonts, legend, ColourMap::viridis, room, false);
+    EXPECT_EQ(box.has_value(), list.VtxBuffer.Size > before);
+    for (int i = before; i < list.VtxBuffer.Size; ++i) {
+      const ImVec2 p = list.VtxBuffer[i].pos;
+      EXPECT_TRUE(p.x >= box->left && p.x <= box->right && p.y >= box->top && p.y <= box->bottom)
+          << p.x << ", " << p.y;
+    }
+    if (box) {
+      EXPECT_TRUE(box->left == room.left && box->right == room.right && box->bottom == room.bottom);
+      EXPECT_GE(box->top, room.top);
+    }
+    return list.VtxBuffer.Size - before;
+  };
+  const OverlayBox wide{"", 20, 100, 680, 300};
+  Legend legend;
+  legend.quantity = "stress";
+  legend.unit = "MPa";
+  legend.maximum = 18;
+  const int bare = vertices(legend, wide);
+  ASSERT_GT(bare, 100);
+  legend.range_policy = "fixed";
+  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5);  // letters
+  // 0, 5, 10, 15; a third of the width has no room for all of them, and one too narrow for anything
+  legend.range_policy.clear();
+  EXPECT_LT(vertices(legend, {"", 20, 100, 320, 300}), bare);
+  EXPECT_EQ(vertices(legend, {"", 20, 100, 150, 300}), 0);
+  EXPECT_EQ(vertices(legend, {"", 20, 270, 680, 300}), 0);
+  legend.mark = 300;  // beyond the bar
+  legend.mark_label = "yield";
+  EXPECT_EQ(vertices(legend, wide), bare);
+  legend.mark = 9;
+  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5 + 4);  // and the mark
+  legend.notes = {"x5", "1 N"};
+  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5 + 4 + 4 * (1 + 2 + 1 + 2));
+  legend.range_policy = legend.notes[0] = legend.quantity = std::string(400, 'W');
+  EXPECT_GT(vertices(legend, wide), 0);
+  ImGui::EndFrame();
+  ImGui::DestroyContext();
+}
+
 TEST(Overlay, labels_stay_in_their_room_and_apart) {
   ImGui::CreateContext();
   ImGui::GetIO().DisplaySize = {1280, 720};

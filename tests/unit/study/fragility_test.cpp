@@ -73,6 +73,31 @@ TEST(Fragility, standard_errors_are_the_spread_of_fits_to_random_runs) {
   EXPECT_LT(deviance, 12);  // chi-squared with ten degrees of freedom, less where shares are 0 or 1
 }
 
+// 400 samples: a share of 0.95 has a standard deviation of 0.011. Four of them, and 0.01 for what is of
+// higher order in 1/runs.
+TEST(Fragility, intervals_of_95_percent_hold_the_truth_so_often) {
+  constexpr int k_samples = 400;
+  double median = 0, beta = 0;
+  for (int sample = 0; sample < k_samples; ++sample) {
+    const Lognormal fit = fit_fragility(drawn(64, k_samples + sample)).fit.value();
+    const Interval of_median = fit.median_interval(), of_beta = fit.beta_interval();
+    median += (of_median.low < k_median && k_median < of_median.high) / double{k_samples};
+    beta += (of_beta.low < k_beta && k_beta < of_beta.high) / double{k_samples};
+  }
+  EXPECT_NEAR(median, 0.95, 0.054);
+  EXPECT_NEAR(beta, 0.95, 0.054);
+}
+
+// The same runs told over another unit of the same intensity.
+TEST(Fragility, a_scaled_intensity_scales_the_median_alone) {
+  std::vector<Level> levels = drawn(64, 3);
+  const Lognormal fit = fit_fragility(levels).fit.value();
+  for (Level& level : levels) level.intensity *= 0.05;
+  const Lognormal scaled = fit_fragility(levels).fit.value();
+  EXPECT_NEAR(scaled.median / (0.05 * fit.median), 1, 1e-9);
+  EXPECT_NEAR(scaled.beta / fit.beta, 1, 1e-9);
+}
+
 TEST(Fragility, the_likelihood_is_greatest_at_the_fit) {
   const std::vector<Level> levels = drawn(16, 7);
   const auto log_likelihood = [&](double median, double beta) {

@@ -29,7 +29,7 @@ StabilityRun fine() {
   return run;
 }
 
-Reference reference() {
+Agreement reference() {
   return agree({fine(), fine()});
 }
 
@@ -87,7 +87,7 @@ TEST(Stability, without_a_verdict_to_compare_with_none_is_called_wrong) {
   StabilityRun leaking = fine();
   leaking.unexplained = -0.02;
   for (const StabilityRun& odd : {other, failed, leaking}) {
-    const Reference open = agree({fine(), odd, fine()});
+    const Agreement open = agree({fine(), odd, fine()});
     EXPECT_FALSE(open.decided);
     EXPECT_NE(open.why_not, "");
     EXPECT_EQ(judge(fine(), open), Fate::undecided);
@@ -95,7 +95,7 @@ TEST(Stability, without_a_verdict_to_compare_with_none_is_called_wrong) {
   }
   EXPECT_TRUE(reference().decided);
   EXPECT_EQ(judge(other, reference()), Fate::wrong);
-  EXPECT_EQ(judge(fine(), Reference{}), Fate::undecided);
+  EXPECT_EQ(judge(fine(), Agreement{}), Fate::undecided);
 }
 
 /// Energy after a linear contact of stiffness k over that before, for a mass that comes in with v and whose
@@ -178,8 +178,8 @@ TEST(Stability, limits_are_those_of_formulas_worked_out_by_hand) {
 
 TEST(Stability, central_differences_are_refused_right_of_their_line) {
   StabilityPlan plan = small_plan();
-  const std::vector<Limit> limits = stability_limits(plan);
-  const Limit& line = limits.front();
+  const std::vector<StabilityLimit> limits = stability_limits(plan);
+  const StabilityLimit& line = limits.front();
   ASSERT_EQ(line.name, "explicit");
   for (const double off : {0.99, 1.01}) {
     const topple::Setup setup =
@@ -189,13 +189,13 @@ TEST(Stability, central_differences_are_refused_right_of_their_line) {
     EXPECT_EQ(run.advance().ok(), off < 1) << off;
   }
   // lines run along the other axis, across its cells
-  for (const Limit& limit : limits) {
+  for (const StabilityLimit& limit : limits) {
     if (limit.name == "capacity") continue;
     EXPECT_NEAR(limit.y.front() / plan.y.edges().front(), 1, 1e-6) << limit.name;
     EXPECT_NEAR(limit.y.back() / plan.y.edges().back(), 1, 1e-6) << limit.name;
   }
   // softer contacts bounce more slowly, as the root
-  const auto bounce = std::ranges::find(limits, "bounce", &Limit::name);
+  const auto bounce = std::ranges::find(limits, "bounce", &StabilityLimit::name);
   EXPECT_NEAR(bounce->x.front() / bounce->x.back(), std::sqrt(bounce->y.back() / bounce->y.front()), 1e-6);
 }
 
@@ -210,7 +210,7 @@ TEST(Stability, steps_beyond_the_bounce_make_energy_and_short_ones_do_not) {
   const StabilityPlan plan = small_plan();
   const StabilityMap map = gather(plan, run_all(plan));
   EXPECT_EQ(map.run, map.of);
-  for (const Reference& r : map.references) EXPECT_TRUE(r.decided) << r.why_not;
+  for (const Agreement& r : map.references) EXPECT_TRUE(r.decided) << r.why_not;
   for (std::size_t m = 0; m < plan.methods.size(); ++m)
     for (int p = 0; p < plan.points(); ++p) {
       const Fate fate = map.cells[m][static_cast<std::size_t>(p)].fate;

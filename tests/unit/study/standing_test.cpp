@@ -178,7 +178,7 @@ TEST(ContactTrials, half_sine_of_a_block_on_hard_contact_is_that_of_theory) {
   const topple::Setup body = alone(scene, 0, false);
   const Standing theory = standing(body.model, body.parameters, 0);
   const double expected = least_half_sine(theory, 4);
-  const Trial trial = overturning_half_sine(body, theory, 4, expected);
+  const ContactTrial trial = overturning_half_sine(body, theory, 4, expected);
   ASSERT_TRUE(trial.value) << trial.status;
   EXPECT_NEAR(*trial.value / expected, 1, 0.004);
 }
@@ -213,12 +213,12 @@ TEST(Impact, the_solver_returns_what_quadrature_says) {
       for (const double speed : {0.005, 0.05, 0.5}) {
         parameters.contact.kind = kind;
         parameters.contact.q = q;
-        const Trial trial = impact(body, parameters, speed);
+        const ContactTrial trial = impact(body, parameters, speed);
         ASSERT_TRUE(trial.value);
         EXPECT_NEAR(*trial.value, restitution(parameters.contact, speed), 0.005) << q << " " << speed;
       }
   parameters.contact.kind = ContactLawKind::printed;
-  const Trial trial = impact(body, parameters, 0.5);
+  const ContactTrial trial = impact(body, parameters, 0.5);
   EXPECT_EQ(trial.value, 0);
   EXPECT_EQ(trial.status, "does not leave the floor");
 }

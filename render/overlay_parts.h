@@ -1,0 +1,50 @@
+// What the parts of an overlay are drawn with, and its legend.
+#pragma once
+
+#include <imgui.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/overlay.h"
+
+namespace topple::render {
+
+/// Of text, lines and grounds, on a light or a dark picture.
+struct Colours {
+  ImU32 title, text, quiet, frame, sheet, trace, cursor, border, axis;
+};
+const Colours& colours(bool dark);
+
+/// Where and how large the parts are.
+struct Layout {
+  ImDrawList& list;
+  const OverlayFonts& fonts;
+  float width, height;
+  float unit;  // px of the picture for one pixel of a design 720 pixels high
+  float margin;
+  const Colours& colours;
+  float line(const ImFont* font) const { return std::round(1.32f * font->FontSize); }
+
+  void text(const ImFont* font, float x, float y, ImU32 colour, const std::string& words) const {
+    list.AddText(font, font->FontSize, {std::round(x), std::round(y)}, colour, words.data(),
+                 words.data() + words.size());
+  }
+};
+
+/// With a minus sign, and a power of ten where it is large or small.
+std::string number(double value, int decimals);
+
+/// There is a legend, and its range can be shown.
+bool can_be_drawn(const Legend& legend, LeftOut& left_out);
+
+/// Where a legend may lie, px, and how long its bar may be.
+struct LegendRoom {
+  float left, top, right, bottom;
+  float bar;
+};
+void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const LegendRoom& room,
+                 std::vector<OverlayBox>& boxes);
+
+}  // namespace topple::render

@@ -1,0 +1,50 @@
+// The mouse of a person who looks for a button.
+#pragma once
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <string>
+
+namespace topple::app {
+
+/// Presses and releases the left button at a place; `frame` draws one.
+template <typename Frame>
+void click_at(ImVec2 at, Frame frame) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = at;
+  frame();
+  frame();
+  io.MouseDown[0] = true;
+  frame();
+  io.MouseDown[0] = false;
+  frame();
+  frame();
+}
+
+/// Clicks the button of that name in a window whose name has `panel` in it, which is scrolled to it. False:
+/// there is none.
+template <typename Frame>
+bool click_button(const std::string& name, const std::string& panel, Frame frame) {
+  frame();
+  for (ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+    if (!window->Active || std::string(window->Name).find(panel) == std::string::npos) continue;
+    const ImGuiID id = ImHashStr(name.c_str(), 0, window->ID);
+    for (float scroll = 0; scroll == 0 || scroll < window->ScrollMax.y + window->Size.y / 2;
+         scroll += window->Size.y / 2) {
+      ImGui::SetScrollY(window, scroll);
+      frame();
+      for (float y = window->Pos.y + 5; y < window->Pos.y + window->Size.y; y += 9)
+        for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += 20) {
+          ImGui::GetIO().MousePos = {x, y};
+          frame();
+          if (ImGui::GetHoveredID() != id) continue;
+          click_at({x, y}, frame);
+          return true;
+        }
+    }
+  }
+  return false;
+}
+
+}  // namespace topple::app
