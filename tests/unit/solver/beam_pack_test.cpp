@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "solver/beam.h"
+#include "solver/beam_kernel.h"
 #include "solver/plasticity.h"
 #include "unit/solver/fixtures.h"
 
@@ -184,6 +185,29 @@ TEST(BeamPack, gradient_is_that_of_its_energy) {
               (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) / (12 * h);
           EXPECT_NEAR(slope, -(k < 3 ? system.force[i][k] : system.moment[i][k - 3]), 1e-8 * size);
         }
+    }
+}
+
+TEST(BeamPack, series_of_small_angles_agree_with_the_closed_forms_up_to_the_switch) {
+  for (const double share : {0.5, 1.})
+    for (const double t : {1., 0.7887}) {
+      SCOPED_TRACE(testing::Message() << share << " of the switch, t " << t);
+      const long double a = t * std::sqrt(static_cast<long double>(share * k_small_angle)), x = a * a,
+                        s = std::sin(a), c = std::cos(a);
+      const long double f0 = s / a, f1 = (1 - c) / x, f2 = (a - s) / (a * x);
+      const PackAngle<Four> angle = small_angle(Four(share * k_small_angle), Four(t));
+      const PackAngleSlope<Four> slope = small_angle_slope(Four(share * k_small_angle), Four(t));
+      const auto relative = [](Four value, long double exact) {
+        return std::abs(static_cast<double>(value[3] / exact - 1));
+      };
+      // Terms left out: 2e-16 and less, but for left2's slope, 5 5!/13! x^4 = 3e-13. Of the closed forms in
+      // long double 7e-14 is left there after two cancellations, 1e-15 elsewhere.
+      EXPECT_LT(relative(angle.cosine, std::cos(a / 2)), 1e-14);
+      EXPECT_LT(relative(angle.sine, t * std::sin(a / 2) / a), 1e-14);
+      EXPECT_LT(relative(angle.left1, t * f1), 1e-14);
+      EXPECT_LT(relative(angle.left2, t * t * f2), 1e-14);
+      EXPECT_LT(relative(slope.left1, t * t * t * (f0 - 2 * f1) / (2 * x)), 1e-14);
+      EXPECT_LT(relative(slope.left2, t * t * t * t * (f1 - 3 * f2) / (2 * x)), 1e-12);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/energy.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -249,6 +250,22 @@ TEST(ContactLaw, drag_of_the_paper_law_opposes_the_motion) {
     const ContactOutput out = contact_force(law, in);
     EXPECT_LE((out.force - out.conservative * in.normal).dot(in.velocity), 0);
   }
+}
+
+// Travel and depth stay: the ledger must find all that the springs gain, and friction gives back what it
+// books for stick springs by their energy alone.
+TEST(LawChange, books_what_springs_gain_as_the_law_changes_and_no_more) {
+  ContactLaw before, after;
+  after.alpha = 3 * before.alpha;
+  const double depth = 0.2, L = 0.03, stick_before = 0.4, stick_after = 3 * stick_before;
+  StepEnergy booked{};
+  LawChange change(before, after, booked);
+  change.book_start(depth, L, stick_before);
+  change.book_end(depth, L, stick_after);
+  const double stick = stick_after - stick_before;
+  const double normal = penalty_energy(after, depth, L) - penalty_energy(before, depth, L);
+  EXPECT_NEAR(booked.friction, stick, 1e-12 * stick);
+  EXPECT_NEAR(booked.input, normal + stick, 1e-12 * (normal + stick));
 }
 
 }  // namespace

@@ -296,5 +296,23 @@ TEST(Frame, free_fall_is_the_parabola_and_bends_nothing) {
   }
 }
 
+TEST(Frame, tilts_about_its_lowest_node_wherever_it_stands_and_however_its_nodes_are_listed) {
+  FrameSpec spec;
+  spec.name = "stool";
+  spec.nodes = {{0.2, 0, 1}, {0, 0, 0}, {0.5, 0, 1e-3}, {0.1, 0, -1e-3}, {0.3, 0.4, 0.2}};
+  for (int i = 1; i < 5; ++i) spec.members.push_back({{0, i}, 0, 0});
+  // the one foot that is lowest, to whatever side: the next is 1 mm above it, a thousandth of the height
+  for (const double tilt : {0.1, -0.1})
+    for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(-3, 0, 0), Vec3(5000, 2, 7)}) {
+      SCOPED_TRACE(testing::Message() << tilt << " at " << shift.transpose());
+      FrameSpec there = spec;
+      for (Vec3& x : there.nodes) x += shift;
+      there.tilt = tilt;
+      Model model = steel_model();
+      const std::vector<BodyStart> starts = add_frame(model, there);
+      EXPECT_EQ(starts[0].pivot, there.nodes[3]);
+    }
+}
+
 }  // namespace
 }  // namespace topple::test

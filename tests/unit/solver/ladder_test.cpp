@@ -322,6 +322,20 @@ TEST(Ladder, begins_with_the_least_that_answers) {
   EXPECT_EQ(base_rung(setup.model, p, 0).rung, Rung::frame);
 }
 
+TEST(Ladder, is_elastic_from_half_the_first_frequency_on) {
+  topple::Setup setup = paper_cabinet(BodyModel::automatic);
+  Parameters& p = setup.parameters;
+  p.want_stress = false;
+  const double first = 2 * k_pi * natural_modes(setup.model, 0, 7)[6].frequency;
+  // of the 40 kg on the contacts of the base, alpha/L each
+  const double n = static_cast<double>(setup.model.bodies[0].base_points.size()),
+               L = (0.09 + setup.model.contact_points[0].width) / 2;
+  for (const double share : {0.999, 1.001}) {
+    p.contact.alpha = 40 * std::pow(share * first / 2, 2) * L / n;
+    EXPECT_EQ(base_rung(setup.model, p, 0).rung, share < 1 ? Rung::rigid : Rung::elastic) << share;
+  }
+}
+
 // A cabinet that falls yields where it lands; what has hinges stays a frame.
 TEST(Ladder, climbs_before_a_section_yields_and_stays) {
   topple::Setup setup = shaken(3, 12 / k_degrees);

@@ -1,5 +1,6 @@
 #include "solver/member_contact.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "unit/solver/fixtures.h"
@@ -194,6 +195,64 @@ TEST(MemberContact, hardening_keeps_force_and_energy_smooth_and_takes_any_blow) 
   // 300 J, what a cabinet that falls flat brings, on one contact stay outside the centre line
   EXPECT_GT(penalty_energy(law, 1, L, true), 300);
   EXPECT_EQ(penalty_force(law, 0.79, true), penalty_force(law, 0.79));
+}
+
+/// d(force)/d(position) with its sign turned, from what BlockLu solves with c I added.
+Eigen::Matrix<double, 12, 12> tangent_of(const ContactLaw& law, const Pair& pair, double c) {
+  std::vector<std::pair<int, int>> edges;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) edges.emplace_back(i, j);
+  BlockLu lu(4, edges);
+  lu.set_zero();
+  add_tangent(law, pair.find(law), pair.pairs, 0, lu);
+  for (int i = 0; i < 4; ++i) lu.add(i, i, Mat6(c * Mat6::Identity()));
+  EXPECT_EQ(lu.factor(), -1);
+  Eigen::Matrix<double, 12, 12> inverse;
+  for (int j = 0; j < 12; ++j) {
+    std::vector<double> b(24, 0.);
+    b[6 * (j / 3) + j % 3] = 1;
+    lu.solve(b.data());
+    for (int i = 0; i < 12; ++i) inverse(i, j) = b[6 * (i / 3) + i % 3];
+  }
+  return inverse.inverse() - c * Eigen::Matrix<double, 12, 12>::Identity();
+}
+
+TEST(MemberContact, tangent_without_friction_is_the_second_derivative_of_the_energy) {
+  std::mt19937 rng(4);
+  const ContactLaw law = elastic_law();
+  const double height = 0.6 * k_width;
+  const std::vector<std::vector<Vec3>> ends = {
+      {{-0.2, 0, height}, {0.3, 0, height}, {0, -0.2, 0}, {0.01, 0.2, 0}},      // between all ends
+      {{-0.2, 0, height}, {0.3, 0, height}, {0.02, 0.004, 0}, {0.05, 0.2, 0}},  // b's first over a
+      {{0.02, 0.004, height}, {0.05, 0.2, height}, {-0.2, 0, 0}, {0.3, 0, 0}},  // a's first over b
+      {{0, 0.004, height}, {0, 0.2, height}, {0.005, 0, 0}, {0.3, 0.01, 0}}};   // both
+  const bool free[][2] = {{true, true}, {true, false}, {false, true}, {false, false}};
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    Pair pair(ends[k]);
+    const Quat turn = random_rotation(rng);
+    for (Vec3& x : pair.position) x = turn * x;
+    for (int i = 0; i < 4; ++i) pair.pairs[0].start[i] = pair.position[i];
+    pair.velocity[0] = pair.velocity[1] = Vec3(0.1, 0.2, 0.3);  // it slides, at no cost
+    const MemberContacts found = pair.find(law);
+    ASSERT_EQ(found.touches.size(), 1u);
+    ASSERT_EQ(found.touches[0].at.s_free, free[k][0]) << k;
+    ASSERT_EQ(found.touches[0].at.t_free, free[k][1]) << k;
+    Eigen::Matrix<double, 12, 12> exact;
+    const double h = 1e-6;
+    for (int j = 0; j < 12; ++j) {
+      double& x = pair.position[j / 3][j % 3];
+      const double x0 = x;
+      x = x0 + h;
+      const std::vector<Vec3> above = pair.force(law);
+      x = x0 - h;
+      const std::vector<Vec3> below = pair.force(law);
+      x = x0;
+      for (int i = 0; i < 12; ++i) exact(i, j) = -(above[i / 3] - below[i / 3])[i % 3] / (2 * h);
+    }
+    // central differences err by (h/l)^2 = 3e-9, and rounding of the forces by 1e-16 P/h
+    const double scale = exact.cwiseAbs().maxCoeff();
+    EXPECT_LT((tangent_of(law, pair, scale) - exact).cwiseAbs().maxCoeff(), 1e-6 * scale) << k;
+  }
 }
 
 }  // namespace

@@ -334,5 +334,61 @@ TEST(Overturn, slow_push_lifts_a_side_between_two_thirds_and_all_of_g_b_over_h_a
   }
 }
 
+TEST(Overturn, members_below_bear_the_sides_that_they_touch_wherever_the_body_stands) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.at = Vec3(3, -2, 0.4);
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  GridSpec floor;
+  floor.name = "floor";
+  setup.starts.push_back(add_grid(setup.model, floor));
+  const Model& model = setup.model;
+  const State state = start_state(model, setup.starts);
+  const Body& body = model.bodies[0];
+  const auto& polygon = body.support_polygon;
+  const double base = polygon[0].z(), weight = body.mass * k_g;
+  const std::vector<SectionForces> sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()});
+  int on_base = 0;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+    for (const double place : {0., 0.3, 1.}) {
+      SCOPED_TRACE(testing::Message() << "element " << e << " at " << place);
+      const Element& element = model.elements[e];
+      const Vec3 x =
+          (1 - place) * model.node_position[element.node[0]] + place * model.node_position[element.node[1]];
+      Outcome outcome(model);
+      std::vector<Event> events;
+      const MemberForce force{{e, body.element_count}, place, 0.5, 0.1, Vec3(0, 0, weight)};
+      outcome.observe(model, {}, state, {}, {force}, sections, events);
+      const bool bears = std::abs(x.z() - base) < 1e-9;
+      on_base += bears;
+      // sides that carry nothing are lifted, but only while the body stands on another
+      for (std::size_t side = 0; side < polygon.size(); ++side) {
+        const Vec3 along = (polygon[(side + 1) % polygon.size()] - polygon[side]).normalized();
+        const double beside = along.cross(x - polygon[side]).norm();
+        EXPECT_EQ(outcome.bodies()[0].lifted[side], bears && beside > 1e-9) << "side " << side;
+      }
+    }
+  EXPECT_GT(on_base, 10);
+}
+
+TEST(Overturn, peak_stress_is_at_the_corner_where_normal_force_and_both_moments_meet_with_torsion) {
+  const Standing s = standing();
+  const State state = start_state(s.model, {s.start});
+  const Section& post = s.model.sections[0];
+  std::vector<SectionForces> sections(s.model.elements.size(), {Vec3::Zero(), Vec3::Zero()});
+  const Vec3 moment(7, -11, 13);
+  const double force = -900, half = 0.015;
+  sections[3] = {Vec3(force, 0, 0), moment};
+  Outcome outcome(s.model);
+  std::vector<Event> events;
+  outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  const double normal = std::abs(force) / post.area + std::abs(moment.y()) * half / post.iy +
+                        std::abs(moment.z()) * half / post.iz;
+  const double shear = moment.x() * half / post.j;
+  const double exact = std::sqrt(normal * normal + 3 * shear * shear);
+  EXPECT_NEAR(outcome.bodies()[0].peak_stress, exact, 1e-9 * exact);
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -104,5 +104,74 @@ TEST(BeamFloor, carries_the_weight_of_what_stands_on_it_and_tells_which_side_lif
   EXPECT_LT(run.state().energy.balance_error(), 1e-3);
 }
 
+TEST(Proximity, nearest_points_do_not_depend_on_the_unit_of_length) {
+  std::mt19937 rng(7);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vec3 a0 = random_vector(rng), a1 = random_vector(rng), b0 = random_vector(rng),
+               b1 = random_vector(rng);
+    const NearestPoints at = nearest_points(a0, a1, b0, b1);
+    for (const double unit : {1e-6, 1e6}) {
+      const NearestPoints other = nearest_points(unit * a0, unit * a1, unit * b0, unit * b1);
+      EXPECT_NEAR(other.s, at.s, 1e-9) << trial;  // 1e-16 over the square of the angle
+      EXPECT_NEAR(other.t, at.t, 1e-9) << trial;
+    }
+  }
+}
+
+TEST(Proximity, grid_of_many_cells_finds_the_pairs_that_comparing_all_finds) {
+  std::mt19937 rng(8);
+  Model model = steel_model();
+  for (int k = 0; k < 500; ++k) {
+    BodyBuilder builder(model, "bar-" + std::to_string(k));
+    const Vec3 x = random_vector(rng, 1.8), along = 0.25 * random_direction(rng);
+    builder.line("bar", x - along, x + along, 1, 2, 0, 0, Vec3(0.1, 0.2, 0.3));
+    builder.add_material_mass();
+    builder.close();
+  }
+  const double margin = 0.03;
+  std::vector<ElementPair> all;
+  const int count = static_cast<int>(model.elements.size());
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1 + (a + 1) % 2; b < count; ++b) {
+      const int *m = model.elements[a].node, *n = model.elements[b].node;
+      const auto& x = model.node_position;
+      if (nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]).between.norm() <=
+          contact_length(model, {a, b}) + margin)
+        all.push_back({a, b});
+    }
+  EXPECT_GT(all.size(), 100u);
+  EXPECT_EQ(NearSearch(model).find(model.node_position, margin), all);
+}
+
+TEST(BeamFloor, lines_stand_at_the_whole_multiples_within_the_extent) {
+  Model model = steel_model();
+  GridSpec spec;
+  spec.name = "wall";
+  spec.origin = Vec3(2, 1, 0.5);
+  spec.along = Vec3::UnitY();
+  spec.up = Vec3::UnitZ();
+  spec.normal = Vec3::UnitX();
+  spec.spacing = 0.25;
+  spec.from[0] = -0.6;
+  spec.to[0] = 1.1;
+  spec.from[1] = 0.2;
+  spec.to[1] = 0.8;
+  add_grid(model, spec);
+  const double x = 2 - model.sections[0].width / 2;  // half a contact width behind the face
+  std::vector<std::pair<Vec3, Vec3>> lines;
+  for (const double y : {-0.5, -0.25, 0., 0.25, 0.5, 0.75, 1.})
+    lines.emplace_back(Vec3(x, 1 + y, 0.7), Vec3(x, 1 + y, 1.3));
+  for (const double z : {0.25, 0.5, 0.75}) lines.emplace_back(Vec3(x, 0.4, 0.5 + z), Vec3(x, 2.1, 0.5 + z));
+  ASSERT_EQ(model.members.size(), lines.size());
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const Member& member = model.members[k];
+    ASSERT_EQ(member.element_count, 2);
+    const Element &first = model.elements[member.first_element],
+                  &last = model.elements[member.first_element + 1];
+    EXPECT_LT((model.node_position[first.node[0]] - lines[k].first).norm(), 1e-12) << member.name;
+    EXPECT_LT((model.node_position[last.node[1]] - lines[k].second).norm(), 1e-12) << member.name;
+  }
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -191,5 +191,17 @@ TEST(Section, custom_is_left_alone) {
   EXPECT_EQ(s.zt, 5);
 }
 
+TEST(Section, torsion_of_a_thin_plate_is_that_of_the_endless_one_less_its_edges_either_way_round) {
+  // tanh is 1 to rounding: J = a b^3/3 (1 - 192/pi^5 b/a (sum of 1/n^5 over odd n)), the sum 31/32 zeta(5)
+  const double sum = 31. / 32 * 1.0369277551433699, thick = 0.002;
+  for (const double ratio : {20., 100.}) {
+    const double wide = ratio * thick;
+    const double exact = wide * std::pow(thick, 3) / 3 * (1 - 192 / std::pow(k_pi, 5) / ratio * sum);
+    // terms from 1/41^5 on are left out: 5e-8 of the edges' part
+    EXPECT_NEAR(made(Section::Shape::solid, wide, thick, 0).j, exact, 1e-8 * exact) << ratio;
+    EXPECT_NEAR(made(Section::Shape::solid, thick, wide, 0).j, exact, 1e-8 * exact) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -258,5 +258,53 @@ TEST(Settle, a_body_that_collapses_under_its_own_weight_is_told_with_element_and
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
+// Two members along x between a pin and a roller, which leave all turning about y free, with a moment there
+// on the first node.
+Model turned_at_its_end(double moment) {
+  Model model = steel_model();
+  model.sections[0] = plain_section(3e-4, 4e-8, 9e-8, 6e-8, 0.7, 0.6);
+  FrameSpec spec;
+  spec.name = "beam";
+  for (int i = 0; i < 3; ++i) spec.nodes.emplace_back(0.5 * i, 0, 0);
+  spec.members = {{{0, 1}, 0, 0}, {{1, 2}, 0, 0}};
+  spec.supports = {{0, 0b001111}, {2, 0b000110}};
+  spec.loads = {{0, Vec3::Zero(), Vec3(0, moment, 0), {}}};
+  add_frame(model, spec);
+  return model;
+}
+
+TEST(Settle, moment_on_a_pinned_end_turns_it_by_M_L_over_3_EI) {
+  const double moment = 1;
+  const Model model = turned_at_its_end(moment);
+  const Parameters p = weightless();
+  State state = start_state(model, {BodyStart{}});
+  Workspace workspace(model);
+  ASSERT_TRUE(settle(model, p, state, workspace).ok());
+  const double bending = 205e9 * 4e-8, shear = 0.6 * 205e9 / 2.6 * 3e-4;
+  // shear: the reactions M/L turn the whole by M/(L G A)
+  const double near = moment / (3 * bending) + moment / shear, far = -moment / (6 * bending) + moment / shear;
+  // exact at the nodes; turns of 4e-5 rad bend by their square
+  EXPECT_NEAR(log_quaternion(state.rotation[0]).y(), near, 1e-7 * near);
+  EXPECT_NEAR(log_quaternion(state.rotation[2]).y(), far, 1e-7 * near);
+}
+
+TEST(Settle, supports_hold_the_directions_that_they_name_and_no_others) {
+  Model model = turned_at_its_end(0);
+  const Vec3 force(1, 2, 3), moment(0.01, 0.02, 0.03);
+  for (unsigned fixed = 0; fixed < 64; ++fixed) {
+    model.supports = {{0, fixed}};
+    model.loads = {{0, force, moment, {}}};
+    State state = start_state(model, {BodyStart{}});
+    Workspace workspace(model);
+    prepare(model, weightless(), state, workspace);  // nothing is strained yet: loads alone accelerate
+    const Vec3 pulled = model.node_mass[0] * state.acceleration[0],
+               turned = model.node_inertia[0] * state.angular_acceleration[0];
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(pulled[k], fixed >> k & 1 ? 0 : force[k], 1e-12) << fixed;
+      EXPECT_NEAR(turned[k], fixed >> (3 + k) & 1 ? 0 : moment[k], 1e-14) << fixed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -309,5 +309,30 @@ TEST(Statics, cabinet_on_a_floor_takes_a_push_until_it_tips) {
   EXPECT_NEAR(run.state().load_factor, 0.19 / 1.79, 0.02 * 0.19 / 1.79);
 }
 
+TEST(Statics, own_weight_bends_every_body_alike) {
+  topple::Setup setup;
+  setup.model.materials.push_back(steel());
+  setup.model.sections.push_back(plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1));
+  FrameSpec spec;
+  spec.name = "beam";
+  spec.nodes = {{0, 0, 0}, {1, 0, 0}};
+  spec.members = {{{0, 1}, 0, 0}};
+  spec.supports.push_back({0, k_clamped});
+  spec.copies = {Vec3::Zero(), Vec3(0, 2, 0), Vec3(0, 4, 0)};
+  setup.starts = add_frame(setup.model, spec);
+  setup.run = {.analysis = Analysis::statics, .settle = false};
+  topple::Run run(setup);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+  const State& state = run.state();
+  EXPECT_LT(state.position[1].z(), -1e-6);
+  for (int copy = 1; copy < 3; ++copy)
+    for (int i = 0; i < 3; ++i) {
+      const int there = setup.model.bodies[copy].first_node + i;
+      // coordinates of 4 m are rounded to 1e-15
+      EXPECT_LT((state.position[there] - state.position[i] - spec.copies[copy]).norm(), 1e-12) << copy;
+      EXPECT_LT((state.rotation[there].coeffs() - state.rotation[i].coeffs()).norm(), 1e-12) << copy;
+    }
+}
+
 }  // namespace
 }  // namespace topple::test

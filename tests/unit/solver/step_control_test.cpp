@@ -173,5 +173,63 @@ TEST(StepControl, central_difference_steps_nine_tenths_of_its_limit_contacts_inc
   EXPECT_TRUE(is_finite(sim.state));
 }
 
+TEST(StepControl, resting_frame_takes_a_twentieth_of_its_period_on_its_contacts) {
+  Model model = steel_model();
+  const BodyStart start = add_cabinet(model, tall_cabinet());
+  model.planes.push_back(ground());
+  Parameters p;
+  p.contact.alpha = 1250 * k_g;
+  Simulation sim(model, {start}, p, true);
+  ASSERT_FALSE(sim.contacts().empty());
+  double stiffness = 0;  // q = 1: alpha/L each
+  for (const ContactForce& f : sim.contacts())
+    stiffness += p.contact.alpha / ((model.contact_points[f.point].width + model.planes[0].width) / 2);
+  const double period = 2 * k_pi * std::sqrt(model.bodies[0].mass / stiffness);
+  EXPECT_NEAR(look_ahead(model, p, sim.state), period / 20, 1e-12);
+}
+
+TEST(StepControl, members_that_close_are_met_in_time) {
+  // a bar along x and, 40 mm above, one along y: crossing at unequal parts of their elements
+  Model model = steel_model();
+  const double height = 0.04;
+  const Vec3 crossing(0.1, 0.05, 0);
+  for (int k = 0; k < 2; ++k) {
+    BodyBuilder builder(model, k == 0 ? "below" : "above");
+    const Vec3 along = k == 0 ? Vec3::UnitX() : Vec3::UnitY(),
+               middle(k * crossing.x(), (1 - k) * crossing.y(), 0);
+    const Vec3 up = k * height * Vec3::UnitZ();
+    builder.line("bar", middle + up - 0.3 * along, middle + up + 0.3 * along, 1, 2, 0, 0, Vec3::UnitZ());
+    builder.add_material_mass();
+    builder.close();
+  }
+  State state = start_state(model, {BodyStart{}, BodyStart{}});
+  state.near = {{1, 3}};
+  const Parameters p = weightless();
+  std::mt19937 rng(21);
+  const double gap = height - model.sections[0].width, quarter = model.sections[0].width / 4;
+  int closing_ones = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    // each turns about a point of its own, too slowly for that to count
+    Vec3 at_crossing[2];
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 pivot = crossing + random_vector(rng, 5), spin = random_vector(rng, 0.8);
+      const auto velocity = [&](const Vec3& x) -> Vec3 { return spin.cross(x - pivot); };
+      const Body& body = model.bodies[k];
+      for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+        state.velocity[i] = velocity(state.position[i]);
+        state.angular_velocity[i] = spin;
+      }
+      at_crossing[k] = velocity(crossing + k * height * Vec3::UnitZ());
+    }
+    const double closing = at_crossing[0].z() - at_crossing[1].z();
+    const bool seen = closing * k_longest_step > gap;
+    closing_ones += seen;
+    EXPECT_NEAR(look_ahead(model, p, state),
+                seen ? std::min(k_longest_step, std::max(gap, quarter) / closing) : k_longest_step, 1e-12)
+        << trial;
+  }
+  EXPECT_GT(closing_ones, 10);
+}
+
 }  // namespace
 }  // namespace topple::test
