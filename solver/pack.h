@@ -345,13 +345,6 @@ template <class P, class... Rest>
   const auto row = [&](int i) { return Four(m(i, 0)) * a.x + Four(m(i, 1)) * a.y + Four(m(i, 2)) * a.z; };
   return {row(0), row(1), row(2)};
 }
-/// Over the lanes.
-[[gnu::always_inline]] inline Vec3 sum(const PackVector<Four>& v) {
-  const std::array<Four, 4> rows = lanes(v);
-  const Four total = (rows[0] + rows[1]) + (rows[2] + rows[3]);
-  return {total[0], total[1], total[2]};
-}
-
 /// Each over its lanes.
 [[gnu::always_inline]] inline Four sums(Four a, Four b, Four c, Four d) {
   transpose(a, b, c, d);
