@@ -104,6 +104,7 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
   const std::string result = path;
   try {
     if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
+    if (player.way().empty()) throw std::runtime_error(say(ww::k_export_too_early));
     if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
     std::error_code ignored;
     if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));

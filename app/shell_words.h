@@ -94,6 +94,8 @@ inline constexpr Phrase k_tables_about{
     "物体・節点・要素・床・エネルギーの時刻歴を新しいフォルダに書きます。"};
 inline constexpr Phrase k_export_recorded{"Only what is recorded can be exported, and this run is not.",
                                           "書き出せるのは記録だけです。この計算は記録されていません。"};
+inline constexpr Phrase k_export_too_early{"There is no instant yet that could be exported.",
+                                           "書き出せる時刻がまだありません。"};
 inline constexpr Phrase k_export_newest{"Only the newest branch is exported; another one is shown.",
                                         "書き出せるのは最新の枝だけです。別の枝が表示されています。"};
 inline constexpr Phrase k_exporting{"Exporting {0}", "{0} を書き出しています"};

@@ -365,6 +365,19 @@ TEST_F(ExportDialogTest, a_picture_has_the_size_that_was_asked_for) {
   EXPECT_NE(dialog().refused().find("view.png"), std::string::npos);  // it is there already
 }
 
+TEST_F(ExportDialogTest, before_there_is_an_instant_nothing_is_exported) {
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(player().way().empty());
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    dialog().what = what;
+    set_path("early");
+    start();
+    EXPECT_NE(dialog().refused().find("no instant yet"), std::string::npos) << dialog().refused();
+    EXPECT_FALSE(dialog().busy());
+  }
+}
+
 TEST_F(ExportDialogTest, a_picture_is_seen_from_where_the_window_sees_it) {
   open_rocking();
   run_to(0.2);
