@@ -33,9 +33,9 @@ struct FrameRow {
   std::vector<float> contact_force;   ///< c x 3, N
   std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,
                                       ///< N, and where it acts, 0..1 from the first node to the second
-  std::vector<double> energy;      ///< input, kinetic, strain, gravity, contact, friction, normal damping,
-                                   ///< numerical, plastic, damping, model switch, balance error; with
-                                   ///< anchors also anchor, released; J, balance error -
+  std::vector<double> energy;         ///< input, kinetic, strain, gravity, contact, friction, normal damping,
+                                      ///< numerical, plastic, damping, model switch, balance error; with
+                                      ///< anchors also anchor, released; J, balance error -
   std::vector<double> body;        ///< b x 11: centre x y z (m), quaternion w x y z, tilt (rad), slide (m),
                                    ///< energy (J), critical angle (rad, 0: none)
   std::vector<std::uint8_t> rung;  ///< b: 0 rigid, 1 elastic, 2 frame

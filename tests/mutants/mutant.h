@@ -49,8 +49,7 @@ constexpr T operator*(Sign<n>, T x) {
   return on<n>() ? static_cast<T>(-x) : x;
 }
 template <int n, typename T>
-  requires(!Number<T>)
-constexpr auto operator*(Sign<n>, const T& x) {
+requires(!Number<T>) constexpr auto operator*(Sign<n>, const T& x) {
   return (on<n>() ? -1. : 1.) * x;
 }
 
@@ -77,7 +76,7 @@ constexpr Held<n, A> operator*(A&& a, Times<n>) {
   return {std::forward<A>(a)};
 }
 template <int n, typename A, Number B>
-  requires Number<A>
+requires Number<A>
 constexpr auto operator*(Held<n, A> held, B b) {
   return on<n>() ? held.a / b : held.a * b;
 }
@@ -95,14 +94,14 @@ constexpr auto operator/(Held<n, A> held, B b) {
 /// `a < Order<n>() < b`: the opposite when it is on.
 template <int n>
 struct Order {};
-#define TOPPLE_ORDER(op)                              \
-  template <int n, Number A>                          \
-  constexpr Held<n, A> operator op(A a, Order<n>) {   \
-    return {a};                                       \
-  }                                                   \
-  template <int n, Number A, Number B>                \
-  constexpr bool operator op(Held<n, A> held, B b) {  \
-    return on<n>() ? !(held.a op b) : (held.a op b);  \
+#define TOPPLE_ORDER(op)                             \
+  template <int n, Number A>                         \
+  constexpr Held<n, A> operator op(A a, Order<n>) {  \
+    return {a};                                      \
+  }                                                  \
+  template <int n, Number A, Number B>               \
+  constexpr bool operator op(Held<n, A> held, B b) { \
+    return on<n>() ? !(held.a op b) : (held.a op b); \
   }
 TOPPLE_ORDER(<)
 TOPPLE_ORDER(>)
