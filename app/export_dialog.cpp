@@ -103,8 +103,8 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
   refused_.clear();
   const std::string result = path;
   try {
-    if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
     if (player.way().empty()) throw std::runtime_error(say(ww::k_export_too_early));
+    if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
     if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
     std::error_code ignored;
     if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));
