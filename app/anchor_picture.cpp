@@ -19,7 +19,7 @@ constexpr double k_least_sag = 0.15;     // of the span, and
 constexpr double k_seen_sag = 0.1;       // m: the lesser of the two is seen as slack
 constexpr double k_most_sag = 0.6;
 constexpr double k_steep = 0.5;  // rise over span
-constexpr int k_stations = 13;
+constexpr int k_band_stations = 13;
 
 enum Shape { band, rod, plate, thimble, k_shapes };
 
@@ -96,8 +96,8 @@ std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
   const bool steep = std::abs(span.z()) > k_steep * chord;
   const Vec3 down = (steep ? side : Vec3(-Vec3::UnitZ() + span * (span.z() / (chord * chord)))).normalized();
   std::vector<Vec3> points;
-  for (int i = 0; i < k_stations; ++i) {
-    const double t = static_cast<double>(i) / (k_stations - 1);
+  for (int i = 0; i < k_band_stations; ++i) {
+    const double t = static_cast<double>(i) / (k_band_stations - 1);
     points.emplace_back(from + t * span + 4 * t * (1 - t) * sag * down);
   }
   return points;

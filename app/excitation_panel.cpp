@@ -26,8 +26,9 @@ constexpr double k_new_place = 0.002;                              // relative: 
 double peak_velocity(const Accelerogram& record) {
   Vec3 velocity = Vec3::Zero(), before = acceleration(record, 0);
   double most = 0;
-  for (double t = record.interval; t <= record.duration; t += record.interval) {
-    const Vec3 now = acceleration(record, t);
+  const int steps = static_cast<int>(std::lround(record.duration / record.interval));
+  for (int k = 1; k <= steps; ++k) {
+    const Vec3 now = acceleration(record, k * record.interval);
     velocity += record.interval / 2 * (before + now);
     before = now;
     most = std::max(most, velocity.norm());
@@ -97,14 +98,14 @@ void draw_criteria_chart(const Limits& limits, const TeachingState& state) {
   list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);
   const double west = limits.west / k_gal;
   const auto velocity_line = [&](double frequency) { return 2 * k_pi * frequency * limits.ishiyama / k_gal; };
-  const std::vector<ChartCurve> curves{
+  const std::vector<LogCurve> curves{
       {say(k_west), theme().positive, 0, {chart.at(chart.x.low, west), chart.at(chart.x.high, west)}},
       {say(k_ishiyama),
        theme().line,
        0.45f * ImGui::GetTextLineHeight(),
        {chart.at(chart.x.low, velocity_line(chart.x.low)),
         chart.at(chart.x.high, velocity_line(chart.x.high))}}};
-  for (const ChartCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
+  for (const LogCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
   draw_region(list, chart, 1, chart.y.low, west, k_stays);
   draw_region(list, chart, 4.5, west, velocity_line(4.5), k_rocks);
   draw_region(list, chart, 0.25, std::max(west, velocity_line(0.25)), chart.y.high, k_may_overturn);

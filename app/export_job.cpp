@@ -15,8 +15,6 @@
 
 #include "app/commands.h"
 
-extern char** environ;
-
 namespace topple::app {
 namespace {
 
@@ -39,6 +37,7 @@ ExportJob::ExportJob(const std::string& program, const std::vector<std::string>&
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -17,8 +17,6 @@
 #include <stdexcept>
 #include <vector>
 
-extern char** environ;
-
 namespace topple::app {
 namespace {
 

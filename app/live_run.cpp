@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/clock.h"
 #include "app/live_worker.h"
 #include "app/summary.h"
 #include "app/thinning.h"
@@ -10,8 +11,6 @@
 namespace topple::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
 constexpr std::chrono::milliseconds k_report_interval{8};  // a picture lasts longer
 constexpr std::chrono::milliseconds k_follow_interval{200};
 constexpr double k_most_lag = 0.1;     // s that a run which cannot keep its pace tries to make up
@@ -132,7 +131,7 @@ void LiveRun::Worker::fail(const StepStatus& status) {
 void LiveRun::Worker::step_once() {
   const Clock::time_point start = Clock::now();
   const StepStatus status = advance_(*run_);
-  wall_ += Seconds(Clock::now() - start).count();
+  wall_ += seconds_since(start);
   if (!status.ok()) {
     fail(status);
     return;
@@ -235,7 +234,7 @@ LiveReport LiveRun::take() {
 }
 LiveStatus LiveRun::close(const std::string& status) {
   if (!worker_) return {};
-  const LiveStatus last = worker_->close(status);
+  LiveStatus last = worker_->close(status);
   worker_.reset();
   return last;
 }

@@ -163,9 +163,9 @@ ImVec2 ChartKey::entry(const std::string& words) {
   return {x + (k_sign - 0.3f) / 2 * line_, y_ + line_ / 2};
 }
 
-void ChartKey::lines(const std::vector<ChartCurve>& curves) {
+void ChartKey::lines(const std::vector<LogCurve>& curves) {
   begin_line();
-  for (const ChartCurve& curve : curves) {
+  for (const LogCurve& curve : curves) {
     const ImVec2 at = entry(curve.name);
     add_line(list_, {{at.x - 0.7f * line_, at.y}, {at.x + 0.7f * line_, at.y}}, curve.colour, curve.dash);
   }

@@ -38,7 +38,7 @@ void add_line(ImDrawList& list, const std::vector<ImVec2>& points, ImU32 colour,
 /// Where things are now.
 void add_present(ImDrawList& list, ImVec2 at);
 
-struct ChartCurve {
+struct LogCurve {
   std::string name;
   ImU32 colour;
   float dash;  ///< as of add_line
@@ -53,7 +53,7 @@ class ChartKey {
   /// Writes words with room for a sign before them; where its middle is.
   ImVec2 entry(const std::string& words);
   /// Names of lines: on the lines they would meet other words.
-  void lines(const std::vector<ChartCurve>& curves);
+  void lines(const std::vector<LogCurve>& curves);
   /// Takes the room of chart and key in the panel.
   void end();
 

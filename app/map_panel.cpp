@@ -104,11 +104,11 @@ void draw_cells(ImDrawList& list, const LogChart& chart, const OverturnFound& fo
     }
 }
 
-std::vector<ChartCurve> curves_of(const LogChart& chart, const study::Criteria& criteria) {
+std::vector<LogCurve> curves_of(const LogChart& chart, const study::Criteria& criteria) {
   const float dash = 0.45f * ImGui::GetTextLineHeight();
-  std::vector<ChartCurve> curves;
+  std::vector<LogCurve> curves;
   for (const study::Criterion& criterion : criteria.list) {
-    ChartCurve curve{say(k_one_pulse), theme().text, 0.35f * dash, {}};
+    LogCurve curve{say(k_one_pulse), theme().text, 0.35f * dash, {}};
     if (criterion.name == "west") curve = {say(k_west), theme().positive, 0, {}};
     if (criterion.name == "ishiyama") curve = {say(k_ishiyama), theme().line, dash, {}};
     if (criterion.name == "one-sine") curve.name = say(k_one_cycle);
@@ -202,8 +202,8 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   draw_log_grid(list, chart);
   list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);
   draw_cells(list, chart, *found);
-  const std::vector<ChartCurve> curves = curves_of(chart, found->map.criteria);
-  for (const ChartCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
+  const std::vector<LogCurve> curves = curves_of(chart, found->map.criteria);
+  for (const LogCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
   const double x = value_now(plan.x, player.parameters()), y = value_now(plan.y, player.parameters());
   add_present(list, chart.clamped(x, y));
   list.PopClipRect();

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
+#include "app/clock.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/present_studies.h"
@@ -17,7 +17,6 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 study::OverturnPlan plan_of(const StudyOptions& options, io::Scene scene) {
   return study::plan_overturn(std::move(scene), options.x, options.y, options.ensemble, options.spread);
@@ -142,7 +141,7 @@ int overturn_command(const StudyOptions& options) {
                     plan.cases(), rows_file));
     return k_interrupted;
   }
-  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const double wall_s = seconds_since(start);
   const study::OverturnMap map = gather(plan, end.rows);
   const ordered_json json = document(plan, map, crew, options, wall_s);
   write_study(stem, json["rows"], json,

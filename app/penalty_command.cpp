@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/clock.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/log.h"
@@ -16,12 +16,7 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 using Case = study::PenaltyRow::Case;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 ordered_json law_json(const ContactLaw& law) {
   return {{"law", study::law_name(law.kind)},

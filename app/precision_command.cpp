@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
+#include "app/clock.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/study_results.h"
@@ -15,11 +15,6 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// With --quick a run that is still under way when the time is over is given up: it may take minutes.
 MakeWork work_on(const study::PrecisionPlan& plan, bool quick) {

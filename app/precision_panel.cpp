@@ -140,7 +140,7 @@ void draw_chart(const PrecisionFound& found, int present, PrecisionState& state,
   const auto place = [&](int k) {
     return chart.at(1e3 * *row(found, k).cost, *error_of(found, k, state.measure));
   };
-  ChartCurve front{say(k_pareto), theme().ghost, 0, {}};
+  LogCurve front{say(k_pareto), theme().ghost, 0, {}};
   for (const int k : study::front(*found.plan, found.study, 0, state.measure))
     if (error_of(found, k, state.measure)) front.points.push_back(place(k));
   list.AddPolyline(front.points.data(), static_cast<int>(front.points.size()), front.colour, 0, 0.35f * line);

@@ -1,9 +1,9 @@
 #include "app/present_studies.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
+#include "app/clock.h"
 #include "app/study_results.h"
 #include "solver/io/scene_save.h"
 #include "solver/study/measure.h"
@@ -12,14 +12,9 @@
 namespace topple::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Rows = std::vector<std::string>;
 
 constexpr double k_between = 0.3;  // s, from one result shown to the next
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 io::Scene changed_scene(const io::Scene& scene, const Parameters& now) {
   io::Scene changed = io::parse_scene(io::edited_scene(scene, now).text, scene.name, {}, io::files_of(scene));
@@ -32,6 +27,7 @@ template <class Found>
 void work_through(Background<Found>& desk, const std::vector<int>& order, int jobs, const MakeWork& make,
                   const std::function<bool()>& give_up, const std::function<Found(const Rows&)>& gather) {
   std::vector<CaseWork> works;
+  works.reserve(static_cast<std::size_t>(jobs));
   for (int worker = 0; worker < jobs; ++worker) works.push_back(make());
   Rows rows(order.size());
   std::mutex keeping;
@@ -99,6 +95,7 @@ std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const 
     std::erase_if(own.list, [](const auto& one) { return one.law != 0; });
     const auto plan = std::make_shared<const study::PrecisionPlan>(std::move(own));
     std::vector<Parameters> parameters;
+    parameters.reserve(static_cast<std::size_t>(plan->cases()));
     for (int k = 0; k < plan->cases(); ++k) parameters.push_back(plan->setup_of(k).parameters);
     work_through<PrecisionFound>(
         desk, case_order(*plan), 1,

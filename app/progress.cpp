@@ -35,7 +35,7 @@ void Progress::update(double done) {
   if (terminal_ ? now - last_ < k_bar_interval : now - last_ < k_line_interval) return;
   last_ = now;
   drawn_ = true;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double elapsed = Seconds(now - start_).count();
   const double rate = done / elapsed;
   const double part = std::clamp(done / total_, 0., 1.);
   const std::string text = fmt::format("{:.4g} of {:.4g} {}, {:.3g}/s, {:.0f} s left", done, total_, unit_,

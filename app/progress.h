@@ -1,8 +1,9 @@
 // Progress of long work on stderr.
 #pragma once
 
-#include <chrono>
 #include <string>
+
+#include "app/clock.h"
 
 namespace topple::app {
 
@@ -19,7 +20,6 @@ class Progress {
   void update(double done);
 
  private:
-  using Clock = std::chrono::steady_clock;
   const std::string what_, unit_;
   const double total_;
   const bool quiet_, terminal_;

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
+#include "app/clock.h"
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/interrupt.h"
@@ -106,7 +106,7 @@ void warn_of_open_verdicts(const nlohmann::ordered_json& error, nlohmann::ordere
 RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
   std::optional<io::Recorder> recorder;
   if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model, scene.files);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::optional<study::Team> team;
   Run run(scene.setup);
   const bool recorded = recorder && run.status().ok();  // what does not settle has no first instant
@@ -129,7 +129,7 @@ RecordedRun record(const io::Scene& scene, const std::string& path, const RunMan
     }
     nlohmann::ordered_json profile;
     if (manner.profile) profile = profile_summary(run.profile(), run.step());
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double wall = seconds_since(start);
     const std::string status = status_of(run);
     result.summary = summary(scene, run, status, wall);
     if (manner.profile) result.summary["profile"] = std::move(profile);

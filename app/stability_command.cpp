@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
+#include "app/clock.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/study_results.h"
@@ -17,7 +17,6 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 MakeWork work_on(const study::StabilityPlan& plan) {
   return [&plan] {
@@ -145,7 +144,7 @@ int stability_command(const StudyOptions& options) {
                     plan.cases(), rows_file));
     return k_interrupted;
   }
-  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const double wall_s = seconds_since(start);
   const study::StabilityMap map = gather(plan, end.rows);
   const std::vector<study::StabilityLimit> limits = stability_limits(plan);
   const ordered_json json = document(plan, map, limits, crew, options, wall_s);

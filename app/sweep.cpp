@@ -5,6 +5,7 @@
 #include <mutex>
 #include <thread>
 
+#include "app/clock.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/ranks.h"
@@ -15,8 +16,6 @@
 
 namespace topple::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int k_common = 0;  // tag of what is for a rank; 1 and on: its workers
 constexpr const char* k_end = "end";
@@ -89,9 +88,7 @@ CaseWork Crew::work_of(int worker, const MakeWork& make) {
 
 SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
   const auto start = Clock::now();
-  const auto in_time = [&] {
-    return !options.quick || std::chrono::duration<double>(Clock::now() - start).count() < k_quick;
-  };
+  const auto in_time = [&] { return !options.quick || seconds_since(start) < k_quick; };
   study::KeptRows kept(plan.file, plan.settings, static_cast<int>(plan.order.size()), options.resume);
   std::vector<int> left;
   for (const int k : plan.order)

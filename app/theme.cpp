@@ -3,7 +3,7 @@
 namespace topple::app {
 namespace {
 
-constexpr Theme k_light = {
+constexpr Theme k_light_theme = {
     .text = IM_COL32(44, 54, 64, 255),
     .quiet = IM_COL32(84, 96, 108, 255),
     .sheet = IM_COL32(255, 255, 255, 255),
@@ -28,7 +28,7 @@ constexpr Theme k_light = {
                 {IM_COL32(169, 203, 228, 255), IM_COL32(43, 92, 134, 255)},
                 {IM_COL32(226, 233, 240, 255), IM_COL32(226, 233, 240, 255)}},
 };
-constexpr Theme k_dark = {
+constexpr Theme k_dark_theme = {
     .text = IM_COL32(226, 231, 236, 255),
     .quiet = IM_COL32(178, 187, 196, 255),
     .sheet = IM_COL32(24, 28, 33, 255),
@@ -92,7 +92,7 @@ void set_dark_colours(ImVec4* colours) {
 }  // namespace
 
 const Theme& theme() {
-  return window_is_dark() ? k_dark : k_light;
+  return window_is_dark() ? k_dark_theme : k_light_theme;
 }
 
 void set_style(float scale) {

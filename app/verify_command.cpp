@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <mutex>
@@ -10,6 +9,7 @@
 #include <numeric>
 #include <thread>
 
+#include "app/clock.h"
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/interrupt.h"
@@ -220,7 +220,7 @@ int verify_command(const VerifyOptions& options) {
   const bool to_output = options.json == "-";
   if (!options.json.empty() && !to_output) require_writable_text("--json", options.json, "");
   defer_interrupts();
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const ordered_json rows = run_all(scenes, options.quiet);
   if (interrupted()) {
     say("interrupted before every case had run");
@@ -228,13 +228,12 @@ int verify_command(const VerifyOptions& options) {
   }
   const auto missed =
       std::count_if(rows.begin(), rows.end(), [](const auto& r) { return r["verdict"] == "miss"; });
-  const ordered_json out{
-      {"topple", TOPPLE_VERSION},
-      {"schema", 1},
-      {"wall_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
-      {"passed", rows.size() - static_cast<std::size_t>(missed)},
-      {"missed", missed},
-      {"rows", rows}};
+  const ordered_json out{{"topple", TOPPLE_VERSION},
+                         {"schema", 1},
+                         {"wall_s", seconds_since(start)},
+                         {"passed", rows.size() - static_cast<std::size_t>(missed)},
+                         {"missed", missed},
+                         {"rows", rows}};
   if (to_output) {
     fmt::print("{}\n", json_text(out, 2));
   } else {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/clock.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/log.h"
@@ -15,9 +16,6 @@
 
 namespace topple::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
 
 constexpr double k_frame = 1. / 60;   // s, least time between two pictures
 constexpr double k_look = 0.1;        // s, how often an idle window looks for Ctrl+C

@@ -19,10 +19,10 @@ constexpr double k_flight = 0.25;        // s, of the camera
 constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
 constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
 constexpr float k_least_beside = 0.3f;   // the same of its width, where there is little height
-constexpr float k_click = 4;             // px: a press that moves less is no drag
+constexpr float k_click_travel = 4;      // px: a press that moves less is no drag
 constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
 constexpr float k_most_plots = 0.55f;    // of the height above the timeline
-constexpr float k_side = 320;            // px at 720 lines
+constexpr float k_side_panel = 320;      // px at 720 lines
 constexpr float k_most_side = 0.45f;     // of the width
 constexpr float k_least_letters = 12;    // px
 
@@ -128,7 +128,7 @@ bool Viewer::update(double wall_s) {
 void Viewer::lay_out() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float line = fonts_.small->FontSize;
-  const float side = std::min(k_side * scale_, k_most_side * size.x);
+  const float side = std::min(k_side_panel * scale_, k_most_side * size.x);
   const float status = static_cast<float>(status_lines_.size()) * ImGui::GetTextLineHeightWithSpacing() +
                        2 * ImGui::GetStyle().WindowPadding.y;
   const float bar = transport_height_ > 0 ? transport_height_ : 38 * scale_;
@@ -291,7 +291,8 @@ void Viewer::handle_mouse() {
   const bool pan = io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
   if (dragging_ && (turn || pan)) {
     for (int button = 0; button < 3; ++button)
-      dragged_ = dragged_ || io.MouseDragMaxDistanceSqr[button] > k_click * k_click * scale_ * scale_;
+      dragged_ =
+          dragged_ || io.MouseDragMaxDistanceSqr[button] > k_click_travel * k_click_travel * scale_ * scale_;
     if (dragged_ && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
       flight_ = 1;
       moved_ = true;

@@ -8,6 +8,7 @@
 #include "solver/io/scene.h"
 #include "solver/modes.h"
 #include "solver/study/parallel.h"
+#include "solver/study/rows.h"
 #include "solver/study/theory.h"
 
 namespace topple::study {
@@ -150,11 +151,6 @@ ElementsRow row_of(const Solution& solution, const Benchmark& benchmark, std::si
   row.computed = solution.values[k];
   row.error = std::abs(*row.computed - quantity.reference) / std::abs(quantity.reference);
   return row;
-}
-
-template <typename Number>
-ordered_json or_null(const std::optional<Number>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/study/overturn_map.h"
+#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {
@@ -9,10 +10,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_early = 0.1, k_late = 0.9;  // quantiles of times that are told
-
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + "_" + unit;

@@ -3,17 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/study/penalty.h"
+#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {
 
 using nlohmann::ordered_json;
 using Case = PenaltyRow::Case;
-
-template <typename Number>
-ordered_json or_null(const std::optional<Number>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 ordered_json positive_or_null(double value) {
   return value > 0 ? ordered_json(value) : ordered_json(nullptr);

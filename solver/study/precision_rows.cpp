@@ -5,16 +5,12 @@
 
 #include "solver/study/penalty.h"
 #include "solver/study/precision.h"
+#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {
 
 using nlohmann::ordered_json;
-
-template <typename Number>
-ordered_json or_null(const std::optional<Number>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 ordered_json errors_as_json(const Errors& errors) {
   ordered_json json;

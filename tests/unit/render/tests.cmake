@@ -17,6 +17,7 @@ add_executable(draw_one ${CMAKE_CURRENT_LIST_DIR}/draw_one.cpp)
 target_link_libraries(draw_one PRIVATE topple_render)
 target_compile_definitions(render_test PRIVATE TOPPLE_DRAW_ONE="$<TARGET_FILE:draw_one>")
 add_dependencies(render_test draw_one)
+set_target_properties(render_test PROPERTIES UNITY_BUILD OFF)
 gtest_discover_tests(render_test)
 
 # A process holds one kind of context: the window's tests compare with what another one drew.

@@ -16,14 +16,14 @@ enum class Memory { none, offsets, hinges };
 
 // Five members in space, ten elements: the last pack is not full. Any nodes may turn against each other by
 // about `angle`.
-struct Pose {
+struct MemberPose {
   Model model;
   std::vector<ElementState> memory;
   BodyMotion motion;
 };
 
-Pose random_pose(std::mt19937& rng, double angle, Memory memory) {
-  Pose pose;
+MemberPose random_pose(std::mt19937& rng, double angle, Memory memory) {
+  MemberPose pose;
   Material material = steel();
   if (memory != Memory::none) material.yield = 235e6;
   pose.model.materials.push_back(material);
@@ -63,7 +63,7 @@ struct Scalar {
   std::vector<SectionForces> sections;
 };
 
-Scalar element_by_element(const Pose& pose) {
+Scalar element_by_element(const MemberPose& pose) {
   const int n = 6 * pose.model.node_total();
   Scalar out{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), 0, {}};
   const BodyMotion& m = pose.motion;
@@ -88,7 +88,7 @@ Scalar element_by_element(const Pose& pose) {
   return out;
 }
 
-void expect_the_same(const Pose& pose) {
+void expect_the_same(const MemberPose& pose) {
   BodySystem system(pose.model, 0);
   system.elements = pose.memory;
   const Scalar scalar = element_by_element(pose);
@@ -141,11 +141,11 @@ TEST(BeamPack, gives_what_the_elements_give_one_by_one_for_small_and_large_rotat
 
 TEST(BeamPack, gives_what_the_elements_give_at_every_angle_below_half_a_turn) {
   std::mt19937 rng(34);
-  const Pose still = random_pose(rng, 0, Memory::none);
+  const MemberPose still = random_pose(rng, 0, Memory::none);
   const Vec3 axis = random_direction(rng);
   for (int k = 0; k <= 310; ++k) {
     SCOPED_TRACE(testing::Message() << "angle " << 0.01 * k);
-    Pose pose = still;
+    MemberPose pose = still;
     pose.motion.rotation[2] = exp_quaternion(0.01 * k * axis) * pose.motion.rotation[2];
     expect_the_same(pose);
   }
@@ -165,7 +165,7 @@ TEST(BeamPack, gradient_is_that_of_its_energy) {
   std::mt19937 rng(33);
   for (const double angle : {1e-3, 0.1, 0.8})
     for (int trial = 0; trial < 5; ++trial) {
-      Pose pose = random_pose(rng, angle, Memory::none);
+      MemberPose pose = random_pose(rng, angle, Memory::none);
       SCOPED_TRACE(testing::Message() << "angle " << angle << ", trial " << trial);
       BodySystem system(pose.model, 0);
       std::vector<SectionForces> sections(pose.model.elements.size());
