@@ -1,25 +1,19 @@
 #include "app/command_line.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <new>
-#include <numbers>
-#include <optional>
 #include <string_view>
 
 #include "app/commands.h"
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/option_values.h"
 #include "app/ranks.h"
 #include "solver/io/scene.h"
 
@@ -40,76 +34,9 @@ constexpr Study k_studies[] = {{"elements", elements_command, false},
                                {"precision", precision_command, true, true},
                                {"stability", stability_command, true, true, true}};
 
-constexpr int k_least_side = 64, k_most_side = 8192;  // px
-constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
+constexpr int k_most_jobs = 256;
 
-template <typename Number>
-std::optional<Number> whole_number(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::string not_empty(const std::string& text) {
-  return text.empty() ? "is empty" : "";
-}
-
-std::string seconds(const std::string& text) {
-  const std::optional<double> value = whole_number<double>(text);
-  return value && std::isfinite(*value) ? "" : "\"" + text + "\" is not a number of seconds";
-}
-
-std::string rate(const std::string& text) {
-  const std::optional<int> value = whole_number<int>(text);
-  return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
-}
-
-std::string job_count(const std::string& text) {
-  const std::optional<int> value = whole_number<int>(text);
-  return value && *value >= 1 && *value <= 256 ? "" : "\"" + text + "\" is not a whole number in 1..256";
-}
-
-std::string ensemble_size(const std::string& text) {
-  const std::optional<int> value = whole_number<int>(text);
-  return value && *value >= 2 && *value <= 10000 ? "" : "\"" + text + "\" is not a whole number in 2..10000";
-}
-
-/// "5%" or "0.05".
-std::optional<double> share_in(std::string_view text) {
-  const bool percent = text.ends_with('%');
-  if (percent) text.remove_suffix(1);
-  const std::optional<double> value = whole_number<double>(text);
-  const double share = value.value_or(0) / (percent ? 100 : 1);
-  return share > 0 && share < 1 ? std::optional(share) : std::nullopt;
-}
-
-std::string share(const std::string& text) {
-  return share_in(text) ? "" : "\"" + text + "\" is not between 0% and 100%";
-}
-
-std::string mode_count(const std::string& text) {
-  const std::optional<int> value = whole_number<int>(text);
-  return value && *value >= 1 && *value <= 1000 ? "" : "\"" + text + "\" is not a whole number in 1..1000";
-}
-
-void read_size(const std::string& text, RenderOptions& options) {
-  const std::size_t cross = std::min(text.find('x'), text.size());
-  const auto side = [](std::string_view digits) {
-    const int value = whole_number<int>(digits).value_or(0);
-    return value >= k_least_side && value <= k_most_side ? value : 0;
-  };
-  options.width = side(std::string_view(text).substr(0, cross));
-  options.height = side(std::string_view(text).substr(std::min(cross + 1, text.size())));
-  if (options.width == 0 || options.height == 0)
-    throw BadInput(
-        fmt::format("--size: \"{}\" is not WIDTHxHEIGHT with {}..{} each", text, k_least_side, k_most_side));
-  if (!options.mp4.empty() && (options.width % 2 != 0 || options.height % 2 != 0))
-    throw BadInput("--size: a video needs an even width and height");
-}
-
-/// The command line of one call. Options that stand in the contract and that this version does not have yet
-/// are known, hidden and refused by name.
+/// The command line of one call.
 class CommandLine {
  public:
   CommandLine() : app_("Shows how furniture tips over when the floor shakes.", "topple") {
@@ -164,12 +91,6 @@ class CommandLine {
         ->allow_extra_args(false)
         ->take_all();
   }
-  static void refuse(const std::string& option) {
-    throw BadInput(option + ": not supported by this version");
-  }
-  static void add_later_option(CLI::App& command, const char* name) {
-    command.add_option_function<std::string>(name, [name](const std::string&) { refuse(name); })->group("");
-  }
 
   void add_run() {
     CLI::App& command = add_command("run", "step a scene to its end, record it, print a summary",
@@ -182,7 +103,7 @@ class CommandLine {
     CLI::Option* const jobs =
         command.add_option("--jobs", jobs_, "threads for bodies that are apart, default as many as pay")
             ->type_name("N")
-            ->check(job_count, "", "count");
+            ->check(whole_number_in(1, k_most_jobs), "", "count");
     command.add_flag("--profile", run_.profile, "tell where the time of steps goes, on one thread")
         ->excludes(jobs);
     command.add_flag(
@@ -190,7 +111,7 @@ class CommandLine {
         "run it again at half the step (or a tenth of the tolerance) for the error, at three times "
         "the cost");
     command.callback([this] {
-      run_.jobs = whole_number<int>(jobs_);
+      run_.jobs = number_in<int>(jobs_);
       action_ = [this] { return run_command(run_); };
     });
   }
@@ -205,7 +126,7 @@ class CommandLine {
     command.add_option("--lang", language_, "en or ja, default as last chosen, or that of the locale")
         ->type_name("LANGUAGE");
     command.callback([this] {
-      if (!language_.empty()) view_.language = chosen_language();
+      if (!language_.empty()) view_.language = language_named(language_);
       action_ = [this] { return view_command(view_); };
     });
   }
@@ -230,7 +151,7 @@ class CommandLine {
     command.add_option("--size", size_, "pixels, default 1280x720")->type_name("WxH");
     command.add_option("--fps", render_.fps, "pictures per second, default 30")
         ->type_name("RATE")
-        ->check(rate, "", "rate");
+        ->check(whole_number_in(1, 1000), "", "rate");
     command
         .add_option("--camera", camera_,
                     "front, side, top, iso (default) or follow: iso, going along with the body of --inspect "
@@ -248,11 +169,11 @@ class CommandLine {
         ->type_name("NAME");
     add_picture(command);
     command.callback([this, at, from, to] {
-      read_size(size_, render_);
-      read_camera();
-      read_picture();
-      read_renderer();
-      if (!language_.empty()) render_.language = chosen_language();
+      read_size(size_, !render_.mp4.empty(), render_);
+      read_camera(camera_, render_);
+      read_picture(picture_, render_.picture);
+      if (!renderer_.empty()) render_.renderer = renderer_named(renderer_);
+      if (!language_.empty()) render_.language = language_named(language_);
       if (*at) render_.at = at_;
       if (*from) render_.from = from_;
       if (*to) render_.to = to_;
@@ -260,107 +181,30 @@ class CommandLine {
     });
   }
 
-  Language chosen_language() const {
-    if (language_ != "en" && language_ != "ja")
-      throw BadInput("--lang: \"" + language_ + "\" is not one of en, ja");
-    return language_ == "ja" ? Language::japanese : Language::english;
-  }
-
-  void read_renderer() {
-    if (renderer_.empty()) return;
-    if (renderer_ != "osmesa" && renderer_ != "egl")
-      throw BadInput("--renderer: \"" + renderer_ + "\" is not one of osmesa, egl");
-    render_.renderer = renderer_ == "egl" ? render::Renderer::egl : render::Renderer::osmesa;
-  }
-
-  void read_camera() {
-    std::string camera = camera_;
-    if (const std::size_t at = camera.find("follow");
-        at == 0 || (at < camera.size() && camera[at - 1] == ',')) {
-      const std::string body = camera.substr(at + std::strlen("follow"));
-      if (body.empty() || (body.front() == ':' && body.size() > 1)) {
-        render_.follow = body.empty() ? "" : body.substr(1);
-        camera = at == 0 ? "iso" : camera.substr(0, at - 1);
-      }
-    }
-    if (const auto view = render::view_named(camera)) {
-      render_.view = *view;
-      return;
-    }
-    std::vector<float> numbers;
-    for (std::size_t at = 0; at <= camera.size();) {
-      const std::size_t end = std::min(camera.find(',', at), camera.size());
-      const auto number = whole_number<float>(std::string_view(camera).substr(at, end - at));
-      numbers.push_back(number.value_or(std::numeric_limits<float>::quiet_NaN()));
-      at = end + 1;
-    }
-    const bool good = numbers.size() == 6 &&
-                      std::ranges::all_of(numbers, [](float x) { return std::abs(x) <= k_farthest; }) &&
-                      std::abs(numbers[1]) <= 90 && numbers[2] > 0;
-    if (!good)
-      throw BadInput(
-          "--camera: \"" + camera_ +
-          "\" is not one of front, side, top, iso, follow, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
-          "elevation of -90..90 and a distance above 0");
-    if (render_.ui) throw BadInput("--camera: with --ui, one of front, side, top, iso, follow");
-    constexpr float radians = std::numbers::pi_v<float> / 180;
-    render_.orbit = render::Orbit{.target = {numbers[3], numbers[4], numbers[5]},
-                                  .distance = numbers[2],
-                                  .sight = {numbers[0] * radians, numbers[1] * radians}};
-  }
-
   void add_picture(CLI::App& command) {
     command
-        .add_option("--colour", colour_,
+        .add_option("--colour", picture_.colour,
                     "stress (default), yield-ratio, axial, moment, torsion or displacement: what beams are "
                     "coloured by")
         ->type_name("QUANTITY");
-    command.add_option("--map", map_, "viridis (default) or cividis: colours of what has no sign")
+    command.add_option("--map", picture_.map, "viridis (default) or cividis: colours of what has no sign")
         ->type_name("NAME");
     command
-        .add_option("--range", range_,
+        .add_option("--range", picture_.range,
                     "run (default), instant, or the greatest value in the legend's unit: where colours end")
         ->type_name("RANGE");
-    command.add_option("--exaggerate", exaggerate_, "deformation drawn so many times as large, 1 to 200")
+    command
+        .add_option("--exaggerate", picture_.exaggerate, "deformation drawn so many times as large, 1 to 200")
         ->type_name("FACTOR");
     command.add_flag("--forces", render_.picture.contact_forces,
                      "arrows of what floors, walls and other bodies do to bodies");
-    command.add_flag("--no-panels", no_panels_, "without the sheets of cabinets");
+    command.add_flag("--no-panels", picture_.no_panels, "without the sheets of cabinets");
     command
-        .add_option("--trails", trails_,
+        .add_option("--trails", picture_.trails,
                     "second or run: paths of centres of gravity and tops of bodies since then")
         ->type_name("SPAN");
     add_path(command, "--inspect", render_.inspect, "BODY[/MEMBER]",
              "look closely at a body or member: forces along the member; all values with --ui");
-  }
-  void read_picture() {
-    PictureSettings& picture = render_.picture;
-    const auto quantity = beam_quantity_named(colour_);
-    if (!quantity)
-      throw BadInput("--colour: \"" + colour_ +
-                     "\" is not one of stress, yield-ratio, axial, moment, torsion, displacement");
-    picture.colour = *quantity;
-    const auto map = render::colour_map_named(map_);
-    if (!map || *map == render::ColourMap::diverging)
-      throw BadInput("--map: \"" + map_ + "\" is not one of viridis, cividis");
-    picture.map = *map;
-    picture.range = range_ == "run"       ? RangePolicy::run
-                    : range_ == "instant" ? RangePolicy::instant
-                                          : RangePolicy::fixed;
-    if (picture.range == RangePolicy::fixed) {
-      const auto number = whole_number<double>(range_);
-      if (!number || !(*number >= k_least_maximum && *number <= k_most_maximum))
-        throw BadInput("--range: \"" + range_ + "\" is not run, instant or a number from 1e-6 to 1e12");
-      picture.maximum = *number;
-    }
-    const auto factor = whole_number<double>(exaggerate_);
-    if (!factor || !(*factor >= 1 && *factor <= k_most_exaggeration))
-      throw BadInput("--exaggerate: \"" + exaggerate_ + "\" is not a number from 1 to 200");
-    picture.exaggeration = *factor;
-    picture.panels = !no_panels_;
-    if (!trails_.empty() && trails_ != "second" && trails_ != "run")
-      throw BadInput("--trails: \"" + trails_ + "\" is not one of second, run");
-    picture.trails = trails_.empty() ? Trails::none : trails_ == "run" ? Trails::run : Trails::second;
   }
 
   void add_export() {
@@ -368,11 +212,12 @@ class CommandLine {
         add_command("export", "data of a recording for spreadsheets and ParaView",
                     "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf");
     add_path(command, "RECORDING", export_.recording, "", "recording").required();
-    add_later_option(command, "--vtk");
     auto* what = command.add_option_group("output", "what to write");
     add_path(*what, "--csv", export_.csv, "DIR",
              "folder for bodies.csv, nodes.csv, elements.csv, floor.csv, energy.csv, anchors.csv");
     add_path(*what, "--xdmf", export_.xdmf, "FILE", "for ParaView 5.11 and later; the data go to FILE.h5");
+    add_path(*what, "--vtk", export_.vtk, "DIR",
+             "folder for frames.pvd and a .vtp file a frame, for what reads VTK's own format");
     what->require_option(1);
     command.callback([this] { action_ = [this] { return export_command(export_); }; });
   }
@@ -383,11 +228,11 @@ class CommandLine {
     add_path(command, "SCENE", modes_.scene, "", "path or name of a built-in scene").required();
     command.add_option("--count", count_, "modes of each body, rigid ones among them; default 10")
         ->type_name("N")
-        ->check(mode_count, "", "count");
+        ->check(whole_number_in(1, 1000), "", "count");
     add_set(command, modes_.overrides);
     add_path(command, "--json", modes_.json, "FILE|-", "write the modes as JSON; - for standard output");
     command.callback([this] {
-      modes_.count = whole_number<int>(count_).value_or(modes_.count);
+      modes_.count = number_in<int>(count_).value_or(modes_.count);
       action_ = [this] { return modes_command(modes_); };
     });
   }
@@ -434,7 +279,7 @@ class CommandLine {
                         "overturn: runs a point, with amplitudes varied at random: probabilities and a "
                         "fragility curve")
             ->type_name("N")
-            ->check(ensemble_size, "", "count");
+            ->check(whole_number_in(2, 10000), "", "count");
     command.add_option("--spread", spread_, "of the amplitudes, default 5%")
         ->type_name("PERCENT%")
         ->check(share, "", "share")
@@ -447,12 +292,12 @@ class CommandLine {
                     "runs at a time, of each rank under mpirun; default one per core, of elements, "
                     "penalty and precision 1, at which CPU times are undisturbed")
         ->type_name("N")
-        ->check(job_count, "", "count");
+        ->check(whole_number_in(1, k_most_jobs), "", "count");
     command.add_flag("--quiet", study_.quiet, "no progress");
     command.callback([this] {
       check_study();
-      study_.jobs = whole_number<int>(jobs_);
-      study_.ensemble = whole_number<int>(ensemble_).value_or(1);
+      study_.jobs = number_in<int>(jobs_);
+      study_.ensemble = number_in<int>(ensemble_).value_or(1);
       study_.spread = ensemble_.empty() ? 0 : share_in(spread_).value();
       action_ = [this] { return study_called(kind_)->run(study_); };
     });
@@ -512,12 +357,11 @@ class CommandLine {
     add_set(command, report_.overrides);
     command.add_option("--jobs", jobs_, "runs at a time, default one per core")
         ->type_name("N")
-        ->check(job_count, "", "count");
+        ->check(whole_number_in(1, k_most_jobs), "", "count");
     command.add_flag("--quiet", report_.quiet, "no progress");
     command.callback([this] {
-      if (report_.language != "en" && report_.language != "ja")
-        throw BadInput("--lang: \"" + report_.language + "\" is not one of en, ja");
-      report_.jobs = whole_number<int>(jobs_);
+      language_named(report_.language);
+      report_.jobs = number_in<int>(jobs_);
       action_ = [this] { return report_command(report_); };
     });
   }
@@ -593,9 +437,8 @@ class CommandLine {
   RenderOptions render_;
   ViewOptions view_;
   std::string size_ = "1280x720", camera_ = "iso";
-  std::string colour_ = "stress", map_ = "viridis", range_ = "run", exaggerate_ = "1", trails_, language_,
-              renderer_;
-  bool no_panels_ = false;
+  PictureWords picture_;
+  std::string language_, renderer_;
   double at_ = 0, from_ = 0, to_ = 0;
   ExportOptions export_;
   RecoverOptions recover_;

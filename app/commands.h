@@ -68,7 +68,8 @@ int view_command(const ViewOptions& options);
 struct ExportOptions {
   std::string recording;
   std::string csv;   ///< folder; or
-  std::string xdmf;  ///< file
+  std::string xdmf;  ///< file; or
+  std::string vtk;   ///< folder
 };
 int export_command(const ExportOptions& options);
 

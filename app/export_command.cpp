@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
+#include "solver/io/export_vtk.h"
 #include "solver/io/export_xdmf.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"
@@ -26,11 +27,15 @@ int export_command(const ExportOptions& options) {
     io::export_xdmf(recording, options.xdmf);
     return k_done;
   }
+  const std::string& folder = options.csv.empty() ? options.vtk : options.csv;
   std::error_code error;
-  std::filesystem::create_directories(options.csv, error);
-  if (error) throw BadInput(options.csv + ": cannot be created: " + error.message());
-  require_writable_folder(options.csv, options.csv);
-  io::export_csv(recording, options.csv);
+  std::filesystem::create_directories(folder, error);
+  if (error) throw BadInput(folder + ": cannot be created: " + error.message());
+  require_writable_folder(folder, folder);
+  if (options.csv.empty())
+    io::export_vtk(recording, folder);
+  else
+    io::export_csv(recording, folder);
   return k_done;
 }
 

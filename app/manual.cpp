@@ -12,15 +12,13 @@
 namespace topple::app {
 namespace {
 
-/// Of one command: values without a name first, then options, those of its groups included; no hidden ones,
-/// and not --help, which all have.
+/// Of one command: values without a name first, then options, those of its groups included; not --help, which
+/// all have.
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> all = command.get_options({});
   for (const CLI::App* group : command.get_subcommands({}))
     for (const CLI::Option* option : group->get_options({})) all.push_back(option);
-  std::erase_if(all, [](const CLI::Option* option) {
-    return option->get_group().empty() || option->check_lname("help");
-  });
+  std::erase_if(all, [](const CLI::Option* option) { return option->check_lname("help"); });
   std::stable_partition(all.begin(), all.end(), [](const CLI::Option* o) { return o->get_positional(); });
   return all;
 }

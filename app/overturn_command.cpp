@@ -26,36 +26,26 @@ ordered_json document(const study::OverturnPlan& plan, const study::OverturnMap&
                       const StudyOptions& options, double wall_s) {
   double cpu = 0;
   for (const study::OverturnPoint& point : map.points) cpu += point.cpu;
-  ordered_json json{
-      {"topple", TOPPLE_VERSION},
-      {"schema", 1},
-      {"study", "overturn"},
-      {"scene", plan.scene.name},
-      {"title", "What overturns in " + plan.scene.name + " over " + plan.x.key + " and " + plan.y.key},
-      {"scene_title", plan.scene.title},
-      {"units",
-       {{"x", plan.x.unit},
-        {"y", plan.y.unit},
-        {"probability", "1, of runs in which a body overturns; low, high: 95 % by Wilson's score"},
-        {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},
-        {"cpu_s", "s, of the solving thread, the scene's reading included"},
-        {"wall_s", "s"}}},
-      {"machine", machine_json()},
-      {"settings",
-       {{"jobs", crew.jobs()},
-        {"ranks", crew.ranks()},
-        {"quick", options.quick},
-        {"ensemble", plan.ensemble},
-        {"spread", plan.spread},
-        {"perturbation", plan.ensemble > 1 ? ordered_json("amplitude of every shake times a factor within "
-                                                          "1 -+ spread, even, from point and member")
-                                           : ordered_json(nullptr)},
-        {"duration_s", plan.scene.setup.run.duration},
-        {"set", plan.set}}},
-      {"run", map.run},
-      {"of", map.of},
-      {"wall_s", wall_s},
-      {"cpu_s", cpu}};
+  ordered_json json = sweep_json(
+      "overturn", "What overturns in " + plan.scene.name + " over " + plan.x.key + " and " + plan.y.key,
+      plan.scene, crew, options,
+      {{"x", plan.x.unit},
+       {"y", plan.y.unit},
+       {"probability", "1, of runs in which a body overturns; low, high: 95 % by Wilson's score"},
+       {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},
+       {"cpu_s", "s, of the solving thread, the scene's reading included"},
+       {"wall_s", "s"}},
+      {{"ensemble", plan.ensemble},
+       {"spread", plan.spread},
+       {"perturbation", plan.ensemble > 1 ? ordered_json("amplitude of every shake times a factor within "
+                                                         "1 -+ spread, even, from point and member")
+                                          : ordered_json(nullptr)},
+       {"duration_s", plan.scene.setup.run.duration},
+       {"set", plan.set}});
+  json["run"] = map.run;
+  json["of"] = map.of;
+  json["wall_s"] = wall_s;
+  json["cpu_s"] = cpu;
   json.update(map_as_json(plan, map));
   json["rows"] = rows_as_json(plan, map);
   return json;
@@ -124,40 +114,26 @@ int overturn_command(const StudyOptions& options) {
     return k_done;
   }
   const study::OverturnPlan plan = plan_of(options, io::load_scene(options.scene, options.overrides));
-  const std::string stem = place_for_results(options.folder, "overturn"), rows_file = stem + ".rows";
+  const std::string stem = place_for_results(options.folder, "overturn");
   const auto start = Clock::now();
-  ordered_json settings = settings_of(plan);
-  settings["topple"] = TOPPLE_VERSION;
-  const SweepEnd end = sweep(crew,
-                             {.name = "study overturn",
-                              .file = rows_file,
-                              .settings = settings,
-                              .order = case_order(plan),
-                              .told = told(plan.scene),
-                              .make = work_on(plan)},
-                             options);
-  if (interrupted()) {
-    say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
-                    plan.cases(), rows_file));
-    return k_interrupted;
-  }
+  const std::optional<SweepEnd> end = sweep(crew,
+                                            {.kind = "overturn",
+                                             .stem = stem,
+                                             .settings = settings_of(plan),
+                                             .order = case_order(plan),
+                                             .told = told(plan.scene),
+                                             .make = work_on(plan)},
+                                            options);
+  if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);
-  const study::OverturnMap map = gather(plan, end.rows);
+  const study::OverturnMap map = gather(plan, end->rows);
   const ordered_json json = document(plan, map, crew, options, wall_s);
-  write_study(stem, json["rows"], json,
+  write_sweep(*end, stem, json,
               [&](study::ChartFormat format) { return overturn_chart(plan, map, origin_text(), format); });
-  if (end.complete()) std::filesystem::remove(rows_file);
-  const int now = end.run - end.kept;
-  fmt::print(
-      "{}{}{} of {} runs{} in {:.1f} s, {:.3g} runs/s, {:.3g} ms CPU time a run{}\n{}.csv, .json, .svg, "
-      ".png\n",
-      picture(plan, map), fit_in_words(plan, map), end.run, plan.cases(),
-      end.kept > 0 ? fmt::format(" ({} from before)", end.kept) : "", wall_s, now / wall_s,
-      1e3 * json["cpu_s"].get<double>() / std::max(1, end.run),
-      !options.quick   ? ""
-      : end.complete() ? ": --quick left nothing out"
-                       : fmt::format("; --quick left out the finest, --resume goes on from {}", rows_file),
-      stem);
+  fmt::print("{}{}{} in {:.1f} s, {:.3g} runs/s, {:.3g} ms CPU time a run{}\n{}.csv, .json, .svg, .png\n",
+             picture(plan, map), fit_in_words(plan, map), end->runs_in_words(), wall_s,
+             (end->run - end->kept) / wall_s, 1e3 * json["cpu_s"].get<double>() / std::max(1, end->run),
+             end->left_in_words(options.quick, "the finest"), stem);
   return k_done;
 }
 

@@ -52,12 +52,12 @@ constexpr Slider k_sweep[] = {
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
 
 double azimuth(const Vec3& direction) {
-  return std::atan2(direction.y(), direction.x()) * 180 / k_pi;
+  return std::atan2(direction.y(), direction.x()) * k_degrees;
 }
 
 /// Of the same slope, turned to `degrees` about the vertical.
 Vec3 turned(const Vec3& direction, double degrees) {
-  const double across = std::max(std::hypot(direction.x(), direction.y()), 1e-6), a = degrees * k_pi / 180;
+  const double across = std::max(std::hypot(direction.x(), direction.y()), 1e-6), a = degrees / k_degrees;
   return {across * std::cos(a), across * std::sin(a), direction.z()};
 }
 

@@ -28,36 +28,25 @@ MakeWork work_on(const study::PrecisionPlan& plan, bool quick) {
 
 ordered_json document(const study::PrecisionPlan& plan, const study::PrecisionStudy& results,
                       const Crew& crew, const StudyOptions& options, double wall_s) {
-  ordered_json json{
-      {"topple", TOPPLE_VERSION},
-      {"schema", 1},
-      {"study", "precision"},
-      {"scene", plan.scene.name},
-      {"title", "Error against CPU time of " + plan.scene.name},
-      {"scene_title", plan.scene.title},
-      {"units",
-       {{"tilt_error", "1, root mean square over the window, over the least critical angle"},
-        {"overturn_time_error", "1, relative"},
-        {"peak_stress_error", "1, relative"},
-        {"energy_error", "1, energy that nothing explains over the largest exchanged"},
-        {"window_s", "s, in which runs are compared; the two references part at its end, or it is the run's"},
-        {"alpha_N", "N"},
-        {"time_step_s", "s, null: by tolerance"},
-        {"cpu_s_per_s", "1, CPU time of the solving thread, settling included, over simulated time"},
-        {"wall_s", "s"}}},
-      {"machine", machine_json()},
-      {"settings",
-       {{"jobs", crew.jobs()},
-        {"ranks", crew.ranks()},
-        {"quick", options.quick},
-        {"duration_s", plan.scene.setup.run.duration},
-        {"interval_s", plan.interval},
-        {"parted", study::k_parted},
-        {"ends",
-         "when all bodies have overturned (tilt over 60 deg for 0.5 s), unless the scene names a stop"}}},
-      {"run", results.run},
-      {"of", results.of},
-      {"wall_s", wall_s}};
+  ordered_json json = sweep_json(
+      "precision", "Error against CPU time of " + plan.scene.name, plan.scene, crew, options,
+      {{"tilt_error", "1, root mean square over the window, over the least critical angle"},
+       {"overturn_time_error", "1, relative"},
+       {"peak_stress_error", "1, relative"},
+       {"energy_error", "1, energy that nothing explains over the largest exchanged"},
+       {"window_s", "s, in which runs are compared; the two references part at its end, or it is the run's"},
+       {"alpha_N", "N"},
+       {"time_step_s", "s, null: by tolerance"},
+       {"cpu_s_per_s", "1, CPU time of the solving thread, settling included, over simulated time"},
+       {"wall_s", "s"}},
+      {{"duration_s", plan.scene.setup.run.duration},
+       {"interval_s", plan.interval},
+       {"parted", study::k_parted},
+       {"ends",
+        "when all bodies have overturned (tilt over 60 deg for 0.5 s), unless the scene names a stop"}});
+  json["run"] = results.run;
+  json["of"] = results.of;
+  json["wall_s"] = wall_s;
   json.update(findings_as_json(plan, results));
   json["rows"] = rows_as_json(plan, results);
   return json;
@@ -125,38 +114,26 @@ int precision_command(const StudyOptions& options) {
     return k_done;
   }
   const study::PrecisionPlan plan = study::plan_precision(io::load_scene(options.scene, options.overrides));
-  const std::string stem = place_for_results(options.folder, "precision"), rows_file = stem + ".rows";
+  const std::string stem = place_for_results(options.folder, "precision");
   const auto start = Clock::now();
-  ordered_json settings = settings_of(plan);
-  settings["topple"] = TOPPLE_VERSION;
-  const SweepEnd end = sweep(crew,
-                             {.name = "study precision",
-                              .file = rows_file,
-                              .settings = settings,
-                              .order = case_order(plan),
-                              .told = told(plan.scene),
-                              .make = work_on(plan, options.quick)},
-                             options);
-  if (interrupted()) {
-    say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
-                    plan.cases(), rows_file));
-    return k_interrupted;
-  }
+  const std::optional<SweepEnd> end = sweep(crew,
+                                            {.kind = "precision",
+                                             .stem = stem,
+                                             .settings = settings_of(plan),
+                                             .order = case_order(plan),
+                                             .told = told(plan.scene),
+                                             .make = work_on(plan, options.quick)},
+                                            options);
+  if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);
-  const study::PrecisionStudy results = gather(plan, end.rows);
+  const study::PrecisionStudy results = gather(plan, end->rows);
   const ordered_json json = document(plan, results, crew, options, wall_s);
-  write_study(stem, json["rows"], json, [&](study::ChartFormat format) {
+  write_sweep(*end, stem, json, [&](study::ChartFormat format) {
     return precision_chart(plan, results, origin_text(), format);
   });
-  if (end.complete()) std::filesystem::remove(rows_file);
-  fmt::print(
-      "{}{}{}{} of {} runs{} in {:.1f} s{}\n{}.csv, .json, .svg, .png\n", reference_in_words(plan, results),
-      cheapest_in_words(plan, results), default_in_words(plan, results), end.run, plan.cases(),
-      end.kept > 0 ? fmt::format(" ({} from before)", end.kept) : "", wall_s,
-      !options.quick   ? ""
-      : end.complete() ? ": --quick left nothing out"
-                       : fmt::format("; --quick left out the dearest, --resume goes on from {}", rows_file),
-      stem);
+  fmt::print("{}{}{}{} in {:.1f} s{}\n{}.csv, .json, .svg, .png\n", reference_in_words(plan, results),
+             cheapest_in_words(plan, results), default_in_words(plan, results), end->runs_in_words(), wall_s,
+             end->left_in_words(options.quick, "the dearest"), stem);
   return k_done;
 }
 

@@ -21,7 +21,6 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_degrees = 180 / k_pi;
 constexpr int k_trials = 21;
 constexpr double k_spread = 0.05;             // of the input
 constexpr double k_falling = 45;              // degrees, of the picture of a fall

@@ -51,38 +51,28 @@ ordered_json document(const study::StabilityPlan& plan, const study::StabilityMa
                       const std::vector<study::StabilityLimit>& limits, const Crew& crew,
                       const StudyOptions& options, double wall_s) {
   const io::Scene& scene = plan.scene;
-  ordered_json json{
-      {"topple", TOPPLE_VERSION},
-      {"schema", 1},
-      {"study", "stability"},
-      {"scene", scene.name},
-      {"title",
-       "Where time integration fails in " + scene.name + " over " + plan.x.key + " and " + plan.y.key},
-      {"scene_title", scene.title},
-      {"units",
-       {{"x", plan.x.unit},
-        {"y", plan.y.unit},
-        {"unexplained_energy", "1, of the largest energy exchanged; above 0: it appeared"},
-        {"numerical_dissipation", "1, of the largest energy exchanged; below 0: the integrator gave"},
-        {"penetration", "1, greatest 1 - l/L at floors and walls"},
-        {"reached_s", "s"},
-        {"cpu_s", "s, of the solving thread, the scene's reading included"},
-        {"wall_s", "s"}}},
-      {"machine", machine_json()},
-      {"settings",
-       {{"jobs", crew.jobs()},
-        {"ranks", crew.ranks()},
-        {"quick", options.quick},
-        {"duration_s", scene.setup.run.duration},
-        {"simulated_s", plan.horizon},
-        {"reference_runs", plan.references()},
-        {"reference_spread", study::k_reference_spread},
-        {"balance", study::k_stable_balance},
-        {"damping", study::k_stable_damping},
-        {"through", study::k_through}}},
-      {"run", map.run},
-      {"of", map.of},
-      {"wall_s", wall_s}};
+  ordered_json json = sweep_json(
+      "stability",
+      "Where time integration fails in " + scene.name + " over " + plan.x.key + " and " + plan.y.key, scene,
+      crew, options,
+      {{"x", plan.x.unit},
+       {"y", plan.y.unit},
+       {"unexplained_energy", "1, of the largest energy exchanged; above 0: it appeared"},
+       {"numerical_dissipation", "1, of the largest energy exchanged; below 0: the integrator gave"},
+       {"penetration", "1, greatest 1 - l/L at floors and walls"},
+       {"reached_s", "s"},
+       {"cpu_s", "s, of the solving thread, the scene's reading included"},
+       {"wall_s", "s"}},
+      {{"duration_s", scene.setup.run.duration},
+       {"simulated_s", plan.horizon},
+       {"reference_runs", plan.references()},
+       {"reference_spread", study::k_reference_spread},
+       {"balance", study::k_stable_balance},
+       {"damping", study::k_stable_damping},
+       {"through", study::k_through}});
+  json["run"] = map.run;
+  json["of"] = map.of;
+  json["wall_s"] = wall_s;
   json.update(map_as_json(plan, map));
   json["limits"] = limits_as_json(limits);
   json["rows"] = rows_as_json(plan, map);
@@ -126,40 +116,28 @@ int stability_command(const StudyOptions& options) {
   }
   study::StabilityPlan plan =
       study::plan_stability(io::load_scene(options.scene, options.overrides), options.x, options.y);
-  const std::string stem = place_for_results(options.folder, "stability"), rows_file = stem + ".rows";
+  const std::string stem = place_for_results(options.folder, "stability");
   const auto start = Clock::now();
   plan.horizon = study::find_horizon(plan.scene.setup, interrupted);
-  ordered_json settings = settings_of(plan);
-  settings["topple"] = TOPPLE_VERSION;
-  const SweepEnd end = sweep(crew,
-                             {.name = "study stability",
-                              .file = rows_file,
-                              .settings = settings,
-                              .order = case_order(plan),
-                              .told = told_plan(plan),
-                              .make = work_on(plan)},
-                             options);
-  if (interrupted()) {
-    say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
-                    plan.cases(), rows_file));
-    return k_interrupted;
-  }
+  const std::optional<SweepEnd> end = sweep(crew,
+                                            {.kind = "stability",
+                                             .stem = stem,
+                                             .settings = settings_of(plan),
+                                             .order = case_order(plan),
+                                             .told = told_plan(plan),
+                                             .make = work_on(plan)},
+                                            options);
+  if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);
-  const study::StabilityMap map = gather(plan, end.rows);
+  const study::StabilityMap map = gather(plan, end->rows);
   const std::vector<study::StabilityLimit> limits = stability_limits(plan);
   const ordered_json json = document(plan, map, limits, crew, options, wall_s);
-  write_study(stem, json["rows"], json, [&](study::ChartFormat format) {
+  write_sweep(*end, stem, json, [&](study::ChartFormat format) {
     return stability_chart(plan, map, limits, origin_text(), format);
   });
-  if (end.complete()) std::filesystem::remove(rows_file);
-  fmt::print(
-      "{}{}{} of {} runs of {:.3g} s{} in {:.1f} s, {:.3g} runs/s{}\n{}.csv, .json, .svg, .png\n",
-      counts_in_words(plan, map), limits_in_words(limits), end.run, plan.cases(), plan.horizon,
-      end.kept > 0 ? fmt::format(" ({} from before)", end.kept) : "", wall_s, (end.run - end.kept) / wall_s,
-      !options.quick   ? ""
-      : end.complete() ? ": --quick left nothing out"
-                       : fmt::format("; --quick left out the finest, --resume goes on from {}", rows_file),
-      stem);
+  fmt::print("{}{}{} in {:.1f} s, {:.3g} runs/s{}\n{}.csv, .json, .svg, .png\n", counts_in_words(plan, map),
+             limits_in_words(limits), end->runs_in_words(fmt::format(" of {:.3g} s", plan.horizon)), wall_s,
+             (end->run - end->kept) / wall_s, end->left_in_words(options.quick, "the finest"), stem);
   return k_done;
 }
 

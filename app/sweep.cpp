@@ -1,12 +1,16 @@
 #include "app/sweep.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 
 #include "app/clock.h"
 #include "app/interrupt.h"
+#include "app/log.h"
 #include "app/progress.h"
 #include "app/ranks.h"
 #include "app/study_results.h"
@@ -15,6 +19,9 @@
 #include "solver/study/parallel.h"
 
 namespace topple::app {
+
+using nlohmann::ordered_json;
+
 namespace {
 
 constexpr int k_common = 0;  // tag of what is for a rank; 1 and on: its workers
@@ -86,19 +93,23 @@ CaseWork Crew::work_of(int worker, const MakeWork& make) {
   };
 }
 
-SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
+std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
   const auto start = Clock::now();
   const auto in_time = [&] { return !options.quick || seconds_since(start) < k_quick; };
-  study::KeptRows kept(plan.file, plan.settings, static_cast<int>(plan.order.size()), options.resume);
+  SweepEnd end;
+  end.file = plan.stem + ".rows";
+  ordered_json settings = plan.settings;
+  settings["topple"] = TOPPLE_VERSION;
+  study::KeptRows kept(end.file, settings, static_cast<int>(plan.order.size()), options.resume);
   std::vector<int> left;
   for (const int k : plan.order)
     if (kept.rows()[static_cast<std::size_t>(k)].empty()) left.push_back(k);
-  SweepEnd end{.rows = {}, .kept = kept.count()};
+  end.kept = kept.count();
   if (!left.empty()) {
     const int workers = crew.gather_workers(plan.told);
     std::vector<CaseWork> works;
     for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
-    Progress progress(plan.name, "runs", static_cast<double>(left.size()), options.quiet);
+    Progress progress("study " + plan.kind, "runs", static_cast<double>(left.size()), options.quiet);
     std::mutex keeping;
     std::exception_ptr trouble;
     study::for_each_case(
@@ -123,7 +134,43 @@ SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
   }
   end.rows = kept.rows();
   end.run = kept.count();
-  return end;
+  if (!interrupted()) return end;
+  say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
+                  end.rows.size(), end.file));
+  return std::nullopt;
+}
+
+std::string SweepEnd::runs_in_words(const std::string& of) const {
+  return fmt::format("{} of {} runs{}{}", run, rows.size(), of,
+                     kept > 0 ? fmt::format(" ({} from before)", kept) : "");
+}
+
+std::string SweepEnd::left_in_words(bool quick, const char* what) const {
+  if (!quick) return "";
+  return complete() ? ": --quick left nothing out"
+                    : fmt::format("; --quick left out {}, --resume goes on from {}", what, file);
+}
+
+void write_sweep(const SweepEnd& end, const std::string& stem, const ordered_json& document,
+                 const std::function<std::string(study::ChartFormat)>& script) {
+  write_study(stem, document["rows"], document, script);
+  if (end.complete()) std::filesystem::remove(end.file);
+}
+
+ordered_json sweep_json(const std::string& kind, const std::string& title, const io::Scene& scene,
+                        const Crew& crew, const StudyOptions& options, const ordered_json& units,
+                        const ordered_json& settings) {
+  ordered_json all{{"jobs", crew.jobs()}, {"ranks", crew.ranks()}, {"quick", options.quick}};
+  all.update(settings);
+  return {{"topple", TOPPLE_VERSION},
+          {"schema", 1},
+          {"study", kind},
+          {"scene", scene.name},
+          {"title", title},
+          {"scene_title", scene.title},
+          {"units", units},
+          {"machine", machine_json()},
+          {"settings", all}};
 }
 
 }  // namespace topple::app

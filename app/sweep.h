@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "solver/io/scene.h"
+#include "solver/study/chart.h"
 
 namespace topple::app {
 
@@ -53,9 +55,9 @@ class Crew {
 };
 
 struct SweepPlan {
-  std::string name;                 ///< "study overturn", of the progress
-  std::string file;                 ///< where rows are kept while it goes on
-  nlohmann::ordered_json settings;  ///< that rows depend on
+  std::string kind;                 ///< of study
+  std::string stem;                 ///< of its results; rows are kept in STEM.rows while it goes on
+  nlohmann::ordered_json settings;  ///< that rows depend on, besides the version
   std::vector<int> order;           ///< of all cases, as they are begun
   std::vector<std::string> told;    ///< to other ranks
   MakeWork make;
@@ -64,11 +66,28 @@ struct SweepPlan {
 struct SweepEnd {
   std::vector<std::string> rows;  ///< per case; empty: it was not run
   int run = 0, kept = 0;          ///< cases that have a row, those of them from before included
+  std::string file;               ///< where rows are kept; gone once all are there and written
   bool complete() const { return run == static_cast<int>(rows.size()); }
+  /// "12 of 40 runs", and how many of them are from before.
+  std::string runs_in_words(const std::string& of = "") const;
+  /// What --quick did to it; `what` it leaves out first.
+  std::string left_in_words(bool quick, const char* what) const;
 };
 
 /// Runs the cases that have no row yet until all have one, the time of --quick is over or Ctrl+C comes, which
-/// must be deferred (interrupt.h). The file stays. Throws std::runtime_error when a row cannot be kept.
-SweepEnd sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
+/// must be deferred (interrupt.h): then none, and it is said where to go on. Throws std::runtime_error when a
+/// row cannot be kept.
+std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
+
+/// The results of a sweep: write_study(), and rows are kept no longer once all are there.
+void write_sweep(const SweepEnd& end, const std::string& stem, const nlohmann::ordered_json& document,
+                 const std::function<std::string(study::ChartFormat)>& script);
+
+/// The first entries of the JSON of a sweep: what it is of and how it was made. `settings` in addition to
+/// those of every sweep.
+nlohmann::ordered_json sweep_json(const std::string& kind, const std::string& title, const io::Scene& scene,
+                                  const Crew& crew, const StudyOptions& options,
+                                  const nlohmann::ordered_json& units,
+                                  const nlohmann::ordered_json& settings);
 
 }  // namespace topple::app

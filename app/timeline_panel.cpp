@@ -20,7 +20,6 @@ namespace {
 
 using namespace window_words;
 
-constexpr double k_degrees = 180 / k_pi;
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 

@@ -13,7 +13,6 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_degrees = 180 / k_pi;
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
 constexpr double k_slid_least = 1e-3;  // m

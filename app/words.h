@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "app/player.h"
+#include "solver/types.h"
 
 namespace topple::app {
+
+inline constexpr double k_degrees = 180 / k_pi;  ///< in a radian
 
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);

@@ -28,9 +28,8 @@ struct AccelerogramNotes {
 };
 
 /// Reads
-/// - PEER AT2: two lines of text, "ACCELERATION TIME SERIES IN UNITS OF G", a line with NPTS and DT in one of
-/// the
-///   forms `NPTS= 4000, DT= .01000 SEC` and `3930 0.00500 NPTS, DT`, then the samples;
+/// - PEER AT2: two lines of text, "ACCELERATION TIME SERIES IN UNITS OF G", a line with NPTS and DT in one
+///   of the forms `NPTS= 4000, DT= .01000 SEC` and `3930 0.00500 NPTS, DT`, then the samples;
 /// - K-NET and KiK-net ASCII (www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html): 17 header lines, then
 ///   counts. The mean is removed, as `Max. Acc.` of the header has it, which the data must give;
 /// - CSV (comma, semicolon or tab; lines that begin with # are skipped): a header that names the columns with

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <system_error>
@@ -11,15 +10,9 @@
 #include "solver/io/hdf5_handle.h"
 #include "solver/io/scene.h"
 #include "solver/io/staged_file.h"
-#include "solver/rotation.h"
 
 namespace topple::io {
 namespace {
-
-std::string shortest(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -122,64 +115,25 @@ std::string attribute(const char* name, const char* centre, std::size_t columns,
 
 /// What is the same in all frames: lines from node to node, and whose they are.
 std::string fixed_parts(XdmfFile& file, const Model& model) {
-  std::vector<std::int32_t> nodes, body, member;
-  for (const Element& element : model.elements) {
-    nodes.insert(nodes.end(), {element.node[0], element.node[1]});
-    member.push_back(element.member);
-    body.push_back(model.members[static_cast<std::size_t>(element.member)].body);
-  }
+  const ElementPlaces places(model);
   return "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" +
-         std::to_string(model.elements.size()) + "\">" + file.store("topology", nodes, 2) + "</Topology>\n" +
-         attribute("body", "Cell", 1, file.store("body", body, 1)) +
-         attribute("member", "Cell", 1, file.store("member", member, 1));
+         std::to_string(model.elements.size()) + "\">" + file.store("topology", places.nodes, 2) +
+         "</Topology>\n" + attribute("body", "Cell", 1, file.store("body", places.body, 1)) +
+         attribute("member", "Cell", 1, file.store("member", places.member, 1));
 }
-
-/// Of every node: what it moved, and its rotation vector.
-struct NodeMotion {
-  std::vector<double> displacement, rotation;
-  NodeMotion(const Model& model, const FrameRow& row) {
-    for (std::size_t n = 0; n < model.node_position.size(); ++n) {
-      const float *x = row.position.data() + 3 * n, *q = row.rotation.data() + 4 * n;
-      const Vec3 moved = Vec3(x[0], x[1], x[2]) - model.node_position[n];
-      const Vec3 turned = log_quaternion(Quat(q[0], q[1], q[2], q[3]).normalized());
-      displacement.insert(displacement.end(), {moved.x(), moved.y(), moved.z()});
-      rotation.insert(rotation.end(), {turned.x(), turned.y(), turned.z()});
-    }
-  }
-};
 
 void add_frame(XdmfFile& file, const Model& model, const FrameRow& row, int number,
                const std::string& fixed) {
   char digits[16];
   std::snprintf(digits, sizeof digits, "/%06d", number);
-  const auto field = [&](const char* name, const char* centre, const auto& values, std::size_t columns) {
-    file.add(attribute(name, centre, columns, file.store(name + std::string(digits), values, columns)));
-  };
   file.add("<Grid Name=\"frame\" GridType=\"Uniform\">\n<Time Value=\"" + shortest(row.time) + "\"/>\n");
   file.add(fixed);
   file.add("<Geometry GeometryType=\"XYZ\">" +
            file.store("position_m" + std::string(digits), row.position, 3) + "</Geometry>\n");
-  const NodeMotion motion(model, row);
-  field("displacement_m", "Node", motion.displacement, 3);
-  field("rotation_rad", "Node", motion.rotation, 3);
-  constexpr std::array k_forces = {"N_N", "Vy_N", "Vz_N", "T_Nm", "My_Nm", "Mz_Nm"};
-  const std::size_t elements = model.elements.size();
-  for (std::size_t k = 0; k < k_forces.size(); ++k) {
-    std::vector<float> values(elements);
-    for (std::size_t e = 0; e < elements; ++e) values[e] = row.section_force[6 * e + k];
-    field(k_forces[k], "Cell", values, 1);
-  }
-  std::vector<double> stress;
-  std::vector<float> yield_ratio;
-  for (std::size_t e = 0; e < elements; ++e) {
-    const ElementLoading loading = element_loading(model, row, e);
-    stress.push_back(loading.stress);
-    yield_ratio.push_back(loading.yield_ratio);
-  }
-  field("stress_Pa", "Cell", stress, 1);
-  field("yield_ratio", "Cell", yield_ratio, 1);
-  field("s", "Cell", row.s, 1);
-  field("hinge", "Cell", row.hinge, 1);
+  each_field(model, row, [&](const char* name, FieldPlace place, const auto& values, std::size_t columns) {
+    file.add(attribute(name, place == FieldPlace::nodes ? "Node" : "Cell", columns,
+                       file.store(name + std::string(digits), values, columns)));
+  });
   file.add("</Grid>\n");
 }
 

@@ -9,10 +9,8 @@ namespace topple::io {
 
 /// Writes the way to the newest branch: the frames into FILE.h5, one data set a field and frame
 /// ("stress_Pa/000042"), and `file`, XDMF that refers to it by its name. Lines are the elements between
-/// nodes, where the nodes are. On nodes, from the reference pose: displacement_m, rotation_rad (rotation
-/// vector). On elements: N_N, Vy_N, Vz_N, T_Nm, My_Nm, Mz_Nm and stress_Pa at the stress point, yield_ratio
-/// (0 where nothing yields), s, hinge (FrameRow::hinge), and the numbers of body and member. Both files
-/// appear whole or not at all. Throws WriteError, InputError.
+/// nodes, where the nodes are; fields are those of each_field() (exported_values.h), and on elements the
+/// numbers of body and member. Both files appear whole or not at all. Throws WriteError, InputError.
 void export_xdmf(const Recording& recording, const std::string& file);
 
 }  // namespace topple::io

@@ -11,6 +11,7 @@ target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/recording_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording_writer.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_csv.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/export_vtk.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_xdmf.cpp
   ${CMAKE_CURRENT_LIST_DIR}/exported_values.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recover.cpp

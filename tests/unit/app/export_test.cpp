@@ -1,6 +1,7 @@
-// Tables of a recording: the columns of the contract, the numbers of the recording. XDMF: those of the
-// tables.
+// Tables of a recording: the columns of the contract, the numbers of the recording. XDMF and VTK: those
+// of the tables.
 #include <Eigen/Geometry>
+#include <cstring>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -16,6 +17,17 @@ namespace topple::app {
 namespace {
 
 using Table = std::vector<std::vector<std::string>>;
+
+/// What was exported of an instant: by name the arrays and where they belong.
+struct ExportedGrid {
+  double time = 0;
+  struct Array {
+    std::string centre, set;
+    std::vector<hsize_t> dims;
+    std::vector<double> values;
+  };
+  std::map<std::string, Array> arrays;  ///< attributes by name; also "Topology", "Geometry"
+};
 
 class ExportTest : public ProgramTest {
  protected:
@@ -45,6 +57,44 @@ class ExportTest : public ProgramTest {
     return table;
   }
   static double number(const std::string& field) { return std::strtod(field.c_str(), nullptr); }
+  /// Of an XML element.
+  static std::string value(const std::string& attributes, const std::string& name) {
+    const std::size_t at = attributes.find(" " + name + "=\"");
+    if (at == std::string::npos) return {};
+    const std::size_t begin = at + name.size() + 3;
+    return attributes.substr(begin, attributes.find('"', begin) - begin);
+  }
+
+  /// What the grids hold is what the tables hold, exactly.
+  static void expect_as_tables(const std::vector<ExportedGrid>& grids, const std::string& folder) {
+    const Table nodes = rows("nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz", folder);
+    const Table elements = rows(
+        "elements.csv", "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge", folder);
+    ASSERT_FALSE(grids.empty());
+    const std::size_t n = nodes.size() / grids.size(), e = elements.size() / grids.size();
+    const std::vector<std::string> columns = {"N_N",   "Vy_N",      "Vz_N",        "T_Nm", "My_Nm",
+                                              "Mz_Nm", "stress_Pa", "yield_ratio", "s",    "hinge"};
+    for (std::size_t f = 0; f < grids.size(); ++f) {
+      const ExportedGrid& grid = grids[f];
+      EXPECT_EQ(grid.time, number(nodes[f * n][0]));
+      EXPECT_EQ(grid.arrays.at("Topology").dims, (std::vector<hsize_t>{e, 2}));
+      ASSERT_EQ(grid.arrays.at("Geometry").dims, (std::vector<hsize_t>{n, 3}));
+      for (std::size_t i = 0; i < 3 * n; ++i)
+        EXPECT_EQ(grid.arrays.at("Geometry").values[i],
+                  std::strtof(nodes[f * n + i / 3][3 + i % 3].c_str(), nullptr));
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const ExportedGrid::Array& array = grid.arrays.at(columns[c]);
+        EXPECT_EQ(array.centre, "Cell");
+        ASSERT_EQ(array.dims, (std::vector<hsize_t>{e}));
+        for (std::size_t i = 0; i < e; ++i) {
+          const std::string& field = elements[f * e + i][4 + c];
+          EXPECT_EQ(array.values[i],
+                    columns[c] == "stress_Pa" ? number(field) : std::strtof(field.c_str(), nullptr))
+              << columns[c] << " of element " << i << " at " << grid.time << " s";
+        }
+      }
+    }
+  }
 };
 
 TEST_F(ExportTest, bodies_are_those_of_the_recording) {
@@ -96,23 +146,12 @@ TEST_F(ExportTest, tables_are_the_same_every_time_and_replace_older_ones) {
   EXPECT_EQ(bytes_of("new/data/nodes.csv"), before);
 }
 
-/// What an XDMF file refers to: of every grid its time, and by name the arrays and where they belong.
-struct XdmfGrid {
-  double time = 0;
-  struct Array {
-    std::string centre, set;
-    std::vector<hsize_t> dims;
-    std::vector<double> values;
-  };
-  std::map<std::string, Array> arrays;  ///< attributes by name; also "Topology", "Geometry"
-};
-
 class XdmfTest : public ExportTest {
  protected:
-  static std::vector<XdmfGrid> read_xdmf(const std::string& file) {
+  static std::vector<ExportedGrid> read_xdmf(const std::string& file) {
     const std::string text = bytes_of(file);
     const io::Handle data(H5Fopen((file + ".h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    std::vector<XdmfGrid> grids;
+    std::vector<ExportedGrid> grids;
     std::vector<std::string> open;  // elements that are not closed yet
     std::string name, centre;
     const std::regex tag(R"(<([!?/]?)(\w+)([^<>]*?)(/?)>([^<]*))");
@@ -137,47 +176,10 @@ class XdmfTest : public ExportTest {
     return grids;
   }
 
-  /// What the grids hold is what the tables hold, exactly.
-  static void expect_as_tables(const std::vector<XdmfGrid>& grids, const std::string& folder) {
-    const Table nodes = rows("nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz", folder);
-    const Table elements = rows(
-        "elements.csv", "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge", folder);
-    ASSERT_FALSE(grids.empty());
-    const std::size_t n = nodes.size() / grids.size(), e = elements.size() / grids.size();
-    const std::vector<std::string> columns = {"N_N",   "Vy_N",      "Vz_N",        "T_Nm", "My_Nm",
-                                              "Mz_Nm", "stress_Pa", "yield_ratio", "s",    "hinge"};
-    for (std::size_t f = 0; f < grids.size(); ++f) {
-      const XdmfGrid& grid = grids[f];
-      EXPECT_EQ(grid.time, number(nodes[f * n][0]));
-      EXPECT_EQ(grid.arrays.at("Topology").dims, (std::vector<hsize_t>{e, 2}));
-      ASSERT_EQ(grid.arrays.at("Geometry").dims, (std::vector<hsize_t>{n, 3}));
-      for (std::size_t i = 0; i < 3 * n; ++i)
-        EXPECT_EQ(grid.arrays.at("Geometry").values[i],
-                  std::strtof(nodes[f * n + i / 3][3 + i % 3].c_str(), nullptr));
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const XdmfGrid::Array& array = grid.arrays.at(columns[c]);
-        EXPECT_EQ(array.centre, "Cell");
-        ASSERT_EQ(array.dims, (std::vector<hsize_t>{e}));
-        for (std::size_t i = 0; i < e; ++i) {
-          const std::string& field = elements[f * e + i][4 + c];
-          EXPECT_EQ(array.values[i],
-                    columns[c] == "stress_Pa" ? number(field) : std::strtof(field.c_str(), nullptr))
-              << columns[c] << " of element " << i << " at " << grid.time << " s";
-        }
-      }
-    }
-  }
-
  private:
-  static std::string value(const std::string& attributes, const std::string& name) {
-    const std::size_t at = attributes.find(" " + name + "=\"");
-    if (at == std::string::npos) return {};
-    const std::size_t begin = at + name.size() + 3;
-    return attributes.substr(begin, attributes.find('"', begin) - begin);
-  }
-  static XdmfGrid::Array array(hid_t data, const std::string& file, const std::string& centre,
-                               const std::string& attributes, const std::string& text) {
-    XdmfGrid::Array out;
+  static ExportedGrid::Array array(hid_t data, const std::string& file, const std::string& centre,
+                                   const std::string& attributes, const std::string& text) {
+    ExportedGrid::Array out;
     out.centre = centre;
     std::istringstream dims(value(attributes, "Dimensions"));
     std::size_t count = 1;
@@ -202,7 +204,7 @@ TEST_F(XdmfTest, every_number_is_that_of_the_tables) {
   const Ended ended = topple({"export", "a.h5", "--xdmf", "a.xdmf"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(ended.out + ended.err, "");
-  const std::vector<XdmfGrid> grids = read_xdmf("a.xdmf");
+  const std::vector<ExportedGrid> grids = read_xdmf("a.xdmf");
   ASSERT_EQ(grids.size(), 31u);
   EXPECT_NE(grids[0].arrays.at("stress_Pa").set, grids[1].arrays.at("stress_Pa").set);
   expect_as_tables(grids, "new/data/");
@@ -212,7 +214,7 @@ TEST_F(XdmfTest, yielding_and_hinges_are_those_of_the_tables) {
   ASSERT_EQ(topple({"run", "portal-pushover", "-o", "p.h5"}).code, 0);
   ASSERT_EQ(topple({"export", "p.h5", "--csv", "p"}).code, 0);
   ASSERT_EQ(topple({"export", "p.h5", "--xdmf", "p.xdmf"}).code, 0);
-  const std::vector<XdmfGrid> grids = read_xdmf("p.xdmf");
+  const std::vector<ExportedGrid> grids = read_xdmf("p.xdmf");
   expect_as_tables(grids, "p/");
   const auto& ratio = grids.back().arrays.at("yield_ratio").values;
   // perfectly plastic, but for the f by which a hinge beside it lets a section be over (solver/hinges.h)
@@ -223,10 +225,10 @@ TEST_F(XdmfTest, yielding_and_hinges_are_those_of_the_tables) {
 
 TEST_F(XdmfTest, displacement_and_rotation_lead_from_the_reference_pose_to_the_instant) {
   ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
-  const std::vector<XdmfGrid> grids = read_xdmf("a.xdmf");
+  const std::vector<ExportedGrid> grids = read_xdmf("a.xdmf");
   const io::Recording recording("a.h5");
   const Model model = io::recorded_scene(recording).setup.model;
-  const XdmfGrid& last = grids.back();
+  const ExportedGrid& last = grids.back();
   const io::FrameRow row = recording.frame(recording.frame_count() - 1);
   const auto vector = [&last](const char* name, std::size_t n) {
     return Eigen::Map<const Eigen::Vector3d>(last.arrays.at(name).values.data() + 3 * n);
@@ -247,7 +249,7 @@ TEST_F(XdmfTest, displacement_and_rotation_lead_from_the_reference_pose_to_the_i
 
 TEST_F(XdmfTest, lines_join_the_nodes_of_their_elements) {
   ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
-  const XdmfGrid grid = read_xdmf("a.xdmf").front();
+  const ExportedGrid grid = read_xdmf("a.xdmf").front();
   const Model model = io::recorded_scene(io::Recording("a.h5")).setup.model;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     for (std::size_t k = 0; k < 2; ++k)
@@ -276,6 +278,112 @@ TEST_F(XdmfTest, places_that_cannot_be_are_refused_and_nothing_is_begun) {
   expect_one_line({"export", "a.h5", "--xdmf", "a.h5"}, 2, "a.h5 is what is being read");
   expect_one_line({"export", "b.xdmf.h5", "--xdmf", "b.xdmf"}, 2, "b.xdmf.h5 is what is being read");
   expect_one_line({"export", "a.h5", "--xdmf", "a:b.xdmf"}, 2, "a name with a colon");
+  EXPECT_EQ(files(), before);
+}
+
+class VtkTest : public XdmfTest {
+ protected:
+  void SetUp() override {
+    XdmfTest::SetUp();
+    const Ended ended = topple({"export", "a.h5", "--vtk", "v"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.out + ended.err, "");
+  }
+  static std::vector<ExportedGrid> read_vtk(const std::string& folder) {
+    const std::string list = bytes_of(folder + "/frames.pvd");
+    std::vector<ExportedGrid> grids;
+    const std::regex tag(R"(<DataSet([^<>]*)/>)");
+    for (std::sregex_iterator i(list.begin(), list.end(), tag), none; i != none; ++i) {
+      grids.push_back(read_frame(folder + "/" + value((*i)[1], "file")));
+      grids.back().time = number(value((*i)[1], "timestep"));
+    }
+    return grids;
+  }
+
+ private:
+  template <typename Number>
+  static void read(const char* from, std::vector<double>& values) {
+    for (double& x : values) {
+      Number one;
+      std::memcpy(&one, from, sizeof one);
+      from += sizeof one;
+      x = static_cast<double>(one);
+    }
+  }
+  static ExportedGrid read_frame(const std::string& file) {
+    const std::string bytes = bytes_of(file);
+    const std::string mark = "<AppendedData encoding=\"raw\">\n_";
+    const std::size_t head = bytes.find(mark), data = head + mark.size();
+    const std::string text = bytes.substr(0, head);
+    const std::map<std::string, std::size_t> sizes = {
+        {"Float32", 4}, {"Float64", 8}, {"Int32", 4}, {"UInt8", 1}};
+    ExportedGrid grid;
+    std::string section;
+    std::size_t end = data;  // arrays fill what is appended without a gap
+    std::map<std::size_t, std::size_t> taken;
+    const std::regex tag(R"(<(\w+)([^<>]*)>)");
+    for (std::sregex_iterator i(text.begin(), text.end(), tag), none; i != none; ++i) {
+      const std::string attributes = (*i)[2];
+      if ((*i)[1] != "DataArray") {
+        section = (*i)[1];
+        continue;
+      }
+      const std::size_t at = data + std::stoul(value(attributes, "offset"));
+      const std::string type = value(attributes, "type");
+      std::uint64_t size;
+      std::memcpy(&size, bytes.data() + at, sizeof size);
+      taken[at] = at + sizeof size + size;
+      ExportedGrid::Array array;
+      array.centre = section == "PointData" ? "Node" : section == "CellData" ? "Cell" : "";
+      const hsize_t columns = std::stoul(value(attributes, "NumberOfComponents"));
+      array.values.resize(size / sizes.at(type));
+      array.dims = {array.values.size() / columns};
+      if (columns > 1) array.dims.push_back(columns);
+      const char* const from = bytes.data() + at + sizeof size;
+      if (type == "Float32") read<float>(from, array.values);
+      if (type == "Float64") read<double>(from, array.values);
+      if (type == "Int32") read<std::int32_t>(from, array.values);
+      if (type == "UInt8") read<std::uint8_t>(from, array.values);
+      grid.arrays[section == "Points" ? "Geometry" : value(attributes, "Name")] = array;
+    }
+    for (const auto& [from, to] : taken) {
+      EXPECT_EQ(from, end);
+      end = to;
+    }
+    EXPECT_EQ(bytes.substr(end), "\n</AppendedData>\n</VTKFile>\n");
+    // two nodes a line
+    const std::vector<double>& ends = grid.arrays.at("offsets").values;
+    for (std::size_t e = 0; e < ends.size(); ++e) EXPECT_EQ(ends[e], 2 * (e + 1));
+    ExportedGrid::Array lines = grid.arrays.at("connectivity");
+    lines.dims = {ends.size(), 2};
+    grid.arrays["Topology"] = lines;
+    return grid;
+  }
+};
+
+TEST_F(VtkTest, every_number_is_that_of_the_tables_and_of_xdmf) {
+  const std::vector<ExportedGrid> grids = read_vtk("v");
+  ASSERT_EQ(grids.size(), 31u);
+  expect_as_tables(grids, "new/data/");
+  ASSERT_EQ(topple({"export", "a.h5", "--xdmf", "a.xdmf"}).code, 0);
+  const std::vector<ExportedGrid> others = read_xdmf("a.xdmf");
+  for (std::size_t f = 0; f < grids.size(); ++f)
+    for (const auto& [name, array] : others[f].arrays) {
+      EXPECT_EQ(grids[f].arrays.at(name).values, array.values) << name;
+      EXPECT_EQ(grids[f].arrays.at(name).centre, array.centre) << name;
+    }
+}
+
+TEST_F(VtkTest, files_are_the_same_every_time_and_replace_older_ones) {
+  const std::string before = bytes_of("v/frame-000030.vtp");
+  write_bytes("v/frame-000030.vtp", "older");
+  ASSERT_EQ(topple({"export", "a.h5", "--vtk", "v"}).code, 0);
+  EXPECT_EQ(bytes_of("v/frame-000030.vtp"), before);
+}
+
+TEST_F(VtkTest, a_folder_that_cannot_be_is_refused_and_nothing_is_begun) {
+  const std::vector<std::string> before = files();
+  expect_one_line({"export", "a.h5", "--vtk", "a.h5"}, 2, "a.h5: cannot be created");
   EXPECT_EQ(files(), before);
 }
 

@@ -114,12 +114,17 @@ TEST_F(FailingWriteTest, whichever_write_of_other_results_fails_they_appear_whol
     std::vector<std::string> made;  ///< all that it may leave
     const char* told;
   };
+  std::vector<std::string> vtk = {"vtk"};
+  for (int i = 0; i < 31; ++i)
+    vtk.push_back(std::string("vtk/frame-0000") + (i < 10 ? "0" : "") + std::to_string(i) + ".vtp");
+  vtk.push_back("vtk/frames.pvd");
   const Result results[] = {
       {{"export", "a.h5", "--csv", "data"},
        {"data", "data/bodies.csv", "data/elements.csv", "data/energy.csv", "data/floor.csv",
         "data/nodes.csv"},
        "data"},
       {{"export", "a.h5", "--xdmf", "a.xdmf"}, {"a.xdmf", "a.xdmf.h5"}, "a.xdmf"},
+      {{"export", "a.h5", "--vtk", "vtk"}, vtk, "vtk"},
       {{"run", "s.toml", "--json", "b.json"}, {"b.json"}, "b.json"},
       {{"render", "a.h5", "--still", "a.png", "--at", "0", "--size", "96x64"}, {"a.png"}, "a.png"},
       {{"recover", "cut.h5", "-o", "r.h5"}, {"r.h5"}, "r.h5"}};

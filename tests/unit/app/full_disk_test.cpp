@@ -71,6 +71,12 @@ TEST_F(FullDiskTest, tables_appear_whole_or_not_at_all) {
   EXPECT_TRUE(std::filesystem::is_empty("data"));
 }
 
+TEST_F(FullDiskTest, frames_for_vtk_appear_all_or_not_at_all) {
+  expect_one_line({"export", "a.h5", "--vtk", "data"}, 1, "data/frame-000000.vtp: File too large",
+                  {.most_bytes = 2000});
+  EXPECT_TRUE(std::filesystem::is_empty("data"));
+}
+
 TEST_F(FullDiskTest, files_for_paraview_appear_whole_or_not_at_all) {
   const std::vector<std::string> before = files();
   for (const rlim_t bytes : {1000, 20'000, 100'000})

@@ -66,10 +66,6 @@ TEST_F(ManualTest, page_has_every_command_and_option_of_the_help) {
   }
 }
 
-TEST_F(ManualTest, page_does_not_tell_of_what_is_refused) {
-  EXPECT_EQ(page().find("vtk"), std::string::npos);
-}
-
 TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
   using Words = std::vector<std::string>;
   const Words first = offers("topple ''");

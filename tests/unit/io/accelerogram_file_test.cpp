@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene_samples.h"
 #include "solver/io/scene.h"
 #include "solver/types.h"
 
@@ -24,12 +25,6 @@ std::string error(const std::string& text, const AccelerogramNotes& notes = {}) 
     return problem.what();
   }
   return "no error";
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 /// Two lines of text, one with the unit, and what follows.

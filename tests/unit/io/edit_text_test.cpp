@@ -10,7 +10,7 @@
 namespace topple::io {
 namespace {
 
-std::string error_of(const Edit& edit, const Setup& setup) {
+std::string refusal_of(const Edit& edit, const Setup& setup) {
   try {
     check_edit(edit, setup.parameters, setup.model);
     return {};
@@ -77,10 +77,10 @@ TEST(EditText, anchors_are_switched_by_number) {
   EXPECT_EQ(parse_edit_key("anchor.2.on")->key, Edit::Key::anchor);
   EXPECT_FALSE(parse_edit_key("anchor.on"));
   EXPECT_FALSE(parse_edit_key("anchor.2.strength"));
-  EXPECT_EQ(error_of(number(Edit::Key::anchor, 0, 1), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::anchor, 1, 1), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::anchor, 0.5), setup), "anchor.1.on: 0.5 is neither 0 nor 1");
-  EXPECT_EQ(error_of(number(Edit::Key::anchor, 1, 2), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::anchor, 0, 1), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::anchor, 1, 1), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::anchor, 0.5), setup), "anchor.1.on: 0.5 is neither 0 nor 1");
+  EXPECT_EQ(refusal_of(number(Edit::Key::anchor, 1, 2), setup),
             "anchor.3.on: there is no such anchor; the scene has 2");
 }
 
@@ -119,76 +119,79 @@ TEST(EditText, values_at_the_ends_of_a_range_pass_and_beyond_them_not) {
     if (key == Edit::Key::direction || row.type != KeyType::number) continue;
     if (key == Edit::Key::frequency && shake == 3) continue;  // it has two
     for (const double end : {row.least, row.most}) {
-      EXPECT_EQ(error_of(number(key, end, shake), setup), "") << row.name;
-      EXPECT_EQ(error_of(number(key, std::nextafter(end, 2 * end), shake), setup), "")
+      EXPECT_EQ(refusal_of(number(key, end, shake), setup), "") << row.name;
+      EXPECT_EQ(refusal_of(number(key, std::nextafter(end, 2 * end), shake), setup), "")
           << row.name;  // rounding
     }
     const double step = 1e-6 * (row.most - row.least);
-    EXPECT_NE(error_of(number(key, row.most + step, shake), setup), "") << row.name;
-    EXPECT_NE(error_of(number(key, row.least - step, shake), setup), "") << row.name;
+    EXPECT_NE(refusal_of(number(key, row.most + step, shake), setup), "") << row.name;
+    EXPECT_NE(refusal_of(number(key, row.least - step, shake), setup), "") << row.name;
   }
 }
 
 TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
   const topple::Setup setup = two_shakes();
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(error_of(number(Edit::Key::friction, 2.4), setup), "contact.friction: 2.4 is outside 0..1.5");
-  EXPECT_EQ(error_of(number(Edit::Key::amplitude, 1200), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::friction, 2.4), setup), "contact.friction: 2.4 is outside 0..1.5");
+  EXPECT_EQ(refusal_of(number(Edit::Key::amplitude, 1200), setup),
             "shake.1.amplitude: 120000 gal is outside 0..100000 gal");
-  EXPECT_EQ(error_of(number(Edit::Key::time_step, 0), setup), "run.time_step: 0 s is outside 1e-07..0.1 s");
-  EXPECT_EQ(error_of(number(Edit::Key::alpha, nan), setup), "contact.alpha: nan is not a finite number");
-  EXPECT_EQ(error_of(number(Edit::Key::alpha, infinity), setup), "contact.alpha: inf is not a finite number");
-  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 2), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::time_step, 0), setup), "run.time_step: 0 s is outside 1e-07..0.1 s");
+  EXPECT_EQ(refusal_of(number(Edit::Key::alpha, nan), setup), "contact.alpha: nan is not a finite number");
+  EXPECT_EQ(refusal_of(number(Edit::Key::alpha, infinity), setup),
+            "contact.alpha: inf is not a finite number");
+  EXPECT_EQ(refusal_of(number(Edit::Key::frequency, 2, 2), setup),
             "shake.3.frequency: there is no such shake; the scene has 2");
-  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, -1), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::frequency, 2, -1), setup),
             "shake.0.frequency: there is no such shake; the scene has 2");
-  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 1), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::frequency, 2, 1), setup),
             "shake.2.frequency: belongs to type = sine or sweep, but type is pulse");
-  EXPECT_EQ(error_of(number(Edit::Key::scale, 2, 1), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::scale, 2, 1), setup),
             "shake.2.scale: belongs to type = record, but type is pulse");
-  EXPECT_EQ(error_of(number(Edit::Key::amplitude, 2, 2), all_shakes()),
+  EXPECT_EQ(refusal_of(number(Edit::Key::amplitude, 2, 2), all_shakes()),
             "shake.3.amplitude: belongs to type = sine or sweep or pulse, but type is record");
-  EXPECT_EQ(error_of(number(Edit::Key::frequency, 2, 3), all_shakes()),
+  EXPECT_EQ(refusal_of(number(Edit::Key::frequency, 2, 3), all_shakes()),
             "shake.4.frequency: 0 Hz is outside 0.001..1000 Hz");  // the last one of the sweep
-  EXPECT_EQ(error_of({.key = Edit::Key::frequency, .shake = 3, .value = Vec3(2, 5, 0)}, all_shakes()), "");
+  EXPECT_EQ(refusal_of({.key = Edit::Key::frequency, .shake = 3, .value = Vec3(2, 5, 0)}, all_shakes()), "");
 }
 
 TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
   topple::Setup setup = all_shakes();
-  EXPECT_EQ(error_of(number(Edit::Key::law, 2), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::law, 3), setup), "contact.law: 3 is not the number of a choice, 0..2");
-  EXPECT_EQ(error_of(number(Edit::Key::law, 0.5), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::law, 2), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::law, 3), setup),
+            "contact.law: 3 is not the number of a choice, 0..2");
+  EXPECT_EQ(refusal_of(number(Edit::Key::law, 0.5), setup),
             "contact.law: 0.5 is not the number of a choice, 0..2");
-  EXPECT_EQ(error_of(number(Edit::Key::law, std::nan("")), setup), "contact.law: nan is not a finite number");
-  EXPECT_EQ(error_of(number(Edit::Key::integrator, 3), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::want, 2), setup), "run.want: 2 is neither 0 nor 1");
-  EXPECT_EQ(error_of(number(Edit::Key::on, -1), setup), "shake.1.on: -1 is neither 0 nor 1");
-  EXPECT_EQ(error_of(number(Edit::Key::type, 1), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::type, 3), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::law, std::nan("")), setup),
+            "contact.law: nan is not a finite number");
+  EXPECT_EQ(refusal_of(number(Edit::Key::integrator, 3), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::want, 2), setup), "run.want: 2 is neither 0 nor 1");
+  EXPECT_EQ(refusal_of(number(Edit::Key::on, -1), setup), "shake.1.on: -1 is neither 0 nor 1");
+  EXPECT_EQ(refusal_of(number(Edit::Key::type, 1), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::type, 3), setup),
             "shake.1.type: a record stays one, and nothing else becomes one");
-  EXPECT_EQ(error_of(number(Edit::Key::type, 0, 2), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::type, 0, 2), setup),
             "shake.3.type: a record stays one, and nothing else becomes one");
   setup.model.bodies[1].name = "desk";
   setup.model.bodies[1].first_frequency = 0;
   EXPECT_EQ(edit_key(number(Edit::Key::model, 1, 1)), "body.2.model");
-  EXPECT_EQ(error_of(number(Edit::Key::model, 1, 1), setup), "");
-  EXPECT_EQ(error_of(number(Edit::Key::model, 2, 1), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::model, 1, 1), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::model, 2, 1), setup),
             "body.2.model: \"desk\" cannot be elastic; supports and loads take a frame, elastic and auto a "
             "scene that says so");
-  EXPECT_EQ(error_of(number(Edit::Key::damping, 0.1, 1), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::damping, 0.1, 1), setup),
             "body.2.damping: \"desk\" has no known elastic mode; give it a damping in the scene");
-  EXPECT_EQ(error_of(number(Edit::Key::damping, 0.1, 2), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::damping, 0.1, 2), setup),
             "body.3.damping: there is no such body; the scene has 2");
 }
 
 TEST(EditText, a_direction_needs_a_length) {
   const topple::Setup setup = two_shakes();
   const auto direction = [](const Vec3& v) { return Edit{.key = Edit::Key::direction, .value = v}; };
-  EXPECT_EQ(error_of(direction(Vec3::Zero()), setup), "shake.1.direction: a zero vector has no direction");
-  EXPECT_EQ(error_of(direction({0, 0, std::nan("")}), setup),
+  EXPECT_EQ(refusal_of(direction(Vec3::Zero()), setup), "shake.1.direction: a zero vector has no direction");
+  EXPECT_EQ(refusal_of(direction({0, 0, std::nan("")}), setup),
             "shake.1.direction: nan is not a finite number");
-  EXPECT_EQ(error_of(direction({0, 2e6, 0}), setup), "shake.1.direction: 2e+06 is outside -1e+06..1e+06");
-  EXPECT_EQ(error_of(direction({0, 0, 1e-200}), setup), "");
+  EXPECT_EQ(refusal_of(direction({0, 2e6, 0}), setup), "shake.1.direction: 2e+06 is outside -1e+06..1e+06");
+  EXPECT_EQ(refusal_of(direction({0, 0, 1e-200}), setup), "");
   Parameters parameters = setup.parameters;
   apply(direction({0, 0, 1e-200}), setup.model, 0, parameters);
   EXPECT_EQ(parameters.shakes[0].direction, Vec3::UnitZ());
@@ -196,11 +199,11 @@ TEST(EditText, a_direction_needs_a_length) {
 
 TEST(EditText, restitution_and_static_friction_belong_to_one_law) {
   topple::Setup setup = two_shakes();
-  EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup), "");
+  EXPECT_EQ(refusal_of(number(Edit::Key::restitution, 0.3), setup), "");
   setup.parameters.contact.kind = ContactLawKind::printed;
-  EXPECT_EQ(error_of(number(Edit::Key::restitution, 0.3), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::restitution, 0.3), setup),
             "contact.restitution: belongs to law = coulomb, but law is printed");
-  EXPECT_EQ(error_of(number(Edit::Key::friction_static, 0.7), setup),
+  EXPECT_EQ(refusal_of(number(Edit::Key::friction_static, 0.7), setup),
             "contact.friction_static: belongs to law = coulomb, but law is printed");
 }
 

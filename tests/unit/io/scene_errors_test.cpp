@@ -15,12 +15,6 @@ std::string in_cabinet(const std::string& lines) {
   return error_of(k_cabinet_scene + lines);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 TEST(SceneErrors, unknown_keys_list_the_known_ones) {
   EXPECT_EQ(
       after_beam("[contact]\n  foo = 1\n"),

@@ -1,6 +1,8 @@
 // Small scenes for the tests of the reader.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 #include <vector>
 
@@ -50,6 +52,13 @@ inline std::string error_of(const std::string& text, const std::vector<std::stri
     return error.what();
   }
   return "no error";
+}
+
+/// `text` with `to` in place of `from`, which must be there.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 }  // namespace topple::io

@@ -12,5 +12,4 @@ target_link_libraries(scene_test PRIVATE topple_io GTest::gtest_main)
 target_compile_definitions(scene_test PRIVATE TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
   TOPPLE_MAKE_RECORDS="$<TARGET_FILE:make_records>")
 add_dependencies(scene_test make_records)
-set_target_properties(scene_test PROPERTIES UNITY_BUILD OFF)
 gtest_discover_tests(scene_test)

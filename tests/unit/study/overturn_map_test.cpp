@@ -10,6 +10,7 @@
 #include <set>
 
 #include "solver/study/overturn_chart.h"
+#include "study_cases.h"
 #include "verification/housner.h"
 
 namespace topple::study {
@@ -17,19 +18,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const auto k_never = [] { return false; };
-
 std::vector<std::string> run_all(const OverturnPlan& plan) {
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   OverturnRunner runner(plan);
-  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = runner.run(k, k_never);
+  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = runner.run(k, never);
   return rows;
-}
-
-std::string without_time(const std::string& row) {
-  ordered_json json = ordered_json::parse(row);
-  json.erase("cpu_s");
-  return json.dump();
 }
 
 /// Half-sines under a rigid uniform block on hard contacts.
@@ -130,7 +123,7 @@ TEST(OverturnMap, runs_of_an_ensemble_do_not_depend_on_their_order) {
   OverturnRunner backwards(plan);
   std::set<std::string> different;
   for (int k = plan.cases(); k-- > 0;) {
-    const std::string again = without_time(backwards.run(k, k_never));
+    const std::string again = without_time(backwards.run(k, never));
     EXPECT_EQ(again, without_time(rows[static_cast<std::size_t>(k)])) << k;
     different.insert(again);
   }
@@ -166,7 +159,7 @@ TEST(OverturnMap, rounds_come_to_one_four_and_all_runs_at_each_point) {
 TEST(OverturnMap, what_was_not_run_is_open_in_every_result) {
   const OverturnPlan plan = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2");
   std::vector<std::string> rows(4);
-  rows[3] = OverturnRunner(plan).run(3, k_never);
+  rows[3] = OverturnRunner(plan).run(3, never);
   const OverturnMap map = gather(plan, rows);
   EXPECT_EQ(map.run, 1);
   EXPECT_EQ(map.of, 4);
@@ -191,7 +184,7 @@ TEST(OverturnMap, scenes_that_cannot_be_built_at_a_point_have_a_row_that_says_so
   // no densities of its members put the centre of gravity of a cabinet so low
   const OverturnPlan plan = plan_overturn(io::load_scene("paper-a"), "cabinet.free.cg_height=0.01..1.05:2",
                                           "shake.1.amplitude=1..1.1:2", 1, 0);
-  const OverturnMap map = gather(plan, {OverturnRunner(plan).run(0, k_never), "", "", ""});
+  const OverturnMap map = gather(plan, {OverturnRunner(plan).run(0, never), "", "", ""});
   EXPECT_EQ(map.points[0].verdict, Verdict::failed);
   EXPECT_EQ(map.points[0].failed, 1);
   EXPECT_NE(map.points[0].status.find("cg_height"), std::string::npos) << map.points[0].status;

@@ -10,13 +10,12 @@
 
 #include "solver/overturn.h"
 #include "solver/study/precision_chart.h"
+#include "study_cases.h"
 
 namespace topple::study {
 namespace {
 
 using nlohmann::ordered_json;
-
-const auto k_never = [] { return false; };
 
 /// The cabinet of free-rocking; nothing of it is run.
 const PrecisionPlan& rocking() {
@@ -149,12 +148,6 @@ const PrecisionPlan& tumbling() {
   return plan;
 }
 
-std::string without_time(const std::string& row) {
-  ordered_json json = ordered_json::parse(row);
-  json.erase("cpu_s");
-  return json.dump();
-}
-
 TEST(Precision, without_contact_there_is_one_law) {
   EXPECT_EQ(tumbling().laws.size(), 1u);
   EXPECT_EQ(rocking().laws.size(), 9u);
@@ -177,7 +170,7 @@ TEST(Precision, errors_of_smooth_motion_fall_with_second_order) {
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   const auto run = [&](Method method, int from_finest) {
     const int k = case_of(plan, method, from_finest);
-    rows[static_cast<std::size_t>(k)] = run_case(plan, k, k_never);
+    rows[static_cast<std::size_t>(k)] = run_case(plan, k, never);
     return k;
   };
   for (int n = 0; n < 3; ++n) run(Method::central_difference, n);
@@ -199,7 +192,7 @@ TEST(Precision, a_case_gives_the_same_row_again) {
   const PrecisionPlan& plan = tumbling();
   for (const Method method : {Method::rigid_auto, Method::elastic, Method::generalized_alpha_auto}) {
     const int k = case_of(plan, method, 3);
-    EXPECT_EQ(without_time(run_case(plan, k, k_never)), without_time(run_case(plan, k, k_never)));
+    EXPECT_EQ(without_time(run_case(plan, k, never)), without_time(run_case(plan, k, never)));
   }
 }
 
@@ -207,7 +200,7 @@ TEST(Precision, a_case_that_fails_has_a_row_that_says_so) {
   const PrecisionPlan& plan = tumbling();
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   const int k = case_of(plan, Method::central_difference, 3);
-  rows[static_cast<std::size_t>(k)] = run_case(plan, k, k_never);
+  rows[static_cast<std::size_t>(k)] = run_case(plan, k, never);
   const PrecisionStudy study = gather(plan, rows);
   const PrecisionRow& row = study.rows[static_cast<std::size_t>(k)];
   EXPECT_NE(row.status.find("central-difference is stable up to a time_step of"), std::string::npos)
@@ -225,7 +218,7 @@ TEST(Precision, a_scene_that_does_not_begin_has_rows_that_say_so) {
       io::load_scene("tumble", {"run.settle=true", "run.gravity=[0, 0, -9.8]", "run.duration=0.1",
                                 "cabinet.tumbler.angular_velocity=[0, 0, 0]"}));
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
-  rows[0] = run_case(plan, 0, k_never);
+  rows[0] = run_case(plan, 0, never);
   const PrecisionStudy study = gather(plan, rows);
   EXPECT_NE(study.rows[0].status, "completed");
   EXPECT_TRUE(ordered_json::parse(rows[0])["balance"].empty());

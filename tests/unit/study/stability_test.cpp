@@ -12,6 +12,7 @@
 
 #include "solver/study/stability_chart.h"
 #include "solver/study/stability_limits.h"
+#include "study_cases.h"
 
 namespace topple::study {
 namespace {
@@ -20,8 +21,6 @@ using nlohmann::ordered_json;
 using End = StabilityRun::End;
 
 const std::string k_failures = TOPPLE_SOURCE_DIR "/assets/scenes/failures/";
-const auto k_never = [] { return false; };
-
 StabilityRun fine() {
   StabilityRun run;
   run.fell = {true, false};
@@ -201,8 +200,7 @@ TEST(Stability, central_differences_are_refused_right_of_their_line) {
 
 std::vector<std::string> run_all(const StabilityPlan& plan) {
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
-  for (const int k : case_order(plan))
-    rows[static_cast<std::size_t>(k)] = run_stability_case(plan, k, k_never);
+  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = run_stability_case(plan, k, never);
   return rows;
 }
 
@@ -239,7 +237,7 @@ TEST(Stability, what_was_not_run_is_open_in_every_result) {
   const StabilityPlan plan = small_plan();
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   const std::size_t last = rows.size() - 1;
-  rows[last] = run_stability_case(plan, static_cast<int>(last), k_never);
+  rows[last] = run_stability_case(plan, static_cast<int>(last), never);
   const StabilityMap map = gather(plan, rows);
   EXPECT_EQ(map.run, 1);
   EXPECT_EQ(map.cells.back().front().fate, Fate::not_computed);
@@ -250,7 +248,7 @@ TEST(Stability, what_was_not_run_is_open_in_every_result) {
 
 TEST(Stability, a_run_ends_where_all_that_falls_has_fallen) {
   const auto horizon = [](const std::string& scene) {
-    return find_horizon(io::load_scene(scene).setup, k_never);
+    return find_horizon(io::load_scene(scene).setup, never);
   };
   const io::Scene a = io::load_scene("paper-a");
   topple::Run run(a.setup);

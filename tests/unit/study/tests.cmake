@@ -21,5 +21,4 @@ target_link_libraries(study_test PRIVATE topple_study GTest::gtest_main)
 target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp PROPERTIES
   COMPILE_DEFINITIONS TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/precision_test.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 gtest_discover_tests(study_test)
