@@ -28,6 +28,7 @@ struct Four {
   [[gnu::always_inline]] Four& operator+=(Four b) { return v += b.v, *this; }
   [[gnu::always_inline]] Four& operator-=(Four b) { return v -= b.v, *this; }
   [[gnu::always_inline]] friend Four sqrt(Four a) { return Vector(_mm256_sqrt_pd(a.v)); }
+  [[gnu::always_inline]] friend Four operator|(Four a, Four b) { return Vector(_mm256_or_pd(a.v, b.v)); }
   /// a b + c, rounded once.
   [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
     return Vector(_mm256_fmadd_pd(a.v, b.v, c.v));

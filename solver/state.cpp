@@ -227,8 +227,11 @@ std::uint64_t hash(const State& state) {
 }
 
 bool is_finite(const State& s, bool nodes) {
-  Four total(0);  // an infinity or not a number for ever, once a number is one or overflows
-  const auto look_at = [&](Four x) { total = mul_add(x, Four(k_overflow), total); };
+  Four odd(0);
+  const auto look_at = [&](Four x) {
+    const Four large = x * Four(k_overflow);
+    odd = odd | (large - large);  // 0 or not a number
+  };
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
 #pragma GCC unroll 4
@@ -265,7 +268,7 @@ bool is_finite(const State& s, bool nodes) {
   look_at_vector(s.floor_displacement);
   look_at_vector(s.floor_velocity);
   look_at(Four(s.time + s.step_size + s.load_factor + s.near_slack));
-  return !any_above(total - total, 0);
+  return !any_above(odd, 0);
 }
 
 int body_not_finite(const Model& model, const State& s) {
