@@ -388,6 +388,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;
+  status.by_tolerance = !is_explicit;
   return status;
 }
 

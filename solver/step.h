@@ -37,9 +37,10 @@ struct StepStatus {
   int element = -1;  ///< -1: not an element's fault
   int node = -1;
   int newton_iterations = 0;
-  int rejected = 0;        ///< trial steps thrown away within this step
-  double limit = 0;        ///< s, step_too_long: the greatest stable step
-  double load_factor = 0;  ///< statics: where no equilibrium was found
+  int rejected = 0;           ///< trial steps thrown away within this step
+  double limit = 0;           ///< s, step_too_long: the greatest stable step
+  double load_factor = 0;     ///< statics: where no equilibrium was found
+  bool by_tolerance = false;  ///< the tolerance, not time_step, is what makes steps shorter
 
   bool ok() const { return kind == Kind::ok; }
   /// One sentence: what, when, where, what to try.

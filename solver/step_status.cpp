@@ -35,12 +35,13 @@ std::string StepStatus::message(const Model& model) const {
     const Member& member = model.members[model.elements[element].member];
     where += ", member \"" + member.name + "\" (element " + std::to_string(element) + ")";
   }
-  const std::string when = format("at %.6g s", time);
+  const std::string when = format("at %.6g s", time),
+                    finer = by_tolerance ? "; try a smaller tolerance" : "; try a smaller time_step";
   switch (kind) {
     case Kind::newton_diverged:
-      return "the step " + when + " has no converged solution: " + where + "; try a smaller time_step";
+      return "the step " + when + " has no converged solution: " + where + finer;
     case Kind::not_finite:
-      return "the motion is no longer finite " + when + ": " + where + "; try a smaller time_step";
+      return "the motion is no longer finite " + when + ": " + where + finer;
     case Kind::singular:
       return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
     case Kind::not_settled:
@@ -55,11 +56,10 @@ std::string StepStatus::message(const Model& model) const {
              " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
              "path that turns down)";
     case Kind::passed_through:
-      return "members would pass through each other unseen in the step " + when + ": " + where +
-             "; try a smaller time_step";
+      return "members would pass through each other unseen in the step " + when + ": " + where + finer;
     case Kind::energy_lost:
       return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
-             when + ": " + where + "; try a smaller time_step";
+             when + ": " + where + finer;
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::bad_parameter:

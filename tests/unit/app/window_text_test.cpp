@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <ostream>
 #include <set>
 
 #include "app/precision_words.h"
@@ -125,6 +126,9 @@ struct Look {
   Appearance appearance;
   const char* name;
 };
+void PrintTo(const Look& look, std::ostream* out) {
+  *out << look.name;
+}
 
 class WindowText : public ::testing::TestWithParam<Look> {
  protected:
