@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "app/report_parts.h"
 
@@ -35,11 +36,9 @@ std::string model_in_words(const ReportPage& page, const std::string& model) {
 
 /// All models that a body was computed as.
 std::string models(const ReportPage& page, const ordered_json& body) {
-  std::vector<std::string> seen;
-  for (const ordered_json& change : body["model_changes"]) seen.push_back(change["model"]);
-  if (seen.empty()) seen.push_back(body["model"]);
-  std::ranges::sort(seen);
-  seen.erase(std::ranges::unique(seen).begin(), seen.end());
+  std::set<std::string> seen;
+  for (const ordered_json& change : body["model_changes"]) seen.insert(change["model"]);
+  if (seen.empty()) seen.insert(body["model"]);
   std::string out;
   for (const std::string& model : seen) out += (out.empty() ? "" : "; ") + model_in_words(page, model);
   return out;

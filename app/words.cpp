@@ -47,7 +47,7 @@ std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t
   std::size_t standing = 0;
   for (const auto& [of, words] : k_stances) {
     const auto count = static_cast<std::size_t>(
-        std::ranges::count_if(others, [&](std::size_t body) { return stance(row, body) == of; }));
+        std::ranges::count_if(others, [&, of = of](std::size_t body) { return stance(row, body) == of; }));
     if (of == Stance::standing) standing = count;
     if (count > 0) counts += (counts.empty() ? "" : say(k_comma)) + say(words, count);
   }

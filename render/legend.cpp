@@ -121,8 +121,8 @@ Ticks root_ticks(double maximum) {
 
 void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const LegendRoom& room,
                  std::vector<OverlayBox>& boxes) {
-  const auto [column_left, top, right, lowest, longest] = room;
-  float y = top;
+  const float column_left = room.left, right = room.right;
+  float y = room.top;
   const auto add_line = [&](const ImFont* font, ImU32 colour, const std::string& words) {
     if (words.empty()) return;
     at.text(font, right - text_width(*font, words), y, colour, words);
@@ -141,7 +141,7 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
   add_below(legend.range_policy);
   for (const std::string& note : legend.notes) add_below(note);
   const float below_bar = small_line * (below.empty() ? 0.5f : 0.9f + static_cast<float>(below.size()));
-  const float bar_bottom = std::round(std::min(bar_top + longest, lowest - below_bar));
+  const float bar_bottom = std::round(std::min(bar_top + room.bar, room.bottom - below_bar));
   if (bar_bottom - bar_top < 4 * small_line) return;
 
   for (const std::string& line : heading) add_line(at.fonts.text, at.colours.text, line);
@@ -167,7 +167,7 @@ void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const Le
   }
   y = bar_bottom + 0.9f * small_line;
   for (const std::string& line : below) add_line(at.fonts.small, at.colours.quiet, line);
-  boxes.push_back({"legend", column_left, top, right, std::max(y, bar_bottom + small_line / 2)});
+  boxes.push_back({"legend", column_left, room.top, right, std::max(y, bar_bottom + small_line / 2)});
 }
 
 bool can_be_drawn(const Legend& legend, LeftOut& left_out) {

@@ -95,11 +95,10 @@ Fragility fit_fragility(const std::vector<Level>& all) {
   std::vector<Level> levels;
   std::ranges::copy_if(all, std::back_inserter(levels), [](const Level& level) { return level.runs > 0; });
   if (std::string why = why_none(levels); !why.empty()) return {std::nullopt, std::move(why)};
-  double runs = 0, hits = 0, mean = 0;
-  for (const auto& [a, n, k] : levels) {
-    runs += n;
-    hits += k;
-    mean += n * std::log(a);
+  double runs = 0, mean = 0;
+  for (const Level& level : levels) {
+    runs += level.runs;
+    mean += level.runs * std::log(level.intensity);
   }
   mean /= runs;
   // about its mean ln a the line's two numbers are almost independent
