@@ -61,8 +61,8 @@ std::string frame_file(const Model& model, const ElementPlaces& places, const Fr
   std::vector<std::int32_t> ends(model.elements.size());
   for (std::size_t e = 0; e < ends.size(); ++e) ends[e] = static_cast<std::int32_t>(2 * e + 2);
   RawData data;
-  std::string on_nodes,
-      on_elements = data.array("body", places.body, 1) + data.array("member", places.member, 1);
+  std::string on_nodes, on_elements = data.array("body", places.body, 1);
+  on_elements += data.array("member", places.member, 1);
   each_field(model, row, [&](const char* name, FieldPlace place, const auto& values, std::size_t columns) {
     (place == FieldPlace::nodes ? on_nodes : on_elements) += data.array(name, values, columns);
   });
@@ -72,8 +72,8 @@ std::string frame_file(const Model& model, const ElementPlaces& places, const Fr
       std::to_string(model.node_position.size()) + "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
       std::to_string(model.elements.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
   text += "<Points>\n" + data.array("position_m", row.position, 3) + "</Points>\n";
-  text += "<Lines>\n" + data.array("connectivity", places.nodes, 1) + data.array("offsets", ends, 1) +
-          "</Lines>\n";
+  text += "<Lines>\n" + data.array("connectivity", places.nodes, 1);
+  text += data.array("offsets", ends, 1) + "</Lines>\n";
   text += "<PointData>\n" + on_nodes + "</PointData>\n<CellData>\n" + on_elements + "</CellData>\n";
   text += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   return text + data.bytes() + "\n</AppendedData>\n</VTKFile>\n";

@@ -116,10 +116,11 @@ std::string attribute(const char* name, const char* centre, std::size_t columns,
 /// What is the same in all frames: lines from node to node, and whose they are.
 std::string fixed_parts(XdmfFile& file, const Model& model) {
   const ElementPlaces places(model);
-  return "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" +
-         std::to_string(model.elements.size()) + "\">" + file.store("topology", places.nodes, 2) +
-         "</Topology>\n" + attribute("body", "Cell", 1, file.store("body", places.body, 1)) +
-         attribute("member", "Cell", 1, file.store("member", places.member, 1));
+  std::string text = "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" +
+                     std::to_string(model.elements.size()) + "\">";
+  text += file.store("topology", places.nodes, 2) + "</Topology>\n";
+  text += attribute("body", "Cell", 1, file.store("body", places.body, 1));
+  return text + attribute("member", "Cell", 1, file.store("member", places.member, 1));
 }
 
 void add_frame(XdmfFile& file, const Model& model, const FrameRow& row, int number,
