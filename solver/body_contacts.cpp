@@ -146,7 +146,8 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
       const Four gap = dot(normal, at) + (Four(height) - sides[g].gap);
       const Four::Mask touching = gap < 0;
       if (bits(touching) == 0) continue;
-      Touch& touch = now_.add(static_cast<int>(k), static_cast<int>(g), touching);
+      Touch& touch = now_.add(static_cast<int>(k), static_cast<int>(g),
+                              static_cast<int>(k * groups_.size() + g), touching);
       touch.depth = choose(touching, -gap / sides[g].L, Four(0));
       touch.arm = turn * at;
       touch.stick = gather(stick.data(), sides[g].spring);
@@ -180,11 +181,11 @@ void BodyContacts::follow(const BodyState& before, const PackMat3& r0, const Bod
 
 // As contact_force, four by four.
 template <bool with_slope>
-[[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Points& v,
-                                                                 double lever, Touch& touch) const {
+[[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Points& n,
+                                                                 const Points& v, double lever,
+                                                                 Touch& touch) const {
   const Side& here = side(touch);
   const Four zero = Four(0);
-  const Points n = normal(touch);
   const Four vn = dot(n, v);
   const double eps = law.normal_speed;
   const Four inverse = 1 / sqrt(mul_add(vn, vn, Four(eps * eps)));
@@ -199,8 +200,9 @@ template <bool with_slope>
   const Four mu = static_friction ? friction_coefficient(law, dot(slip, slip)) : Four(law.friction);
   const Four limit = touch.limit = mu * touch.normal, size2 = dot(trial, trial);
   const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
+  const bool slips = bits(sticks | ~touch.touching) != k_all_lanes;
   Four scale = Four(1), inverse_size = zero;
-  if (bits(sticks | ~touch.touching) != k_all_lanes) {
+  if (slips) {
     inverse_size = 1 / sqrt(size2);
     scale = choose(sticks, scale, limit * inverse_size);
     inverse_size = choose(sticks, zero, inverse_size);
@@ -219,33 +221,37 @@ template <bool with_slope>
       across += lever * k;
     }
     across = across * scale;
+    touch.lead = slope + across;
+    touch.across = across;
     touch.drag = choose(sticks, across, zero);
-    const Points along = inverse_size * trial;
-    const Points lead = (slope + across) * n;
-    Points side_way = mul_add(across, along, -(mu * slope) * n);
-    if (static_friction) {
-      const Four above = mu - law.friction;
-      side_way = mul_add(2 * above * above / (law.excess() * law.slip_speed * law.slip_speed) * touch.normal,
-                         slip, side_way);
+    touch.has_rest = slips;
+    if (slips) {
+      const Points along = inverse_size * trial;
+      Points side_way = mul_add(across, along, -(mu * slope) * n);
+      if (static_friction) {
+        const Four above = mu - law.friction;
+        side_way =
+            mul_add(2 * above * above / (law.excess() * law.slip_speed * law.slip_speed) * touch.normal, slip,
+                    side_way);
+      }
+      touch.rest = outer(along, side_way);
     }
-    const Four n_of[3] = {n.x, n.y, n.z}, along_of[3] = {along.x, along.y, along.z};
-    for (int i = 0; i < 3; ++i) touch.slope.row[i] = mul_add(n_of[i], lead, along_of[i] * side_way);
-    touch.slope.row[0].x -= across;
-    touch.slope.row[1].y -= across;
-    touch.slope.row[2].z -= across;
   }
 }
 
 template <bool with_slope>
-[[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Points& v,
-                                                         double lever, Touch& touch) const {
+[[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Points& n,
+                                                         const Points& v, double lever, Touch& touch) const {
   if (law.kind == ContactLawKind::coulomb) {
-    respond_coulomb<with_slope>(law, v, lever, touch);
+    respond_coulomb<with_slope>(law, n, v, lever, touch);
   } else {
     touch.conservative = touch.normal = touch.stick_energy = Four(0);
     touch.tangential = in_all_lanes(Vec3::Zero());
-    if (with_slope)
-      for (Points& row : touch.slope.row) row = in_all_lanes(Vec3::Zero());
+    if (with_slope) {
+      touch.lead = touch.across = touch.drag = Four(0);
+      touch.has_rest = true;
+      for (Points& row : touch.rest.row) row = in_all_lanes(Vec3::Zero());
+    }
     for (int which = 0; which < 4; ++which) {
       if (!touch.touching[which]) continue;
       Mat3 by_position, by_velocity;
@@ -257,10 +263,9 @@ template <bool with_slope>
       touch.conservative.set(which, out.conservative);
       touch.normal.set(which, out.normal);
       set_lane(touch.tangential, which, out.tangential);
-      if (with_slope) set_lane(touch.slope, which, by_velocity + lever * by_position);
+      if (with_slope) set_lane(touch.rest, which, by_velocity + lever * by_position);
     }
   }
-  touch.force = mul_add(touch.normal, normal(touch), touch.tangential);
 }
 
 template <bool with_slope>
@@ -280,10 +285,12 @@ ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, 
     }
     Points v = linear + cross(angular, touch.arm);
     for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
-    respond<with_slope>(law, v, lever, touch);
-    force = force + touch.force;
-    moment = moment + cross(touch.arm, touch.force);
-    damped -= (touch.normal - touch.conservative) * dot(normal(touch), v);
+    const Points n = normal(touch);
+    respond<with_slope>(law, n, v, lever, touch);
+    const Points push = mul_add(touch.normal, n, touch.tangential);
+    force = force + push;
+    moment = moment + cross(touch.arm, push);
+    damped -= (touch.normal - touch.conservative) * dot(n, v);
     rubbed -= dot(touch.tangential, v);
   }
   const Four first = sums(force.x, force.y, force.z, damped),
@@ -297,35 +304,111 @@ void BodyContacts::press_modes(int modes, Amplitudes& load) const {
   std::array<Four, k_modes> sum_of;
   sum_of.fill(Four(0));
   const Points* shape = shapes_.data();
-  for (const Touch& touch : now_.list())
-    for (int k = 0; k < modes; ++k) sum_of[k] += dot(*shape++, touch.force);
+  for (const Touch& touch : now_.list()) {
+    const Points push = force(touch);
+    for (int k = 0; k < modes; ++k) sum_of[k] += dot(*shape++, push);
+  }
   for (int k = 0; k < modes; ++k) load[k] = sum(sum_of[k]);
 }
 
-template <class F>
-ContactSlope BodyContacts::sum_slopes(F slope_of) const {
-  const Points none = in_all_lanes(Vec3::Zero());
-  PackMatrix<Four> a{{none, none, none}}, b = a, c = a, d = a;
-  for (const Touch& touch : now_.list()) {
-    const PackMatrix<Four>& slope = slope_of(touch);
-    const PackMatrix<Four> turned = times_skew(slope, touch.arm);
-    a = a + slope;
-    b = b - turned;
-    c = c + skew_times(touch.arm, slope);
-    d = d - skew_times(touch.arm, turned);
+namespace {
+
+// Sums of slopes  lead n n^T - across I  of points in one plane; with the arm r and m = r x n:
+//   force by angular velocity  lead n m^T + across [r],  moment by it  lead m m^T + across (r r^T - r^2 I)
+class PlaneSlope {
+ public:
+  [[gnu::always_inline]] void add(Four lead, Four across, const PackVector<Four>& n,
+                                  const PackVector<Four>& r) {
+    const PackVector<Four> m = cross(r, n), lead_m = lead * m, across_r = across * r;
+    lead_ += lead;
+    lead_m_ = lead_m_ + lead_m;
+    across_ += across;
+    across_r_ = across_r_ + across_r;
+    square_ = mul_add(across_r.z, r.z, mul_add(across_r.y, r.y, mul_add(across_r.x, r.x, square_)));
+    const auto both = [&](Four mi, Four mj, Four ri, Four rj, Four sum) {
+      return mul_add(mi, mj, mul_add(ri, rj, sum));
+    };
+    xx_ = both(lead_m.x, m.x, across_r.x, r.x, xx_);
+    yy_ = both(lead_m.y, m.y, across_r.y, r.y, yy_);
+    zz_ = both(lead_m.z, m.z, across_r.z, r.z, zz_);
+    xy_ = both(lead_m.x, m.y, across_r.x, r.y, xy_);
+    xz_ = both(lead_m.x, m.z, across_r.x, r.z, xz_);
+    yz_ = both(lead_m.y, m.z, across_r.y, r.z, yz_);
   }
-  return {sum(a), sum(b), sum(c), sum(d)};
+  [[gnu::always_inline]] ContactSlope total(const PackVec3& n) const {
+    const Four by_n = sums(lead_, lead_m_.x, lead_m_.y, lead_m_.z),
+               by_r = sums(across_, across_r_.x, across_r_.y, across_r_.z),
+               diagonals = sums(xx_, yy_, zz_, square_), others = sums(xy_, xz_, yz_, Four(0));
+    const double a = by_r[0], xx = diagonals[0] - diagonals[3], yy = diagonals[1] - diagonals[3],
+                 zz = diagonals[2] - diagonals[3], xy = others[0], xz = others[1], yz = others[2];
+    const PackMat3 turned =
+        outer(n, PackVec3{by_n[1], by_n[2], by_n[3]}) + skew(PackVec3{by_r[1], by_r[2], by_r[3]});
+    return {outer(by_n[0] * n, n) - diagonal(PackVec3{a, a, a}), turned, transposed(turned),
+            PackMat3{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}}};
+  }
+
+ private:
+  Four lead_{0}, across_{0}, square_{0}, xx_{0}, yy_{0}, zz_{0}, xy_{0}, xz_{0}, yz_{0};
+  PackVector<Four> lead_m_ = in_all_lanes(Vec3::Zero()), across_r_ = lead_m_;
+};
+
+}  // namespace
+
+template <class F>
+[[gnu::always_inline]] inline ContactSlope BodyContacts::sum_slopes(F lead_and_across) const {
+  const std::span<const Touch> all = now_.list();
+  auto touch = all.begin();
+  const auto of_next_plane = [&] {
+    const int plane = touch->plane;
+    const Points n = normal(*touch);
+    PlaneSlope sum;
+    for (; touch != all.end() && touch->plane == plane; ++touch) {
+      const auto [lead, across] = lead_and_across(*touch);
+      sum.add(lead, across, n, touch->arm);
+    }
+    return sum.total(packed(model_.planes[plane].normal));
+  };
+  if (all.empty()) return {};
+  ContactSlope total = of_next_plane();
+  while (touch != all.end()) {
+    const ContactSlope more = of_next_plane();
+    total.force_linear = total.force_linear + more.force_linear;
+    total.force_angular = total.force_angular + more.force_angular;
+    total.moment_linear = total.moment_linear + more.moment_linear;
+    total.moment_angular = total.moment_angular + more.moment_angular;
+  }
+  return total;
 }
 
 ContactSlope BodyContacts::slope() const {
-  return sum_slopes([](const Touch& touch) -> const PackMatrix<Four>& { return touch.slope; });
+  ContactSlope total = sum_slopes([](const Touch& touch) { return std::pair(touch.lead, touch.across); });
+  for (const Touch& touch : now_.list()) {
+    if (!touch.has_rest) continue;
+    const PackMatrix<Four> turned = times_skew(touch.rest, touch.arm);
+    total.force_linear = total.force_linear + sum(touch.rest);
+    total.force_angular = total.force_angular - sum(turned);
+    total.moment_linear = total.moment_linear + sum(skew_times(touch.arm, touch.rest));
+    total.moment_angular = total.moment_angular - sum(skew_times(touch.arm, turned));
+  }
+  return total;
 }
 
 ContactSlope BodyContacts::stick_slope() const {
-  return sum_slopes([&](const Touch& touch) {
-    const Points n = normal(touch);
-    return touch.drag * (outer(n, n) - diagonal(Points{Four(1), Four(1), Four(1)}));
-  });
+  return sum_slopes([](const Touch& touch) { return std::pair(touch.drag, touch.drag); });
+}
+
+PackMatrix<Four> BodyContacts::slope(const Touch& touch) const {
+  const Points n = normal(touch);
+  const PackMatrix<Four> plain =
+      outer(touch.lead * n, n) - diagonal(Points{touch.across, touch.across, touch.across});
+  return touch.has_rest ? plain + touch.rest : plain;
+}
+
+Mat3 BodyContacts::slope(const Touch& touch, int lane) const {
+  const PackMatrix<Four> all = slope(touch);
+  Mat3 one;
+  for (int row = 0; row < 3; ++row) one.row(row) = topple::lane(all.row[row], lane);
+  return one;
 }
 
 void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {
@@ -336,8 +419,9 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
   }
   const Points* shape = shapes_.data();
   for (const Touch& touch : now_.list()) {
+    const PackMatrix<Four> by_velocity = slope(touch);
     for (int k = 0; k < m; ++k) {
-      const Points f = touch.slope * shape[k], moment = cross(touch.arm, f);
+      const Points f = by_velocity * shape[k], moment = cross(touch.arm, f);
       top[0][k] += f.x;
       top[1][k] += f.y;
       top[2][k] += f.z;
@@ -346,7 +430,7 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
       top[5][k] += moment.z;
       for (int j = 0; j < m; ++j) corner[j][k] += dot(shape[j], f);
       // the transpose's product: forces of the rigid columns on this mode
-      const Points b = transposed_times(touch.slope, shape[k]), turned = cross(touch.arm, b);
+      const Points b = transposed_times(by_velocity, shape[k]), turned = cross(touch.arm, b);
       left[k][0] += b.x;
       left[k][1] += b.y;
       left[k][2] += b.z;
@@ -381,7 +465,7 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
 void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
   const Touch* still = now_.list().data();
   const Touch* const end = still + now_.count;
-  for (const Touch& touch : start_.list()) {
+  for (const Touch& touch : now_.hash == start_.hash ? std::span<const Touch>() : start_.list()) {
     while (still != end && std::tie(still->plane, still->group) < std::tie(touch.plane, touch.group)) ++still;
     if (still != end && still->plane == touch.plane && still->group == touch.group) continue;
     for (int k = 0; k < groups_[touch.group].size; ++k) stick[side(touch).spring[k]].setZero();
@@ -406,7 +490,7 @@ double BodyContacts::energy(const ContactLaw& law) const {
   for (const Touch& touch : now_.list()) {
     held += touch.stick_energy;
     if (law.kind != ContactLawKind::printed)
-      held += touch.alpha * (1 / (law.q + 1)) * side(touch).L * touch.depth * power(touch.depth, law.q);
+      held += 1 / (law.q + 1) * touch.conservative * side(touch).L * touch.depth;
   }
   return sum(held);
 }
@@ -418,9 +502,20 @@ void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const Pack
     damped -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
     rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
-  for (const Touch& touch : start_.list())
-    book(touch, in_all_lanes(shift) + (in_all_lanes(r) * place(s, groups_[touch.group]) - touch.arm), -1);
-  for (const Touch& touch : now_.list()) book(touch, touch.travel, 1);
+  if (now_.hash == start_.hash) {
+    const Touch* before = start_.list().data();
+    for (const Touch& touch : now_.list()) {
+      const Four lost = (before->normal - before->conservative) + (touch.normal - touch.conservative);
+      damped -= 0.5 * lost * dot(normal(touch), touch.travel);
+      rubbed -= 0.5 * dot(before->tangential + touch.tangential, touch.travel) +
+                (touch.stick_energy - before->stick_energy);
+      ++before;
+    }
+  } else {
+    for (const Touch& touch : start_.list())
+      book(touch, in_all_lanes(shift) + (in_all_lanes(r) * place(s, groups_[touch.group]) - touch.arm), -1);
+    for (const Touch& touch : now_.list()) book(touch, touch.travel, 1);
+  }
   booked.normal_damping += sum(damped);
   booked.friction += sum(rubbed);
 }

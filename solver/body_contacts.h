@@ -55,7 +55,7 @@ class BodyContacts {
   using Points = PackVector<Four>;
   /// Four points of which some touch a plane.
   struct Touch {
-    int plane, group;
+    int plane, group, side;
     Four::Mask touching;
     Four depth;
     Points arm;     // m, from the centre of gravity
@@ -63,13 +63,17 @@ class BodyContacts {
     Points travel;  // m, in the part of a step that led here
     Four conservative, normal;
     Four limit;  // N, of the tangential force (coulomb law)
-    Points tangential, force;
+    Points tangential;
     Four give, give_across;  // m/N, what the body gives way where it is pushed, less what its modes do
     Four alpha;              // N, of the spring with what gives way behind it
     Four stick_stiffness;    // N/m, likewise
     Four stick_energy;
-    PackMatrix<Four> slope;  // of the force by the velocity
-    Four drag;               // N s/m, of what sticks, less its derivative along the plane
+    // N s/m, derivative of the force by the velocity: lead n n^T - across I, and `rest` where something slips
+    // or the law is not coulomb's.
+    Four lead, across;
+    bool has_rest;
+    PackMatrix<Four> rest;
+    Four drag;  // N s/m, of what sticks, less its derivative along the plane
   };
 
   BodyContacts(const Model& model, int body);
@@ -122,6 +126,10 @@ class BodyContacts {
     each_of(now_, f);
   }
   double length(const Touch& touch, int lane) const { return side(touch).L[lane]; }
+  /// N, of one that touches.
+  Vec3 force(const Touch& touch, int lane) const { return topple::lane(force(touch), lane); }
+  /// N s/m, derivative by its velocity, likewise.
+  Mat3 slope(const Touch& touch, int lane) const;
   /// Of the contact alone, without what gives way behind it.
   double own_depth(const Touch& touch, int lane) const {
     return touch.depth[lane] -
@@ -167,11 +175,12 @@ class BodyContacts {
       count = 0;
       hash = k_nothing;
     }
-    Touch& add(int plane, int group, Four::Mask touching) {
+    Touch& add(int plane, int group, int side, Four::Mask touching) {
       if (count == all.size()) all.emplace_back();
       Touch& touch = all[count++];
       touch.plane = plane;
       touch.group = group;
+      touch.side = side;
       touch.touching = touching;
       hash = (hash ^ (static_cast<std::uint64_t>(plane) << 32 | static_cast<std::uint64_t>(group) << 8 |
                       bits(touching))) *
@@ -183,16 +192,20 @@ class BodyContacts {
   };
 
   template <class F>
-  ContactSlope sum_slopes(F slope_of) const;
-  const Side& side(const Touch& touch) const { return sides_[touch.plane * groups_.size() + touch.group]; }
+  ContactSlope sum_slopes(F lead_and_across) const;
+  const Side& side(const Touch& touch) const { return sides_[touch.side]; }
   Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
+  Points force(const Touch& touch) const { return mul_add(touch.normal, normal(touch), touch.tangential); }
+  PackMatrix<Four> slope(const Touch& touch) const;
   double slope_at_rest(const ContactLaw& law) const;
   double clearance(const Vec3& n, double height) const;
   Points place(const BodyState& s, const Group& group) const;
   template <bool with_slope>
-  void respond(const PreparedLaw& law, const Points& velocity, double lever, Touch& touch) const;
+  void respond(const PreparedLaw& law, const Points& normal, const Points& velocity, double lever,
+               Touch& touch) const;
   template <bool with_slope>
-  void respond_coulomb(const PreparedLaw& law, const Points& velocity, double lever, Touch& touch) const;
+  void respond_coulomb(const PreparedLaw& law, const Points& normal, const Points& velocity, double lever,
+                       Touch& touch) const;
   Points held_stick(const ContactLaw& law, const Touch& touch) const;
   template <class F>
   void each_of(const Touches& touches, F f) const {

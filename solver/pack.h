@@ -39,6 +39,7 @@ struct Four {
   }
   [[gnu::always_inline]] friend Mask operator<(Four a, Four b) { return a.v < b.v; }
   [[gnu::always_inline]] friend Mask operator<=(Four a, Four b) { return a.v <= b.v; }
+  [[gnu::always_inline]] friend Mask operator==(Four a, Four b) { return a.v == b.v; }
   /// a where the mask is set, else b.
   [[gnu::always_inline]] friend Four choose(Mask mask, Four a, Four b) {
     return Vector(_mm256_blendv_pd(b.v, a.v, reinterpret_cast<__m256d>(mask)));
@@ -188,12 +189,18 @@ template <class P>
   return {
       {v.y * a.row[2] - v.z * a.row[1], v.z * a.row[0] - v.x * a.row[2], v.x * a.row[1] - v.y * a.row[0]}};
 }
+/// Of m: m^-1 = matrix over determinant.
 template <class P>
-[[gnu::always_inline]] inline PackMatrix<P> inverse(const PackMatrix<P>& m) {
-  const PackVector<P> a = cross(m.row[1], m.row[2]), b = cross(m.row[2], m.row[0]),
-                      c = cross(m.row[0], m.row[1]);
-  return P(1) / dot(m.row[0], a) * transposed(PackMatrix<P>{{a, b, c}});
-}
+struct PackAdjugate {
+  PackMatrix<P> matrix;
+  P determinant;
+  [[gnu::always_inline]] explicit PackAdjugate(const PackMatrix<P>& m) {
+    const PackVector<P> a = cross(m.row[1], m.row[2]), b = cross(m.row[2], m.row[0]),
+                        c = cross(m.row[0], m.row[1]);
+    matrix = transposed(PackMatrix<P>{{a, b, c}});
+    determinant = dot(m.row[0], a);
+  }
+};
 /// a b^T
 template <class P>
 [[gnu::always_inline]] inline PackMatrix<P> outer(const PackVector<P>& a, const PackVector<P>& b) {

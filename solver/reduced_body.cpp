@@ -87,7 +87,7 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
 bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia, double h,
                                  const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads,
                                  Amplitudes& load, int m, ReducedScratch& w) {
-  RigidSolver rigid;
+  std::optional<RigidSolver> rigid;
   const std::uint64_t touching = m > 0 ? contacts_.hash() : 0;
   bool fresh = m == 0 || w.part != h || w.touching != touching;
   double last = 0;
@@ -97,8 +97,8 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
              y = inertia * (u.angular - free.angular) - h / 2 * loads.moment;
     double size = 0;
     if (m == 0) {
-      if (fresh) rigid = RigidSolver(mass_, inertia, h / 2, contacts_.slope());
-      rigid.solve(x, y);
+      if (fresh) rigid.emplace(mass_, inertia, h / 2, contacts_.slope());
+      rigid->solve(x, y);
     } else {
       if (fresh) {
         const ContactSlope slope = contacts_.slope();
@@ -230,15 +230,21 @@ void ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
   contacts_.press<false>(
       law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
   found_at_ = s;
-  found_law_ = law;
+  found_law_ = static_cast<const ContactLaw&>(law);
 }
 
 bool ReducedBody::known(const Instant& now, const BodyState& s) const {
-  return found_at_ && found_law_ == now.law && found_at_->rung == s.rung &&
-         found_at_->position == s.position && found_at_->rotation.coeffs() == s.rotation.coeffs() &&
-         found_at_->velocity == s.velocity && found_at_->angular_velocity == s.angular_velocity &&
-         (s.rung == Rung::rigid ||
-          ((found_at_->amplitude == s.amplitude).all() && (found_at_->rate == s.rate).all()));
+  if (!found_at_ || found_at_->rung != s.rung || !(found_law_ == now.law)) return false;
+  const BodyState& found = *found_at_;
+  Four::Mask same = load(found.rotation.coeffs().data()) == load(s.rotation.coeffs().data());
+  const auto look = [&](const Vec3& a, const Vec3& b) {
+    same &= Four(Four::Vector{a.x(), a.y(), a.z(), 0}) == Four(Four::Vector{b.x(), b.y(), b.z(), 0});
+  };
+  look(found.position, s.position);
+  look(found.velocity, s.velocity);
+  look(found.angular_velocity, s.angular_velocity);
+  return bits(same) == k_all_lanes &&
+         (s.rung == Rung::rigid || ((found.amplitude == s.amplitude).all() && (found.rate == s.rate).all()));
 }
 
 void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick) {
@@ -410,7 +416,7 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const 
 void ReducedBody::list_contacts(std::vector<ContactForce>& forces) const {
   contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
     forces.push_back(
-        {point, touch.plane, contacts_.own_depth(touch, k), touch.normal[k], lane(touch.force, k)});
+        {point, touch.plane, contacts_.own_depth(touch, k), touch.normal[k], contacts_.force(touch, k)});
   });
 }
 
@@ -419,7 +425,8 @@ template <class F>
 void ReducedBody::each_force(const BodyState& s, F f) const {
   const Mat3 back = s.rotation.conjugate().toRotationMatrix();
   contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
-    f(model_.contact_points[point].node - model_.bodies[body_].first_node, Vec3(back * lane(touch.force, k)));
+    f(model_.contact_points[point].node - model_.bodies[body_].first_node,
+      Vec3(back * contacts_.force(touch, k)));
   });
   for (const BodyAnchors::Tie& tie : anchors_.ties()) f(tie.node, Vec3(back * tie.now.force));
 }

@@ -52,8 +52,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     }
     contacts_.press<true>(now.law, {{0, 0, 0}, {0, 0, 0}, Amplitudes::Zero()}, k_lever);
     contacts_.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t) {
-      Mat3 slope;
-      for (int row = 0; row < 3; ++row) slope.row(row) = lane(touch.slope.row[row], which);
+      const Mat3 slope = contacts_.slope(touch, which);
       const Vec3 arm = lane(touch.arm, which);
       Matrix j(3, n);
       j.leftCols<3>().setIdentity();
@@ -61,7 +60,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
       for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = r * contacts_.shape(touch, which, k);
       stiffness -= j.transpose() * slope * j / k_lever;
       stiffness.block<3, 3>(3, 3) -=
-          skew(lane(touch.force, which)) * skew(arm);  // the arm turns with the body
+          skew(contacts_.force(touch, which)) * skew(arm);  // the arm turns with the body
     });
     anchors_.add_stiffness(s, m, stiffness);
     double left = std::max(s.force.cwiseAbs().maxCoeff(), s.moment.cwiseAbs().maxCoeff() / reach_);

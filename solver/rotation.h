@@ -42,16 +42,15 @@ inline Quat exp_quaternion(const Vec3& psi) {
   const double x = psi.squaredNorm() / 4;  // of the half angle
   double cosine, sinc;
   if (x < 0.01) {
-    cosine = 1 + x * (-0.5 + x * (1. / 24 + x * (-1. / 720 + x * (1. / 40320 - x / 3628800))));
-    sinc = 1 + x * (-1. / 6 + x * (1. / 120 + x * (-1. / 5040 + x * (1. / 362880 - x / 39916800))));
+    const double x2 = x * x;
+    cosine = (1 - 0.5 * x) + x2 * ((1. / 24 - 1. / 720 * x) + 1. / 40320 * x2);
+    sinc = (1 - 1. / 6 * x) + x2 * ((1. / 120 - 1. / 5040 * x) + 1. / 362880 * x2);
   } else {
     const double a = std::sqrt(x);
     cosine = std::cos(a);
     sinc = std::sin(a) / a;
   }
-  Quat q(cosine, 0.5 * sinc * psi.x(), 0.5 * sinc * psi.y(), 0.5 * sinc * psi.z());
-  q.normalize();
-  return q;
+  return Quat(cosine, 0.5 * sinc * psi.x(), 0.5 * sinc * psi.y(), 0.5 * sinc * psi.z());
 }
 
 /// Rotation vector of a unit quaternion, |psi| <= pi.

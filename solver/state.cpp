@@ -227,20 +227,19 @@ std::uint64_t hash(const State& state) {
 }
 
 bool is_finite(const State& s, bool nodes) {
-  Four odd(0);
-  const auto look_at = [&](Four x) {
-    const Four large = x * Four(k_overflow);
-    odd = odd | (large - large);  // 0 or not a number
-  };
+  // Sums that are finite when all their numbers are, and not too large; four, as each waits for itself.
+  Four sums[4]{0., 0., 0., 0.};
+  const auto look_at = [&](Four x, int k = 0) { sums[k] = mul_add(x, Four(k_overflow), sums[k]); };
   const auto look = [&](const double* x, std::size_t count) {
     std::size_t k = 0;
-#pragma GCC unroll 4
-    for (; k + 4 <= count; k += 4) look_at(load(x + k));
-    if (k == count) return;
-    if (count > 4)
-      look_at(load(x + count - 4));
-    else
-      for (; k < count; ++k) look_at(Four(x[k]));
+    for (; k + 16 <= count; k += 16) {
+      look_at(load(x + k), 0);
+      look_at(load(x + k + 4), 1);
+      look_at(load(x + k + 8), 2);
+      look_at(load(x + k + 12), 3);
+    }
+    for (; k + 4 <= count; k += 4) look_at(load(x + k), 1);
+    for (; k < count; ++k) look_at(Four(x[k]), 2);
   };
   const auto look_at_vector = [&](const Vec3& v) { look_at(Four(v.x() + v.y() + v.z())); };
   if (nodes) {
@@ -254,7 +253,12 @@ bool is_finite(const State& s, bool nodes) {
       look(reinterpret_cast<const double*>(s.elements.data()), 7 * s.elements.size());  // load() may alias
   }
   for (const BodyState& b : s.bodies) {
-    for (const Amplitudes* a : {&b.amplitude, &b.rate, &b.load}) look(a->data(), k_modes);
+    static_assert(k_modes % 4 == 0);
+    for (int k = 0; k < k_modes; k += 4) {
+      look_at(load(b.amplitude.data() + k), 1);
+      look_at(load(b.rate.data() + k), 2);
+      look_at(load(b.load.data() + k), 3);
+    }
     look_at(load(b.rotation.coeffs().data()));
     for (const Vec3* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
       look_at_vector(*v);
@@ -268,7 +272,8 @@ bool is_finite(const State& s, bool nodes) {
   look_at_vector(s.floor_displacement);
   look_at_vector(s.floor_velocity);
   look_at(Four(s.time + s.step_size + s.load_factor + s.near_slack));
-  return !any_above(odd, 0);
+  const Four total = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  return !any_above(total - total, 0);
 }
 
 int body_not_finite(const Model& model, const State& s) {
@@ -297,19 +302,25 @@ int body_not_finite(const Model& model, const State& s) {
 namespace {
 
 // As assignment, for numbers that Eigen would copy one by one.
-void copy_numbers(const std::vector<Vec3>& from, std::vector<Vec3>& to) {
+template <class T>
+void copy_numbers(const std::vector<T>& from, std::vector<T>& to) {
   to.resize(from.size());
-  if (!from.empty()) std::memcpy(to.data()->data(), from.data()->data(), from.size() * sizeof(Vec3));
+  if (!from.empty()) std::memcpy(static_cast<void*>(to.data()), from.data(), from.size() * sizeof(T));
 }
 
-// Calls f(member) for the vectors that a step changes where no node moves, but for `stick`; then for the
-// rest.
+// Calls f(member) for the arrays that a step changes where no node moves.
 template <class F>
-void each_moved(F f) {
+void each_moved_array(F f) {
   f(&State::bodies);
+  f(&State::stick);
   f(&State::member_sticks);
   f(&State::near);
   f(&State::anchors);
+}
+
+// And for the rest.
+template <class F>
+void each_moved_number(F f) {
   f(&State::time);
   f(&State::step);
   f(&State::near_slack);
@@ -328,17 +339,17 @@ void copy(const State& from, State& to, bool nodes) {
     to = from;
     return;
   }
-  each_moved([&](auto member) { to.*member = from.*member; });
-  copy_numbers(from.stick, to.stick);
+  each_moved_array([&](auto member) { copy_numbers(from.*member, to.*member); });
+  each_moved_number([&](auto member) { to.*member = from.*member; });
 }
 
-void swap(State& a, State& b, bool nodes) {
+void take(State& from, State& to, bool nodes) {
   if (nodes) {
-    std::swap(a, b);
+    std::swap(from, to);
     return;
   }
-  each_moved([&](auto member) { std::swap(a.*member, b.*member); });
-  a.stick.swap(b.stick);
+  each_moved_array([&](auto member) { (from.*member).swap(to.*member); });
+  each_moved_number([&](auto member) { to.*member = from.*member; });
 }
 
 }  // namespace topple

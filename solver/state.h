@@ -98,7 +98,7 @@ int body_not_finite(const Model& model, const State& state);
 /// Makes `to` equal to `from`; without `nodes` but for the per-node and per-element arrays, which must have
 /// their sizes.
 void copy(const State& from, State& to, bool nodes);
-/// Exchanges what copy copies.
-void swap(State& a, State& b, bool nodes);
+/// The same for a `from` that is no longer needed: its arrays are exchanged.
+void take(State& from, State& to, bool nodes);
 
 }  // namespace topple

@@ -353,7 +353,7 @@ void accept(const Model& model, const Parameters& parameters, State& state, Work
     if (break_anchors(model, w.next, w.new_anchors))
       balance_again(model, parameters, Instant(parameters, w.next.time), w.new_anchors, w.next, w);
   }
-  swap(state, w.next, moves_nodes(state, w));
+  take(w.next, state, moves_nodes(state, w));
 }
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
