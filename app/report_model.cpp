@@ -46,7 +46,7 @@ std::string models(const ReportPage& page, const ordered_json& body) {
 
 std::string integrator(const ReportPage& page) {
   const Parameters& p = page.report().scene->setup.parameters;
-  const std::string name = page.report().summary["integrator"];
+  std::string name = page.report().summary["integrator"];
   switch (p.integrator) {
     case Integrator::generalized_alpha:
       return fmt::format("{}, ρ∞ = {}", name, short_shown(p.spectral_radius));

@@ -133,13 +133,13 @@ std::string result(const ReportPage& page) {
   if (verdict_is_open(page)) out += page.paragraph(page.say(words::k_open, page.certain_section()), "notice");
   if (sensitive(page)) out += page.paragraph(page.say(words::k_sensitive, page.certain_section()), "notice");
   out += "<div class=\"figures\">\n";
-  if (page.bodies().size() > 0)
+  if (!page.bodies().empty())
     out +=
         tile(page.say(words::k_of, falls.size(), page.bodies().size()), page.say(words::k_figure_overturned));
   if (!falls.empty())
     out += tile(fall_time(page, falls[0]) + " s",
                 page.say(words::k_first_fall) + ": " + escaped(page.name(falls[0])));
-  else if (page.bodies().size() > 0)
+  else if (!page.bodies().empty())
     out += tile(shown(page.bodies()[most_tilted(page)]["peak_tilt_deg"].get<double>(), 2) + "°",
                 page.say(words::k_greatest_tilt) + ": " + escaped(page.name(most_tilted(page))));
   if (!report.scene->setup.parameters.shakes.empty()) {

@@ -108,6 +108,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
   if (!left.empty()) {
     const int workers = crew.gather_workers(plan.told);
     std::vector<CaseWork> works;
+    works.reserve(static_cast<std::size_t>(workers));
     for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
     Progress progress("study " + plan.kind, "runs", static_cast<double>(left.size()), options.quiet);
     std::mutex keeping;

@@ -40,6 +40,7 @@ std::vector<std::size_t> told_bodies(const Player& player) {
   std::ranges::sort(shares);
   if (shares.size() > k_told) shares.resize(k_told);
   std::vector<std::size_t> told;
+  told.reserve(shares.size());
   for (const auto& [share, b] : shares) told.push_back(b);
   std::ranges::sort(told);
   return told;
@@ -121,8 +122,11 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   lane.high = critical > 0 ? k_tilt_room * critical : most;
   list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
   if (critical > 0) {
-    for (float x = lane.left; x < lane.right; x += 9)
+    const int dashes = static_cast<int>(std::ceil((lane.right - lane.left) / 9));
+    for (int k = 0; k < dashes; ++k) {
+      const float x = lane.left + 9 * static_cast<float>(k);
       list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
+    }
     add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
              fmt::format("{:.1f}°", critical));
   }

@@ -197,7 +197,7 @@ render::Image Viewer::picture_of_plots() {
   draw_plot_lanes(list, player_, histories_, inspection_, {0, 2 * line, io.DisplaySize.x, height});
   window_is_dark() = dark;
   ImGui::Render();
-  const render::Image image =
+  render::Image image =
       stage_.sheet(static_cast<int>(io.DisplaySize.x), static_cast<int>(height), *ImGui::GetDrawData());
   ImGui::DestroyContext(sheet);
   ImGui::SetCurrentContext(window);

@@ -9,7 +9,7 @@
 
 namespace topple::app {
 
-WindowPicture::WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
+WindowPicture::WindowPicture(render::Context& context, const std::shared_ptr<const io::Scene>& scene,
                              const std::string& recording, render::NamedView view,
                              const PictureSettings& settings, const std::optional<Subject>& inspected,
                              const std::optional<std::size_t>& followed, int width, int height)

@@ -18,7 +18,7 @@ class WindowPicture {
  public:
   /// followed: body that the camera goes along with from the first instant on. Throws io::InputError, and
   /// std::runtime_error when it cannot draw. `context` is current and outlives it.
-  WindowPicture(render::Context& context, std::shared_ptr<const io::Scene> scene,
+  WindowPicture(render::Context& context, const std::shared_ptr<const io::Scene>& scene,
                 const std::string& recording, render::NamedView view, const PictureSettings& settings,
                 const std::optional<Subject>& inspected, const std::optional<std::size_t>& followed,
                 int width, int height);

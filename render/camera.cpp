@@ -138,7 +138,7 @@ Camera fit_camera(NamedView view, const SceneFrame& frame, float aspect) {
   const Matrix3f rows = view == NamedView::top ? Matrix3f::Identity() : sight_axes(sight_of(view));
   Room room{-0.92f, 0.92f, -0.84f, 0.72f};
   if (!frame.legend.quantity.empty()) room.right = 0.68f;
-  const Camera whole = fit_box(rows, low, high, room, aspect);
+  Camera whole = fit_box(rows, low, high, room, aspect);
   if (frame.trace.at.empty()) return whole;
   // The trace takes the lower left corner: bodies that would stand behind it go beside or above it,
   // whichever shows them larger.

@@ -16,8 +16,6 @@
 #include <utility>
 #include <vector>
 
-extern char** environ;
-
 namespace topple::render {
 namespace {
 
@@ -168,6 +166,7 @@ VideoWriter::VideoWriter(std::filesystem::path path, int width, int height, int 
 
   std::vector<std::string> arguments = ffmpeg_arguments(child_->partial, width, height, frames_per_second);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -38,9 +38,9 @@ class RawData {
   /// The XML element that refers to the array; `columns` numbers belong to each of its rows.
   template <typename Number>
   std::string array(const char* name, const std::vector<Number>& values, std::size_t columns) {
-    const std::string element = std::string("<DataArray type=\"") + type_name<Number>() + "\" Name=\"" +
-                                name + "\" NumberOfComponents=\"" + std::to_string(columns) +
-                                "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) + "\"/>\n";
+    std::string element = std::string("<DataArray type=\"") + type_name<Number>() + "\" Name=\"" + name +
+                          "\" NumberOfComponents=\"" + std::to_string(columns) +
+                          "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) + "\"/>\n";
     const std::uint64_t size = values.size() * sizeof(Number);
     append(&size, sizeof size);
     append(values.data(), size);

@@ -189,6 +189,7 @@ std::vector<int> coarse_to_fine(int nx, int ny) {
     return a.shuffle != b.shuffle ? a.shuffle < b.shuffle : a.point < b.point;
   });
   std::vector<int> order;
+  order.reserve(places.size());
   for (const Place& place : places) order.push_back(place.point);
   return order;
 }

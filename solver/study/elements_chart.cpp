@@ -167,8 +167,9 @@ std::string elements_chart(const ElementsStudy& study, const std::string& origin
   const double panel = (block - k_above - 2 * k_below - k_under) / 2;
   std::string script = k_sheet.begin(format) + header(origin);
   for (std::size_t k = 0; k < charted.size(); ++k) {
-    const double left = k_left + static_cast<double>(k % k_columns) * (width + k_gap);
-    const double top = k_height - k_header - static_cast<double>(k / k_columns) * block;
+    const std::size_t row = k / k_columns, place = k % k_columns;
+    const double left = k_left + static_cast<double>(place) * (width + k_gap);
+    const double top = k_height - k_header - static_cast<double>(row) * block;
     script += column(study, *charted[k], left, left + width, top, panel);
   }
   return script + "unset multiplot\n";

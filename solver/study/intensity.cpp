@@ -78,8 +78,8 @@ double intensity_acceleration(const Motion& motion) {
 double instrumental_intensity(double a_gal) {
   const double intensity = 2 * std::log10(a_gal) + 0.94;
   if (!(intensity > 0)) return 0;
-  const auto hundredths = std::llround(100 * intensity);
-  return static_cast<double>(hundredths / 10) / 10;
+  const auto tenths = std::llround(100 * intensity) / 10;
+  return static_cast<double>(tenths) / 10;
 }
 
 IntensityScale intensity_scale(double intensity) {

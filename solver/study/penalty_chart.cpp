@@ -159,8 +159,9 @@ class Chart {
   std::string panel(int k, const std::string& title, const std::string& source) const {
     const double width = (k_width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
     const double height = (k_height - k_header) / 2.;
+    const int row = k / k_columns;
     const double left = k_left + (k % k_columns) * (width + k_gap);
-    const double top = k_height - k_header - (k / k_columns) * height;
+    const double top = k_height - k_header - row * height;
     return "unset label\nunset logscale\nunset arrow\nset border 3 lc rgb '#444444' lw 1\n"
            "set tics out nomirror scale 0.7,0.4\nset xtics nomirror autofreq\nset ytics nomirror "
            "autofreq\nset mxtics default\n"

@@ -49,7 +49,8 @@ struct Place {
   }
 };
 Place place(int n) {
-  return {k_left + (n % k_columns) * (k_width + k_gap), double(k_first + n / k_columns * k_pitch)};
+  const int row = n / k_columns;
+  return {k_left + (n % k_columns) * (k_width + k_gap), static_cast<double>(k_first + row * k_pitch)};
 }
 
 std::string text(const std::string& words, double x, double from_top, const std::string& how = "") {

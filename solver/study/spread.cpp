@@ -27,6 +27,7 @@ Setup shaken_by(const Setup& setup, double factor) {
 
 std::vector<double> even_factors(int count, double spread) {
   std::vector<double> factors;
+  factors.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) factors.push_back(1 + spread * (2. * k - (count - 1)) / (count - 1));
   return factors;
 }

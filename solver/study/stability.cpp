@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "solver/io/scene_file.h"
 #include "solver/ladder.h"
@@ -74,7 +75,7 @@ Setup reference_setup(const StabilityPlan& plan, int group, int member) {
   while (plan.group(point) != group) ++point;
   if (!is_numerical(plan.x)) changes.push_back(plan.x.change(point % plan.x.count()));
   if (!is_numerical(plan.y)) changes.push_back(plan.y.change(point / plan.x.count()));
-  const Setup half = refined(with_changes(plan, changes));
+  Setup half = refined(with_changes(plan, changes));
   if (member == 1) return half;
   const double turn = member == 0 ? 0 : member == 2 ? -1 : 1;
   return shaken_by(refined(half), 1 + k_reference_spread * turn);
@@ -205,8 +206,8 @@ ordered_json settings_of(const StabilityPlan& plan) {
 
 std::vector<int> case_order(const StabilityPlan& plan) {
   const int first = plan.groups() * plan.references(), methods = static_cast<int>(plan.methods.size());
-  std::vector<int> order;
-  for (int k = 0; k < first; ++k) order.push_back(k);
+  std::vector<int> order(static_cast<std::size_t>(first));
+  std::iota(order.begin(), order.end(), 0);
   for (const int point : coarse_to_fine(plan.x.count(), plan.y.count()))
     for (int m = 0; m < methods; ++m) order.push_back(first + point * methods + m);
   return order;

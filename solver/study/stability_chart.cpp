@@ -129,7 +129,8 @@ class Chart {
   }
 
   MapPanel panel(std::size_t place) const {
-    const auto column = static_cast<double>(place % k_columns), row = static_cast<double>(place / k_columns);
+    const std::size_t above = place / k_columns;
+    const auto column = static_cast<double>(place % k_columns), row = static_cast<double>(above);
     const double left = k_left + column * (k_wide + k_between);
     const double top = sheet_.height - k_top - header_height() - k_above - row * (k_above + k_high + k_below);
     return {sheet_, left, left + k_wide, top - k_high, top, &plan_.x, &plan_.y};

@@ -109,14 +109,13 @@ class Places {
       const bool on_x = bearer_ == &plan.x;
       rows_.emplace_back();
       for (const double at : places_on(on_x ? plan.y : plan.x))
-        if (auto place = on_x ? place_at(plan, {}, at) : place_at(plan, at, {}))
-          rows_[0].push_back(*std::move(place));
+        if (auto place = on_x ? place_at(plan, {}, at) : place_at(plan, at, {})) rows_[0].push_back(*place);
       return;
     }
     for (const double x : places_on(plan.x)) {
       rows_.emplace_back();
       for (const double y : places_on(plan.y))
-        if (auto place = place_at(plan, x, y)) rows_.back().push_back(*std::move(place));
+        if (auto place = place_at(plan, x, y)) rows_.back().push_back(*place);
     }
   }
 
