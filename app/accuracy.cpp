@@ -1,6 +1,7 @@
 #include "app/accuracy.h"
 
 #include "app/teaching_words.h"
+#include "app/words.h"
 
 namespace topple::app {
 namespace {
@@ -45,15 +46,14 @@ std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyRes
   for (std::size_t b = 0; b < result.errors.size(); ++b) {
     const study::BodyError& error = result.errors[b];
     const std::string& name = model.bodies[b].name;
-    const double degrees = 180 / k_pi;
     if (!error.same_verdict())
       lines.push_back(say(k_unsure, name));
     else if (error.overturned)
       lines.push_back(
           say(k_sure_fall, name, error.overturn_time.value_or(0), error.overturn_error.value_or(0)));
     else
-      lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * degrees,
-                          error.peak_tilt_error.value_or(0) * degrees));
+      lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * k_degrees,
+                          error.peak_tilt_error.value_or(0) * k_degrees));
   }
   return lines;
 }

@@ -34,10 +34,9 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
   Eigen::Vector3f target = orbit.target;  // at the first instant, of a camera that follows
   if (const auto row = player.row(); body && row)
     target -= centre_of(*row, *body) - centre_of(*player.way().front(), *body);
-  constexpr double degrees = 180 / k_pi;
   std::vector<std::string> words{
       "--camera",
-      fmt::format("{},{},{},{},{},{}{}", orbit.sight.azimuth * degrees, orbit.sight.elevation * degrees,
+      fmt::format("{},{},{},{},{},{}{}", orbit.sight.azimuth * k_degrees, orbit.sight.elevation * k_degrees,
                   orbit.distance, target.x(), target.y(), target.z(),
                   body ? ",follow:" + model.bodies[*body].name : ""),
       "--colour",

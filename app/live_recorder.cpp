@@ -6,6 +6,7 @@ namespace topple::app {
 namespace {
 
 constexpr std::chrono::milliseconds k_look{25};  // how often an idle recording is looked after
+constexpr std::size_t k_most_waiting = 1000;     // that memory holds for a slow disk
 
 }  // namespace
 
@@ -29,8 +30,11 @@ LiveRecorder::~LiveRecorder() {
 }
 
 void LiveRecorder::post(Item item) {
-  const std::lock_guard lock(mutex_);
-  if (!ended_ && failure_.empty()) items_.push_back(std::move(item));
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return items_.size() < k_most_waiting || ended_ || !failure_.empty(); });
+  if (ended_ || !failure_.empty()) return;
+  items_.push_back(std::move(item));
+  if (items_.size() == k_most_waiting) changed_.notify_all();
 }
 
 void LiveRecorder::finish(const std::string& status, const std::string& summary_json) {
@@ -74,10 +78,11 @@ void LiveRecorder::write_until_ended(io::Recorder& recorder) {
     std::vector<Item> items;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, k_look, [this] { return ended_; });
+      changed_.wait_for(lock, k_look, [this] { return ended_ || items_.size() == k_most_waiting; });
       items.swap(items_);
       last = ended_;
     }
+    changed_.notify_all();
     for (const Item& item : items) std::visit([&](const auto& what) { recorder.write(what); }, item);
     recorder.flush_if_due();
   }

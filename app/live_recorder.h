@@ -1,4 +1,5 @@
-// A recording that a thread of its own writes: whoever posts never waits for the disk.
+// A recording that a thread of its own writes: whoever posts waits for the disk only when a thousand things
+// do.
 #pragma once
 
 #include <condition_variable>
@@ -24,7 +25,7 @@ class LiveRecorder {
   LiveRecorder(const LiveRecorder&) = delete;
   LiveRecorder& operator=(const LiveRecorder&) = delete;
 
-  /// From any thread; ignored after finish() or a failure.
+  /// From any thread; ignored after finish() or a failure. Waits while a thousand things are to be written.
   void post(Item item);
   /// Writes what was posted, status and summary, closes, and returns then. Only the first call counts.
   void finish(const std::string& status, const std::string& summary_json);

@@ -10,6 +10,7 @@
 #include "app/annotations.h"
 #include "app/row.h"
 #include "app/window_words.h"
+#include "app/words.h"
 #include "solver/overturn.h"
 #include "solver/rotation.h"
 
@@ -61,7 +62,7 @@ Quat body_turn(const io::FrameRow& row, std::size_t index) {
 }
 
 double tilt_value(const Instant& now, std::size_t index) {
-  return body_numbers(now, index)[7] * 180 / k_pi;
+  return body_numbers(now, index)[7] * k_degrees;
 }
 
 double slide_value(const Instant& now, std::size_t index) {
