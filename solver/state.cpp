@@ -301,11 +301,14 @@ int body_not_finite(const Model& model, const State& s) {
 
 namespace {
 
-// As assignment, for numbers that Eigen would copy one by one.
 template <class T>
-void copy_numbers(const std::vector<T>& from, std::vector<T>& to) {
+void copy_array(const std::vector<T>& from, std::vector<T>& to) {
+  to = from;
+}
+// Eigen would copy these numbers one by one.
+void copy_array(const std::vector<Vec3>& from, std::vector<Vec3>& to) {
   to.resize(from.size());
-  if (!from.empty()) std::memcpy(static_cast<void*>(to.data()), from.data(), from.size() * sizeof(T));
+  if (!from.empty()) std::memcpy(to.data()->data(), from.data()->data(), from.size() * sizeof(Vec3));
 }
 
 // Calls f(member) for the arrays that a step changes where no node moves.
@@ -339,7 +342,7 @@ void copy(const State& from, State& to, bool nodes) {
     to = from;
     return;
   }
-  each_moved_array([&](auto member) { copy_numbers(from.*member, to.*member); });
+  each_moved_array([&](auto member) { copy_array(from.*member, to.*member); });
   each_moved_number([&](auto member) { to.*member = from.*member; });
 }
 
