@@ -68,7 +68,8 @@ void NearSearch::find_bodies() {
     if (held_[i]) continue;
     const Vec3 x = boxes_[i].center() / cell;
     Placed placed{{}, i};
-    for (int k = 0; k < 3; ++k) placed.cell[k] = static_cast<int>(std::floor(std::clamp(x[k], -1e9, 1e9)));
+    for (int k = 0; k < 3; ++k)  // a NaN comes out as a number too
+      placed.cell[k] = static_cast<int>(std::floor(std::fmax(std::fmin(x[k], 1e9), -1e9)));
     cells_.push_back(placed);
   }
   std::sort(cells_.begin(), cells_.end());

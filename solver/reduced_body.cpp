@@ -226,11 +226,11 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
 }
 
 // Forces of what touches at the velocity of `s`.
-void ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
-  contacts_.press<false>(
-      law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
+ContactLoads ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
   found_at_ = s;
   found_law_ = static_cast<const ContactLaw&>(law);
+  return contacts_.press<false>(
+      law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
 }
 
 bool ReducedBody::known(const Instant& now, const BodyState& s) const {
@@ -366,9 +366,9 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   return true;
 }
 
-bool ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                          BodyState& s, std::span<Vec3> stick, StepEnergy& booked, BodyEnergy& held,
-                          ReducedScratch& w) {
+StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
+                                      double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
+                                      BodyEnergy& held, ReducedScratch& w) {
   const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
   const auto parts_of = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
@@ -392,12 +392,15 @@ bool ReducedBody::advance(const Parameters& parameters, const Instant& start, co
       size = parts_of(size, stable);
     } else {
       size = most = size / 2;
-      if (most < k_least_part * h) return false;
+      if (most < k_least_part * h) return StepStatus::Kind::newton_diverged;
     }
   }
-  if (stiff && !advance_stiffly(parameters, start, end, h, s, stick, booked)) return false;
+  if (stiff)
+    if (const auto kind = advance_stiffly(parameters, start, end, h, s, stick, booked);
+        kind != StepStatus::Kind::ok)
+      return kind;
   held = energy(end.law, s);
-  return true;
+  return StepStatus::Kind::ok;
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

@@ -66,10 +66,11 @@ class ReducedBody {
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
   /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later. `energy` is
-  /// added to; `held`: what the body holds then. False: the contacts have no converged forces; `s` is then
-  /// undefined.
-  bool advance(const Parameters& parameters, const Instant& start, const Instant& end, double h, BodyState& s,
-               std::span<Vec3> stick, StepEnergy& energy, BodyEnergy& held, ReducedScratch& scratch);
+  /// added to; `held`: what the body holds then. newton_diverged: the contacts have no converged forces;
+  /// not_accurate; `s` is then undefined.
+  StepStatus::Kind advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
+                           BodyState& s, std::span<Vec3> stick, StepEnergy& energy, BodyEnergy& held,
+                           ReducedScratch& scratch);
   /// Rest under gravity on planes; false: none was found, or it tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// As look_ahead of step_control.h; for a stiff rigid body the length of its next part. Contacts of `s`
@@ -104,7 +105,7 @@ class ReducedBody {
   int modes(const BodyState& s) const { return s.rung == Rung::elastic ? basis_->modes : 0; }
   PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }
   Vec3 angular_acceleration(const BodyState& s) const;
-  void respond_at(const PreparedLaw& law, const BodyState& s);
+  ContactLoads respond_at(const PreparedLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
   template <class F>
   void each_force(const BodyState& s, F f) const;
@@ -117,8 +118,8 @@ class ReducedBody {
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
 
-  bool advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                       BodyState& s, std::span<Vec3> stick, StepEnergy& energy);
+  StepStatus::Kind advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end,
+                                   double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy);
   ContactLoads reach_stage(const StiffPart& part, const PreparedLaw& law, const Origin& from, bool with_slope,
                            BodyState& at, Stage& stage, PackMat3& r);
   bool solve_stage(StiffPart& part, const Instant& now, const PackVec3& field, const Origin& from,

@@ -158,8 +158,6 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
   reach_stage(part, end.law, from, false, s, two, r);
   s.velocity = unpacked(two.u.linear);
   s.angular_velocity = unpacked(transposed_times(r, two.u.angular));
-  s.force = unpacked(force2);
-  s.moment = unpacked(moment2);
 
   const Vec3 shift = s.position - before.position;
   const auto work = [&](const PackVec3& f1, const PackVec3& v1, const PackVec3& f2, const PackVec3& v2) {
@@ -175,7 +173,14 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
                       0.5 * (dot(two.spin, two.u.angular) - dot(spin0, omega0));
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
-  respond_at(end.law, s);
+  // not force2: springs that slipped are shorter now, and the next part compares its forces with these
+  const ContactLoads loads = respond_at(end.law, s);
+  s.force = unpacked(loads.force + mass_ * (gravity - floor2));
+  s.moment = unpacked(loads.moment);
+  if (anchors_.any()) {
+    s.force += anchors_.force();
+    s.moment += anchors_.moment();
+  }
   return true;
 }
 
@@ -191,8 +196,9 @@ double ReducedBody::next_landing(const BodyState& s, double within) const {
   return contacts_.next_landing(s, s.force / mass_, angular_acceleration(s), within);
 }
 
-bool ReducedBody::advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end,
-                                  double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked) {
+StepStatus::Kind ReducedBody::advance_stiffly(const Parameters& parameters, const Instant& start,
+                                              const Instant& end, double h, BodyState& s,
+                                              std::span<Vec3> stick, StepEnergy& booked) {
   const double floor = k_speed_floor * std::sqrt(parameters.gravity.norm() * reach_);
   Instant from = start;
   double left = h, growth = k_most_growth;
@@ -212,7 +218,9 @@ bool ReducedBody::advance_stiffly(const Parameters& parameters, const Instant& s
     const double next =
         size * std::clamp(k_safety / std::cbrt(error), 1 / k_most_shrinking, good ? growth : k_safety);
     if (!good) {
-      if (size < k_least_part * first) return false;
+      if (size < k_least_part * first)
+        return parameters.adaptive && error < k_no_stage ? StepStatus::Kind::not_accurate
+                                                         : StepStatus::Kind::newton_diverged;
       growth = 1;
       s.part = next;
       continue;
@@ -222,7 +230,7 @@ bool ReducedBody::advance_stiffly(const Parameters& parameters, const Instant& s
     left = last ? 0 : left - size;
     from = to;
   }
-  return true;
+  return StepStatus::Kind::ok;
 }
 
 }  // namespace topple

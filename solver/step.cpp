@@ -201,10 +201,10 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
       BodyEnergy holds;
-      if (!w.reduced(model, next, b)
-               .advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged, holds,
-                        w.reduced_scratch[worker])) {
-        part.status.kind = StepStatus::Kind::newton_diverged;
+      part.status.kind = w.reduced(model, next, b)
+                             .advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
+                                      holds, w.reduced_scratch[worker]);
+      if (!part.status.ok()) {
         part.status.time = end.time;
         part.status.body = b;
         return;
@@ -380,7 +380,10 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
       break;
     }
     if (is_explicit || h < 2 * k_least_step) {
-      if (status.ok()) status.kind = StepStatus::Kind::newton_diverged;
+      if (status.ok()) {
+        status.kind = StepStatus::Kind::not_accurate;
+        status.time = w.next.time;
+      }
       break;
     }
     ++rejected;

@@ -21,6 +21,7 @@ struct StepStatus {
   enum class Kind {
     ok,
     newton_diverged,
+    not_accurate,  ///< no step is short enough for the tolerance
     not_finite,
     singular,
     not_settled,

@@ -40,6 +40,9 @@ std::string StepStatus::message(const Model& model) const {
   switch (kind) {
     case Kind::newton_diverged:
       return "the step " + when + " has no converged solution: " + where + finer;
+    case Kind::not_accurate:
+      return "no step is short enough for the tolerance " + when + (body >= 0 ? ": " + where : "") +
+             "; try a larger tolerance, or a fixed time_step";
     case Kind::not_finite:
       return "the motion is no longer finite " + when + ": " + where + finer;
     case Kind::singular:

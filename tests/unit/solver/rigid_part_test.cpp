@@ -76,6 +76,37 @@ TEST(RigidPart, bounces_with_the_restitution_asked_for) {
   EXPECT_NEAR(rebound(0, 4e-3), rebound(0, 1e-5), 1e-3);
 }
 
+// Sliding ends where springs hold; a step is judged by the change of its forces, so that those of its start
+// must be of the springs as they are. Coulomb: the way is v^2/(2 mu g), less what the smoothing of the bounce
+// and the spring's last travel are, some 0.1 %.
+TEST(RigidPart, slides_to_rest_at_any_tolerance_with_the_forces_of_its_state) {
+  for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
+    SCOPED_TRACE(tolerance);
+    topple::Setup setup = stiff_block(0, 1e-3);
+    setup.parameters.contact.friction = 0.1;  // it slides before it tips
+    setup.parameters.adaptive = true;
+    setup.parameters.tolerance = tolerance;
+    Simulation sim{setup.model, setup.starts, setup.parameters, true};
+    sim.state.bodies[0].velocity = Vec3(0.3, 0, 0);
+    prepare(setup.model, setup.parameters, sim.state, sim.workspace());
+    const double from = sim.state.bodies[0].position.x();
+    while (sim.state.time < 0.5) {
+      const StepStatus status = topple::step(setup.model, setup.parameters, sim.state, sim.workspace(), 0.5);
+      ASSERT_TRUE(status.ok()) << status.message(setup.model);
+      State again = sim.state;
+      Workspace fresh(setup.model);
+      prepare(setup.model, setup.parameters, again, fresh);
+      const BodyState &found = sim.state.bodies[0], &of_state = again.bodies[0];
+      const double weight = setup.model.bodies[0].mass * k_standard_gravity;
+      ASSERT_NEAR((found.force - of_state.force).norm(), 0, 1e-9 * weight) << sim.state.time;
+      ASSERT_NEAR((found.moment - of_state.moment).norm(), 0, 1e-9 * weight) << sim.state.time;
+    }
+    const double way = 0.3 * 0.3 / (2 * setup.parameters.contact.friction * k_standard_gravity);
+    EXPECT_NEAR(sim.state.bodies[0].position.x() - from, way, 1e-2 * way);
+    EXPECT_LT(sim.state.bodies[0].velocity.norm(), 1e-4);
+  }
+}
+
 // th'' = -p^2 sin(a - th) as long as th hardly changes, p^2 = 3g/4R. Contacts give way by a fifth of a
 // micron.
 TEST(RigidPart, lets_go_from_rest_at_any_tolerance) {

@@ -307,8 +307,8 @@ TEST(Step, every_failure_has_a_sentence_that_names_the_body) {
   const Scene scene;
   const Simulation sim = on_the_floor(scene);
   using Kind = StepStatus::Kind;
-  for (Kind kind :
-       {Kind::newton_diverged, Kind::not_finite, Kind::singular, Kind::not_settled, Kind::step_too_long}) {
+  for (Kind kind : {Kind::newton_diverged, Kind::not_accurate, Kind::not_finite, Kind::singular,
+                    Kind::not_settled, Kind::step_too_long}) {
     StepStatus status;
     status.kind = kind;
     status.body = 0;
