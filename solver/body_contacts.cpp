@@ -13,10 +13,6 @@ namespace {
 constexpr double k_same_line = 1e-6;  // m
 constexpr double k_bend = 0.05;       // of the reach: more than an elastic body deforms
 
-double mean_width(const ContactPoint& point, const Plane& plane) {
-  return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
-}
-
 [[gnu::always_inline]] inline Four power(Four depth, double q) {
   if (q == 1) return depth;
   if (q == 2) return depth * depth;
@@ -85,7 +81,7 @@ BodyContacts::BodyContacts(const Model& model, int body)
       }
       for (std::size_t k = 0; k < model.planes.size(); ++k) {
         Side& side = sides_[k * groups_.size() + g];
-        const double L = mean_width(point, model.planes[k]);
+        const double L = contact_length(point, model.planes[k]);
         const int spring = static_cast<int>(p * model.planes.size() + k);
         if (which == 0) side.spring.fill(spring);
         side.spring[which] = spring;

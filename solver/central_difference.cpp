@@ -56,7 +56,7 @@ std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) 
     const int i = s.local(point.node);
     if (i < 0) continue;
     for (const Plane& plane : s.model.planes) {
-      const double L = (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+      const double L = contact_length(point, plane);
       const Mat3 normal = plane.normal * plane.normal.transpose();
       sum[i] += law.alpha / L * (slope * normal + k_stick_stiffness * (Mat3::Identity() - normal));
     }

@@ -88,6 +88,11 @@ struct Plane {
   double width;  ///< m, contact width; 0: that of the touching member
 };
 
+/// L of Eq. 2 of a point and a plane: the mean of their contact widths, m.
+inline double contact_length(const ContactPoint& point, const Plane& plane) {
+  return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+}
+
 /// Where integration points stand (Eq. 1). asi_gauss: two by two elements have their stress points on the
 /// Gauss points of the pair, asi: in the middle; both have their hinges at the elements' ends (plasticity.h).
 /// midpoint: both in the middle.

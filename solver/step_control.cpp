@@ -60,7 +60,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
   for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
     const ContactPoint& point = model.contact_points[p];
     for (const Plane& plane : model.planes) {
-      const double L = (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+      const double L = contact_length(point, plane);
       const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
       const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
       if (depth > 0)

@@ -71,7 +71,9 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   spec.size = entry.vector("size");
   spec.mass = entry.number("mass");
   spec.cg_height = entry.has("cg_height") ? entry.number("cg_height") : spec.size.z() / 2;
-  if (!(spec.cg_height < spec.size.z())) entry.fail("cg_height", "is not below the top");
+  if (!(spec.cg_height < spec.size.z()))
+    entry.fail("cg_height", short_number(1e3 * spec.cg_height) + " mm is not below the top, " +
+                                short_number(1e3 * spec.size.z()) + " mm");
   if (entry.is_word("inertia")) {
     spec.inertia = entry.choice_as<CabinetSpec::Inertia>("inertia");
   } else {
@@ -265,12 +267,29 @@ void read_grids(const Entry& root, const Library& library, Setup& setup) {
   }
 }
 
+constexpr double k_deep = 0.5;  // of L, of the distance of centre lines
+
+/// Contact would throw out what starts within a floor or a wall. `entries`: of the furniture.
+void check_planes(const std::vector<Entry>& entries, const Setup& setup, const State& start) {
+  const Model& model = setup.model;
+  for (std::size_t b = 0; b < entries.size(); ++b)
+    for (const Plane& plane : model.planes) {
+      double deepest = 0;
+      const Body& body = model.bodies[b];
+      for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+        const ContactPoint& point = model.contact_points[p];
+        const double within = point.width / 2 - plane.normal.dot(start.position[point.node] - plane.point);
+        if (within > k_deep * contact_length(point, plane)) deepest = std::max(deepest, within);
+      }
+      if (deepest > 0)
+        entries[b].fail("starts " + short_number(1e3 * deepest) + " mm within \"" + plane.name + "\"");
+    }
+}
+
 /// Bodies that start within each other cannot be told apart by contact.
-void check_overlap(const Entry& root, const Setup& setup) {
-  constexpr double k_deep = 0.5;  // of L, of the distance of centre lines
+void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const State& start) {
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
-  const State start = start_state(model, setup.starts);
   NearSearch search(model);
   for (const ElementPair& pair : search.find(start.position, 0)) {
     const Element &a = model.elements[pair.a], &b = model.elements[pair.b];
@@ -281,7 +300,9 @@ void check_overlap(const Entry& root, const Setup& setup) {
       const Member& member = model.members[e.member];
       return "\"" + model.bodies[member.body].name + "\" (" + member.name + ")";
     };
-    root.fail("the bodies " + name(a) + " and " + name(b) + " overlap at the start");
+    const auto [first, later] = std::minmax(model.members[a.member].body, model.members[b.member].body);
+    entries[later < static_cast<int>(entries.size()) ? later : first].fail("the bodies " + name(a) + " and " +
+                                                                           name(b) + " overlap at the start");
   }
 }
 
@@ -326,6 +347,7 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
 void read_bodies(const Entry& root, Setup& setup) {
   Model& model = setup.model;
   const Library library(model);
+  std::vector<Entry> of_body;
   for (const Entry& entry : root.entries("cabinet")) {
     const CabinetSpec spec = read_cabinet(entry, library);
     check_start(entry, setup);
@@ -334,6 +356,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     add_cabinets(entry, spec, setup);
     check_copies(entry, model, first);
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    of_body.resize(model.bodies.size(), entry);
   }
   for (const Entry& entry : root.entries("frame")) {
     const FrameSpec spec = read_frame(entry, library);
@@ -347,6 +370,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     });
     check_copies(entry, model, first);
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    of_body.resize(model.bodies.size(), entry);
   }
   if (model.bodies.empty()) {
     root.fail("there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
@@ -354,7 +378,9 @@ void read_bodies(const Entry& root, Setup& setup) {
   read_grids(root, library, setup);
   setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);
   setup.parameters.damping.resize(model.bodies.size(), 0);
-  check_overlap(root, setup);
+  const State start = start_state(model, setup.starts);
+  check_planes(of_body, setup, start);
+  check_overlap(of_body, setup, start);
 }
 
 }  // namespace topple::io

@@ -163,7 +163,10 @@ class Checker {
     // conversion of units may round the end of a range outwards
     const double slack = node.kind == Node::Kind::text ? 1e-12 : 0;
     if (si < key.least - slack * std::abs(key.least) || si > key.most + slack * std::abs(key.most)) {
-      fail(node.place, path, shown(node) + " is outside " + range_text(key));
+      const bool bare = node.kind != Node::Kind::text && key.dimension != Dimension::none;
+      fail(node.place, path,
+           shown(node) + (bare ? " " + std::string(si_unit(key.dimension)) : "") + " is outside " +
+               range_text(key));
     }
   }
 

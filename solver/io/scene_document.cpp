@@ -1,6 +1,7 @@
 #include "solver/io/scene_document.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <stdexcept>
@@ -202,12 +203,32 @@ void fail(const std::string& origin, const Place& place, const std::string& path
   throw InputError(error_line(origin, place, path, message));
 }
 
+namespace {
+
+// What a line of TOML that could not be read most often lacks; empty when it is not that.
+std::string missing_quotes(std::string_view text, int line) {
+  for (; line > 1 && text.find('\n') != text.npos; --line) text.remove_prefix(text.find('\n') + 1);
+  text = text.substr(0, text.find_first_of("#\r\n"));
+  const auto equals = text.find('=');
+  if (equals == text.npos) return {};
+  std::string value(text.substr(equals + 1));
+  value.erase(0, value.find_first_not_of(' '));
+  value.erase(value.find_last_not_of(' ') + 1);
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  if (std::none_of(value.begin(), value.end(), is_letter)) return {};
+  if (value.find_first_of("\"'[{") != value.npos) return {};
+  return "; a number with a unit, and text, stand in quotes: \"" + value + "\"";
+}
+
+}  // namespace
+
 Node parse_toml(std::string_view text, const std::string& origin) {
   refuse_deep_keys(text, origin);
   try {
     return convert(toml::parse(text));
   } catch (const toml::parse_error& error) {
-    fail(origin, place_of(error.source()), "", std::string(error.description()));
+    const Place place = place_of(error.source());
+    fail(origin, place, "", std::string(error.description()) + missing_quotes(text, place.line));
   } catch (const std::logic_error&) {
     fail(origin, {1, 1, nullptr}, "", "is not TOML");
   }

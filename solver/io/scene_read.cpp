@@ -13,7 +13,9 @@ namespace {
 void check_wall(const Entry& entry, const Section& section) {
   const double smaller = std::min(section.size_y, section.size_z);
   if (2 * section.thickness < smaller) return;
-  entry.fail("thickness", "is not less than half of the smaller size");
+  entry.fail("thickness", short_number(1e3 * section.thickness) +
+                              " mm is not less than half of the smaller size, " +
+                              short_number(1e3 * smaller) + " mm");
 }
 
 Section read_section(const Entry& entry) {

@@ -1,5 +1,6 @@
 #include "solver/io/units.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -113,6 +114,12 @@ std::string_view dimension_name(Dimension dimension) {
   return "";
 }
 
+std::string_view si_unit(Dimension dimension) {
+  const auto first = std::find_if(units().begin(), units().end(),
+                                  [&](const Unit& unit) { return unit.dimension == dimension; });
+  return first == units().end() ? std::string_view() : first->symbol;
+}
+
 std::string unit_list(Dimension dimension) {
   std::string list;
   for (const Unit& unit : units()) {
@@ -173,6 +180,7 @@ Quantity parse_quantity(std::string_view text, Dimension expected) {
   }
   const std::string found = dimensions_of(symbol);
   if (!found.empty()) return {{}, "is " + found + ", " + expectation(expected)};
+  if (symbol.front() == ',') return {{}, "has a comma: write a decimal point"};
   return {{}, "has an unknown unit \"" + std::string(symbol) + "\", " + expectation(expected)};
 }
 

@@ -44,6 +44,9 @@ const std::vector<Unit>& units();
 /// Value of one `symbol` in SI; 1 for an empty symbol. The symbol must be one of `dimension`.
 double unit_value(std::string_view symbol, Dimension dimension);
 
+/// "m", "m/s^2"; empty for a plain number.
+std::string_view si_unit(Dimension dimension);
+
 /// "a length", "an acceleration", "a plain number".
 std::string_view dimension_name(Dimension dimension);
 

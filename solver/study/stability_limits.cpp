@@ -22,8 +22,7 @@ double positive_min(double a, double b) {
 }
 
 double contact_width(const Model& model, const Body& body, const Plane& plane) {
-  const double own = model.contact_points[body.first_contact_point].width;
-  return (own + (plane.width > 0 ? plane.width : own)) / 2;
+  return contact_length(model.contact_points[body.first_contact_point], plane);
 }
 
 /// A body that stands freely falls over its nearest edge.

@@ -24,7 +24,7 @@ TEST(SceneDifference, values_are_compared_and_not_how_they_are_written) {
 }
 
 TEST(SceneDifference, both_values_are_told_in_the_unit_of_the_key) {
-  const auto found = changed({"contact.alpha=1000 N", "run.time_step=auto", "cabinet.walled.yaw=6 deg"});
+  const auto found = changed({"contact.alpha=1000 N", "run.time_step=auto", "cabinet.walled.yaw=1 deg"});
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].key, "run.time_step");
   EXPECT_EQ(*found[0].b, "auto");
@@ -33,7 +33,7 @@ TEST(SceneDifference, both_values_are_told_in_the_unit_of_the_key) {
   EXPECT_EQ(*found[1].b, "101.972 kgf");
   EXPECT_EQ(found[2].key, "cabinet.walled.yaw");
   EXPECT_EQ(*found[2].a, "0 deg");
-  EXPECT_EQ(*found[2].b, "6 deg");
+  EXPECT_EQ(*found[2].b, "1 deg");
 }
 
 TEST(SceneDifference, an_entry_that_one_has_alone_is_one_line) {

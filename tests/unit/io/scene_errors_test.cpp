@@ -54,15 +54,36 @@ TEST(SceneErrors, floors_of_beams_and_of_planes_have_their_own_keys) {
 TEST(SceneErrors, bodies_that_overlap_at_the_start_are_refused) {
   std::string error = in_cabinet(
       "\n[[cabinet]]\nname = \"other\"\nat = [0.1, 0.2]\nsection = \"post\"\nmaterial = \"steel\"\n");
-  EXPECT_NE(error.find("overlap at the start"), std::string::npos) << error;
-  EXPECT_NE(error.find("\"other\""), std::string::npos) << error;
+  EXPECT_EQ(error.find("s.toml:17:1: cabinet.other: the bodies \"free\" ("), 0u) << error;
+  EXPECT_NE(error.find(") overlap at the start"), std::string::npos) << error;
+}
+
+TEST(SceneErrors, bodies_that_start_within_a_floor_or_wall_are_refused) {
+  const auto beside = [](const std::string& x) {
+    return in_cabinet("\n[[wall]]\nname = \"back\"\nat = [" + x + ", 0]\nnormal = [1, 0, 0]\n");
+  };
+  EXPECT_EQ(beside("-0.205"), "no error");  // half a post before its centre line
+  EXPECT_EQ(beside("-0.14"), "s.toml:12:1: cabinet.free: starts 65 mm within \"back\"");
+  EXPECT_EQ(in_cabinet("at = [0, 0, -0.3]\n[floor]\n"),
+            "s.toml:12:1: cabinet.free: starts 300 mm within \"floor\"");
+}
+
+TEST(SceneErrors, a_missing_quote_and_a_decimal_comma_are_told) {
+  EXPECT_EQ(in_cabinet("mass = 85 kg # full\n"),
+            "s.toml:16:11: Error while parsing key-value pair: expected a comment or whitespace, saw 'k'; a "
+            "number with a unit, and text, stand in quotes: \"85 kg\"");
+  EXPECT_EQ(in_cabinet("mass = \"85,5 kg\"\n"),
+            "s.toml:16:8: cabinet.free.mass: \"85,5 kg\" has a comma: write a decimal point");
+  EXPECT_EQ(in_cabinet("mass = 85\nmass = 86\n").find("quotes"), std::string::npos);
+  EXPECT_EQ(in_cabinet("mass = 850000\n"),
+            "s.toml:16:8: cabinet.free.mass: 850000 kg is outside 0.001..100000 kg");
 }
 
 TEST(SceneErrors, yield_and_fracture_have_their_ranges_and_need_each_other) {
   const auto with = [](const std::string& lines) {
     return error_of(replaced(k_scene, "poisson", lines + "poisson"));
   };
-  EXPECT_EQ(with("yield = 0\n"), "s.toml:5:9: material.steel.yield: 0 is outside 1e-06..1e+07 MPa");
+  EXPECT_EQ(with("yield = 0\n"), "s.toml:5:9: material.steel.yield: 0 Pa is outside 1e-06..1e+07 MPa");
   EXPECT_EQ(
       with("fracture_strain = 0.2\n"),
       "s.toml:5:19: material.steel.fracture_strain: a material breaks where it has yielded: give yield as "
@@ -355,7 +376,7 @@ TEST(SceneErrors, a_scene_without_bodies_is_refused) {
 TEST(SceneErrors, bodies_that_cannot_be_built_blame_the_key) {
   EXPECT_EQ(in_cabinet("cg_height = \"1.7 m\"\n").substr(0, 35), "s.toml:16:13: cabinet.free.cg_heigh");
   EXPECT_EQ(in_cabinet("cg_height = \"3 m\"\n"),
-            "s.toml:16:13: cabinet.free.cg_height: is not below the top");
+            "s.toml:16:13: cabinet.free.cg_height: 3000 mm is not below the top, 1790 mm");
   EXPECT_EQ(in_cabinet("inertia = [1, 1, 9]\n").substr(0, 36), "s.toml:16:11: cabinet.free.inertia: ");
   EXPECT_EQ(error_of(replaced(k_scene, "[1, 0, 0]]", "[0, 0, 0]]")),
             "s.toml:14:9: frame.beam.nodes: nodes 0 and 1 are in one place");
@@ -370,7 +391,7 @@ TEST(SceneErrors, bodies_that_cannot_be_built_blame_the_key) {
   EXPECT_EQ(error_of(replaced(k_scene, "xyzXYZ", "xyw")),
             "s.toml:16:31: frame.beam.supports.1.fix: expected letters of xyzXYZ, found \"xyw\"");
   EXPECT_EQ(error_of(replaced(k_scene, "\"1 mm\"", "\"15 mm\"")),
-            "s.toml:11:13: section.post.thickness: is not less than half of the smaller size");
+            "s.toml:11:13: section.post.thickness: 15 mm is not less than half of the smaller size, 30 mm");
   EXPECT_EQ(error_of(replaced(k_scene, "\"box\"", "\"pipe\"")),
             "s.toml:10:8: section.post.size: a pipe has one size, its outer diameter");
   EXPECT_EQ(error_of(replaced(k_scene, "size = [\"30 mm\", \"30 mm\"]", "size = \"30 mm\"")),
@@ -449,7 +470,7 @@ TEST(SceneErrors, anchors_that_hold_nothing_are_refused) {
   EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.19, 0.44, 1.7]"),
             "s.toml:19:6: anchor.1.to: is where `point` is: the anchor has no length");
   EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]", "strength = 0\n"),
-            "s.toml:21:12: anchor.1.strength: 0 is outside 1e-06..1e+09 kN");
+            "s.toml:21:12: anchor.1.strength: 0 N is outside 1e-06..1e+09 kN");
   EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]", "type = \"rope\"\n"),
             "s.toml:21:8: anchor.1.type: \"rope\" is not one of strap, bracket, pole");
   EXPECT_EQ(of_anchor("free", "[-0.19, 0.44, 1.7]", "[-0.3, 0.44, 1.7]",
