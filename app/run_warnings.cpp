@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +19,7 @@ constexpr double k_same_interval = 1 + 1e-9;    // of a step and a sample interv
 constexpr double k_good_balance = 1e-3;         // energy that nothing explains
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
 constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
+constexpr double k_elastic_strain = 0.01;       // more than structural metals and wood have
 constexpr double k_numbers_of_interest = 1e-9;  // J, below it shares are rounding
 
 using Warnings = std::vector<std::string>;
@@ -37,6 +39,24 @@ void warn_of_depth(const Run& run, Warnings& list) {
           fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
                       "larger alpha keeps them apart",
                       model.bodies[b].name, 1 - bodies[b].peak_pinch));
+}
+
+void warn_of_stress(const Run& run, Warnings& list) {
+  const Model& model = run.setup().model;
+  const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const Body& body = model.bodies[b];
+    double stiffest = 0;
+    for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
+      const Material& material = model.materials[model.members[m].material];
+      if (material.yield == 0) stiffest = std::max(stiffest, material.young);
+    }
+    if (stiffest > 0 && bodies[b].peak_stress > k_elastic_strain * stiffest)
+      list.push_back(fmt::format(
+          "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
+          "hinges",
+          body.name, 1e-6 * bodies[b].peak_stress));
+  }
 }
 
 void warn_of_hinges(const Run& run, Warnings& list) {
@@ -104,6 +124,7 @@ void warn_of_energy(const Run& run, Warnings& list) {
 std::vector<std::string> run_warnings(const Run& run) {
   Warnings list;
   warn_of_depth(run, list);
+  warn_of_stress(run, list);
   warn_of_hinges(run, list);
   if (is_static(run.setup())) return list;
   if (!run.parameters().adaptive) warn_of_step(run, list);

@@ -179,15 +179,28 @@ std::string static_head(const ordered_json& s) {
   return out + "\n";
 }
 
+// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h).
+std::string integrators(const ordered_json& s) {
+  bool frames = false, others = false;
+  const auto look = [&](const ordered_json& model) { (model == "frame" ? frames : others) = true; };
+  for (const auto& b : s["bodies"]) {
+    look(b["model"]);
+    for (const auto& change : b["model_changes"]) look(change["model"]);
+  }
+  const auto named = s["integrator"].get<std::string>();
+  if (!frames) return "central differences";
+  return others && named != "central-difference" ? named + " (frames), central differences" : named;
+}
+
 std::string dynamic_head(const ordered_json& s) {
   std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
                                 s["status"].get<std::string>(), s["simulated_s"].get<double>());
   if (!s["realtime_factor"].is_null())
     out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
                        s["realtime_factor"].get<double>());
-  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n",
-                     s["integrator"].get<std::string>(), s["adaptive"].get<bool>() ? "mean step" : "step",
-                     text(s["time_step_s"], "{:g}"), s["steps"].get<long>(), s["rejected_steps"].get<long>(),
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n", integrators(s),
+                     s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
+                     s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
   out += fmt::format("contact: alpha {:.6g} kgf, q {:.6g}, friction {:.6g}\n",
                      s["contact"]["alpha_N"].get<double>() / k_standard_gravity,

@@ -57,7 +57,12 @@ class Search {
 SceneNumber number_in(const Scene& scene, const std::string& path) {
   const Node before = parse_toml(scene.text, scene.name);
   Node changed = before;
-  apply_override(changed, path + "=0");
+  try {
+    apply_override(changed, path + "=0");
+  } catch (const InputError& error) {
+    const std::string line = error.what(), trial = "--set " + path + "=0: ";
+    throw InputError(line.starts_with(trial) ? line.substr(trial.size()) : line);
+  }
   const std::optional<SceneNumber> found = Search(path).in(changed, &before, "");
   if (!found) throw InputError(path + ": is no key that takes one number");
   return *found;

@@ -113,10 +113,7 @@ Axis parse_axis(const std::string& text, const io::Scene& scene) {
   }
   axis.table = key.table;
   axis.name = key.name;
-  axis.unit =
-      key.unit.empty() && key.dimension != io::Dimension::none
-          ? std::string(io::unit_list(key.dimension).substr(0, io::unit_list(key.dimension).find(',')))
-          : std::string(key.unit);
+  axis.unit = key.unit.empty() ? io::si_unit(key.dimension) : key.unit;
   axis.si = key.dimension == io::Dimension::none ? 1 : io::unit_value(axis.unit, key.dimension);
   axis.entry = number.entry;
   if (number.value) axis.own = *number.value / axis.si;

@@ -73,7 +73,13 @@ TEST(Axis, what_cannot_be_swept_is_refused_in_one_line) {
   refused("contact.friction=0..1:3log", "a logarithmic axis begins above 0");
   refused("contact.friction=0.1..0.1000001:3", "too near each other");
   refused("shake.1.amplitude=1 kg..2 kg:3", "\"1 kg\" ");
-  refused("shake.2.amplitude=1..2:3", "no such entry");
+  refused("shake.2.amplitude=1..2:3", "shake.2: no such entry; known: ");
+  try {
+    axis_of("--y", "shake.2.amplitude=1..2:3", paper_a());
+    ADD_FAILURE();
+  } catch (const io::InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("--y shake.2: no such entry; known: "), 0u) << error.what();
+  }
   refused("cabinet.free.model=1..2:3", "cabinet.free.model: is no key that takes one number");
   refused("run.gravity=1..2:3", "is no key that takes one number");
   refused("nothing.here=1..2:3", "is no key that takes one number");
