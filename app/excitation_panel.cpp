@@ -36,6 +36,18 @@ double peak_velocity(const Accelerogram& record) {
   return most;
 }
 
+/// Of a sine that swings as long in one direction.
+double cycles_of(Shake::Shape shape) {
+  switch (shape) {
+    case Shake::Shape::full_sine:
+      return 1;
+    case Shake::Shape::half_sine:
+    case Shake::Shape::rectangle:
+      break;
+  }
+  return 0.5;
+}
+
 ShakePlace place_of(const Shake& shake) {
   const double level = shake.direction.head<2>().norm();
   switch (shake.kind) {
@@ -43,7 +55,7 @@ ShakePlace place_of(const Shake& shake) {
     case Shake::Kind::sweep:
       return {shake.frequency, level * shake.amplitude};
     case Shake::Kind::pulse:
-      return {(shake.shape == Shake::Shape::full_sine ? 1 : 0.5) / shake.duration, level * shake.amplitude};
+      return {cycles_of(shake.shape) / shake.duration, level * shake.amplitude};
     case Shake::Kind::record:
       break;
   }

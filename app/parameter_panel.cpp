@@ -107,9 +107,9 @@ class Row {
     end();
   }
 
-  /// One of the first `count` choices of the key but those that `legal` does not have.
+  /// One of the choices of the key that `legal` has.
   template <class F>
-  void choice(const std::string& label, const Phrase& tip, int count, F&& legal) {
+  void choice(const std::string& label, const Phrase& tip, F&& legal) {
     begin(label);
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
@@ -117,7 +117,7 @@ class Row {
     const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
     const bool narrow = ImGui::CalcTextSize(word(now).c_str()).x + ImGui::GetStyle().FramePadding.x > room;
     if (ImGui::BeginCombo("##value", word(now).c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
-      for (int k = 0; k < count; ++k)
+      for (int k = 0; k < static_cast<int>(key_.choices.size()); ++k)
         if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
@@ -197,8 +197,6 @@ class Row {
   std::string& refused_;
 };
 
-constexpr auto k_any = [](int) { return true; };
-
 void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
   const Setup& setup = player.scene().setup;
   Row row(player, key, index, refused);
@@ -206,17 +204,18 @@ void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
     case Edit::Key::on:
       return row.tick(say(k_on), say(k_on_about));
     case Edit::Key::type:
-      row.choice(say(k_type), k_type_about, static_cast<int>(Shake::Kind::record), k_any);
+      row.choice(say(k_type), k_type_about,
+                 [](int k) { return static_cast<Shake::Kind>(k) != Shake::Kind::record; });
       return row.button(k_shake_once, static_cast<double>(Shake::Kind::pulse), k_shake_once_about);
     case Edit::Key::law:
-      return row.choice(say(k_law), k_law_about, 3, k_any);
+      return row.choice(say(k_law), k_law_about, [](int) { return true; });
     case Edit::Key::integrator:
-      return row.choice(say(k_integrator), k_integrator_about, 4, [](int k) { return k > 0; });
+      return row.choice(say(k_integrator), k_integrator_about, [](int k) { return k > 0; });
     case Edit::Key::want:
       return row.tick(say(k_stresses_wanted), say(k_stresses_wanted_about));
     case Edit::Key::model:
       ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
-      return row.choice(say(k_model), k_model_about, 4,
+      return row.choice(say(k_model), k_model_about,
                         [&](int k) { return can_be(setup.model, index, static_cast<BodyModel>(k)); });
     case Edit::Key::anchor: {
       const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];

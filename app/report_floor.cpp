@@ -20,6 +20,18 @@ std::string direction(const Vec3& d) {
   return fmt::format("({}, {}, {})", short_shown(d.x(), 3), short_shown(d.y(), 3), short_shown(d.z(), 3));
 }
 
+const Phrase& shape_name(Shake::Shape shape) {
+  switch (shape) {
+    case Shake::Shape::half_sine:
+      return words::k_half_sine;
+    case Shake::Shape::full_sine:
+      return words::k_full_sine;
+    case Shake::Shape::rectangle:
+      break;
+  }
+  return words::k_rectangle;
+}
+
 std::string in_words(const ReportPage& page, const Shake& shake) {
   const std::string gal = short_shown(shake.amplitude / k_gal), along = direction(shake.direction);
   const std::string start = short_shown(shake.start);
@@ -31,12 +43,9 @@ std::string in_words(const ReportPage& page, const Shake& shake) {
     case Shake::Kind::sweep:
       return page.text(words::k_sweep, short_shown(shake.frequency), short_shown(shake.last_frequency), gal,
                        along, start, short_shown(shake.duration));
-    case Shake::Kind::pulse: {
-      const Phrase& shape = shake.shape == Shake::Shape::half_sine   ? words::k_half_sine
-                            : shake.shape == Shake::Shape::full_sine ? words::k_full_sine
-                                                                     : words::k_rectangle;
-      return page.text(words::k_pulse, page.text(shape), gal, along, start, short_shown(shake.duration));
-    }
+    case Shake::Kind::pulse:
+      return page.text(words::k_pulse, page.text(shape_name(shake.shape)), gal, along, start,
+                       short_shown(shake.duration));
     case Shake::Kind::record:
       return page.text(words::k_record, short_shown(shake.record->duration), shake.record->components.size(),
                        short_shown(std::abs(shake.scale) * shake.record->peak / k_gal),

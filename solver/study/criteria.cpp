@@ -29,10 +29,65 @@ std::string why_none(const Setup& scene, const Axis& x, const Axis& y) {
   return "";
 }
 
-/// Of the shake's own form at a value of the x axis in SI, rad/s.
-double circular_frequency(const Shake& shake, double x) {
-  if (shake.kind == Shake::Kind::sine) return 2 * k_pi * x;
-  return (shake.shape == Shake::Shape::full_sine ? 2 : 1) * k_pi / x;
+/// A single motion of the floor of which theory knows the least amplitude that overturns a rigid block that
+/// does not slip. x: value of the x axis in SI.
+struct Pulse {
+  const char *name, *label, *about;
+  double (*velocity)(double x);  ///< s, greatest of the floor, of amplitude 1; one cycle: of the steady sine
+  std::optional<double> (*least)(const Standing& body, double x, double most);  ///< m/s^2; `most`: over g
+};
+
+std::optional<double> of_full_sine(const Standing& body, double circular_frequency, double most) {
+  const double ratio = circular_frequency / body.p();
+  if (ratio < k_least_w_p) return std::nullopt;
+  const std::optional<double> least = least_full_sine(body, ratio, most);
+  return least ? std::optional(body.gravity * *least) : std::nullopt;
+}
+
+constexpr Pulse k_one_cycle{
+    "one-sine", "one cycle alone",
+    "least single cycle that overturns a rigid block that does not slip, exact",
+    [](double x) { return 1 / (2 * k_pi * x); },
+    [](const Standing& body, double x, double most) { return of_full_sine(body, 2 * k_pi * x, most); }};
+constexpr Pulse k_full_sine{
+    "one-sine", "exact", "least full sine that overturns a rigid block that does not slip",
+    [](double x) { return x / k_pi; },
+    [](const Standing& body, double x, double most) { return of_full_sine(body, 2 * k_pi / x, most); }};
+constexpr Pulse k_half_sine{"half-sine", "exact",
+                            "least half-sine that overturns a rigid block that does not slip",
+                            [](double x) { return 2 * x / k_pi; },
+                            [](const Standing& body, double x, double) -> std::optional<double> {
+                              const double ratio = k_pi / x / body.p();
+                              if (ratio < k_least_w_p) return std::nullopt;
+                              return body.gravity * least_half_sine(body, ratio);
+                            }};
+constexpr Pulse k_rectangle{"rectangle", "exact",
+                            "least rectangle that overturns a rigid block that does not slip",
+                            [](double x) { return x; },
+                            [](const Standing& body, double x, double) {
+                              return std::optional(body.gravity * least_rectangle(body, body.p() * x));
+                            }};
+
+/// Null: no formula is known.
+const Pulse* pulse_of(const Shake& shake) {
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+      return &k_one_cycle;
+    case Shake::Kind::pulse:
+      switch (shake.shape) {
+        case Shake::Shape::half_sine:
+          return &k_half_sine;
+        case Shake::Shape::full_sine:
+          return &k_full_sine;
+        case Shake::Shape::rectangle:
+          return &k_rectangle;
+      }
+      break;
+    case Shake::Kind::sweep:
+    case Shake::Kind::record:
+      break;
+  }
+  return nullptr;
 }
 
 Criterion curve(const std::string& name, const std::string& label, const std::string& about, const Axis& x,
@@ -90,44 +145,16 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   const Standing& body = out.body;
   out.list.push_back(curve("west", "West", "a = g b/h, above which it lifts", x, y,
                            [&](double) { return west_acceleration(body); }));
-  // greatest velocity of a floor that moves as the shake says; of a sine that of its steady motion
-  const double swings = shake.kind == Shake::Kind::sine ? 1 : 2;
-  const auto velocity_limit = [&](double x_si) {
-    const double v = ishiyama_velocity(body);
-    if (shake.kind == Shake::Kind::pulse && shake.shape == Shake::Shape::rectangle) return v / x_si;
-    return v * circular_frequency(shake, x_si) / swings;
-  };
+  const Pulse* const pulse = pulse_of(shake);
+  if (!pulse) return out;
   out.list.push_back(
       curve("ishiyama", "Ishiyama",
             "v = 0.4 (8 g R (1 - cos α)/(3 cos^2 α))^{1/2} of the floor; above it and West's it may overturn",
-            x, y, velocity_limit));
-  const double most = 4 * y.in_si(y.count() - 1) / body.gravity;
-  const auto pulse = [&](bool half) {
-    return [&, half](double x_si) -> std::optional<double> {
-      const double ratio = circular_frequency(shake, x_si) / body.p();
-      if (ratio < k_least_w_p) return std::nullopt;
-      if (half) return body.gravity * least_half_sine(body, ratio);
-      const std::optional<double> least = least_full_sine(body, ratio, most);
-      return least ? std::optional(body.gravity * *least) : std::nullopt;
-    };
-  };
+            x, y, [&](double x_si) { return ishiyama_velocity(body) / pulse->velocity(x_si); }));
   if (!symmetric) return out;
-  if (shake.kind == Shake::Kind::sine)
-    out.list.push_back(curve("one-sine", "one cycle alone",
-                             "least single cycle that overturns a rigid block that does not slip, exact", x,
-                             y, pulse(false)));
-  else if (shake.shape == Shake::Shape::full_sine)
-    out.list.push_back(curve("one-sine", "exact",
-                             "least full sine that overturns a rigid block that does not slip", x, y,
-                             pulse(false)));
-  else if (shake.shape == Shake::Shape::half_sine)
-    out.list.push_back(curve("half-sine", "exact",
-                             "least half-sine that overturns a rigid block that does not slip", x, y,
-                             pulse(true)));
-  else
-    out.list.push_back(curve(
-        "rectangle", "exact", "least rectangle that overturns a rigid block that does not slip", x, y,
-        [&](double x_si) { return std::optional(body.gravity * least_rectangle(body, body.p() * x_si)); }));
+  const double most = 4 * y.in_si(y.count() - 1) / body.gravity;
+  out.list.push_back(curve(pulse->name, pulse->label, pulse->about, x, y,
+                           [&](double x_si) { return pulse->least(body, x_si, most); }));
   return out;
 }
 

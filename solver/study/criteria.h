@@ -36,7 +36,8 @@ struct Criteria {
 
 /// They hold where y is the amplitude and x the frequency or duration of the only shake, along the level,
 /// across edges of a body that starts at rest on a level floor; whole pulses: where both edges are as far
-/// off. A sine is compared with one of its cycles alone.
+/// off. A sine is compared with one of its cycles alone. Of a motion that has no formula there is West's
+/// only.
 Criteria criteria(const Setup& scene, const Axis& x, const Axis& y);
 
 }  // namespace topple::study

@@ -24,11 +24,17 @@ constexpr const char* k_pulses = "shake.1.amplitude=100 gal..3000 gal:24";
 /// The axis that nobody named.
 std::string usual_axis(const io::Scene& scene, bool is_x) {
   const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
-  const bool sine = !shakes.empty() && shakes[0].kind == Shake::Kind::sine;
-  if (!sine && (shakes.empty() || shakes[0].kind != Shake::Kind::pulse))
-    throw InputError(std::string(is_x ? "--x" : "--y") +
-                     " KEY=FROM..TO:N is required: the first shake is neither a sine nor a pulse");
-  return is_x ? (sine ? k_frequencies : k_durations) : (sine ? k_amplitudes : k_pulses);
+  if (!shakes.empty()) switch (shakes[0].kind) {
+      case Shake::Kind::sine:
+        return is_x ? k_frequencies : k_amplitudes;
+      case Shake::Kind::pulse:
+        return is_x ? k_durations : k_pulses;
+      case Shake::Kind::sweep:
+      case Shake::Kind::record:
+        break;
+    }
+  throw InputError(std::string(is_x ? "--x" : "--y") +
+                   " KEY=FROM..TO:N is required: the first shake is neither a sine nor a pulse");
 }
 
 /// What the scene leaves out of [run].

@@ -55,8 +55,9 @@ TEST(Documents, files_that_they_name_exist) {
 
 TEST(Documents, identifiers_that_developers_are_sent_to_exist) {
   std::string sources;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(k_source / "solver"))
-    if (entry.is_regular_file()) sources += page(fs::relative(entry.path(), k_source).string());
+  for (const char* room : {"solver", "app"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(k_source / room))
+      if (entry.is_regular_file()) sources += page(fs::relative(entry.path(), k_source).string());
   for (const std::string& function : matches(page("assets/developers.md"), R"(`([a-z_]+)\(\)`)"))
     EXPECT_NE(sources.find(function + "("), std::string::npos) << function;
 }

@@ -117,7 +117,10 @@ class Draw {
     number("shake", "amplitude", 0.1, 15);
     vector("shake", "direction", 1);
     if (type == "pulse") {
-      word("shape", {"half-sine", "full-sine", "rectangle"});
+      const auto& shapes = io::find_key("shake", "shape")->choices;
+      line("shape",
+           fmt::format("\"{}\"",
+                       shapes[static_cast<std::size_t>(pick(0, static_cast<int>(shapes.size()) - 1))]));
       number("shake", "duration", 0.05, 1);
       return;
     }

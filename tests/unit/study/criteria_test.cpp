@@ -86,6 +86,41 @@ TEST(Criteria, curves_are_in_the_units_of_the_axes) {
   for (const double y : found.list[2].y) EXPECT_GT(y, west);
 }
 
+Criteria of_shake(Shake::Kind kind, Shake::Shape shape) {
+  io::Scene scene = io::load_scene("paper-a");
+  Shake& shake = scene.setup.parameters.shakes[0];
+  shake.kind = kind;
+  shake.shape = shape;
+  Axis x = parse_axis("shake.1.duration=0.1..2:5", scene);
+  const Axis y = parse_axis(k_y, scene);
+  x.entry = y.entry;  // the sine of the scene has no duration
+  return criteria(scene.setup, x, y);
+}
+
+TEST(Criteria, a_pulse_from_rest_reaches_the_velocity_of_ishiyama) {
+  // of amplitude 1 and duration 1, integrated
+  for (const auto& [shape, velocity, name] : {std::tuple{Shake::Shape::half_sine, 2 / k_pi, "half-sine"},
+                                              {Shake::Shape::full_sine, 1 / k_pi, "one-sine"},
+                                              {Shake::Shape::rectangle, 1., "rectangle"}}) {
+    const Criteria found = of_shake(Shake::Kind::pulse, shape);
+    ASSERT_EQ(found.list.size(), 3u) << name;
+    const Criterion& ishiyama = found.list[1];
+    for (std::size_t k = 0; k < ishiyama.x.size(); ++k)
+      EXPECT_NEAR(ishiyama.y[k] * velocity * ishiyama.x[k] / (100 * ishiyama_velocity(found.body)), 1, 1e-12);
+    EXPECT_EQ(found.list[2].name, name);
+  }
+}
+
+TEST(Criteria, a_motion_that_no_formula_is_known_of_has_wests_line_alone) {
+  const auto after_the_last = static_cast<Shake::Shape>(static_cast<int>(Shake::Shape::rectangle) + 1);
+  for (const Criteria& found : {of_shake(Shake::Kind::sweep, Shake::Shape::half_sine),
+                                of_shake(Shake::Kind::pulse, after_the_last)}) {
+    EXPECT_EQ(found.why_not, "");
+    ASSERT_EQ(found.list.size(), 1u);
+    EXPECT_EQ(found.list[0].name, "west");
+  }
+}
+
 TEST(Criteria, where_they_do_not_hold_there_are_none) {
   EXPECT_EQ(of("paper-a", "contact.friction=0..1:3", k_y).why_not,
             "the axes are not frequency or duration, and amplitude, of one shake");
