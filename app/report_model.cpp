@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/report_parts.h"
+#include "solver/study/penalty.h"
 
 namespace topple::app {
 namespace {
@@ -16,18 +17,6 @@ constexpr std::size_t k_listed_bodies = 12;
 /// Five significant digits without an exponent.
 std::string plain(double value) {
   return value < 1e5 ? short_shown(value, 5) : shown(value, 0);
-}
-
-std::string law_name(const ReportPage& page) {
-  switch (page.report().scene->setup.parameters.contact.kind) {
-    case ContactLawKind::coulomb:
-      return "coulomb";
-    case ContactLawKind::paper:
-      return "paper";
-    case ContactLawKind::printed:
-      break;
-  }
-  return "printed";
 }
 
 std::string model_in_words(const ReportPage& page, const std::string& model) {
@@ -104,7 +93,7 @@ std::string settings_section(ReportPage& page) {
        report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
       {page.say(words::k_integrator), integrator(page)},
       {page.say(words::k_step), step(page)},
-      {page.say(words::k_contact), law_name(page)},
+      {page.say(words::k_contact), study::law_name(p.contact.kind)},
       {page.say(words::k_alpha),
        fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
       {page.say(words::k_q), short_shown(p.contact.q)},

@@ -10,6 +10,7 @@
 #include "solver/accelerogram.h"
 #include "solver/edit.h"
 #include "solver/ladder.h"
+#include "solver/study/stability_limits.h"
 
 namespace topple::app {
 namespace {
@@ -91,13 +92,26 @@ void warn_of_step(const Run& run, Warnings& list) {
         fmt::format("a bounce on the contacts takes {:.2g} ms, {:.2g} steps: impacts are not "
                     "resolved; try a time_step below {:.2g} ms, or \"auto\"",
                     1e3 * bounce, bounce / h, 1e3 * bounce / (2 * k_resolved_bounce)));
-  const double gravity = p.gravity.norm();
-  if (p.contact.kind != ContactLawKind::coulomb && !model.planes.empty() && p.contact.friction * gravity > 0)
-    if (const double limit = 2 * p.contact.slip_speed / (p.contact.friction * gravity); h > limit)
-      list.push_back(
-          fmt::format("time_step {:g} ms is longer than 2 slip_speed/(friction g) = {:.3g} ms: "
-                      "friction changes sides from step to step",
-                      1e3 * h, 1e3 * limit));
+  const double chatter = model.planes.empty() ? 0 : study::step_of_chatter(p.contact, p.gravity.norm());
+  if (chatter > 0 && h > chatter)
+    list.push_back(
+        fmt::format("time_step {:g} ms is longer than 2 slip_speed/(friction g) = {:.3g} ms: "
+                    "friction changes sides from step to step",
+                    1e3 * h, 1e3 * chatter));
+}
+
+void warn_of_law(const Run& run, Warnings& list) {
+  switch (run.parameters().contact.kind) {
+    case ContactLawKind::coulomb:
+    case ContactLawKind::paper:
+      return;
+    case ContactLawKind::printed:
+      break;
+  }
+  if (!run.setup().model.planes.empty())
+    list.push_back(
+        "law = \"printed\" holds bodies back where they part and lets them sink at rest: verdicts "
+        "with it mean nothing; \"coulomb\" and \"paper\" do neither");
 }
 
 void warn_of_energy(const Run& run, Warnings& list) {
@@ -128,10 +142,7 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_hinges(run, list);
   if (is_static(run.setup())) return list;
   if (!run.parameters().adaptive) warn_of_step(run, list);
-  if (run.parameters().contact.kind == ContactLawKind::printed && !run.setup().model.planes.empty())
-    list.push_back(
-        "law = \"printed\" holds bodies back where they part and lets them sink at rest: verdicts "
-        "with it mean nothing; \"coulomb\" and \"paper\" do neither");
+  warn_of_law(run, list);
   warn_of_energy(run, list);
   return list;
 }

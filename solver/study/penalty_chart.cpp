@@ -352,8 +352,14 @@ class Chart {
   }
 
   static std::string in_words(const ContactLaw& law) {
-    if (law.kind == ContactLawKind::coulomb) return fmt::format("coulomb, e = {:g}", law.restitution);
-    if (law.kind == ContactLawKind::paper) return fmt::format("paper, µ = {:g}", law.friction);
+    switch (law.kind) {
+      case ContactLawKind::coulomb:
+        return fmt::format("coulomb, e = {:g}", law.restitution);
+      case ContactLawKind::paper:
+        return fmt::format("paper, µ = {:g}", law.friction);
+      case ContactLawKind::printed:
+        break;
+    }
     return "printed: stays on the floor";
   }
 

@@ -18,7 +18,15 @@ ordered_json positive_or_null(double value) {
 }  // namespace
 
 std::string law_name(ContactLawKind kind) {
-  return kind == ContactLawKind::coulomb ? "coulomb" : kind == ContactLawKind::paper ? "paper" : "printed";
+  switch (kind) {
+    case ContactLawKind::coulomb:
+      return "coulomb";
+    case ContactLawKind::paper:
+      return "paper";
+    case ContactLawKind::printed:
+      break;
+  }
+  return "printed";
 }
 
 std::optional<double> PenaltyRow::error() const {

@@ -183,7 +183,15 @@ double step_of_damping(double share, double gamma, double turning) {
 }
 
 double step_of_chatter(const ContactLaw& law, double gravity) {
-  return 2 * law.slip_speed / (law.friction * gravity);
+  switch (law.kind) {
+    case ContactLawKind::coulomb:
+      return 0;
+    case ContactLawKind::paper:
+    case ContactLawKind::printed:
+      break;
+  }
+  const double deceleration = law.friction * gravity;
+  return deceleration > 0 ? 2 * law.slip_speed / deceleration : 0;
 }
 
 std::vector<StabilityLimit> stability_limits(const StabilityPlan& plan) {
@@ -222,11 +230,7 @@ std::vector<StabilityLimit> stability_limits(const StabilityPlan& plan) {
                                            : 0;
              });
   add_step("chatter", "h = 2 v_s/(μ g)", "smoothed friction changes sides from step to step", all,
-           [](const Place& p) {
-             return p.law.kind != ContactLawKind::coulomb && p.law.friction * p.gravity > 0
-                        ? step_of_chatter(p.law, p.gravity)
-                        : 0;
-           });
+           [](const Place& p) { return step_of_chatter(p.law, p.gravity); });
   StabilityLimit capacity{
       "capacity",
       "α = E (q + 1)/(n L)",

@@ -36,7 +36,7 @@ double step_of_impact_error(double error, double period);
 /// lacks (gamma - 1/2) h^2 w^2 v, so that E goes as exp(-2 (gamma - 1/2) h int w^2 dt). Derived.
 double step_of_damping(double share, double gamma, double turning);
 
-/// Longest step at which smoothed friction does not change sides: 2 v_s/(mu g), s.
+/// Longest step at which smoothed friction does not change sides: 2 v_s/(mu g), s. 0: none is smoothed.
 double step_of_chatter(const ContactLaw& law, double gravity);
 
 /// A line over the map: polyline in the axes' units, clipped by nothing.

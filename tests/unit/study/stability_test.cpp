@@ -171,8 +171,10 @@ TEST(Stability, limits_are_those_of_formulas_worked_out_by_hand) {
     turning += p * std::sqrt(2 * (1 - std::cos(at))) * phi / 10000;
   }
   EXPECT_NEAR(d.turning, turning, 1e-6 * turning);
-  ContactLaw law;
-  EXPECT_NEAR(step_of_chatter(law, g), 2 * 0.01 / (0.6 * g), 1e-15);
+  for (const auto kind : {ContactLawKind::paper, ContactLawKind::printed})
+    EXPECT_NEAR(step_of_chatter({.kind = kind}, g), 2 * 0.01 / (0.6 * g), 1e-15);
+  EXPECT_EQ(step_of_chatter({.kind = ContactLawKind::coulomb}, g), 0);
+  EXPECT_EQ(step_of_chatter({.kind = ContactLawKind::paper, .friction = 0}, g), 0);
 }
 
 TEST(Stability, central_differences_are_refused_right_of_their_line) {
