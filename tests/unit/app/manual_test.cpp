@@ -66,6 +66,20 @@ TEST_F(ManualTest, page_has_every_command_and_option_of_the_help) {
   }
 }
 
+TEST_F(ManualTest, page_has_every_folder_of_the_user_that_is_looked_at) {
+  const std::string text = page(), files = text.substr(text.find("\n.SH FILES\n")),
+                    environment = files.substr(files.find("\n.SH ENVIRONMENT\n"));
+  std::set<std::string> variables;
+  for (const auto& entry : std::filesystem::directory_iterator(TOPPLE_SOURCE_DIR "/app"))
+    if (entry.path().extension() == ".cpp")
+      variables.merge(matches(bytes_of(entry.path()), R"re("(XDG_[A-Z_]+)")re"));
+  EXPECT_GE(variables.size(), 3u);
+  for (const std::string& variable : variables)
+    EXPECT_NE(environment.find(variable), std::string::npos) << variable;
+  for (const char* file : {"~/.config/topple/settings", "~/.local/state/topple/", "~/.cache/topple/"})
+    EXPECT_NE(files.find(std::string("\n.I ") + file + "\n"), std::string::npos) << file;
+}
+
 TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
   using Words = std::vector<std::string>;
   const Words first = offers("topple ''");
