@@ -86,7 +86,9 @@ std::string bash_value(const CLI::Option& option) {
   for (const char* listed : {"NAME", "LANGUAGE", "QUANTITY", "RANGE", "SPAN"})
     if (type == listed) return "_topple_words '" + listed_words(option.get_description()) + "'";
   if (type == "DIR") return "_filedir -d";
-  return type.find("FILE") != std::string::npos || type == "REC.h5" ? "_filedir" : "";
+  if (const std::size_t dot = type.rfind('.'); dot != std::string::npos)
+    return "_filedir " + type.substr(dot + 1);
+  return type.find("FILE") != std::string::npos ? "_filedir" : "";
 }
 
 /// "run:-o|run:--output"
@@ -108,11 +110,26 @@ std::string explained_words(const std::string& description) {
   return words;
 }
 
-/// What a value without an option's name may be.
+/// Completes a value without an option's name: the scenes that are built in, folders, files of what is read.
 std::string bash_positional(const CLI::Option& option) {
-  if (option.get_name() == "KIND")
-    return "_topple_words '" + explained_words(option.get_description()) + "'; ";
-  return option.get_name() == "RECORDING" ? "_filedir; " : "_topple_words \"$scenes\"; _filedir; ";
+  const std::string name = option.get_name();
+  if (name == "RECORDING") return "_filedir h5; ";
+  return std::string("_topple_words \"$scenes\"; _filedir ") +
+         (name.starts_with("SCENE") ? "toml; " : "'@(toml|h5)'; ");
+}
+
+/// The same of all of a command. What follows a KIND is completed when it has been given.
+std::string bash_positionals(const CLI::App& command) {
+  std::string kinds, rest;
+  for (const CLI::Option* option : options_of(command)) {
+    if (!option->get_positional()) continue;
+    if (option->get_name() == "KIND")
+      kinds = explained_words(option->get_description());
+    else if (const std::string one = bash_positional(*option); rest.find(one) == std::string::npos)
+      rest += one;
+  }
+  if (kinds.empty()) return rest;
+  return fmt::format("if _topple_given '{0}'; then {1}else _topple_words '{0}'; fi; ", kinds, rest);
 }
 
 }  // namespace
@@ -131,13 +148,9 @@ std::string bash_completion(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) {
     const std::string name = command->get_name();
     commands += name + " ";
-    std::string options = "--help", positional;
+    std::string options = "--help";
     for (const CLI::Option* option : options_of(*command)) {
-      if (option->get_positional()) {
-        const std::string what = bash_positional(*option);
-        if (positional.find(what) == std::string::npos) positional += what;
-        continue;
-      }
+      if (option->get_positional()) continue;
       for (const std::string& long_name : option->get_lnames()) options += " --" + long_name;
       if (!takes_value(*option)) continue;
       const std::string pattern = bash_pattern(name, *option), value = bash_value(*option);
@@ -147,10 +160,15 @@ std::string bash_completion(const CLI::App& app) {
         values += fmt::format("    {}) {}; return ;;\n", pattern, value);
     }
     rest += fmt::format("    {}) if [[ $cur == -* ]]; then _topple_words '{}'; else {}:; fi ;;\n", name,
-                        options, positional);
+                        options, bash_positionals(*command));
   }
   return fmt::format(R"(# bash completion for topple, made from the program's own table of commands
 _topple_words() {{ COMPREPLY+=($(compgen -W "$1" -- "$cur")); }}
+_topple_given() {{
+  local word
+  for word in "${{words[@]:2:cword-2}}"; do [[ " $1 " == *" $word "* ]] && return; done
+  return 1
+}}
 _topple() {{
   local cur prev words cword
   local scenes='{}'

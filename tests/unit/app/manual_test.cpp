@@ -30,19 +30,23 @@ class ManualTest : public ProgramTest {
     });
     return page;
   }
+  /// In place of bash-completion: names what it would be asked for.
+  static constexpr const char* k_stand_in =
+      R"(_init_completion() { words=("${COMP_WORDS[@]}"); cword=$COMP_CWORD; cur=${words[cword]}; prev=${words[cword - 1]}; }
+_filedir() { COMPREPLY+=("files${1:+ $1}"); })";
   /// What bash offers for the last word of a call.
-  static std::vector<std::string> offers(const std::string& call) {
+  static std::vector<std::string> offers(const std::string& call, const std::string& library = k_stand_in) {
     read_commands([](const CLI::App& table) { write_bytes("completion", bash_completion(table)); });
-    write_bytes("complete", R"(
-_init_completion() { words=("${COMP_WORDS[@]}"); cword=$COMP_CWORD; cur=${words[cword]}; prev=${words[cword - 1]}; }
-_filedir() { COMPREPLY+=("files${1-}"); }
+    write_bytes("complete", library + R"(
 . ./completion
 COMP_WORDS=()" + call + R"()
 COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+COMP_LINE=")" + call + R"("
+COMP_POINT=${#COMP_LINE}
 _topple
 printf '%s\n' "${COMPREPLY[@]}" >offers
 )");
-    EXPECT_EQ(std::system("bash -u ./complete"), 0) << call;
+    EXPECT_EQ(std::system(library == k_stand_in ? "bash -u ./complete" : "bash ./complete"), 0) << call;
     std::istringstream lines(bytes_of("offers"));
     std::vector<std::string> words;
     for (std::string word; std::getline(lines, word);)
@@ -88,19 +92,47 @@ TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
     const Words offered = offers("topple " + command + " --");
     EXPECT_EQ(std::set<std::string>(offered.begin(), offered.end()), options(command)) << command;
   }
-  EXPECT_EQ(offers("topple run paper-"), (Words{"paper-a", "paper-b", "files"}));
-  EXPECT_EQ(offers("topple study el"), (Words{"elements", "files"}));
-  EXPECT_EQ(offers("topple study pe"), (Words{"penalty", "files"}));
-  EXPECT_EQ(offers("topple study pr"), (Words{"precision", "files"}));
-  EXPECT_EQ(offers("topple study sta"), (Words{"stability", "stack", "files"}));
-  EXPECT_EQ(offers("topple recover a"), (Words{"files"}));
+  EXPECT_EQ(offers("topple run paper-"), (Words{"paper-a", "paper-b", "files toml"}));
+  EXPECT_EQ(offers("topple check paper-a paper-b"), (Words{"paper-b", "files toml"}));
+  for (const char* command : {"render", "view", "info", "compare"})
+    EXPECT_EQ(offers(std::string("topple ") + command + " paper-a"), (Words{"paper-a", "files @(toml|h5)"}));
+  for (const char* command : {"recover", "export"})
+    EXPECT_EQ(offers(std::string("topple ") + command + " a"), (Words{"files h5"}));
   EXPECT_EQ(offers("topple render a.h5 --camera s"), (Words{"side"}));
   EXPECT_EQ(offers("topple render a.h5 --camera f"), (Words{"front", "follow"}));
   EXPECT_EQ(offers("topple render a.h5 --range ''"), (Words{"run", "instant"}));
   EXPECT_EQ(offers("topple report paper-a --lang ''"), (Words{"en", "ja"}));
-  EXPECT_EQ(offers("topple render a.h5 --png ''"), (Words{"files-d"}));
-  EXPECT_EQ(offers("topple run paper-a -o ''"), (Words{"files"}));
+  EXPECT_EQ(offers("topple render a.h5 --png ''"), (Words{"files -d"}));
+  EXPECT_EQ(offers("topple render a.h5 --still ''"), (Words{"files png"}));
+  EXPECT_EQ(offers("topple run paper-a -o ''"), (Words{"files h5"}));
+  EXPECT_EQ(offers("topple run paper-a --json ''"), (Words{"files"}));
   EXPECT_EQ(offers("topple run paper-a --jobs ''"), (Words{}));
+}
+
+TEST_F(ManualTest, bash_offers_scenes_after_the_kind_of_a_study) {
+  using Words = std::vector<std::string>;
+  const Words kinds{"overturn", "stability", "precision", "elements", "penalty"};
+  EXPECT_EQ(offers("topple study ''"), kinds);
+  EXPECT_EQ(offers("topple study -o overturn-study ''"), kinds);
+  EXPECT_EQ(offers("topple study sta"), (Words{"stability"}));
+  EXPECT_EQ(offers("topple study stability sta"), (Words{"stack", "files toml"}));
+  EXPECT_EQ(offers("topple study --quick stability -o out sta"), (Words{"stack", "files toml"}));
+}
+
+TEST_F(ManualTest, bash_offers_folders_and_the_files_that_a_command_reads) {
+  const char* const library = "/usr/share/bash-completion/bash_completion";
+  if (!std::filesystem::exists(library)) GTEST_SKIP() << "bash-completion is not installed";
+  std::filesystem::create_directory("own");
+  std::filesystem::create_directory("own/folder");
+  for (const char* name : {"own/a.toml", "own/b.h5", "own/c.txt"}) write_bytes(name, "");
+  using Words = std::set<std::string>;
+  const auto offered = [&](const std::string& call) {
+    const std::vector<std::string> words = offers(call, std::string(". ") + library);
+    return Words(words.begin(), words.end());
+  };
+  EXPECT_EQ(offered("topple run own/"), (Words{"own/a.toml", "own/folder"}));
+  EXPECT_EQ(offered("topple info own/"), (Words{"own/a.toml", "own/b.h5", "own/folder"}));
+  EXPECT_EQ(offered("topple recover own/"), (Words{"own/b.h5", "own/folder"}));
 }
 
 }  // namespace
