@@ -139,6 +139,27 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
   EXPECT_EQ(files().size(), 2u + 2u + 5u);  // scene, recording, two folders, five tables
 }
 
+TEST_F(ExportTest, columns_of_all_tables_are_explained_in_their_order) {
+  ASSERT_EQ(topple({"run", "anchored", "--set", "run.duration=0.01", "-o", "t.h5"}).code, 0);
+  ASSERT_EQ(topple({"export", "t.h5", "--csv", "tied"}).code, 0);
+  std::map<std::string, std::string> written, explained;
+  for (const auto& entry : std::filesystem::directory_iterator("tied")) {
+    const std::string text = bytes_of(entry.path());
+    written[entry.path().filename().string()] = text.substr(0, text.find('\n'));
+  }
+  const std::string theory = bytes_of(TOPPLE_SOURCE_DIR "/assets/theory.md");
+  const std::regex row(R"(\n\| (\w+\.csv) \| ([^|\n]+) \| ([^|\n]+) \|)"), column("`(\\w+)`");
+  for (std::sregex_iterator i(theory.begin(), theory.end(), row), none; i != none; ++i) {
+    const std::string cells = (*i)[2], units = (*i)[3];
+    std::string& list = explained[(*i)[1]];
+    const auto first = std::sregex_iterator(cells.begin(), cells.end(), column);
+    for (auto k = first; k != none; ++k) list += (list.empty() ? "" : ",") + (*k)[1].str();
+    const auto given = std::count(units.begin(), units.end(), ',') + 1;
+    EXPECT_TRUE(given == 1 || given == std::distance(first, none)) << cells << ": " << units;
+  }
+  EXPECT_EQ(explained, written);
+}
+
 TEST_F(ExportTest, tables_are_the_same_every_time_and_replace_older_ones) {
   const std::string before = bytes_of("new/data/nodes.csv");
   write_bytes("new/data/nodes.csv", "older");
