@@ -13,6 +13,7 @@
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/nearest_name.h"
 #include "app/option_values.h"
 #include "app/ranks.h"
 #include "solver/io/scene.h"
@@ -68,7 +69,8 @@ class CommandLine {
     } catch (const CLI::Success& success) {
       return app_.exit(success);
     } catch (const CLI::ParseError& error) {
-      throw BadInput(in_words(error) + " (topple " + chosen() + "--help)");
+      const std::string unknown = unknown_option();
+      throw BadInput((unknown.empty() ? in_words(error) : unknown) + " (topple " + chosen() + "--help)");
     }
     return action_();
   }
@@ -83,7 +85,11 @@ class CommandLine {
   }
   static CLI::Option& add_path(CLI::App& command, const char* names, std::string& value, const char* type,
                                const char* about) {
-    return *command.add_option(names, value, about)->type_name(type)->check(not_empty, "", "not empty");
+    CLI::Option& option =
+        *command.add_option(names, value, about)->type_name(type)->check(not_empty, "", "not empty");
+    if (const std::string_view ending = ending_of(type); !ending.empty())
+      option.check(not_of_another_kind(ending), "", "ending");
+    return option;
   }
   static void add_set(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "override a key of the scene: --set contact.alpha=\"5 kgf\"")
@@ -96,7 +102,8 @@ class CommandLine {
     CLI::App& command = add_command("run", "step a scene to its end, record it, print a summary",
                                     "run paper-a --set shake.1.amplitude=\"150 gal\" --json -");
     add_path(command, "SCENE", run_.scene, "", "path or name of a built-in scene").required();
-    add_path(command, "-o,--output", run_.recording, "REC.h5", "recording to write (HDF5)");
+    add_path(command, "-o,--output", run_.recording, "REC.h5",
+             "recording to write (HDF5), in place of an older one");
     add_set(command, run_.overrides);
     add_path(command, "--json", run_.json, "FILE|-", "write the summary as JSON; - for standard output");
     command.add_flag("--quiet", run_.quiet, "no progress");
@@ -121,7 +128,7 @@ class CommandLine {
                                     "view paper-a --set contact.alpha=\"500 kgf\"");
     add_path(command, "SOURCE", view_.source, "", "scene or recording; without: choose");
     add_path(command, "-o,--output", view_.recording, "REC.h5",
-             "recording to write, default in the state folder");
+             "recording to write, in place of an older one; default a new one in the state folder");
     add_set(command, view_.overrides);
     command.add_option("--lang", language_, "en or ja, default as last chosen, or that of the locale")
         ->type_name("LANGUAGE");
@@ -137,7 +144,7 @@ class CommandLine {
     add_path(command, "SOURCE", render_.source, "", "scene or recording").required();
     auto* what = command.add_option_group("output", "what to write");
     add_path(*what, "--png", render_.png, "DIR", "folder for a sequence of PNG files");
-    add_path(*what, "--mp4", render_.mp4, "FILE", "video (needs ffmpeg)");
+    add_path(*what, "--mp4", render_.mp4, "FILE.mp4", "video (needs ffmpeg)");
     CLI::Option* still = &add_path(*what, "--still", render_.still, "FILE.png", "one picture");
     what->require_option(1);
     const auto add_time = [&](const char* name, double& value, const char* about) {
@@ -215,7 +222,8 @@ class CommandLine {
     auto* what = command.add_option_group("output", "what to write");
     add_path(*what, "--csv", export_.csv, "DIR",
              "folder for bodies.csv, nodes.csv, elements.csv, floor.csv, energy.csv, anchors.csv");
-    add_path(*what, "--xdmf", export_.xdmf, "FILE", "for ParaView 5.11 and later; the data go to FILE.h5");
+    add_path(*what, "--xdmf", export_.xdmf, "FILE.xdmf",
+             "for ParaView 5.11 and later; the data go to FILE.xdmf.h5");
     add_path(*what, "--vtk", export_.vtk, "DIR",
              "folder for frames.pvd and a .vtp file a frame, for what reads VTK's own format");
     what->require_option(1);
@@ -341,7 +349,7 @@ class CommandLine {
     add_path(command, "B", compare_.b, "", "scene or recording").required();
     add_path(command, "--json", compare_.json, "FILE|-",
              "write the differences as JSON; - for standard output");
-    add_path(command, "--mp4", compare_.mp4, "FILE",
+    add_path(command, "--mp4", compare_.mp4, "FILE.mp4",
              "video of both on one clock, A solid, B translucent (needs ffmpeg)");
     command.add_flag("--quiet", compare_.quiet, "no progress");
     command.callback([this] { action_ = [this] { return compare_command(compare_); }; });
@@ -389,7 +397,7 @@ class CommandLine {
                                     "recover paper-a.h5 -o repaired.h5");
     add_path(command, "RECORDING", recover_.recording, "", "recording; it stays as it is").required();
     add_path(command, "-o,--output", recover_.output, "REC.h5",
-             "closed copy of what can be read, default NAME.recovered.h5");
+             "closed copy of what can be read, in place of an older one; default NAME.recovered.h5");
     command.callback([this] { action_ = [this] { return recover_command(recover_); }; });
   }
 
@@ -417,6 +425,31 @@ class CommandLine {
   std::string chosen() const {
     const auto commands = app_.get_subcommands();
     return commands.empty() ? "" : commands.front()->get_name() + " ";
+  }
+
+  /// What is wrong before anything else in a call; empty: all options are known.
+  std::string unknown_option() const {
+    for (const std::string& word : app_.remaining(true)) {
+      if (!word.starts_with('-') || word == "-" || word == "--") continue;
+      const std::string option = word.substr(0, word.find('='));
+      std::string name = option;
+      name.erase(0, name.find_first_not_of('-'));
+      const std::string near = nearest_option(name);
+      return "unknown option " + option + (near.empty() ? "" : "; the nearest is --" + near);
+    }
+    return "";
+  }
+  std::string nearest_option(const std::string& name) const {
+    std::vector<std::string> known;
+    const auto add = [&](const CLI::App& owner) {
+      for (const CLI::Option* option : owner.get_options({}))
+        known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
+    };
+    for (const CLI::App* command : app_.get_subcommands()) {
+      add(*command);
+      for (const CLI::App* group : command->get_subcommands({})) add(*group);
+    }
+    return nearest_name(name, known);
   }
 
   /// CLI11's sentences on the number of values say little: "--json: 1 required FILE|- missing".

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,7 +14,10 @@ namespace topple::app {
 namespace {
 
 constexpr int k_least_side = 64, k_most_side = 8192;  // px
-constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
+constexpr std::string_view k_kinds[] = {".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
+                                        ".svg",  ".ppm", ".mp4",  ".avi", ".mov", ".mkv", ".webm", ".wmv",
+                                        ".mpeg", ".mpg", ".pdf",  ".ps",  ".eps", ".html"};
+constexpr float k_farthest = 1e4;  // of the camera, m or degrees
 
 }  // namespace
 
@@ -44,6 +48,20 @@ std::function<std::string(const std::string&)> whole_number_in(int least, int mo
     return value && *value >= least && *value <= most
                ? ""
                : fmt::format("\"{}\" is not a whole number in {}..{}", text, least, most);
+  };
+}
+
+std::string_view ending_of(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == name.npos ? "" : name.substr(dot);
+}
+
+std::function<std::string(const std::string&)> not_of_another_kind(std::string_view ending) {
+  return [ending](const std::string& name) {
+    std::string own(ending_of(name));
+    std::ranges::transform(own, own.begin(), [](unsigned char c) { return std::tolower(c); });
+    const bool other = own != ending && std::ranges::find(k_kinds, own) != std::end(k_kinds);
+    return other ? fmt::format("\"{}\" ends in {}, but what is written is {}", name, own, ending) : "";
   };
 }
 

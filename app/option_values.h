@@ -28,6 +28,12 @@ std::string not_empty(const std::string& text);
 std::string seconds(const std::string& text);
 std::string share(const std::string& text);
 std::function<std::string(const std::string&)> whole_number_in(int least, int most);
+/// Refuses names that end as pictures, videos or pages of another kind than `ending`, ".png", which is
+/// written.
+std::function<std::string(const std::string&)> not_of_another_kind(std::string_view ending);
+
+/// ".png" of "FILE.png"; empty: it has none.
+std::string_view ending_of(std::string_view name);
 
 // The following throw BadInput, which names the option.
 

@@ -1,4 +1,5 @@
 // Calls that are wrong in themselves, and help.
+#include "app/nearest_name.h"
 #include "program.h"
 #include "scenes.h"
 
@@ -38,9 +39,58 @@ TEST_F(UsageTest, unknown_words_are_named) {
   expect_one_line({""}, 2, "\"\" is not a command");
   expect_one_line({"--frob"}, 2, "--frob: unknown option");
   expect_one_line({"--quiet", "run", "s.toml"}, 2, "--quiet: unknown option; a command comes first");
-  expect_one_line({"run", "s.toml", "--frob"}, 2, "not expected: --frob (topple run --help)");
+  expect_one_line({"run", "s.toml", "--frob"}, 2, "topple: unknown option --frob (topple run --help)\n");
+  expect_one_line({"run", "s.toml", "--frob=2"}, 2, "topple: unknown option --frob (topple run --help)\n");
+  expect_one_line({"run", "s.toml", "-f"}, 2, "topple: unknown option -f (topple run --help)\n");
+  expect_one_line({"run", "s.toml", "---"}, 2, "unknown option ---");
   expect_one_line({"run", "s.toml", "more"}, 2, "not expected: more");
   expect_one_line({"scenes", "more"}, 2, "not expected: more");
+}
+
+TEST_F(UsageTest, the_option_that_is_nearest_to_a_mistyped_one_is_named) {
+  expect_one_line({"run", "s.toml", "--ouput", "x"}, 2,
+                  "topple: unknown option --ouput; the nearest is --output (topple run --help)\n");
+  expect_one_line({"run", "--ouput=x", "s.toml"}, 2, "unknown option --ouput; the nearest is --output");
+  expect_one_line({"run", "s.toml", "--out", "x"}, 2, "unknown option --out; the nearest is --output");
+  expect_one_line({"render", "s.toml", "--stlil", "a.png", "--at", "0"}, 2, "the nearest is --still");
+  expect_one_line({"render", "s.toml", "--color", "axial", "--mp4", "a.mp4"}, 2, "the nearest is --colour");
+  expect_one_line({"study", "overturn", "paper-a", "--emsemble", "4"}, 2, "the nearest is --ensemble");
+}
+
+TEST(NearestName, is_that_of_the_fewest_slips_and_none_where_there_are_many) {
+  EXPECT_EQ(edit_distance("", "abc"), 3);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(edit_distance("sittign", "sitting"), 1);
+  EXPECT_EQ(edit_distance("output", "output"), 0);
+  const std::vector<std::string> known{"json", "jobs", "quiet", "output"};
+  EXPECT_EQ(nearest_name("jsno", known), "json");
+  EXPECT_EQ(nearest_name("job", known), "jobs");
+  EXPECT_EQ(nearest_name("outptu", known), "output");
+  EXPECT_EQ(nearest_name("frob", known), "");
+  EXPECT_EQ(nearest_name("j", known), "");
+  EXPECT_EQ(nearest_name("", known), "");
+}
+
+TEST_F(UsageTest, files_are_not_called_what_they_are_not) {
+  const auto expect = [](std::vector<std::string> call, const std::string& ending,
+                         const std::string& written) {
+    expect_one_line(call, 2,
+                    call[call.size() - 2] + ": \"" + call.back() + "\" ends in " + ending +
+                        ", but what is written is " + written);
+  };
+  expect({"render", "s.toml", "--at", "0", "--still", "x.jpg"}, ".jpg", ".png");
+  expect({"render", "s.toml", "--at", "0", "--still", "x.mp4"}, ".mp4", ".png");
+  expect({"render", "s.toml", "--at", "0", "--still", "x.JPEG"}, ".jpeg", ".png");
+  expect({"render", "s.toml", "--mp4", "x.gif"}, ".gif", ".mp4");
+  expect({"compare", "s.toml", "s.toml", "--mp4", "x.avi"}, ".avi", ".mp4");
+  expect({"report", "s.toml", "--output", "x.pdf"}, ".pdf", ".html");
+  expect({"run", "s.toml", "--output", "x.png"}, ".png", ".h5");
+  expect({"export", "a.h5", "--xdmf", "x.png"}, ".png", ".xdmf");
+}
+
+TEST_F(UsageTest, help_says_that_a_recording_replaces_an_older_one) {
+  for (const char* command : {"run", "view", "recover"})
+    EXPECT_NE(topple({command, "--help"}).out.find("in place of an older"), std::string::npos) << command;
 }
 
 TEST_F(UsageTest, what_is_missing_is_named) {
