@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "solver/study/gnuplot.h"
 #include "solver/study/map_panel.h"
@@ -15,11 +16,12 @@ namespace {
 constexpr int k_height = 1064, k_single = 1240, k_double = 1960;  // px, sheets of one panel and of two
 constexpr int k_left = 112, k_bottom = 92, k_top = 300;           // around panels
 constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
+constexpr int k_margin = 20, k_mark_row = 26;  // px: right of marks; from one row of them to the next
 
 /// How a verdict is drawn: told apart in grey by luminance, and by marks.
 struct Look {
   Verdict verdict;
-  const char *fill, *mark;  // "": no mark
+  const char *fill, *mark;  // "": hatched; no mark
   const char* meaning;
 };
 constexpr Look k_looks[] = {{Verdict::stands, "#edf2f7", "", "stands: no side of a base lifts"},
@@ -27,6 +29,7 @@ constexpr Look k_looks[] = {{Verdict::stands, "#edf2f7", "", "stands: no side of
                             {Verdict::some, "#f2ab5e", "pt 9 lc rgb '#5a2d00'", "some bodies overturn"},
                             {Verdict::all, "#a3203a", "pt 2 lw 1.6 lc rgb '#ffffff'", "all bodies overturn"},
                             {Verdict::failed, "#f5e663", "pt 1 lw 2 lc rgb '#000000'", "the run failed"}};
+constexpr Look k_open = {Verdict::not_computed, "", "", "not computed"};
 
 /// Nodes of viridis (S. van der Walt and N. Smith 2015), whose luminance grows evenly.
 constexpr const char* k_viridis =
@@ -42,7 +45,9 @@ class Chart {
       : plan_(plan),
         map_(map),
         with_fragility_(plan.ensemble > 1),
-        panel_{{with_fragility_ ? k_double : k_single, k_height},
+        marks_(with_fragility_ ? Rows(1) : rows_of_marks()),
+        panel_{{with_fragility_ ? k_double : k_single,
+                k_height + k_mark_row * (static_cast<int>(marks_.size()) - 1)},
                k_left,
                k_map_right,
                k_bottom,
@@ -56,6 +61,8 @@ class Chart {
   }
 
  private:
+  using Rows = std::vector<std::vector<Look>>;
+
   const OverturnPoint& point(int i, int j) const {
     return map_.points[static_cast<std::size_t>(j * plan_.x.count() + i)];
   }
@@ -66,16 +73,17 @@ class Chart {
 
   std::string header(const std::string& origin) const {
     const std::string what = plan_.ensemble > 1 ? "How often a body overturns in " : "What overturns in ";
-    std::string out = text(bold(plain(what + plan_.scene.name), 1.5), k_left, k_height - 34);
+    const int top = panel_.sheet.height;
+    std::string out = text(bold(plain(what + plan_.scene.name), 1.5), k_left, top - 34);
     const std::string grey = std::string("noenhanced ") + k_grey;
-    out += text(plan_.scene.title, k_left, k_height - 74, grey);
+    out += text(plan_.scene.title, k_left, top - 74, grey);
     std::string settings = fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
     for (const std::string& change : plan_.set) settings += ", " + change;
     if (plan_.ensemble > 1)
       settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
                               1 - plan_.spread, 1 + plan_.spread);
-    out += text(settings, k_left, k_height - 100, grey);
-    out += text(origin + ", " + coverage(), k_left, k_height - 126, grey);
+    out += text(settings, k_left, top - 100, grey);
+    out += text(origin + ", " + coverage(), k_left, top - 126, grey);
     out += plan_.ensemble > 1 ? marks_of_ensemble() : marks_of_verdicts();
     return out + criteria_in_words();
   }
@@ -96,18 +104,39 @@ class Chart {
     return std::ranges::any_of(map_.points, [=](const OverturnPoint& p) { return p.verdict == verdict; });
   }
 
+  /// px, at most.
   static double width_of(const std::string& words) { return 64 + 9.2 * static_cast<double>(words.size()); }
+
+  /// What the marks of the map mean, in rows that the sheet is wide enough for.
+  Rows rows_of_marks() const {
+    Rows rows(1);
+    double x = k_left;
+    const auto add = [&](const Look& look) {
+      if (!shows(look.verdict)) return;
+      const double width = width_of(look.meaning);
+      if (x + width > k_single - k_margin) {
+        rows.emplace_back();
+        x = k_left;
+      }
+      rows.back().push_back(look);
+      x += width;
+    };
+    std::ranges::for_each(k_looks, add);
+    add(k_open);
+    return rows;
+  }
 
   std::string marks_of_verdicts() const {
     std::string out;
-    double x = k_left;
-    const double y = k_height - 160;
-    for (const Look& look : k_looks) {
-      if (!shows(look.verdict)) continue;
-      out += panel_.sheet.swatch(x, y, look.fill, look.mark, look.meaning);
-      x += width_of(look.meaning);
+    double y = panel_.sheet.height - 160;
+    for (const std::vector<Look>& row : marks_) {
+      double x = k_left;
+      for (const Look& look : row) {
+        out += panel_.sheet.swatch(x, y, look.fill, look.mark, look.meaning);
+        x += width_of(look.meaning);
+      }
+      y -= k_mark_row;
     }
-    if (shows(Verdict::not_computed)) out += panel_.sheet.swatch(x, y, "", "", "not computed");
     return out;
   }
 
@@ -120,8 +149,8 @@ class Chart {
       x += width_of("every run failed");
     }
     if (shows(Verdict::not_computed)) {
-      out += panel_.sheet.swatch(x, y, "", "", "not computed");
-      x += width_of("not computed");
+      out += panel_.sheet.swatch(x, y, k_open.fill, k_open.mark, k_open.meaning);
+      x += width_of(k_open.meaning);
     }
     const Sheet& s = panel_.sheet;
     if (has_medians())
@@ -232,8 +261,8 @@ class Chart {
           fmt::format(
               "set cbrange [0:1]\nset colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
               "set cbtics 0.25\nset cblabel 'share of runs in which a body overturns' offset 0.4,0\n",
-              (k_map_right + 128.) / panel_.sheet.width, panel_.bottom / k_height, 22. / panel_.sheet.width,
-              (panel_.top - panel_.bottom) / k_height);
+              (k_map_right + 128.) / panel_.sheet.width, panel_.bottom / panel_.sheet.height,
+              22. / panel_.sheet.width, (panel_.top - panel_.bottom) / panel_.sheet.height);
     return out + "plot " + plot + "\nunset label\nunset arrow\nunset object\nunset colorbox\n";
   }
 
@@ -397,6 +426,7 @@ class Chart {
   const OverturnPlan& plan_;
   const OverturnMap& map_;
   const bool with_fragility_;
+  const Rows marks_;  ///< of verdicts
   const MapPanel panel_;
 };
 

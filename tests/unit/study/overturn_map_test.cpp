@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "solver/study/overturn_chart.h"
 #include "study_cases.h"
@@ -173,6 +175,34 @@ TEST(OverturnMap, what_was_not_run_is_open_in_every_result) {
   const std::string chart = overturn_chart(plan, map, "here", ChartFormat::svg);
   EXPECT_NE(chart.find("1 of 4 runs"), std::string::npos);
   EXPECT_NE(chart.find("not computed"), std::string::npos);
+}
+
+/// Of the terminal of a chart: "size WIDTH,HEIGHT".
+std::pair<int, int> sheet_size(const std::string& chart) {
+  const std::size_t at = chart.find("size ") + 5;
+  return {std::stoi(chart.substr(at)), std::stoi(chart.substr(chart.find(',', at) + 1))};
+}
+
+// A letter is 9 px wide at most.
+TEST(OverturnMap, every_mark_is_explained_within_the_sheet) {
+  const OverturnPlan plan = pulses("0.25..0.5:3", "4 m/s^2..6 m/s^2:2");
+  OverturnMap map = gather(plan, std::vector<std::string>(6));
+  const int usual = sheet_size(overturn_chart(plan, map, "here", ChartFormat::png)).second;
+  const Verdict all[] = {Verdict::stands, Verdict::rocks,  Verdict::some,
+                         Verdict::all,    Verdict::failed, Verdict::not_computed};
+  for (std::size_t k = 0; k < std::size(all); ++k) map.points[k].verdict = all[k];
+  const std::string chart = overturn_chart(plan, map, "here", ChartFormat::png);
+  const auto [width, height] = sheet_size(chart);
+  EXPECT_GT(height, usual);  // marks in a second row do not take the room of other words
+  for (const char* const words :
+       {"stands: no side of a base lifts", "rocks and stays up", "some bodies overturn",
+        "all bodies overturn", "the run failed", "not computed"}) {
+    const std::string meaning = words;
+    const std::size_t at = chart.find('"' + meaning + "\" at screen ");
+    ASSERT_NE(at, std::string::npos) << meaning;
+    const double left = std::stod(chart.substr(at + meaning.size() + 13));
+    EXPECT_LT(left * width + 9 * static_cast<double>(meaning.size()), width) << meaning;
+  }
 }
 
 TEST(OverturnMap, a_run_that_is_given_up_has_no_row) {
