@@ -60,7 +60,7 @@ class Chart {
     return sheet_.label(words, x, y, how);
   }
 
-  double header_height() const { return 50 + k_line * (6 + static_cast<double>(limits_.size())); }
+  double header_height() const { return 50 + k_line * (7 + static_cast<double>(limits_.size())); }
 
   std::string header(const std::string& origin) const {
     double y = sheet_.height - k_top - 22;
@@ -73,15 +73,14 @@ class Chart {
       y -= k_line;
     };
     line(plan_.scene.title);
-    line(fmt::format("{} by {} over {} by {} points, {:.3g} s of {:g} s simulated{}; {}, {}", x_axis.key,
-                     y_axis.key, x_axis.count(), y_axis.count(), plan_.horizon,
-                     plan_.scene.setup.run.duration,
+    line(fmt::format("{} by {} over {} by {} points, {:.3g} s of {:g} s simulated{}", x_axis.key, y_axis.key,
+                     x_axis.count(), y_axis.count(), plan_.horizon, plan_.scene.setup.run.duration,
                      plan_.horizon < plan_.scene.setup.run.duration
                          ? fmt::format(": up to {:g} s after the last body has overturned", k_after_fall)
-                         : "",
-                     origin,
-                     map_.run == map_.of ? fmt::format("{} runs", map_.run)
-                                         : fmt::format("{} of {} runs", map_.run, map_.of)));
+                         : ""));
+    line(origin + ", " +
+         (map_.run == map_.of ? fmt::format("{} runs", map_.run)
+                              : fmt::format("{} of {} runs", map_.run, map_.of)));
     line(fmt::format(
         "Right is what {} runs as the scene has it agree on: at a quarter and at half of its step{}. They "
         "agree at {} of {} places across the step.",
@@ -142,8 +141,8 @@ class Chart {
   std::string legend() const {
     const MapPanel place = panel(plan_.methods.size());
     double y = place.top - 8;
-    const double first = place.left + 330;
-    const auto column = [&](std::size_t m) { return first + 36 * static_cast<double>(m); };
+    const double first = place.left + 326;
+    const auto column = [&](std::size_t m) { return first + 40 * static_cast<double>(m); };
     std::string out = text(bold("What became of the runs", 1), place.left, y + 30);
     for (std::size_t m = 0; m < plan_.methods.size(); ++m)
       out += text(bold(std::string(1, letter(m)), 1), column(m), y + 30, "right");

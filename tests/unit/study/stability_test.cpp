@@ -231,7 +231,7 @@ TEST(Stability, steps_beyond_the_bounce_make_energy_and_short_ones_do_not) {
   EXPECT_EQ(json["methods"][0]["counts"]["refused"], 6);
   const std::string chart = stability_chart(plan, map, stability_limits(plan), "here", ChartFormat::svg);
   for (const char* words :
-       {"Where time integration fails in long-bounce", "Central differences", "0 of 6 stable"})
+       {"Where time integration fails in long-bounce", "\"here, ", "Central differences", "0 of 6 stable"})
     EXPECT_NE(chart.find(words), std::string::npos) << words;
 }
 
