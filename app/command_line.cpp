@@ -294,7 +294,9 @@ class CommandLine {
         ->needs(ensemble);
     command.add_flag("--resume", study_.resume,
                      "overturn, precision, stability: go on with the runs of one that was interrupted");
-    command.add_flag("--quick", study_.quick, "what can be done in 40 s on two cores");
+    command.add_flag(
+        "--quick", study_.quick,
+        "what can be done in 40 s; elements and penalty finish the runs that are then under way");
     command
         .add_option("--jobs", jobs_,
                     "runs at a time, of each rank under mpirun; default one per core, of elements, "

@@ -109,7 +109,7 @@ int overturn_command(const StudyOptions& options) {
   if (!crew.leads()) {
     if (const auto heard = crew.listen()) {
       const study::OverturnPlan plan = plan_of(options, scene_from(*heard));
-      crew.serve(work_on(plan));
+      crew.serve(work_on(plan), options.quick);
     }
     return k_done;
   }

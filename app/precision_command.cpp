@@ -16,13 +16,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// With --quick a run that is still under way when the time is over is given up: it may take minutes.
-MakeWork work_on(const study::PrecisionPlan& plan, bool quick) {
-  const auto start = Clock::now();
-  return [&plan, quick, start] {
-    return [&plan, quick, start](int k, const std::function<bool()>& give_up) {
-      return study::run_case(plan, k, [&] { return give_up() || (quick && seconds_since(start) > k_quick); });
-    };
+MakeWork work_on(const study::PrecisionPlan& plan) {
+  return [&plan] {
+    return [&plan](int k, const std::function<bool()>& give_up) { return study::run_case(plan, k, give_up); };
   };
 }
 
@@ -109,7 +105,7 @@ int precision_command(const StudyOptions& options) {
   if (!crew.leads()) {
     if (const auto heard = crew.listen()) {
       const study::PrecisionPlan plan = study::plan_precision(scene_from(*heard));
-      crew.serve(work_on(plan, options.quick));
+      crew.serve(work_on(plan), options.quick);
     }
     return k_done;
   }
@@ -122,7 +118,7 @@ int precision_command(const StudyOptions& options) {
                                              .settings = settings_of(plan),
                                              .order = case_order(plan),
                                              .told = told(plan.scene),
-                                             .make = work_on(plan, options.quick)},
+                                             .make = work_on(plan)},
                                             options);
   if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);

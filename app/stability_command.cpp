@@ -110,7 +110,7 @@ int stability_command(const StudyOptions& options) {
       heard->pop_back();
       study::StabilityPlan plan = study::plan_stability(scene_from(*heard), options.x, options.y);
       plan.horizon = horizon;
-      crew.serve(work_on(plan));
+      crew.serve(work_on(plan), options.quick);
     }
     return k_done;
   }
@@ -125,7 +125,8 @@ int stability_command(const StudyOptions& options) {
                                              .settings = settings_of(plan),
                                              .order = case_order(plan),
                                              .told = told_plan(plan),
-                                             .make = work_on(plan)},
+                                             .make = work_on(plan),
+                                             .start = start},
                                             options);
   if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);

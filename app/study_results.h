@@ -9,7 +9,7 @@
 
 namespace topple::app {
 
-/// s of the 40 that --quick has; the rest is for the runs that are under way then, and for the charts.
+/// s of the 40 that --quick has; the rest is for the charts, and for runs under way that are not given up.
 inline constexpr double k_quick = 34;
 
 /// DIR/KIND, to which the extensions are added. Creates the folder; throws BadInput unless the results can be

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <thread>
 
-#include "app/clock.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/progress.h"
@@ -26,6 +25,11 @@ namespace {
 
 constexpr int k_common = 0;  // tag of what is for a rank; 1 and on: its workers
 constexpr const char* k_end = "end";
+
+/// What runs are asked after each step.
+std::function<bool()> time_is_over(bool quick, Clock::time_point start) {
+  return [quick, start] { return interrupted() || (quick && seconds_since(start) > k_quick); };
+}
 
 }  // namespace
 
@@ -72,12 +76,13 @@ std::optional<std::vector<std::string>> Crew::listen() {
   return told.empty() ? std::nullopt : std::optional(std::move(told));
 }
 
-void Crew::serve(const MakeWork& make) {
+void Crew::serve(const MakeWork& make, bool quick) {
+  const auto give_up = time_is_over(quick, Clock::now());
   std::vector<std::jthread> threads;
   for (int worker = 1; worker <= jobs_; ++worker)
-    threads.emplace_back([this, worker, work = make()] {
+    threads.emplace_back([this, worker, &give_up, work = make()] {
       for (std::string task; (task = ranks_->wait(0, worker)) != k_end;)
-        ranks_->send(0, worker, work(std::stoi(task), interrupted));
+        ranks_->send(0, worker, work(std::stoi(task), give_up));
       ranks_->send(0, worker, k_end);
     });
 }
@@ -94,8 +99,7 @@ CaseWork Crew::work_of(int worker, const MakeWork& make) {
 }
 
 std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
-  const auto start = Clock::now();
-  const auto in_time = [&] { return !options.quick || seconds_since(start) < k_quick; };
+  const auto give_up = time_is_over(options.quick, plan.start);
   SweepEnd end;
   end.file = plan.stem + ".rows";
   ordered_json settings = plan.settings;
@@ -117,7 +121,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
         static_cast<int>(left.size()), workers,
         [&](int n, int worker) {
           const int k = left[static_cast<std::size_t>(n)];
-          const std::string row = works[static_cast<std::size_t>(worker)](k, interrupted);
+          const std::string row = works[static_cast<std::size_t>(worker)](k, give_up);
           if (row.empty()) return;
           const std::scoped_lock lock(keeping);
           try {
@@ -129,7 +133,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
         [&](int done) {
           progress.update(done);
           const std::scoped_lock lock(keeping);
-          return !interrupted() && in_time() && !trouble;
+          return !give_up() && !trouble;
         });
     if (trouble) std::rethrow_exception(trouble);
   }

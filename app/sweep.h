@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/clock.h"
 #include "app/commands.h"
 #include "solver/io/scene.h"
 #include "solver/study/chart.h"
@@ -39,8 +40,9 @@ class Crew {
   int gather_workers(const std::vector<std::string>& told);
   /// The others: none when rank 0 has no work.
   std::optional<std::vector<std::string>> listen();
-  /// The others: works until rank 0 says that it was all.
-  void serve(const MakeWork& make);
+  /// The others: works until rank 0 says that it was all. With `quick` runs are given up when its time is
+  /// over.
+  void serve(const MakeWork& make, bool quick);
   /// Rank 0: the work of one of the workers, those of this process first.
   CaseWork work_of(int worker, const MakeWork& make);
 
@@ -61,6 +63,7 @@ struct SweepPlan {
   std::vector<int> order;           ///< of all cases, as they are begun
   std::vector<std::string> told;    ///< to other ranks
   MakeWork make;
+  Clock::time_point start = Clock::now();  ///< of the study, from which the time of --quick counts
 };
 
 struct SweepEnd {
@@ -75,8 +78,8 @@ struct SweepEnd {
 };
 
 /// Runs the cases that have no row yet until all have one, the time of --quick is over or Ctrl+C comes, which
-/// must be deferred (interrupt.h): then none, and it is said where to go on. Throws std::runtime_error when a
-/// row cannot be kept.
+/// must be deferred (interrupt.h): then none, and it is said where to go on. Runs that are under way then are
+/// given up: one may take minutes. Throws std::runtime_error when a row cannot be kept.
 std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
 
 /// The results of a sweep: write_study(), and rows are kept no longer once all are there.

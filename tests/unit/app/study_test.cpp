@@ -1,7 +1,11 @@
 // topple study as a program: files, table, and what may go wrong with them.
 #include <algorithm>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
+#include "app/study_results.h"
+#include "app/sweep.h"
 #include "program.h"
 #include "scenes.h"
 
@@ -45,6 +49,27 @@ TEST_F(StudyTest, numbers_stand_without_gnuplot_and_charts_come_with_it) {
   EXPECT_GE(json["machine"]["cores"], 1);
   for (const auto& row : json["rows"]) EXPECT_EQ(row.size(), 11u);
   for (const auto& found : json["cases"]) EXPECT_NE(found["source"], "");
+}
+
+TEST_F(StudyTest, quick_gives_up_runs_that_are_under_way_when_its_time_is_over) {
+  const auto endless = [](int, const std::function<bool()>& give_up) {
+    while (!give_up()) std::this_thread::yield();
+    return std::string();
+  };
+  Crew crew(2);
+  const SweepPlan plan{.kind = "test",
+                       .stem = "test",
+                       .settings = {{"of", "a test"}},
+                       .order = {0, 1, 2},
+                       .told = {},
+                       .make = [&] { return endless; },
+                       .start = Clock::now() - std::chrono::duration_cast<Clock::duration>(Seconds(k_quick))};
+  StudyOptions options;
+  options.quick = options.quiet = true;
+  const std::optional<SweepEnd> end = sweep(crew, plan, options);
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->run, 0);
+  EXPECT_NE(end->left_in_words(true, "the last").find("--quick left out the last"), std::string::npos);
 }
 
 TEST_F(StudyTest, places_that_cannot_be_written_to_are_refused_before_anything_runs) {
