@@ -134,8 +134,9 @@ std::string wrapped(const std::string& sentence) {
 }
 
 std::string advice_text(const study::Advice& advice) {
-  std::string text =
-      advice.alpha ? "recommended alpha: " + study::kgf_text(*advice.alpha) : "no alpha to recommend";
+  std::string text = advice.alpha       ? "recommended alpha: " + study::kgf_text(*advice.alpha)
+                     : advice.undecided ? "no alpha to recommend yet"
+                                        : "no alpha to recommend";
   if (advice.alpha && advice.time_step && !advice.resolved)
     text += fmt::format(" with time_step = {:.2g} ms", 1e3 * *advice.time_step);
   text += "\n";

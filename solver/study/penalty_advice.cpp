@@ -151,11 +151,12 @@ Advice advise(const PenaltyStudy& study) {
   for (const double alpha : study.alphas) tried.push_back(verdict(study, alpha));
   for (std::size_t k = 0; k < tried.size() && !advice.alpha; ++k)
     if (tried[k].good() && (k + 1 == tried.size() || tried[k + 1].good())) advice.alpha = tried[k].alpha;
+  advice.undecided = !advice.alpha && std::ranges::any_of(tried, &AlphaVerdict::undecided);
   std::vector<std::string>& reasons = advice.reasons;
   if (advice.alpha) {
     reasons.push_back(fmt::format("It is the smallest tried that keeps every bound: {}.",
                                   fmt::join(verdict(study, *advice.alpha).kept, "; ")));
-  } else if (std::any_of(tried.begin(), tried.end(), [](const AlphaVerdict& v) { return v.undecided(); })) {
+  } else if (advice.undecided) {
     reasons.push_back("Runs are missing that would decide it.");
   } else {
     reasons.push_back(fmt::format("No alpha from {} to {} keeps every bound; the last misses: {}.",

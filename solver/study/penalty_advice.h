@@ -21,9 +21,10 @@ struct AlphaVerdict {
 };
 
 struct Advice {
-  /// N. The smallest tried that keeps every bound, as the next larger one does; none: no such alpha, or runs
-  /// are missing.
+  /// N. The smallest tried that keeps every bound, as the next larger one does; none: no such alpha, or
+  /// `undecided`.
   std::optional<double> alpha;
+  bool undecided = false;  ///< none, for runs are missing that would decide it
   /// s, the greatest that resolves its bounce, at most the scene's; none with an adaptive step.
   std::optional<double> time_step;
   bool resolved = false;              ///< the scene's own step does

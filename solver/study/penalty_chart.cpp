@@ -15,9 +15,9 @@ namespace {
 
 using Case = PenaltyRow::Case;
 
-constexpr int k_width = 1680, k_height = 1440;
+constexpr int k_width = 1680, k_height = 1466;
 constexpr Sheet k_sheet{k_width, k_height};
-constexpr int k_columns = 3, k_header = 250, k_left = 92, k_right = 30, k_gap = 104;
+constexpr int k_columns = 3, k_header = 276, k_left = 92, k_right = 30, k_gap = 104;
 constexpr int k_above = 64, k_below = 92;  // titles; tics with their label
 constexpr int k_most_groups = 4;           // drawn; the table has all
 
@@ -105,14 +105,19 @@ class Chart {
 
   std::string header(const std::string& origin) const {
     std::string title = "Penalty contact of " + plain(study_.scene) + ": ";
-    title += advice_.alpha ? "recommended α = " + kgf_text(*advice_.alpha) : "no α to recommend";
+    title += advice_.alpha       ? "recommended α = " + kgf_text(*advice_.alpha)
+             : advice_.undecided ? "no α to recommend yet, runs are missing"
+                                 : "no α to recommend";
     if (advice_.alpha && advice_.time_step && !advice_.resolved)
       title += fmt::format(", with {} = {:.2g} ms", plain("time_step"), 1e3 * *advice_.time_step);
     std::string out = k_sheet.label(bold(title, 1.5), k_left, k_height - 34, "");
     const std::string grey = std::string("noenhanced ") + k_grey;
-    out += k_sheet.label(study_.title + ". " + settings(), k_left, k_height - 76, grey);
-    out += k_sheet.label(origin + ". Bodies stand alone on the floor", k_left, k_height - 102, grey);
-    double y = k_height - 134;
+    out += k_sheet.label(study_.title, k_left, k_height - 76, grey);
+    out += k_sheet.label(settings(), k_left, k_height - 102, grey);
+    const std::string runs =
+        study_.run == study_.of ? "" : fmt::format(", {} of {} runs", study_.run, study_.of);
+    out += k_sheet.label(origin + runs + ". Bodies stand alone on the floor", k_left, k_height - 128, grey);
+    double y = k_height - 160;
     for (const std::string& sentence : in_short())
       out += k_sheet.label(sentence, k_left, std::exchange(y, y - 26), "noenhanced");
     return out + k_sheet.place(k_left, k_width - k_right, k_height - k_header, k_height - 1) +

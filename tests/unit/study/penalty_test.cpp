@@ -1,6 +1,7 @@
 // The penalty study: rows, bounds, the alpha that it recommends, its chart.
 #include "solver/study/penalty.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -110,6 +111,10 @@ TEST(PenaltyStudy, the_chart_is_drawn_of_what_was_run) {
   const PenaltyStudy none = slippery([](int, int) { return false; }, 1);
   EXPECT_TRUE(
       run_gnuplot(penalty_chart(none, advise(none), "topple", ChartFormat::png)).starts_with("\x89PNG"));
+  const std::string chart = penalty_chart(none, advise(none), "topple", ChartFormat::svg);
+  for (const std::string& part : {std::string("no α to recommend yet, runs are missing"),
+                                  fmt::format("topple, {} of {} runs", none.run, none.of)})
+    EXPECT_NE(chart.find(part), std::string::npos) << part;
 }
 
 /// Rows that say of each alpha by how much the half-sine is off; all else is exact.
@@ -155,9 +160,11 @@ TEST(PenaltyAdvice, is_the_smallest_alpha_from_which_every_bound_is_kept) {
 TEST(PenaltyAdvice, is_none_where_no_alpha_will_do_or_runs_are_missing) {
   const Advice none = advise(judged({{50, 0.3}, {1000, 0.2}, {2000, 0.1}}));
   EXPECT_FALSE(none.alpha);
+  EXPECT_FALSE(none.undecided);
   EXPECT_NE(none.reasons.front().find("No alpha from 50 kgf to 2000 kgf"), std::string::npos);
   const Advice missing = advise(judged({{50, 0.3}, {1000, 0.2}, {2000, {}}}));
   EXPECT_FALSE(missing.alpha);
+  EXPECT_TRUE(missing.undecided);
   EXPECT_EQ(missing.reasons.front(), "Runs are missing that would decide it.");
 }
 
