@@ -104,9 +104,9 @@ void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame&
   }
 }
 
-double newtons_per_decimetre(const RunExtent& extent) {
-  const double height = extent.high.z() - extent.low.z();
-  const double wanted = 0.1 * extent.contact_force_top() / (k_arrow * std::max(height, 0.1));
+double newtons_per_decimetre(const RunExtent& extent, double force) {
+  const double height = std::max(extent.high.z() - extent.low.z(), 0.1);
+  const double wanted = 0.1 * std::max(extent.contact_force_top() / k_arrow, force) / height;
   if (!(wanted > 0)) return 1;
   const double power = std::pow(10, std::floor(std::log10(wanted)));
   for (const double factor : {1., 2., 5.})

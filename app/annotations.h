@@ -24,9 +24,10 @@ void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame&
 /// `newtons` for each 0.1 m. Between two bodies there is one on each.
 void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons, render::SceneFrame& out);
 
-/// N for each 0.1 m of an arrow, a round number, so that most forces of the run are a third as long as what
-/// the run moves through is high.
-double newtons_per_decimetre(const RunExtent& extent);
+/// N for each 0.1 m of an arrow, a round number, so that most forces of the run are at most a third as long
+/// as what the run moves through is high. `force`: of a picture that stands alone, N; no longer than that
+/// height.
+double newtons_per_decimetre(const RunExtent& extent, double force = 0);
 
 /// Where centres of gravity and tops of bodies have been, fading with age.
 void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow& row, bool whole_run,

@@ -122,7 +122,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
         out.panels.push_back(panel);
       }
   if (settings.contact_forces) {
-    const double newtons = newtons_per_decimetre(extent_);
+    const double newtons = newtons_per_decimetre(extent_, settings.alone ? greatest_contact_force(row) : 0);
     add_contact_forces(model, drawn, newtons, out);
     out.legend.notes.push_back(say(window_words::k_arrow_scale, newtons));
   }

@@ -179,6 +179,7 @@ class CommandLine {
       read_size(size_, !render_.mp4.empty(), render_);
       read_camera(camera_, render_);
       read_picture(picture_, render_.picture);
+      render_.picture.alone = !render_.still.empty();
       if (!renderer_.empty()) render_.renderer = renderer_named(renderer_);
       if (!language_.empty()) render_.language = language_named(language_);
       if (*at) render_.at = at_;

@@ -32,6 +32,7 @@ struct PictureSettings {
   double maximum = 1;       ///< fixed: in the quantity's unit
   double exaggeration = 1;  ///< of deformation, 1..k_most_exaggeration
   bool contact_forces = false;
+  bool alone = false;  ///< one picture of the run: an impact's arrows get a scale of their own
   bool panels = true;
   Trails trails = Trails::none;
   std::optional<Diagram> diagram = {};

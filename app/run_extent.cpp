@@ -42,6 +42,17 @@ BodyPoints body_points(const Model& model, const io::FrameRow& row, std::size_t 
   return {to_float(centre), to_float(centre + height * up)};
 }
 
+double greatest_contact_force(const io::FrameRow& row) {
+  double greatest = 0;
+  const auto add = [&](const std::vector<float>& values, std::size_t stride) {
+    for (std::size_t c = 0; c + 2 < values.size(); c += stride)
+      greatest = std::max<double>(greatest, std::hypot(values[c], values[c + 1], values[c + 2]));
+  };
+  add(row.contact_force, 3);
+  add(row.member_contact, 4);
+  return greatest;
+}
+
 void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
   expect_same_model(model, row);
   const Vec3 shift = floor_shift(row);
@@ -56,14 +67,7 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
   }
   const std::array<double, k_beam_quantities> peaks = peaks_of(model, row);
   for (std::size_t q = 0; q < k_beam_quantities; ++q) peak_[q].push_back(peaks[q]);
-  double contact = 0;
-  const auto add_contacts = [&](const std::vector<float>& values, std::size_t stride) {
-    for (std::size_t c = 0; c + 2 < values.size(); c += stride)
-      contact = std::max<double>(contact, std::hypot(values[c], values[c + 1], values[c + 2]));
-  };
-  add_contacts(row.contact_force, 3);
-  add_contacts(row.member_contact, 4);
-  peak_contact_.push_back(contact);
+  peak_contact_.push_back(greatest_contact_force(row));
   bodies_ = static_cast<std::size_t>(model.furniture_total());
   for (std::size_t b = 0; b < bodies_; ++b) points_.push_back(body_points(model, row, b));
   way.push_back(static_cast<float>(row.time));

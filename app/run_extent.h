@@ -15,6 +15,9 @@ namespace topple::app {
 using BodyPoints = std::array<render::Float3, 2>;
 BodyPoints body_points(const Model& model, const io::FrameRow& row, std::size_t body);
 
+/// At one contact point, N.
+double greatest_contact_force(const io::FrameRow& row);
+
 /// The ranges of the colours, the space that bodies move through, their paths, and the traces of the floor
 /// and of the load factor. Rows are added one after the other; add() throws io::InputError on a row of
 /// another model, such as an older version may have built from the same scene.

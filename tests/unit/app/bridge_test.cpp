@@ -352,6 +352,31 @@ TEST_F(BridgeTest, arrows_of_a_resting_body_add_up_to_its_weight) {
   EXPECT_TRUE(bridge.frame(start_, scene_.setup.parameters).arrows.empty());
 }
 
+TEST_F(BridgeTest, arrows_of_a_blow_have_the_scale_of_the_run_and_in_a_picture_alone_one_that_fits) {
+  RunExtent extent;
+  for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
+  io::FrameRow blow = start_;
+  for (float& force : blow.contact_force) force *= 50;
+  extent.add(model(), scene_.setup.parameters, blow);
+  const Bridge bridge(scene_, extent);
+  const auto frame = [&](const io::FrameRow& row, bool alone) {
+    return bridge.frame(row, scene_.setup.parameters, {.contact_forces = true, .alone = alone});
+  };
+  const std::vector<std::string> usual = frame(start_, false).legend.notes;
+  EXPECT_EQ(frame(blow, false).legend.notes, usual);
+  EXPECT_EQ(frame(start_, true).legend.notes, usual);
+  const render::SceneFrame struck = frame(blow, true);
+  EXPECT_NE(struck.legend.notes, usual);
+  double longest = 0;
+  for (const render::Arrow& arrow : struck.arrows) {
+    const Vec3 length(arrow.to[0] - arrow.from[0], arrow.to[1] - arrow.from[1], arrow.to[2] - arrow.from[2]);
+    longest = std::max(longest, length.norm());
+  }
+  const double height = extent.high.z() - extent.low.z();
+  EXPECT_LE(longest, 1.001 * height);
+  EXPECT_GT(longest, 0.39 * height);  // of a step from 2 to 5
+}
+
 // One bar falls across another, 0.3 m from their ends: on each of them stands the force that the solver has.
 TEST(MemberArrows, between_two_members_are_equal_and_opposite_and_those_of_the_solver) {
   const io::Scene scene = io::parse_scene(R"(topple = 1
