@@ -269,6 +269,11 @@ bool is_dynamic(Edit::Key key) {
          group_of(key) == Group::bodies || group_of(key) == Group::integration;
 }
 
+/// Else contact parameters change nothing.
+bool can_touch(const Model& model) {
+  return !model.planes.empty() || model.bodies.size() > 1;
+}
+
 bool draw_precision_button() {
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6.2f * ImGui::GetFontSize());
   const bool pressed = ImGui::Button((say(k_precision) + "##precision").c_str());
@@ -287,6 +292,7 @@ bool draw_parameters(Player& player, std::string& refused) {
   for (const auto& [key, index] : editable(setup.model, parameters)) {
     if (is_static(setup) && is_dynamic(key)) continue;
     const Group group = group_of(key);
+    if (group == Group::contact && !can_touch(setup.model)) continue;
     const std::pair<Group, int> of{group, group == Group::floor ? index : 0};
     if (heading != of) open = draw_heading(group, index, parameters);
     heading = of;
@@ -294,7 +300,10 @@ bool draw_parameters(Player& player, std::string& refused) {
     if (key == Edit::Key::time_step) precision = draw_precision_button();
   }
   ImGui::EndDisabled();
-  if (!player.can_edit() && !player.way().empty()) ImGui::TextWrapped("%s", say(k_past_values).c_str());
+  if (!heading)
+    ImGui::TextWrapped("%s", say(k_no_parameters).c_str());
+  else if (!player.can_edit() && !player.way().empty())
+    ImGui::TextWrapped("%s", say(k_past_values).c_str());
   return precision;
 }
 

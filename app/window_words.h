@@ -243,6 +243,8 @@ inline constexpr Phrase k_back_to_scene{"Back to the scene's value", "シーン�
 inline constexpr Phrase k_past_values{
     "These were the values at this instant. Continue from here (C) to change them.",
     "この時刻での値です。変更するには「ここから続行」（C）を実行してください。"};
+inline constexpr Phrase k_no_parameters{"This scene has no parameter that can be changed while it runs.",
+                                        "このシーンには、計算中に変更できるパラメーターがありません。"};
 
 // picture
 inline constexpr Phrase k_colour{"colour", "着色"};

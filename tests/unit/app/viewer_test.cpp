@@ -227,6 +227,12 @@ TEST_F(ViewerTest, dragging_the_amplitude_slider_shakes_harder_while_it_runs_and
   EXPECT_NEAR(amplitude_gal(), harder, 1e-9);
 }
 
+TEST_F(ViewerTest, parameters_of_contact_are_shown_where_something_can_touch) {
+  start(&topple::Run::advance, k_beam);
+  EXPECT_LT(find("side", "α", "contact.alpha").x, 0);
+  EXPECT_GE(find("side", "time step", "run.time_step").x, 0);
+}
+
 TEST_F(ViewerTest, the_timeline_scrubs_and_a_branch_continues_from_there) {
   start();
   for (int i = 0; i < 3; ++i) type(']');
