@@ -22,7 +22,7 @@ namespace window_words {
 // how bodies and anchors stand
 inline constexpr Phrase k_tilted{"tilt {0:.1f}°", "傾斜 {0:.1f}°"};
 inline constexpr Phrase k_fallen{"fallen, tilt {0:.0f}°", "転倒、傾斜 {0:.0f}°"};
-inline constexpr Phrase k_toppling{"toppling, {0:.1f}° beyond {1:.1f}°",
+inline constexpr Phrase k_toppling{"toppling, tilt {0:.1f}° (critical {1:.1f}°)",
                                    "転倒中、{0:.1f}°（限界 {1:.1f}° 超過）"};
 inline constexpr Phrase k_rocking{"rocking, {0:.1f}° of {1:.1f}°", "ロッキング、{0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};

@@ -119,7 +119,9 @@ const Phrase& anchor_state(float state) {
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
   const float* const values = &row.anchor[4 * k];
-  const std::string line = anchor_type_in_words(anchor) + " " + anchor.name + say(k_colon);
+  const bool named_by_type = anchor.name == anchor_type(anchor);
+  const std::string line =
+      anchor_type_in_words(anchor) + (named_by_type ? "" : " " + anchor.name) + say(k_colon);
   if (values[3] != io::k_anchor_holds) return line + say(anchor_state(values[3]));
   const double force = std::abs(values[0]);
   return line + say(values[0] > 0 ? k_pulls : k_pushes, force) +

@@ -176,6 +176,9 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
   row.anchor[0] = 0.5f;
   row.anchor[3] = io::k_anchor_holds;
   EXPECT_EQ(anchor_in_words(model, row, 0), "strap weak: pulls 0 N, 50 % of its strength");
+  Model called_by_type = model;
+  called_by_type.anchors[1].name = "strap";
+  EXPECT_EQ(anchor_in_words(called_by_type, row, 1), "strap: taken away");
 }
 
 TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
@@ -249,6 +252,14 @@ TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
   EXPECT_TRUE(after.grounds[0].is_floor);
   EXPECT_NEAR(after.grounds[0].centre[0] - before.grounds[0].centre[0], 0.25, 1e-6);
   EXPECT_NEAR(after.stations[0].position[0] - before.stations[0].position[0], 0.25, 1e-6);
+}
+
+TEST_F(BridgeTest, captions_tell_a_tilt_from_the_critical_angle) {
+  io::FrameRow row = end_;
+  row.body[7] = 34.8 / k_degrees;
+  row.body[8] = 0;
+  row.body[10] = 10.3 / k_degrees;
+  EXPECT_EQ(body_in_words(model(), row, 0), "free: toppling, tilt 34.8° (critical 10.3°)");
 }
 
 TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
