@@ -21,6 +21,7 @@ constexpr double k_good_balance = 1e-3;         // energy that nothing explains
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
 constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
 constexpr double k_elastic_strain = 0.01;       // more than structural metals and wood have
+constexpr double k_most_g = 5;                  // of a shake; records above it are refused
 constexpr double k_numbers_of_interest = 1e-9;  // J, below it shares are rounding
 
 using Warnings = std::vector<std::string>;
@@ -40,6 +41,15 @@ void warn_of_depth(const Run& run, Warnings& list) {
           fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
                       "larger alpha keeps them apart",
                       model.bodies[b].name, 1 - bodies[b].peak_pinch));
+}
+
+void warn_of_shakes(const Run& run, Warnings& list) {
+  const std::vector<Shake>& shakes = run.parameters().shakes;
+  for (std::size_t k = 0; k < shakes.size(); ++k)
+    if (shakes[k].kind != Shake::Kind::record && shakes[k].amplitude > k_most_g * k_standard_gravity)
+      list.push_back(
+          fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
+                      k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
 }
 
 void warn_of_stress(const Run& run, Warnings& list) {
@@ -138,6 +148,7 @@ void warn_of_energy(const Run& run, Warnings& list) {
 std::vector<std::string> run_warnings(const Run& run) {
   Warnings list;
   warn_of_depth(run, list);
+  warn_of_shakes(run, list);
   warn_of_stress(run, list);
   warn_of_hinges(run, list);
   if (is_static(run.setup())) return list;

@@ -22,6 +22,7 @@ using namespace window_words;
 
 constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
 constexpr double k_least_gal = 10, k_least_tilt = 1;
+constexpr double k_headroom = 1.08;  // of the lane of the floor, over its greatest acceleration
 
 constexpr std::size_t k_told = 5;  // bodies with a colour of their own
 
@@ -74,9 +75,9 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
     return [k](const io::FrameRow& row) { return row.floor_acceleration[k] / k_gal; };
   };
   double most = k_least_gal;
-  for (int k = 0; k < 3; ++k) most = std::max(most, 1.08 * peak(rows, component(k)));
-  lane.low = -most;
-  lane.high = most;
+  for (int k = 0; k < 3; ++k) most = std::max(most, peak(rows, component(k)));
+  lane.high = k_headroom * most;
+  lane.low = -lane.high;
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
   std::string moving;
   for (int k = 0; k < 3; ++k) {
@@ -88,7 +89,7 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   add_text(list, label_left, lane.top, theme().text, say(k_floor_lane));
   if (!moving.empty()) add_text(list, label_left, lane.top + line, theme().text, moving);
   const std::string top = fmt::format("{:.0f}", most);
-  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, theme().text, top);
+  add_text(list, lane.left - text_width(top) - 6, lane.y(most) - line / 2, theme().text, top);
 }
 
 void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {

@@ -130,6 +130,35 @@ TEST(Summary, a_step_longer_than_the_samples_of_a_record_is_told) {
   EXPECT_EQ(warnings("run.time_step=auto").find("time_step"), std::string::npos);
 }
 
+TEST(Summary, what_no_material_and_no_floor_does_is_told) {
+  const auto warnings = [](const char* scene_name, std::vector<std::string> changes) {
+    const io::Scene scene = io::load_scene(scene_name, changes);
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return summary(scene, run, "completed", 0.5)["warnings"].dump();
+  };
+  // it lands at 4.4 s with more than 1 % of Young's modulus
+  const std::string landed = warnings("near-fault", {"run.duration=5 s"});
+  EXPECT_NE(landed.find("the stress in body \\\"free\\\", "), std::string::npos) << landed;
+  EXPECT_EQ(warnings("near-fault", {"run.duration=1 s"}), "[]");
+  const std::string bare = warnings("paper-a", {"shake.1.amplitude=190", "run.duration=10 ms"});
+  EXPECT_NE(bare.find("shake 1 has 1.9e+04 gal, 19.4 times gravity; a number without a unit is in m/s^2"),
+            std::string::npos)
+      << bare;
+}
+
+TEST(Summary, the_method_of_what_was_computed_is_named) {
+  const auto head = [](const char* model) {
+    const io::Scene scene = io::load_scene("paper-a", {"cabinet.free.model=" + std::string(model),
+                                                       "cabinet.walled.model=rigid", "run.duration=10 ms"});
+    topple::Run run(scene.setup);
+    return summary_table(summary(scene, run, "completed", 0.5));
+  };
+  EXPECT_NE(head("rigid").find("\ncentral differences, step 0.001 s"), std::string::npos) << head("rigid");
+  EXPECT_NE(head("frame").find("\ngeneralized-alpha (frames), central differences, step"), std::string::npos)
+      << head("frame");
+}
+
 TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
   const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
   EXPECT_NE(table.find("\nfree "), std::string::npos) << table;

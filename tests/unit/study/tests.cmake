@@ -21,4 +21,5 @@ target_link_libraries(study_test PRIVATE topple_study GTest::gtest_main)
 target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp PROPERTIES
   COMPILE_DEFINITIONS TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-gtest_discover_tests(study_test)
+gtest_discover_tests(study_test TEST_FILTER -Penalty*)
+add_test(NAME Penalty COMMAND study_test --gtest_filter=Penalty*)  # its tests share the runs of a study
