@@ -89,7 +89,7 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   add_text(list, label_left, lane.top, theme().text, say(k_floor_lane));
   if (!moving.empty()) add_text(list, label_left, lane.top + line, theme().text, moving);
   const std::string top = fmt::format("{:.0f}", most);
-  add_text(list, lane.left - text_width(top) - 6, lane.y(most) - line / 2, theme().text, top);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, theme().text, top);
 }
 
 void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
