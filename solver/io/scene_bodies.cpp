@@ -7,6 +7,7 @@
 #include "solver/damping.h"
 #include "solver/elastic_basis.h"
 #include "solver/io/scene_read.h"
+#include "solver/io/units.h"
 #include "solver/proximity.h"
 
 namespace topple::io {
