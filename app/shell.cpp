@@ -68,6 +68,7 @@ void Shell::show(LiveSource source, const std::string& path) {
     closing_.push_back(std::async(
         std::launch::async, [run = Session::leave(std::move(session_))] { return run->close("stopped"); }));
   }
+  dressed_.reset();
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);

@@ -75,7 +75,8 @@ class Shell {
   const float scale_;
   const std::function<void()> wake_;
   const std::string program_;
-  Appearance appearance_, dressed_;  ///< dressed_: as own_fonts_ are
+  Appearance appearance_;
+  std::optional<Appearance> dressed_;  ///< as own_fonts_ are; none: a session's have replaced them
   const Viewer::Keep keep_;
   render::OverlayFonts own_fonts_;  ///< of a window without a session
   Chooser chooser_;

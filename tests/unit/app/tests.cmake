@@ -46,7 +46,7 @@ target_compile_definitions(app_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple
   TOPPLE_FAILING_WRITES="$<TARGET_FILE:failing_writes>" TOPPLE_FAILING_HDF5="$<TARGET_FILE:failing_hdf5>"
   TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 add_dependencies(app_test topple failing_writes failing_hdf5)
-gtest_discover_tests(app_test PROPERTIES TIMEOUT 120)
+gtest_discover_tests(app_test PROPERTIES TIMEOUT 400)
 
 # It listens to what is written: Dear ImGui's AddText.
 add_executable(window_text_test ${CMAKE_CURRENT_LIST_DIR}/window_text_test.cpp)
