@@ -65,7 +65,7 @@ TEST_F(GoldenWindow, chooser) {
     return has_body(part(all, 330, 100, 600, 260)) && has_body(part(all, 650, 100, 920, 260));
   };
   bool drawn = false;  // after the pictures of all scenes before them
-  for (int round = 0; round < 3 && !drawn; ++round) drawn = static_cast<bool>(until(both_drawn));
+  for (int round = 0; round < 10 && !drawn; ++round) drawn = static_cast<bool>(until(both_drawn));
   ASSERT_TRUE(drawn);
   render::expect_golden(shot(), "window-chooser.png");
 }
@@ -112,7 +112,7 @@ TEST_F(GoldenWindow, overturning_map) {
   click(say(window_words::k_overturning_map) + "##map", "side/content");
   const MapState& map = viewer().teaching().map;
   bool computed = false;  // 576 runs
-  for (int round = 0; round < 4 && !computed; ++round)
+  for (int round = 0; round < 15 && !computed; ++round)
     computed = static_cast<bool>(until([&] { return map.search && map.search->over(); }));
   ASSERT_TRUE(computed);
   ImGui::GetIO().MousePos = {2, 400};
