@@ -11,4 +11,4 @@ target_link_libraries(window_golden_test PRIVATE topple_app PkgConfig::IMGUI GTe
 target_compile_definitions(window_golden_test PRIVATE TOPPLE_PROGRAM="$<TARGET_FILE:topple>"
   TOPPLE_GOLDEN_DIR="${CMAKE_CURRENT_LIST_DIR}" TOPPLE_GOLDEN_OUT="${CMAKE_BINARY_DIR}/tests/golden")
 add_dependencies(window_golden_test topple)
-gtest_discover_tests(window_golden_test PROPERTIES TIMEOUT 600)
+gtest_discover_tests(window_golden_test PROPERTIES TIMEOUT 1500)

@@ -112,7 +112,7 @@ TEST_F(GoldenWindow, overturning_map) {
   click(say(window_words::k_overturning_map) + "##map", "side/content");
   const MapState& map = viewer().teaching().map;
   bool computed = false;  // 576 runs
-  for (int round = 0; round < 15 && !computed; ++round)
+  for (int round = 0; round < 40 && !computed; ++round)
     computed = static_cast<bool>(until([&] { return map.search && map.search->over(); }));
   ASSERT_TRUE(computed);
   ImGui::GetIO().MousePos = {2, 400};

@@ -27,7 +27,8 @@ void click_at(ImVec2 at, Frame frame) {
 template <typename Frame>
 bool click_button(const std::string& name, const std::string& panel, Frame frame) {
   frame();
-  for (ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+  const auto windows = ImGui::GetCurrentContext()->Windows;  // a frame may add some
+  for (ImGuiWindow* const window : windows) {
     if (!window->Active || std::string(window->Name).find(panel) == std::string::npos) continue;
     const ImGuiID id = ImHashStr(name.c_str(), 0, window->ID);
     for (float scroll = 0; scroll == 0 || scroll < window->ScrollMax.y + window->Size.y / 2;

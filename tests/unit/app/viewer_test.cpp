@@ -90,7 +90,8 @@ class ViewerTest : public ::testing::Test {
   /// Where the item of that name is in a panel, found by moving the mouse over it; of a slider, that for the
   /// edits called `of`.
   ImVec2 find(const char* panel, const char* name, const char* of = nullptr) {
-    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    const auto windows = ImGui::GetCurrentContext()->Windows;  // a frame may add some
+    for (const ImGuiWindow* window : windows) {
       const std::string_view called(window->Name);
       if (called != panel && !called.starts_with(std::string(panel) + "/")) continue;
       const ImVec2 at = find_in(window, name, of);
