@@ -127,23 +127,25 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
   modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
   gives_ = s.rung == Rung::elastic;
   const double bend = gives_ ? k_bend * reach_ : 0;
-  const std::size_t planes = model_.planes.size();
+  const bool has_modes = modes_ > 0;
+  const std::size_t planes = model_.planes.size(), count = groups_.size();
   for (std::size_t k = 0; k < planes; ++k) {
     const Plane& plane = model_.planes[k];
     const double height = plane.normal.dot(s.position - plane.point);
     const Vec3 n = unpacked(transposed_times(r, packed(plane.normal)));
     if (clearance(n, height) > widest_[k] + bend) continue;
     const Points normal = in_all_lanes(n);
-    const Side* const sides = &sides_[k * groups_.size()];
+    const Side* const sides = &sides_[k * count];
     const PackMatrix<Four> turn = in_all_lanes(r);
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (std::size_t g = 0; g < count; ++g) {
       const Group& group = groups_[g];
-      const Points at = modes_ > 0 ? place(s, group) : group.place;
+      Points at = group.place;
+      if (has_modes) at = place(s, group);
       const Four gap = dot(normal, at) + (Four(height) - sides[g].gap);
       const Four::Mask touching = gap < 0;
       if (bits(touching) == 0) continue;
-      Touch& touch = now_.add(static_cast<int>(k), static_cast<int>(g),
-                              static_cast<int>(k * groups_.size() + g), touching);
+      Touch& touch =
+          now_.add(static_cast<int>(k), static_cast<int>(g), static_cast<int>(k * count + g), touching);
       touch.depth = choose(touching, -gap / sides[g].L, Four(0));
       touch.arm = turn * at;
       touch.stick = gather(stick.data(), sides[g].spring);
@@ -332,6 +334,7 @@ void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
     touch.stick = held_stick(law, touch);
     const std::array<Four, 4> rows = lanes(touch.stick);
     const std::array<int, 4>& spring = side(touch).spring;
+#pragma GCC unroll 4
     for (int k = 3; k >= 0; --k) store_three(stick[spring[k]].data(), rows[k]);  // the first one last
   }
 }

@@ -313,10 +313,13 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   anchors_.find(s);
   const bool tied = anchors_.any();
   const Vec3 pull = anchors_.force(), twist = anchors_.moment();
-  Amplitudes pressed = Amplitudes::Zero();
-  anchors_.press_modes(s, modes(s), pressed);
+  Amplitudes pressed;
+  if (bends) {
+    pressed.setZero();
+    anchors_.press_modes(s, modes(s), pressed);
+    s.load.setZero();
+  }
   ContactLoads loads{{0, 0, 0}, {0, 0, 0}, 0, 0};
-  s.load.setZero();
   if (contacts_.any()) {
     const BodyVelocity drifted{packed(s.velocity), r * packed(s.angular_velocity), s.rate};
     BodyVelocity u = drifted;
@@ -336,7 +339,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   if (tied) {
     s.force += pull;
     s.moment += twist;
-    s.load += pressed;
+    if (bends) s.load += pressed;
   }
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
@@ -368,25 +371,26 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
 
 StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                       double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
-                                      BodyEnergy& held, ReducedScratch& w) {
+                                      ReducedScratch& w) {
   const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
   const auto parts_of = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
   };
   double size = !touches && s.rung == Rung::rigid ? h : parts_of(h, stable_part(parameters, start.law, s));
   bool stiff = s.rung == Rung::rigid && touches && (parameters.adaptive || size < h);
-  Instant from = start;
   double left = h, most = h;
   w.part = 0;
+  w.from.reset();
   while (!stiff) {
     const bool last = size >= left;
-    const Instant to = last ? end : Instant(parameters, from.time + size);
+    const Instant& from = w.from ? *w.from : start;
+    if (!last) w.to.emplace(parameters, from.time + size);
     double stable;
-    if (swing_part(parameters, from, to, last ? left : size, s, stick, booked, w, stable)) {
+    if (swing_part(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w, stable)) {
       if (last) break;
       left -= size;
-      from = to;
-      size = std::min(parts_of(left, stable_part(parameters, from.law, s)), most);
+      w.from = w.to;
+      size = std::min(parts_of(left, stable_part(parameters, w.from->law, s)), most);
     } else if (stable < size) {
       stiff = s.rung == Rung::rigid;
       size = parts_of(size, stable);
@@ -395,12 +399,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instan
       if (most < k_least_part * h) return StepStatus::Kind::newton_diverged;
     }
   }
-  if (stiff)
-    if (const auto kind = advance_stiffly(parameters, start, end, h, s, stick, booked);
-        kind != StepStatus::Kind::ok)
-      return kind;
-  held = energy(end.law, s);
-  return StepStatus::Kind::ok;
+  return stiff ? advance_stiffly(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

@@ -42,13 +42,15 @@ struct Instant {
   Instant(const Parameters& parameters, double t);
 };
 
-/// Scratch of a step, for one body after the other: Newton's matrix or its factors, and a right side. Factors
-/// serve the parts of one step, no longer: a run that goes on from a state starts without.
+/// Scratch of a step, for one body after the other: Newton's matrix or its factors, a right side, and the
+/// ends of a part. Factors serve the parts of one step, no longer: a run that goes on from a state starts
+/// without.
 struct ReducedScratch {
   ModeMatrix matrix;
   double part = 0;             ///< s, of which the factors are; 0: none
   std::uint64_t touching = 0;  ///< what touched
   double side[6 + k_modes];
+  std::optional<Instant> from, to;
 };
 
 /// Constants of one body, and its contacts.
@@ -66,11 +68,9 @@ class ReducedBody {
   BodyEnergy balance(const Parameters& parameters, const Instant& now, BodyState& s,
                      std::span<const Vec3> stick);
   /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later. `energy` is
-  /// added to; `held`: what the body holds then. newton_diverged: the contacts have no converged forces;
-  /// not_accurate; `s` is then undefined.
+  /// added to. newton_diverged: the contacts have no converged forces; not_accurate; `s` is then undefined.
   StepStatus::Kind advance(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                           BodyState& s, std::span<Vec3> stick, StepEnergy& energy, BodyEnergy& held,
-                           ReducedScratch& scratch);
+                           BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& scratch);
   /// Rest under gravity on planes; false: none was found, or it tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// As look_ahead of step_control.h; for a stiff rigid body the length of its next part. Contacts of `s`

@@ -241,7 +241,10 @@ bool is_finite(const State& s, bool nodes) {
     for (; k + 4 <= count; k += 4) look_at(load(x + k), 1);
     for (; k < count; ++k) look_at(Four(x[k]), 2);
   };
-  const auto look_at_vector = [&](const Vec3& v) { look_at(Four(v.x() + v.y() + v.z())); };
+  const auto look_at_four = [&](double a, double b, double c, double d, int k) {
+    look_at(Four(Four::Vector{a, b, c, d}), k);
+  };
+  const auto total = [](const Vec3& v) { return v.x() + v.y() + v.z(); };
   if (nodes) {
     for (const auto* array :
          {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
@@ -260,20 +263,18 @@ bool is_finite(const State& s, bool nodes) {
       look_at(load(b.load.data() + k), 3);
     }
     look_at(load(b.rotation.coeffs().data()));
-    for (const Vec3* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
-      look_at_vector(*v);
-    look_at(Four(b.calm_since + b.part));
+    look_at_four(b.calm_since, b.part, total(b.position), total(b.velocity), 1);
+    look_at_four(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
   }
   if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
-  for (const MemberStick& stick : s.member_sticks) look_at_vector(stick.stick);
+  for (const MemberStick& stick : s.member_sticks) look_at(Four(total(stick.stick)));
   static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
   look(&s.energy.input, 15);
   for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length));
-  look_at_vector(s.floor_displacement);
-  look_at_vector(s.floor_velocity);
-  look_at(Four(s.time + s.step_size + s.load_factor + s.near_slack));
-  const Four total = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  return !any_above(total - total, 0);
+  look_at_four(total(s.floor_displacement), total(s.floor_velocity), s.time + s.step_size,
+               s.load_factor + s.near_slack, 0);
+  const Four all = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  return !any_above(all - all, 0);
 }
 
 int body_not_finite(const Model& model, const State& s) {

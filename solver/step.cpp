@@ -29,6 +29,7 @@ constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
 constexpr int k_bodies_per_task = 16;    // that are not frames: some microseconds
 constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
+const PartOfStep k_nothing;
 
 }  // namespace
 
@@ -195,21 +196,20 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   const int bodies = static_cast<int>(w.moving.size()),
             chunks = (bodies + k_bodies_per_task - 1) / k_bodies_per_task,
             systems = static_cast<int>(w.systems().size());
-  w.parts.assign(chunks + systems, {});
+  w.parts.assign(chunks + systems, k_nothing);
   const auto move_bodies = [&](int chunk, int worker) {
     PartOfStep& part = w.parts[chunk];
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
-      BodyEnergy holds;
-      part.status.kind = w.reduced(model, next, b)
-                             .advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
-                                      holds, w.reduced_scratch[worker]);
+      ReducedBody& body = w.reduced(model, next, b);
+      part.status.kind = body.advance(parameters, start, end, h, next.bodies[b], next.stick, part.exchanged,
+                                      w.reduced_scratch[worker]);
       if (!part.status.ok()) {
         part.status.time = end.time;
         part.status.body = b;
         return;
       }
-      add(holds, part.held);
+      add(body.energy(end.law, next.bodies[b]), part.held);
     }
   };
   const auto move_system = [&](int s, int worker) {
