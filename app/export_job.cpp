@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_patience = 200;  // times 10 ms, with a process that was asked to end
+constexpr int k_looks = 200;  // times 10 ms, with a process that was asked to end
 
 }  // namespace
 
@@ -58,7 +58,7 @@ ExportJob::ExportJob(const std::string& program, const std::vector<std::string>&
 
 ExportJob::~ExportJob() {
   cancel();
-  for (int i = 0; i < k_patience && !done(); ++i) {
+  for (int i = 0; i < k_looks && !done(); ++i) {
     update();
     if (!done()) usleep(10000);
   }

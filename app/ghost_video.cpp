@@ -8,6 +8,7 @@
 
 #include "app/bridge.h"
 #include "app/commands.h"
+#include "app/drawing_processes.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/off_screen.h"
@@ -109,21 +110,33 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
 int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const NamedReplay& of_b, bool quiet) {
   try {
     const Actor a(of_a), b(of_b);
-    const std::unique_ptr<render::Context> context = open_off_screen();
-    render::Picture picture(context->get_proc(), k_width, k_height);
     render::VideoWriter video(path, k_width, k_height, k_rate);
     const double first = std::min(a.first(), b.first()), last = std::max(a.last(), b.last());
     const int count = static_cast<int>(std::floor((last - first) * k_rate + 1e-6)) + 1;
     Progress progress("drawing", "pictures", count, quiet);
-    for (int i = 0; i < count && !interrupted(); ++i) {
+    const auto draw = [&](render::Picture& picture, int i) {
       const render::SceneFrame frame = frame_of_both(a, b, first + static_cast<double>(i) / k_rate);
       const auto corner = [](const render::Float3& x) { return Eigen::Vector3f(x.data()); };
-      video.write(picture.draw(
-          frame,
-          render::fit_box(render::sight_axes(render::sight_of(render::NamedView::iso)),
-                          corner(frame.bounds_min), corner(frame.bounds_max), k_room, picture.aspect())));
-      progress.update(i + 1);
-    }
+      return picture.draw(frame, render::fit_box(render::sight_axes(render::sight_of(render::NamedView::iso)),
+                                                 corner(frame.bounds_min), corner(frame.bounds_max), k_room,
+                                                 picture.aspect()));
+    };
+    draw_pictures(
+        count,
+        [&](int process) -> DrawPicture {
+          struct Easel {
+            std::unique_ptr<render::Context> context;
+            render::Picture picture;
+            explicit Easel(std::unique_ptr<render::Context> of)
+                : context(std::move(of)), picture(context->get_proc(), k_width, k_height) {}
+          };
+          const auto easel = std::make_shared<Easel>(open_off_screen(render::Renderer::any, process == 0));
+          return [&draw, easel](int i) { return draw(easel->picture, i).rgba; };
+        },
+        [&](int i, std::vector<std::uint8_t> answer) {
+          video.write({k_width, k_height, std::move(answer)});
+          progress.update(i + 1);
+        });
     if (!interrupted()) {
       video.finish();
       return k_done;

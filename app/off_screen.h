@@ -7,7 +7,8 @@
 
 namespace topple::app {
 
-/// As render::make_off_screen_context; its note is said.
-std::unique_ptr<render::Context> open_off_screen(render::Renderer renderer = render::Renderer::any);
+/// As render::make_off_screen_context; its note is said, unless another process that draws says it.
+std::unique_ptr<render::Context> open_off_screen(render::Renderer renderer = render::Renderer::any,
+                                                 bool say_note = true);
 
 }  // namespace topple::app

@@ -12,7 +12,7 @@
 namespace topple::app {
 namespace {
 
-using Rows = std::vector<std::string>;
+using StudyRows = std::vector<std::string>;
 
 constexpr double k_between = 0.3;  // s, from one result shown to the next
 
@@ -25,11 +25,12 @@ io::Scene changed_scene(const io::Scene& scene, const Parameters& now) {
 /// Works through the cases in this order; `gather` makes of the rows what is shown.
 template <class Found>
 void work_through(Background<Found>& desk, const std::vector<int>& order, int jobs, const MakeWork& make,
-                  const std::function<bool()>& give_up, const std::function<Found(const Rows&)>& gather) {
+                  const std::function<bool()>& give_up,
+                  const std::function<Found(const StudyRows&)>& gather) {
   std::vector<CaseWork> works;
   works.reserve(static_cast<std::size_t>(jobs));
   for (int worker = 0; worker < jobs; ++worker) works.push_back(make());
-  Rows rows(order.size());
+  StudyRows rows(order.size());
   std::mutex keeping;
   desk.show(gather(rows));
   Clock::time_point shown = Clock::now();
@@ -81,7 +82,7 @@ std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const
     const int jobs = std::max(1, study::core_count() - 1);  // one is for what the window shows
     work_through<OverturnFound>(
         desk, case_order(*plan), jobs, work_on(*plan), [&] { return desk.stopped(); },
-        [&](const Rows& rows) {
+        [&](const StudyRows& rows) {
           return OverturnFound{.failure = "", .plan = plan, .map = gather(*plan, rows)};
         });
   });
@@ -104,7 +105,7 @@ std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const 
               [&](int k, const std::function<bool()>& give_up) { return study::run_case(*plan, k, give_up); };
         },
         [&] { return desk.stopped() || seconds_since(start) > k_quick; },
-        [&](const Rows& rows) {
+        [&](const StudyRows& rows) {
           return PrecisionFound{
               .failure = "", .plan = plan, .parameters = parameters, .study = gather(*plan, rows)};
         });

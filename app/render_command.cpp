@@ -10,6 +10,7 @@
 #include "app/appearance.h"
 #include "app/bridge.h"
 #include "app/commands.h"
+#include "app/drawing_processes.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
@@ -131,10 +132,12 @@ class Drawing {
 };
 
 using DrawAt = std::function<render::Image(double time)>;
+/// Of a process of this number.
+using OpenDrawing = std::function<DrawAt(int process)>;
 
-int draw_still(const RenderOptions& o, const DrawAt& draw_at) {
+int draw_still(const RenderOptions& o, const OpenDrawing& open) {
   if (interrupted()) return k_interrupted;
-  render::write_png(o.still, draw_at(*o.at));
+  render::write_png(o.still, open(0)(*o.at));
   return k_done;
 }
 
@@ -143,19 +146,25 @@ std::string picture_name(int number) {
 }
 
 /// Pictures from `from` to `to`, as files in a folder or as a video.
-int draw_sequence(const RenderOptions& o, const DrawAt& draw_at, double from, double to) {
+int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, double to) {
   std::optional<render::VideoWriter> video;
   if (!o.mp4.empty()) video.emplace(o.mp4, o.width, o.height, o.fps);
   const int count = static_cast<int>(std::floor((to - from) * o.fps + 1e-6)) + 1;
   Progress progress("drawing", "pictures", count, o.quiet);
-  for (int i = 0; i < count && !interrupted(); ++i) {
-    const render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
-    if (video)
-      video->write(image);
-    else
-      render::write_png(fs::path(o.png) / picture_name(i), image);
-    progress.update(i + 1);
-  }
+  draw_pictures(
+      count,
+      [&](int process) -> DrawPicture {
+        return [&, draw_at = open(process)](int i) -> std::vector<std::uint8_t> {
+          render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
+          if (video) return std::move(image.rgba);
+          render::write_png(fs::path(o.png) / picture_name(i), image);
+          return {};
+        };
+      },
+      [&](int i, std::vector<std::uint8_t> answer) {
+        if (video) video->write({o.width, o.height, std::move(answer)});
+        progress.update(i + 1);
+      });
   if (video && !interrupted()) video->finish();
   if (!video && fs::exists(fs::path(o.png) / picture_name(count)))
     say(fmt::format("warning: {} also holds pictures of an earlier, longer sequence, from {} on", o.png,
@@ -177,17 +186,25 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   const auto followed = followed_by(o, scene->setup.model, inspected);
   int code = k_done;
   try {
-    const std::unique_ptr<render::Context> context = open_off_screen(o.renderer);
-    std::optional<Drawing> drawing;
-    std::optional<WindowPicture> window;
-    if (o.ui)
-      window.emplace(*context, scene, path, o.view, o.picture, inspected, followed, o.width, o.height);
-    else
-      drawing.emplace(o, replay, *scene, inspected, followed, *context);
-    const DrawAt draw_at = [&](double time) { return window ? window->at(time) : drawing->at(time); };
-    code = o.still.empty() ? draw_sequence(o, draw_at, std::max(o.from.value_or(first), first),
+    const OpenDrawing open = [&](int process) -> DrawAt {
+      struct Easel {
+        std::unique_ptr<render::Context> context;
+        std::optional<Drawing> drawing;
+        std::optional<WindowPicture> window;
+      };
+      const auto easel = std::make_shared<Easel>();
+      easel->context = open_off_screen(o.renderer, process == 0);
+      if (o.ui)
+        easel->window.emplace(*easel->context, scene, path, o.view, o.picture, inspected, followed, o.width,
+                              o.height);
+      else
+        easel->drawing.emplace(o, replay, *scene, inspected, followed, *easel->context);
+      return
+          [easel](double time) { return easel->window ? easel->window->at(time) : easel->drawing->at(time); };
+    };
+    code = o.still.empty() ? draw_sequence(o, open, std::max(o.from.value_or(first), first),
                                            std::min(o.to.value_or(last), last))
-                           : draw_still(o, draw_at);
+                           : draw_still(o, open);
   } catch (const std::runtime_error&) {
     // Ctrl+C on a terminal reaches ffmpeg as well: that its pipe broke is then no error.
     if (!interrupted()) throw;

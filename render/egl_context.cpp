@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/llvmpipe.h"
+
 namespace topple::render {
 namespace {
 
@@ -38,6 +40,7 @@ void find(void* library, const char* name, Function& function) {
 class EglContext final : public Context {
  public:
   EglContext() {
+    keep_to_one_thread();
     void* library = dlopen(k_library, RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
       const char* why = dlerror();

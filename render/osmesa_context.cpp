@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/llvmpipe.h"
+
 namespace topple::render {
 namespace {
 
@@ -26,6 +28,7 @@ constexpr int k_own_buffer_side = 4;
 class OsmesaContext final : public Context {
  public:
   OsmesaContext() {
+    keep_to_one_thread();
     // Its 1292 gl* symbols must stay local: they would replace those of a GL library.
     void* library = dlopen(k_library, RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {

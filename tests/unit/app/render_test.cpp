@@ -124,6 +124,17 @@ TEST_F(RenderTest, a_sequence_covers_the_recording_and_is_the_same_every_time) {
   EXPECT_EQ(bytes_of("still.png"), bytes_of("p" + names[3]));
 }
 
+TEST_F(RenderTest, a_long_sequence_is_the_stills_of_its_instants) {
+  draw({"a.h5", "--png", "p", "--fps", "100"});
+  for (const int number : {0, 7, 16, 30}) {
+    const std::string name = std::to_string(number);
+    draw({"a.h5", "--still", "still.png", "--at", std::to_string(number / 100.)});
+    EXPECT_EQ(bytes_of("still.png"), bytes_of("p/frame-" + std::string(6 - name.size(), '0') + name + ".png"))
+        << number;
+  }
+  EXPECT_TRUE(bytes_of("p/frame-000031.png").empty());
+}
+
 TEST_F(RenderTest, the_panels_of_the_window_are_drawn_when_asked_for) {
   const auto with_panels = [](const std::string& source, const std::string& picture) {
     const Ended ended =

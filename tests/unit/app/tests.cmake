@@ -12,6 +12,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/compare_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/documents_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/drawing_processes_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failing_write_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/failures_test.cpp
