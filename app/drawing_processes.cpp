@@ -58,17 +58,15 @@ void send_answer(int to, const void* bytes, std::size_t size, bool failed) {
   _exit(0);  // what the parent has open is the parent's to close
 }
 
-/// Reaps them; those that still draw are killed.
+/// Reaps them; those that still draw end with the picture that they are at, so that no file is half written.
 class Processes {
  public:
   Processes() = default;
   ~Processes() {
-    for (const Process& process : all_) {
-      close(process.from);
-      kill(process.id, SIGKILL);
+    for (const Process& process : all_) close(process.from);
+    for (const Process& process : all_)
       while (waitpid(process.id, nullptr, 0) < 0 && errno == EINTR) {
       }
-    }
   }
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;
