@@ -1,5 +1,5 @@
-// What a person waits for in the window, drawn by the processor at 1280x720: the first frame, frames while a
-// run goes on, and any instant of a recording of 60 s.
+// What a person waits for in the window, drawn by one core of the processor at 1280x720: the first frame,
+// frames while a run goes on, and any instant of a recording of 60 s.
 //   window_bench PROGRAM
 #include <imgui.h>
 #include <sys/resource.h>
@@ -47,7 +47,8 @@ class Screen {
   explicit Screen(const std::string& program)
       : stage_(render::off_screen()),
         shell_(
-            stage_, 1.f, [] {}, program) {
+            stage_, 1.f, [] {}, program),
+        program_(program) {
     ImGui::GetIO().DisplaySize = {1280, 720};
     ImGui::GetIO().DeltaTime = 1.f / 60;
   }
@@ -61,13 +62,15 @@ class Screen {
     return ms_since(from);
   }
   void show(const std::string& source) {
-    shell_.show(open_source({.source = source, .overrides = {}, .recording = {}, .language = {}}), "");
+    const ViewOptions options{.source = source, .overrides = {}, .recording = {}, .language = {}};
+    shell_.show(open_source(options, program_), "");
   }
   Player& player() { return shell_.session()->player(); }
 
  private:
   render::Stage stage_;
   Shell shell_;
+  const std::string program_;
 };
 
 void measure_frames(const std::string& program, const char* scene) {
