@@ -114,11 +114,12 @@ void Player::keep(RowPtr row) {
   if (++row_count_ > most) thin();
 }
 
-// What the extent knows of rows that go stays true.
 void Player::thin() {
+  extent_.thin();
   row_count_ = 0;
   for (auto& [branch, rows] : rows_) {
     thin_older_half(rows);
+    rows.shrink_to_fit();  // a run may have thousands of branches
     row_count_ += rows.size();
   }
   way_ = rows_on_way_to(shown_);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/row.h"
+#include "app/thinning.h"
 #include "solver/io/recording.h"
 
 namespace topple::app {
@@ -76,6 +77,14 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
   time_s.push_back(static_cast<float>(row.time));
   acceleration_gal.push_back(
       static_cast<float>(Vec3(row.floor_acceleration).dot(parameters.shakes.front().direction) / k_gal));
+}
+
+void RunExtent::thin() {
+  for (std::vector<double>& peaks : peak_) thin_older_half(peaks);
+  thin_older_half(peak_contact_);
+  if (bodies_ > 0) thin_older_half(points_, bodies_);
+  for (std::vector<float>* values : {&time_s, &acceleration_gal, &way, &load_factor})
+    thin_older_half(*values);
 }
 
 double RunExtent::top(BeamQuantity quantity) const {

@@ -24,6 +24,8 @@ double greatest_contact_force(const io::FrameRow& row);
 class RunExtent {
  public:
   void add(const Model& model, const Parameters& parameters, const io::FrameRow& row);
+  /// Leaves older instants out; the box stays.
+  void thin();
 
   /// Top of a colour scale, SI: few instants of the run have a greater value anywhere, so that an impact of
   /// milliseconds does not darken all the rest.
@@ -31,7 +33,7 @@ class RunExtent {
   /// The same of the force at one contact point, N.
   double contact_force_top() const;
 
-  /// Of a furniture body, in row number `row`.
+  /// Of a furniture body, at way[row].
   const BodyPoints& points(std::size_t row, std::size_t body) const { return points_[row * bodies_ + body]; }
 
   Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of the furniture's nodes, with the floor's way

@@ -15,13 +15,14 @@ inline constexpr std::size_t k_most_point_bytes = std::size_t{16} << 20;
 
 std::size_t memory_of(const io::FrameRow& row);
 
-/// Leaves every second item of the older half out, never the first. Items stand in the order of their age.
+/// Leaves every second instant of the older half out, never the first. Items stand in the order of their age,
+/// `each` to an instant.
 template <typename Item>
-void thin_older_half(std::vector<Item>& items) {
-  const std::size_t older = items.size() / 2;
+void thin_older_half(std::vector<Item>& items, std::size_t each = 1) {
+  const std::size_t older = items.size() / each / 2;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < items.size(); ++i)
-    if (i >= older || i % 2 == 0) {
+    if (const std::size_t instant = i / each; instant >= older || instant % 2 == 0) {
       if (kept != i) items[kept] = std::move(items[i]);
       ++kept;
     }

@@ -8,6 +8,8 @@ add_executable(engines_bench EXCLUDE_FROM_ALL
   ${CMAKE_CURRENT_LIST_DIR}/results.cpp
   ${CMAKE_CURRENT_LIST_DIR}/topple.cpp
   ${CMAKE_CURRENT_LIST_DIR}/trial.cpp)
+# Engines have Options and World each
+set_target_properties(engines_bench PROPERTIES UNITY_BUILD OFF)
 target_link_libraries(engines_bench PRIVATE topple_study fmt::fmt)
 target_compile_definitions(engines_bench PRIVATE TOPPLE_VERSION="${PROJECT_VERSION}")
 target_include_directories(engines_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)

@@ -421,6 +421,12 @@ TEST_F(PlayerTest, rows_in_memory_are_bounded_and_old_instants_can_still_be_seen
   EXPECT_EQ(way.front()->step, 0);
   for (std::size_t i = 1; i < way.size(); ++i) EXPECT_LT(way[i - 1]->time, way[i]->time);
   EXPECT_GT(way[2]->step - way[1]->step, way.back()->step - way[way.size() - 2]->step);
+  const RunExtent& extent = player().extent();
+  ASSERT_EQ(extent.way.size(), way.size());
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    EXPECT_EQ(extent.way[i], static_cast<float>(way[i]->time));
+    EXPECT_EQ(extent.points(i, 0), body_points(player().scene().setup.model, *way[i], 0));
+  }
 
   player().scrub(way[1]->time);
   const RowPtr there = way[1];
