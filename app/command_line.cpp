@@ -13,7 +13,7 @@
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
-#include "app/nearest_name.h"
+#include "app/misuse.h"
 #include "app/option_values.h"
 #include "app/ranks.h"
 #include "solver/io/scene.h"
@@ -63,14 +63,13 @@ class CommandLine {
   }
 
   int carry_out(int argc, char** argv) {
-    refuse_unknown_command(argc, argv);
+    refuse_unknown_command(app_, argc, argv);
     try {
       app_.parse(argc, argv);
     } catch (const CLI::Success& success) {
       return app_.exit(success);
     } catch (const CLI::ParseError& error) {
-      const std::string unknown = unknown_option();
-      throw BadInput((unknown.empty() ? in_words(error) : unknown) + " (topple " + chosen() + "--help)");
+      throw BadInput(misuse(app_, error) + " (topple " + chosen() + "--help)");
     }
     return action_();
   }
@@ -410,61 +409,9 @@ class CommandLine {
     });
   }
 
-  void refuse_unknown_command(int argc, char** argv) const {
-    if (argc < 2) return;
-    const std::string first = argv[1];
-    if (first.rfind('-', 0) == 0) {
-      if (first == "-h" || first == "--help" || first == "--version") return;
-      throw BadInput(first + ": unknown option; a command comes first (topple --help)");
-    }
-    std::string known;
-    for (const CLI::App* command : app_.get_subcommands({})) {
-      if (command->get_name() == first) return;
-      known += (known.empty() ? "" : ", ") + command->get_name();
-    }
-    throw BadInput("\"" + first + "\" is not a command; known: " + known + " (topple --help)");
-  }
-
   std::string chosen() const {
     const auto commands = app_.get_subcommands();
     return commands.empty() ? "" : commands.front()->get_name() + " ";
-  }
-
-  /// What is wrong before anything else in a call; empty: all options are known.
-  std::string unknown_option() const {
-    for (const std::string& word : app_.remaining(true)) {
-      if (!word.starts_with('-') || word == "-" || word == "--") continue;
-      const std::string option = word.substr(0, word.find('='));
-      std::string name = option;
-      name.erase(0, name.find_first_not_of('-'));
-      const std::string near = nearest_option(name);
-      return "unknown option " + option + (near.empty() ? "" : "; the nearest is --" + near);
-    }
-    return "";
-  }
-  std::string nearest_option(const std::string& name) const {
-    std::vector<std::string> known;
-    const auto add = [&](const CLI::App& owner) {
-      for (const CLI::Option* option : owner.get_options({}))
-        known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
-    };
-    for (const CLI::App* command : app_.get_subcommands()) {
-      add(*command);
-      for (const CLI::App* group : command->get_subcommands({})) add(*group);
-    }
-    return nearest_name(name, known);
-  }
-
-  /// CLI11's sentences on the number of values say little: "--json: 1 required FILE|- missing".
-  static std::string in_words(const CLI::ParseError& error) {
-    std::string text = error.what();
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return text;
-    const std::string option = text.substr(0, text.find(':'));
-    if (text.find("At Most 1") != std::string::npos) return option + ": given more than once";
-    constexpr std::string_view before = ": 1 required ", after = " missing";
-    const std::size_t begin = text.find(before), end = text.rfind(after);
-    if (begin == std::string::npos || end == std::string::npos) return text;
-    return option + ": needs a value, " + text.substr(begin + before.size(), end - begin - before.size());
   }
 
   CLI::App app_;
