@@ -37,6 +37,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/summary_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/thinning_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/usage_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/verification_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/verify_test.cpp
