@@ -111,12 +111,14 @@ void Player::keep(RowPtr row) {
   const std::size_t most = most_bytes_ / memory_of(*row);
   std::vector<RowPtr>& own = rows_[row->branch];
   own.push_back(std::move(row));
-  if (++row_count_ > most) thin();
+  ++rows_since_thinned_;
+  // each of very many branches keeps its first rows: thinning then frees little, and not at each new row
+  if (++row_count_ > most && rows_since_thinned_ > most / 8) thin();
 }
 
 void Player::thin() {
   extent_.thin();
-  row_count_ = 0;
+  row_count_ = rows_since_thinned_ = 0;
   for (auto& [branch, rows] : rows_) {
     thin_older_half(rows);
     rows.shrink_to_fit();  // a run may have thousands of branches

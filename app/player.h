@@ -119,7 +119,7 @@ class Player {
   LiveStatus status_;
   History history_;
   std::map<std::int32_t, std::vector<RowPtr>> rows_;  // by branch
-  std::size_t row_count_ = 0;
+  std::size_t row_count_ = 0, rows_since_thinned_ = 0;
   std::vector<io::RecordedEvent> events_;
   RowPtr head_;
   std::int32_t shown_ = 0;

@@ -19,7 +19,7 @@ std::size_t memory_of(const io::FrameRow& row);
 /// `each` to an instant.
 template <typename Item>
 void thin_older_half(std::vector<Item>& items, std::size_t each = 1) {
-  const std::size_t older = items.size() / each / 2;
+  const std::size_t older = (items.size() / each + 1) / 2;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (const std::size_t instant = i / each; instant >= older || instant % 2 == 0) {
