@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <charconv>
+#include <cstdio>
 #include <limits>
 
 #include "solver/io/units.h"
@@ -46,7 +47,8 @@ std::string shown(std::string_view text) {
 
 std::string count_text(double count) {
   char text[32];
-  return {text, std::to_chars(text, text + sizeof text, count, std::chars_format::fixed, 0).ptr};
+  std::snprintf(text, sizeof text, "%.15g", count);
+  return text;
 }
 
 std::optional<double> number_in(std::string_view text) {

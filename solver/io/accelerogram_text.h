@@ -50,7 +50,7 @@ std::string_view trimmed(std::string_view text);
 std::string upper(std::string_view text);
 /// In quotes, no longer than a message bears.
 std::string shown(std::string_view text);
-/// A whole number as digits.
+/// A whole number, of more than 15 digits as a power of ten.
 std::string count_text(double count);
 
 /// Nothing when it is no number.

@@ -124,7 +124,8 @@ TEST(AccelerogramFile, at2_that_does_not_hold_what_it_says_is_refused) {
 TEST(AccelerogramFile, absurd_sizes_are_refused_at_the_header) {
   EXPECT_EQ(error(at2("NPTS= 100000000, DT= .01 SEC\n1 2\n")),
             "a:4: NPTS: 100000000 samples are more than the 10000000 that are allowed");
-  EXPECT_EQ(error(at2("NPTS= 1e300, DT= .01 SEC\n1 2\n")).substr(0, 11), "a:4: NPTS: ");
+  EXPECT_EQ(error(at2("NPTS= 1e300, DT= .01 SEC\n1 2\n")),
+            "a:4: NPTS: 1e+300 samples are more than the 10000000 that are allowed");
   EXPECT_EQ(error(replaced(knet(), "  .12", "  9999999")),
             "a:12: Duration Time(s): 999999900 samples are more than the 10000000 that are allowed");
 }
