@@ -97,8 +97,9 @@ BodyContacts::BodyContacts(const Model& model, int body)
   }
   box_centre_ = box.center();
   box_half_ = box.sizes() / 2;
-  for (Touches* touches : {&now_, &start_}) touches->all.reserve(sides_.size());
-  shapes_.reserve(sides_.size() * modes);
+  for (Touches* touches : {&now_, &start_})
+    touches->all = std::make_unique_for_overwrite<Touch[]>(sides_.size());
+  shapes_.resize(sides_.size() * modes);
 }
 
 BodyContacts::Points BodyContacts::place(const BodyState& s, const Group& group) const {
@@ -123,7 +124,7 @@ double BodyContacts::slope_at_rest(const ContactLaw& law) const {
 
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
   now_.clear();
-  shapes_.clear();
+  Points* shape = shapes_.data();
   modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
   gives_ = s.rung == Rung::elastic;
   const double bend = gives_ ? k_bend * reach_ : 0;
@@ -134,6 +135,7 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
     const double height = plane.normal.dot(s.position - plane.point);
     const Vec3 n = unpacked(transposed_times(r, packed(plane.normal)));
     if (clearance(n, height) > widest_[k] + bend) continue;
+    const bool level = plane.normal == Vec3::UnitZ();
     const Points normal = in_all_lanes(n);
     const Side* const sides = &sides_[k * count];
     const PackMatrix<Four> turn = in_all_lanes(r);
@@ -146,10 +148,11 @@ void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const V
       if (bits(touching) == 0) continue;
       Touch& touch =
           now_.add(static_cast<int>(k), static_cast<int>(g), static_cast<int>(k * count + g), touching);
+      touch.level = level;
       touch.depth = choose(touching, -gap / sides[g].L, Four(0));
       touch.arm = turn * at;
       touch.stick = gather(stick.data(), sides[g].spring);
-      for (int j = 0; j < modes_; ++j) shapes_.push_back(turn * group.shape[j]);
+      for (int j = 0; j < modes_; ++j) *shape++ = turn * group.shape[j];
       if (gives_) {
         touch.give = dot(normal, group.give * normal);
         touch.give_across =
@@ -178,8 +181,8 @@ void BodyContacts::follow(const BodyState& before, const PackMat3& r0, const Bod
 }
 
 // As contact_force, four by four.
-template <bool with_slope>
-[[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Points& n,
+template <bool with_slope, bool plain, class Normal>
+[[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Normal& n,
                                                                  const Points& v, double lever,
                                                                  Touch& touch) const {
   const Side& here = side(touch);
@@ -188,13 +191,14 @@ template <bool with_slope>
   const double eps = law.normal_speed;
   const Four inverse = 1 / sqrt(mul_add(vn, vn, Four(eps * eps)));
   const Four factor = less_product(Four(1), law.loss * vn, inverse);
-  touch.conservative = choose(touch.touching, touch.alpha * power(touch.depth, law.q), zero);
+  const Four depth = plain ? touch.depth : power(touch.depth, law.q);
+  touch.conservative = choose(touch.touching, touch.alpha * depth, zero);
   touch.normal = touch.conservative * factor;
 
   const Four k = touch.stick_stiffness, c = law.root_alpha * here.damping;
-  const Points stick = mul_add(-dot(n, touch.stick), n, touch.stick);
-  const bool static_friction = law.excess() > 0;
-  const Points slip = mul_add(-vn, n, v), trial = mul_add(c, slip, k * stick);
+  const auto stick = tangential(n, touch.stick);
+  const bool static_friction = !plain && law.excess() > 0;
+  const auto slip = tangential(n, v), trial = mul_add(c, slip, k * stick);
   const Four mu = static_friction ? friction_coefficient(law, dot(slip, slip)) : Four(law.friction);
   const Four limit = touch.limit = mu * touch.normal, size2 = dot(trial, trial);
   const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
@@ -206,7 +210,7 @@ template <bool with_slope>
     inverse_size = choose(sticks, zero, inverse_size);
   }
   scale = choose(touch.touching, scale, zero);
-  touch.tangential = -scale * trial;
+  touch.tangential = in_space(-scale * trial);
   const Four spring2 = k * k * dot(stick, stick);
   touch.stick_energy = 0.5 / k * choose(spring2 <= limit * limit, spring2, limit * limit);
   touch.stick_energy = choose(touch.touching, touch.stick_energy, zero);
@@ -214,7 +218,7 @@ template <bool with_slope>
     Four slope = -law.loss * eps * eps * touch.conservative * inverse * inverse * inverse, across = c;
     if (lever > 0) {
       Four stiffness = touch.alpha / here.L;
-      if (law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
+      if (!plain && law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
       slope -= choose(touch.touching, lever * stiffness * factor, zero);
       across += lever * k;
     }
@@ -224,24 +228,24 @@ template <bool with_slope>
     touch.drag = choose(sticks, across, zero);
     touch.has_rest = slips;
     if (slips) {
-      const Points along = inverse_size * trial;
-      Points side_way = mul_add(across, along, -(mu * slope) * n);
+      const auto along = inverse_size * trial;
+      Points side_way = sum_of(across, along, -(mu * slope), n);
       if (static_friction) {
         const Four above = mu - law.friction;
         side_way =
             mul_add(2 * above * above / (law.excess() * law.slip_speed * law.slip_speed) * touch.normal, slip,
                     side_way);
       }
-      touch.rest = outer(along, side_way);
+      touch.rest = outer(in_space(along), side_way);
     }
   }
 }
 
-template <bool with_slope>
-[[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Points& n,
+template <bool with_slope, bool plain, class Normal>
+[[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Normal& n,
                                                          const Points& v, double lever, Touch& touch) const {
-  if (law.kind == ContactLawKind::coulomb) {
-    respond_coulomb<with_slope>(law, n, v, lever, touch);
+  if (plain || law.kind == ContactLawKind::coulomb) {
+    respond_coulomb<with_slope, plain>(law, n, v, lever, touch);
   } else {
     touch.conservative = touch.normal = touch.stick_energy = Four(0);
     touch.tangential = in_all_lanes(Vec3::Zero());
@@ -268,28 +272,37 @@ template <bool with_slope>
 
 template <bool with_slope>
 ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, double lever) {
+  const bool plain = !gives_ && law.kind == ContactLawKind::coulomb && law.q == 1 && !(law.excess() > 0);
+  return plain ? press_all<with_slope, true>(law, u, lever) : press_all<with_slope, false>(law, u, lever);
+}
+
+template <bool with_slope, bool plain>
+[[gnu::flatten]] ContactLoads BodyContacts::press_all(const PreparedLaw& law, const BodyVelocity& u, double lever) {
   Points force = in_all_lanes(Vec3::Zero()), moment = force;
   Four damped = Four(0), rubbed = damped;
   const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
   const Points* shape = shapes_.data();
-  const double slope = gives_ ? law.alpha * slope_at_rest(law) : 0;
+  const double slope = !plain && gives_ ? law.alpha * slope_at_rest(law) : 0;
   for (Touch& touch : now_.list()) {
     const Side& here = side(touch);
     touch.alpha = Four(law.alpha);
     touch.stick_stiffness = law.alpha * here.stick;
-    if (gives_) {
+    if (!plain && gives_) {
       touch.alpha = touch.alpha / (1 + slope * touch.give / here.L);
       touch.stick_stiffness = touch.stick_stiffness / (1 + touch.give_across * touch.stick_stiffness);
     }
     Points v = linear + cross(angular, touch.arm);
-    for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
-    const Points n = normal(touch);
-    respond<with_slope>(law, n, v, lever, touch);
-    const Points push = mul_add(touch.normal, n, touch.tangential);
-    force = force + push;
-    moment = moment + cross(touch.arm, push);
-    damped -= (touch.normal - touch.conservative) * dot(n, v);
-    rubbed -= dot(touch.tangential, v);
+    if constexpr (!plain)
+      for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
+    with_normal(touch, [&](const auto& n) {
+      respond<with_slope, plain>(law, n, v, lever, touch);
+      const auto rub = lying(n, touch.tangential);
+      const Points push = mul_add(touch.normal, n, rub);
+      force = force + push;
+      moment = moment + cross(touch.arm, push);
+      damped -= (touch.normal - touch.conservative) * dot(n, v);
+      rubbed -= dot(rub, v);
+    });
   }
   const Four first = sums(force.x, force.y, force.z, damped),
              second = sums(moment.x, moment.y, moment.z, rubbed);
@@ -313,13 +326,15 @@ void BodyContacts::press_modes(int modes, Amplitudes& load) const {
 [[gnu::always_inline]] inline BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law,
                                                                             const Touch& touch) const {
   if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
-  const Points n = normal(touch), stick = mul_add(-dot(n, touch.stick), n, touch.stick);
-  const Four limit = touch.limit / touch.stick_stiffness;
-  const Four size2 = dot(stick, stick);
-  const Four::Mask sticks = size2 <= limit * limit;
-  if (bits(sticks | ~touch.touching) == k_all_lanes) return choose(touch.touching, Four(1), Four(0)) * stick;
-  const Four scale = choose(sticks, Four(1), limit / sqrt(size2));
-  return choose(touch.touching, scale, Four(0)) * stick;
+  return with_normal(touch, [&](const auto& n) {
+    const auto stick = tangential(n, touch.stick);
+    const Four limit = touch.limit / touch.stick_stiffness;
+    const Four size2 = dot(stick, stick);
+    const Four::Mask sticks = size2 <= limit * limit;
+    Four scale = Four(1);
+    if (bits(sticks | ~touch.touching) != k_all_lanes) scale = choose(sticks, scale, limit / sqrt(size2));
+    return in_space(choose(touch.touching, scale, Four(0)) * stick);
+  });
 }
 
 void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
@@ -367,9 +382,11 @@ void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const Pack
     const Touch* before = start_.list().data();
     for (const Touch& touch : now_.list()) {
       const Four lost = (before->normal - before->conservative) + (touch.normal - touch.conservative);
-      damped -= 0.5 * lost * dot(normal(touch), touch.travel);
-      rubbed -= 0.5 * dot(before->tangential + touch.tangential, touch.travel) +
-                (touch.stick_energy - before->stick_energy);
+      with_normal(touch, [&](const auto& n) {
+        damped -= 0.5 * lost * dot(n, touch.travel);
+        rubbed -= 0.5 * dot(lying(n, before->tangential) + lying(n, touch.tangential), touch.travel) +
+                  (touch.stick_energy - before->stick_energy);
+      });
       ++before;
     }
   } else {

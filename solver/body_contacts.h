@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "solver/model.h"
 #include "solver/pack.h"
 #include "solver/step.h"
+#include "solver/upwards.h"
 
 namespace topple {
 
@@ -56,6 +58,7 @@ class BodyContacts {
   /// Four points of which some touch a plane.
   struct Touch {
     int plane, group, side;
+    bool level;  // the plane is
     Four::Mask touching;
     Four depth;
     Points arm;     // m, from the centre of gravity
@@ -166,9 +169,9 @@ class BodyContacts {
     std::array<int, 4> spring;  // index into State::stick; where there is no point: that of the first
   };
   static constexpr std::uint64_t k_nothing = 14695981039346656037ull;  // FNV-1a
-  // Keeps what it ever had room for. In the order of planes, then groups.
+  // In the order of planes, then groups; with room for all.
   struct Touches {
-    std::vector<Touch> all;
+    std::unique_ptr<Touch[]> all;
     std::size_t count = 0;
     std::uint64_t hash = k_nothing;
     void clear() {
@@ -176,7 +179,6 @@ class BodyContacts {
       hash = k_nothing;
     }
     Touch& add(int plane, int group, int side, Four::Mask touching) {
-      if (count == all.size()) all.emplace_back();
       Touch& touch = all[count++];
       touch.plane = plane;
       touch.group = group;
@@ -187,8 +189,8 @@ class BodyContacts {
              1099511628211ull;
       return touch;
     }
-    std::span<const Touch> list() const { return {all.data(), count}; }
-    std::span<Touch> list() { return {all.data(), count}; }
+    std::span<const Touch> list() const { return {all.get(), count}; }
+    std::span<Touch> list() { return {all.get(), count}; }
   };
 
   template <class F>
@@ -196,15 +198,22 @@ class BodyContacts {
   const Side& side(const Touch& touch) const { return sides_[touch.side]; }
   Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
   Points force(const Touch& touch) const { return mul_add(touch.normal, normal(touch), touch.tangential); }
+  // f(n), the normal of a touch.
+  template <class F>
+  [[gnu::always_inline]] auto with_normal(const Touch& touch, F f) const {
+    return touch.level ? f(Upwards()) : f(normal(touch));
+  }
   PackMatrix<Four> slope(const Touch& touch) const;
   double slope_at_rest(const ContactLaw& law) const;
   double clearance(const Vec3& n, double height) const;
   Points place(const BodyState& s, const Group& group) const;
-  template <bool with_slope>
-  void respond(const PreparedLaw& law, const Points& normal, const Points& velocity, double lever,
+  template <bool with_slope, bool plain>
+  ContactLoads press_all(const PreparedLaw& law, const BodyVelocity& u, double lever);
+  template <bool with_slope, bool plain, class Normal>
+  void respond(const PreparedLaw& law, const Normal& normal, const Points& velocity, double lever,
                Touch& touch) const;
-  template <bool with_slope>
-  void respond_coulomb(const PreparedLaw& law, const Points& normal, const Points& velocity, double lever,
+  template <bool with_slope, bool plain, class Normal>
+  void respond_coulomb(const PreparedLaw& law, const Normal& normal, const Points& velocity, double lever,
                        Touch& touch) const;
   Points held_stick(const ContactLaw& law, const Touch& touch) const;
   template <class F>
@@ -226,7 +235,7 @@ class BodyContacts {
   std::vector<double> widest_;  // m, per plane: greatest gap of centre lines on its face
   Touches now_, start_;
   int modes_ = 0;               // of what find was given last
-  std::vector<Points> shapes_;  // per touch and mode
+  std::vector<Points> shapes_;  // per touch and mode, with room for all
 };
 
 }  // namespace topple

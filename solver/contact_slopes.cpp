@@ -1,5 +1,6 @@
 // Derivatives of the forces that BodyContacts presses with.
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "solver/body_contacts.h"
@@ -11,23 +12,32 @@ namespace {
 //   force by angular velocity  lead n m^T + across [r],  moment by it  lead m m^T + across (r r^T - r^2 I)
 class PlaneSlope {
  public:
-  [[gnu::always_inline]] void add(Four lead, Four across, const PackVector<Four>& n,
-                                  const PackVector<Four>& r) {
-    const PackVector<Four> m = cross(r, n), lead_m = lead * m, across_r = across * r;
+  template <class Normal>
+  [[gnu::always_inline]] void add(Four lead, Four across, const Normal& n, const PackVector<Four>& r) {
+    const auto m = cross(r, n), lead_m = lead * m;
+    const PackVector<Four> across_r = across * r;
     lead_ += lead;
-    lead_m_ = lead_m_ + lead_m;
     across_ += across;
     across_r_ = across_r_ + across_r;
     square_ = mul_add(across_r.z, r.z, mul_add(across_r.y, r.y, mul_add(across_r.x, r.x, square_)));
     const auto both = [&](Four mi, Four mj, Four ri, Four rj, Four sum) {
       return mul_add(mi, mj, mul_add(ri, rj, sum));
     };
+    lead_m_.x += lead_m.x;
+    lead_m_.y += lead_m.y;
     xx_ = both(lead_m.x, m.x, across_r.x, r.x, xx_);
     yy_ = both(lead_m.y, m.y, across_r.y, r.y, yy_);
-    zz_ = both(lead_m.z, m.z, across_r.z, r.z, zz_);
     xy_ = both(lead_m.x, m.y, across_r.x, r.y, xy_);
-    xz_ = both(lead_m.x, m.z, across_r.x, r.z, xz_);
-    yz_ = both(lead_m.y, m.z, across_r.y, r.z, yz_);
+    if constexpr (std::is_same_v<Normal, Upwards>) {
+      zz_ = mul_add(across_r.z, r.z, zz_);
+      xz_ = mul_add(across_r.x, r.z, xz_);
+      yz_ = mul_add(across_r.y, r.z, yz_);
+    } else {
+      lead_m_.z += lead_m.z;
+      zz_ = both(lead_m.z, m.z, across_r.z, r.z, zz_);
+      xz_ = both(lead_m.x, m.z, across_r.x, r.z, xz_);
+      yz_ = both(lead_m.y, m.z, across_r.y, r.z, yz_);
+    }
   }
   [[gnu::always_inline]] ContactSlope total(const PackVec3& n) const {
     const Four by_n = sums(lead_, lead_m_.x, lead_m_.y, lead_m_.z),
@@ -54,13 +64,14 @@ template <class F>
   auto touch = all.begin();
   const auto of_next_plane = [&] {
     const int plane = touch->plane;
-    const Points n = normal(*touch);
-    PlaneSlope sum;
-    for (; touch != all.end() && touch->plane == plane; ++touch) {
-      const auto [lead, across] = lead_and_across(*touch);
-      sum.add(lead, across, n, touch->arm);
-    }
-    return sum.total(packed(model_.planes[plane].normal));
+    return with_normal(*touch, [&](const auto& n) {
+      PlaneSlope sum;
+      for (; touch != all.end() && touch->plane == plane; ++touch) {
+        const auto [lead, across] = lead_and_across(*touch);
+        sum.add(lead, across, n, touch->arm);
+      }
+      return sum.total(packed(model_.planes[plane].normal));
+    });
   };
   if (all.empty()) return {};
   ContactSlope total = of_next_plane();
