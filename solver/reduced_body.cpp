@@ -19,7 +19,10 @@ namespace {
 constexpr double k_stable_turn = 0.6;  // rad per part of a step, of the stiffest motion on contacts; limit 2
 constexpr double k_swing = 2.5;        // rad per part, of the highest mode
 constexpr double k_small_turn = 0.02;  // rad
-constexpr double k_velocity_error = 1e-7;   // of the speed
+constexpr double k_insertion_error = 1e-5;  // of the speed
+constexpr double k_contracts = 0.5;         // from insertion to insertion, at least
+constexpr int k_most_insertions = 3;
+constexpr double k_velocity_error = 1e-7;   // of the speed, by Newton
 constexpr double k_good_rate = 0.1;         // of Newton with an old matrix
 constexpr double k_slow = 1e-3;             // m/s, below it errors are absolute
 constexpr double k_least_part = 1. / 4096;  // of a step
@@ -82,15 +85,46 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
   return unpacked(inverse_inertia_ * (moment - cross(omega, inertia_ * omega)));
 }
 
-// The velocity u after half a step of what acts at its end, and the contact forces there. `free`: without
-// contacts. Newton.
-bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia, double h,
+// The velocity u that half a step of the contact forces at it leaves, and these forces:
+//   u = free + (h/2) M^-1 F(u)
+// with `free` that without contacts. Begins with the u that is expected; by insertion where that contracts,
+// else by Newton.
+bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& r, double h,
                                  const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads,
                                  Amplitudes& load, int m, ReducedScratch& w) {
+  const double per_root_mass = 1 / std::sqrt(mass_);
+  const auto size_of = [&](const PackVec3& x, const PackVec3& y) {
+    const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    return sum_of(x) + reach_ * sum_of(y);
+  };
+  const auto speed = [&] { return k_slow + size_of(u.linear, u.angular); };
+  double last = 0;
+  for (int pass = 0; pass < k_most_insertions; ++pass) {
+    loads = contacts_.press<false>(law, u, 0);
+    BodyVelocity next{mul_add(h / 2 / mass_, loads.force, free.linear),
+                      free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * loads.moment)),
+                      {}};
+    double size = size_of(u.linear - next.linear, u.angular - next.angular);
+    if (m > 0) contacts_.press_modes(m, load);
+    for (int k = 0; k < m; ++k) {
+      next.rate[k] = free.rate[k] + h / 2 * kick_[k] * load[k];
+      size += per_root_mass * std::abs(u.rate[k] - next.rate[k]);
+    }
+    // what is left is a geometric series
+    const double rate = last > 0 ? size / last : k_contracts;
+    if (size * rate <= (1 - rate) * k_insertion_error * speed()) return true;
+    if (rate > k_contracts) break;
+    u.linear = next.linear;
+    u.angular = next.angular;
+    for (int k = 0; k < m; ++k) u.rate[k] = next.rate[k];
+    last = size;
+  }
+
+  const PackMat3 inertia = inertia_at(r);
   std::optional<RigidSolver> rigid;
   const std::uint64_t touching = m > 0 ? contacts_.hash() : 0;
   bool fresh = m == 0 || w.part != h || w.touching != touching;
-  double last = 0;
+  last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
     loads = fresh ? contacts_.press<true>(law, u, 0) : contacts_.press<false>(law, u, 0);
     PackVec3 x = mass_ * (u.linear - free.linear) - h / 2 * loads.force,
@@ -126,17 +160,20 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& inertia
       y = {side[3], side[4], side[5]};
       for (int k = 0; k < m; ++k) {
         u.rate[k] -= side[6 + k];
-        size += std::abs(side[6 + k]) / std::sqrt(mass_);
+        size += per_root_mass * std::abs(side[6 + k]);
       }
     }
     u.linear = u.linear - x;
     u.angular = u.angular - y;
-    const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-    size += sum_of(x) + reach_ * sum_of(y);
-    const double speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
+    size += size_of(x, y);
     // what is left after the correction: its rate, or its square over that of the smoothing
     const double rate = fresh ? std::min(1., size / law.bend) : last > 0 ? size / last : 1;
-    if (size * rate <= k_velocity_error * speed) return true;
+    if (size * rate <= k_velocity_error * speed()) {
+      loads.force = 2 / h * mass_ * (u.linear - free.linear);
+      loads.moment = 2 / h * (inertia * (u.angular - free.angular));
+      for (int k = 0; k < m; ++k) load[k] = 2 / h / kick_[k] * (u.rate[k] - free.rate[k]);
+      return true;
+    }
     fresh = iteration > 0 && rate > k_good_rate;
     last = size;
   }
@@ -332,7 +369,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) free.rate += h / 2 * kick_ * pressed;
     }
-    if (!solve_velocity(end.law, inertia_at(r), h, free, u, loads, s.load, modes(s), w)) return give_up();
+    if (!solve_velocity(end.law, r, h, free, u, loads, s.load, modes(s), w)) return give_up();
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
