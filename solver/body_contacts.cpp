@@ -277,7 +277,8 @@ ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, 
 }
 
 template <bool with_slope, bool plain>
-[[gnu::flatten]] ContactLoads BodyContacts::press_all(const PreparedLaw& law, const BodyVelocity& u, double lever) {
+[[gnu::flatten]] ContactLoads BodyContacts::press_all(const PreparedLaw& law, const BodyVelocity& u,
+                                                      double lever) {
   Points force = in_all_lanes(Vec3::Zero()), moment = force;
   Four damped = Four(0), rubbed = damped;
   const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
