@@ -35,6 +35,7 @@ struct Passage {
   double over = 0;   ///< s; 0: no passage
   /// Share of the new values at time t: 0..1, smooth.
   double share(double t) const;
+  bool operator==(const Passage&) const = default;
 };
 
 /// One floor acceleration; several add up.
@@ -63,6 +64,7 @@ struct Shake {
   Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, along its direction
   double scale_before = 1;
   Passage passage;  ///< from them to `amplitude` along `direction` and to `scale`
+  bool operator==(const Shake&) const = default;
 };
 
 /// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.
@@ -96,6 +98,7 @@ struct Parameters {
   /// Bodies that are no frames swing in parts of a step (reduced_body.h) this many times shorter than is
   /// stable.
   double finer_parts = 1;
+  bool operator==(const Parameters&) const = default;
 };
 
 /// No NaN, no infinity, nothing above k_largest_number.

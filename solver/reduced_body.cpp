@@ -264,15 +264,18 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
 
 // Forces of what touches at the velocity of `s`.
 ContactLoads ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
-  found_at_ = s;
-  found_law_ = static_cast<const ContactLaw&>(law);
+  found_.emplace(s.rung, s.rotation, s.position, s.velocity, s.angular_velocity, law);
+  if (s.rung == Rung::elastic) {
+    found_->amplitude = s.amplitude;
+    found_->rate = s.rate;
+  }
   return contacts_.press<false>(
       law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
 }
 
 bool ReducedBody::known(const Instant& now, const BodyState& s) const {
-  if (!found_at_ || found_at_->rung != s.rung || !(found_law_ == now.law)) return false;
-  const BodyState& found = *found_at_;
+  if (!found_ || found_->rung != s.rung || !(found_->law == now.law)) return false;
+  const Found& found = *found_;
   Four::Mask same = load(found.rotation.coeffs().data()) == load(s.rotation.coeffs().data());
   const auto look = [&](const Vec3& a, const Vec3& b) {
     same &= Four(Four::Vector{a.x(), a.y(), a.z(), 0}) == Four(Four::Vector{b.x(), b.y(), b.z(), 0});
@@ -294,7 +297,7 @@ void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::spa
 
 BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now, BodyState& s,
                                 std::span<const Vec3> stick) {
-  found_at_.reset();
+  found_.reset();
   find_contacts(now, s, stick);
   const ContactLoads loads = contacts_.press<false>(
       now.law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);

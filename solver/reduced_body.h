@@ -136,9 +136,15 @@ class ReducedBody {
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
   BodyAnchors anchors_;
-  // The state at which contacts_ was pressed.
-  std::optional<BodyState> found_at_;
-  ContactLaw found_law_;
+  // What contacts_ was pressed for.
+  struct Found {
+    Rung rung;
+    Quat rotation;
+    Vec3 position, velocity, angular_velocity;
+    ContactLaw law;
+    Amplitudes amplitude, rate;  // of an elastic body
+  };
+  std::optional<Found> found_;
   Eigen::VectorXd section_;
   // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine, and
   // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection.

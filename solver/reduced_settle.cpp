@@ -84,7 +84,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     contacts_.follow(before, packed(r), s, r1);
     respond_at(now.law, s);
     contacts_.keep_sticks(now.law, stick);
-    found_at_.reset();
+    found_.reset();
     sigma = std::clamp(sigma * (size < 0.01 * reach_ ? 2 : 0.5), k_first / 16, k_last);
   }
   return false;

@@ -11,14 +11,7 @@ namespace topple {
 namespace {
 
 void find_base(const Model& model, const Parameters& p, Workspace::Impl& w) {
-  if (!w.base.empty() && w.base_models == p.models && w.base_stress == p.want_stress &&
-      w.base_alpha == p.contact.alpha && w.base_q == p.contact.q)
-    return;
-  w.base_models = p.models;
-  w.base_stress = p.want_stress;
-  w.base_alpha = p.contact.alpha;
-  w.base_q = p.contact.q;
-  w.base.clear();
+  if (!w.base.empty()) return;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) w.base.push_back(base_rung(model, p, b));
 }
 
@@ -124,6 +117,7 @@ void change_rung(const Model& model, const Parameters& parameters, const Instant
 }  // namespace
 
 void start_rungs(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
+  w.meet(parameters);
   place_nodes(model, state);
   state.near_slack = 0;
   look_around(model, w.search, state, 0);

@@ -125,18 +125,12 @@ double jump(const Model& model, const Vec3& floor, State& state) {
 // With the stiffer of the two laws of a passage.
 void find_explicit_limit(const Model& model, const Parameters& parameters, const State& state,
                          Workspace::Impl& w) {
+  if (w.explicit_limit) return;
   ContactLaw law = parameters.contact;
   if (parameters.contact_passage.over > 0) {
     law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
     law.q = std::max(law.q, parameters.contact_before.q);
   }
-  if (w.explicit_limit && w.limit_alpha == law.alpha && w.limit_q == law.q &&
-      w.limit_damping == parameters.damping)
-    return;
-  w.explicit_limit.reset();
-  w.limit_alpha = law.alpha;
-  w.limit_q = law.q;
-  w.limit_damping = parameters.damping;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodySystem* const system = state.bodies[b].rung == Rung::frame ? w.islands.alone(b) : nullptr;
     if (!system) continue;
@@ -153,7 +147,8 @@ void find_explicit_limit(const Model& model, const Parameters& parameters, const
 StepStatus try_known(const Model& model, const Parameters& parameters, const State& state, double h,
                      int halvings, Workspace::Impl& w) {
   const double t = state.time;
-  const Instant start(parameters, t), end(parameters, t + h);
+  const Instant start = w.reached && w.reached->time == t ? *w.reached : Instant(parameters, t);
+  const Instant& end = w.reached.emplace(parameters, t + h);
   {
     const InPhase phase(&w.profile, Phase::ladder);
     change_rungs(model, parameters, start, w.next, w);
@@ -399,8 +394,12 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
 
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until) {
-  if (const StepStatus status = look_at_numbers(model, parameters, state, false); !status.ok()) return status;
   Workspace::Impl& w = workspace.impl();
+  if (w.parameters != parameters || !is_finite(state, false)) {
+    const StepStatus status = look_at_numbers(model, parameters, state, false);
+    if (!status.ok()) return status;
+    w.meet(parameters);
+  }
   if (parameters.adaptive) return adaptive_step(model, parameters, state, w, until);
   const double h = parameters.time_step;
   const StepStatus status = try_step(model, parameters, state, h, k_halvings, w);

@@ -33,6 +33,14 @@ struct Workspace::Impl {
     contact_forces.reserve(model.contact_points.size() * model.planes.size());
   }
   const std::vector<BodySystem*>& systems() const { return islands.systems(); }
+  // Parameters that are good.
+  void meet(const Parameters& now) {
+    if (parameters == now) return;
+    parameters = now;
+    base.clear();
+    reached.reset();
+    explicit_limit.reset();
+  }
   // With the anchors of `state`.
   ReducedBody& reduced(const Model& model, const State& state, int body) {
     if (!reduced_bodies[body]) reduced_bodies[body] = std::make_unique<ReducedBody>(model, body);
@@ -45,10 +53,11 @@ struct Workspace::Impl {
   std::vector<std::unique_ptr<ReducedBody>>
       reduced_bodies;                              // per body, once it was on another rung than frame
   std::vector<ReducedScratch> reduced_scratch{1};  // per worker
-  std::vector<RungChoice> base;                    // per body, for the parameters below
-  std::vector<BodyModel> base_models;
-  bool base_stress = false;
-  double base_alpha = 0, base_q = 0;
+  std::optional<Parameters> parameters;            // met last; for them hold:
+  std::vector<RungChoice> base;                    //   per body
+  std::optional<Instant> reached;                  //   the end of the last step that was tried
+  std::optional<double> explicit_limit;            //   s, and the body that sets it
+  int limiting_body = -1, limiting_node = -1;
   std::vector<char> near;                       // per body: another is
   std::vector<char> new_frames;                 // per body: since the last step
   std::vector<char> new_anchors;                // per body: one was switched or broke
@@ -63,11 +72,7 @@ struct Workspace::Impl {
   std::vector<MemberForce> member_forces;
   std::vector<SectionForces> sections;
   State next;
-  int most_iterations = 0;               // of one system in the newest step
-  std::optional<double> explicit_limit;  // s, the body that sets it and the law that it holds for
-  int limiting_body = -1, limiting_node = -1;
-  double limit_alpha = 0, limit_q = 0;
-  std::vector<double> limit_damping;
+  int most_iterations = 0;  // of one system in the newest step
 };
 
 }  // namespace topple
