@@ -19,8 +19,9 @@ namespace {
 constexpr double k_stable_turn = 0.6;  // rad per part of a step, of the stiffest motion on contacts; limit 2
 constexpr double k_swing = 2.5;        // rad per part, of the highest mode
 constexpr double k_small_turn = 0.02;  // rad
-constexpr double k_insertion_error = 1e-5;  // of the speed
-constexpr double k_contracts = 0.5;         // from insertion to insertion, at least
+constexpr double k_insertion_error = 1e-5;  // of the speed; of adaptive runs in this share of the tolerance:
+constexpr double k_insertion_share = 0.01;
+constexpr double k_contracts = 0.5;  // from insertion to insertion, at least
 constexpr int k_most_insertions = 3;
 constexpr double k_velocity_error = 1e-7;   // of the speed, by Newton
 constexpr double k_good_rate = 0.1;         // of Newton with an old matrix
@@ -87,9 +88,9 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
 
 // The velocity u that half a step of the contact forces at it leaves, and these forces:
 //   u = free + (h/2) M^-1 F(u)
-// with `free` that without contacts. Begins with the u that is expected; by insertion where that contracts,
-// else by Newton.
-bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& r, double h,
+// with `free` that without contacts, to an `error` over the speed. Begins with the u that is expected; by
+// insertion where that contracts, else by Newton.
+bool ReducedBody::solve_velocity(const PreparedLaw& law, double error, const PackMat3& r, double h,
                                  const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads,
                                  Amplitudes& load, int m, ReducedScratch& w) {
   const double per_root_mass = 1 / std::sqrt(mass_);
@@ -112,7 +113,7 @@ bool ReducedBody::solve_velocity(const PreparedLaw& law, const PackMat3& r, doub
     }
     // what is left is a geometric series
     const double rate = last > 0 ? size / last : k_contracts;
-    if (size * rate <= (1 - rate) * k_insertion_error * speed()) return true;
+    if (size * rate <= (1 - rate) * error * speed()) return true;
     if (rate > k_contracts) break;
     u.linear = next.linear;
     u.angular = next.angular;
@@ -372,7 +373,10 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) free.rate += h / 2 * kick_ * pressed;
     }
-    if (!solve_velocity(end.law, r, h, free, u, loads, s.load, modes(s), w)) return give_up();
+    const double error = parameters.adaptive
+                             ? std::min(k_insertion_error, k_insertion_share * parameters.tolerance)
+                             : k_insertion_error;
+    if (!solve_velocity(end.law, error, r, h, free, u, loads, s.load, modes(s), w)) return give_up();
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);

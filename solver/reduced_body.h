@@ -110,8 +110,9 @@ class ReducedBody {
   template <class F>
   void each_force(const BodyState& s, F f) const;
 
-  bool solve_velocity(const PreparedLaw& law, const PackMat3& r, double h, const BodyVelocity& free,
-                      BodyVelocity& u, ContactLoads& loads, Amplitudes& load, int modes, ReducedScratch& w);
+  bool solve_velocity(const PreparedLaw& law, double error, const PackMat3& r, double h,
+                      const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
+                      int modes, ReducedScratch& w);
   bool swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                   BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w, double& stable);
   void find_swing(double h);
