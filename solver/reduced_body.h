@@ -110,7 +110,7 @@ class ReducedBody {
   template <class F>
   void each_force(const BodyState& s, F f) const;
 
-  bool solve_velocity(const PreparedLaw& law, double error, const PackMat3& r, double h,
+  bool solve_velocity(const Parameters& parameters, const PreparedLaw& law, const PackMat3& r, double h,
                       const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
                       int modes, ReducedScratch& w);
   bool swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,

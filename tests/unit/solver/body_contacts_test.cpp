@@ -12,7 +12,9 @@
 namespace topple::test {
 namespace {
 
-/// A cabinet in any pose, pressed into a floor that slopes, with its modes at work.
+const Vec3 k_tilted = Vec3(0.2, -0.3, 1).normalized();
+
+/// A cabinet in any pose, pressed into a floor; on the rung elastic with its modes at work.
 struct Pressed {
   Model model = steel_model();
   BodyState state;
@@ -22,14 +24,13 @@ struct Pressed {
   BodyVelocity velocity;
   int modes = 0;
 
-  explicit Pressed(std::mt19937& rng) {
+  explicit Pressed(std::mt19937& rng, const Vec3& normal = k_tilted, Rung rung = Rung::elastic) {
     add_cabinet(model, tall_cabinet());
     Body& body = model.bodies[0];
     body.elastic = elastic_basis(model, 0);
-    modes = body.elastic->modes;
-    const Vec3 normal = Vec3(0.2, -0.3, 1).normalized();
-    model.planes.push_back({"slope", Vec3(0.1, 0.2, 0), normal, 0.09});
-    state.rung = Rung::elastic;
+    modes = rung == Rung::elastic ? body.elastic->modes : 0;
+    model.planes.push_back({"floor", Vec3(0.1, 0.2, 0), normal, 0.09});
+    state.rung = rung;
     state.rotation = random_rotation(rng);
     for (int k = 0; k < modes; ++k) state.amplitude[k] = 1e-3 * random_vector(rng)[0];
     // so deep that some points touch and others do not
@@ -59,8 +60,9 @@ Loads loads_at(BodyContacts& contacts, const Pressed& at, int direction, double 
 
 TEST(BodyContacts, slopes_are_the_derivatives_of_the_loads_by_the_velocity) {
   std::mt19937 rng(11);
-  for (int trial = 0; trial < 5; ++trial) {
-    const Pressed at(rng);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Pressed at(rng, trial % 2 == 0 ? k_tilted : Vec3::UnitZ(),
+                     trial % 4 < 2 ? Rung::elastic : Rung::rigid);
     BodyContacts contacts(at.model, 0);
     contacts.find(at.state, at.rotation, at.stick);
     ASSERT_TRUE(contacts.any());
