@@ -26,7 +26,8 @@ PreparedLaw::PreparedLaw(const ContactLaw& law)
     : ContactLaw(law),
       root_alpha(std::sqrt(law.alpha)),
       loss(normal_loss(law.restitution)),
-      bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed) {}
+      bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed),
+      plain(law.kind == ContactLawKind::coulomb && law.q == 1 && !(law.excess() > 0)) {}
 
 BodyContacts::BodyContacts(const Model& model, int body)
     : model_(model),
@@ -124,40 +125,44 @@ double BodyContacts::slope_at_rest(const ContactLaw& law) const {
 
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
   now_.clear();
-  Points* shape = shapes_.data();
-  modes_ = s.rung == Rung::elastic ? static_cast<int>(groups_.empty() ? 0 : groups_[0].shape.size()) : 0;
   gives_ = s.rung == Rung::elastic;
+  modes_ = gives_ && !groups_.empty() ? static_cast<int>(groups_[0].shape.size()) : 0;
   const double bend = gives_ ? k_bend * reach_ : 0;
-  const bool has_modes = modes_ > 0;
-  const std::size_t planes = model_.planes.size(), count = groups_.size();
-  for (std::size_t k = 0; k < planes; ++k) {
+  for (int k = 0; k < static_cast<int>(widest_.size()); ++k) {
     const Plane& plane = model_.planes[k];
     const double height = plane.normal.dot(s.position - plane.point);
     const Vec3 n = unpacked(transposed_times(r, packed(plane.normal)));
     if (clearance(n, height) > widest_[k] + bend) continue;
-    const bool level = plane.normal == Vec3::UnitZ();
-    const Points normal = in_all_lanes(n);
-    const Side* const sides = &sides_[k * count];
-    const PackMatrix<Four> turn = in_all_lanes(r);
-    for (std::size_t g = 0; g < count; ++g) {
-      const Group& group = groups_[g];
-      Points at = group.place;
-      if (has_modes) at = place(s, group);
-      const Four gap = dot(normal, at) + (Four(height) - sides[g].gap);
-      const Four::Mask touching = gap < 0;
-      if (bits(touching) == 0) continue;
-      Touch& touch =
-          now_.add(static_cast<int>(k), static_cast<int>(g), static_cast<int>(k * count + g), touching);
-      touch.level = level;
-      touch.depth = choose(touching, -gap / sides[g].L, Four(0));
-      touch.arm = turn * at;
-      touch.stick = gather(stick.data(), sides[g].spring);
+    gives_ ? find_on<true>(k, n, height, s, r, stick) : find_on<false>(k, n, height, s, r, stick);
+  }
+}
+
+// `n`: the normal in reference axes; `height`: of the centre of gravity.
+template <bool bends>
+void BodyContacts::find_on(int plane, const Vec3& n, double height, const BodyState& s, const PackMat3& r,
+                           std::span<const Vec3> stick) {
+  const bool level = model_.planes[plane].normal == Vec3::UnitZ();
+  const Points normal = in_all_lanes(n);
+  const PackMatrix<Four> turn = in_all_lanes(r);
+  const int count = static_cast<int>(groups_.size());
+  const Side* side = &sides_[plane * count];
+  Points* shape = shapes_.data() + now_.count * modes_;
+  for (int g = 0; g < count; ++g, ++side) {
+    const Group& group = groups_[g];
+    const Points at = bends ? place(s, group) : group.place;
+    const Four gap = dot(normal, at) + (Four(height) - side->gap);
+    const Four::Mask touching = gap < 0;
+    if (bits(touching) == 0) continue;
+    Touch& touch = now_.add(plane, g, plane * count + g, touching);
+    touch.level = level;
+    touch.depth = choose(touching, -gap / side->L, Four(0));
+    touch.arm = turn * at;
+    touch.stick = gather(stick.data(), side->spring);
+    if constexpr (bends) {
       for (int j = 0; j < modes_; ++j) *shape++ = turn * group.shape[j];
-      if (gives_) {
-        touch.give = dot(normal, group.give * normal);
-        touch.give_across =
-            0.5 * (group.give.row[0].x + group.give.row[1].y + group.give.row[2].z - touch.give);
-      }
+      touch.give = dot(normal, group.give * normal);
+      touch.give_across =
+          0.5 * (group.give.row[0].x + group.give.row[1].y + group.give.row[2].z - touch.give);
     }
   }
 }
@@ -270,13 +275,13 @@ template <bool with_slope, bool plain, class Normal>
   }
 }
 
-template <bool with_slope>
+template <bool with_slope, ContactSums sums>
 ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, double lever) {
-  const bool plain = !gives_ && law.kind == ContactLawKind::coulomb && law.q == 1 && !(law.excess() > 0);
-  return plain ? press_all<with_slope, true>(law, u, lever) : press_all<with_slope, false>(law, u, lever);
+  return law.plain && !gives_ ? press_all<with_slope, true, sums>(law, u, lever)
+                              : press_all<with_slope, false, sums>(law, u, lever);
 }
 
-template <bool with_slope, bool plain>
+template <bool with_slope, bool plain, ContactSums sums>
 [[gnu::flatten]] ContactLoads BodyContacts::press_all(const PreparedLaw& law, const BodyVelocity& u,
                                                       double lever) {
   Points force = in_all_lanes(Vec3::Zero()), moment = force;
@@ -297,18 +302,25 @@ template <bool with_slope, bool plain>
       for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
     with_normal(touch, [&](const auto& n) {
       respond<with_slope, plain>(law, n, v, lever, touch);
+      if constexpr (sums == ContactSums::none) return;
       const auto rub = lying(n, touch.tangential);
       const Points push = mul_add(touch.normal, n, rub);
       force = force + push;
       moment = moment + cross(touch.arm, push);
+      if constexpr (sums == ContactSums::loads) return;
       damped -= (touch.normal - touch.conservative) * dot(n, v);
       rubbed -= dot(rub, v);
     });
   }
-  const Four first = sums(force.x, force.y, force.z, damped),
-             second = sums(moment.x, moment.y, moment.z, rubbed);
+  if constexpr (sums == ContactSums::none) return {};
+  const Four first = topple::sums(force.x, force.y, force.z, damped),
+             second = topple::sums(moment.x, moment.y, moment.z, rubbed);
   return {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}, first[3], second[3]};
 }
+template ContactLoads BodyContacts::press<false, ContactSums::none>(const PreparedLaw&, const BodyVelocity&,
+                                                                    double);
+template ContactLoads BodyContacts::press<false, ContactSums::loads>(const PreparedLaw&, const BodyVelocity&,
+                                                                     double);
 template ContactLoads BodyContacts::press<false>(const PreparedLaw&, const BodyVelocity&, double);
 template ContactLoads BodyContacts::press<true>(const PreparedLaw&, const BodyVelocity&, double);
 

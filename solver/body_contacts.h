@@ -29,6 +29,7 @@ using PackMat3 = PackMatrix<double>;
 struct PreparedLaw : ContactLaw {
   double root_alpha, loss;  ///< normal_loss
   double bend;              ///< m/s, the least speed over which forces leave their tangent
+  bool plain;               ///< coulomb, linear in depth, one coefficient of friction
   explicit PreparedLaw(const ContactLaw& law);
 };
 
@@ -43,6 +44,8 @@ struct ContactLoads {
   PackVec3 force, moment;
   double damped, rubbed;
 };
+/// What of them is summed up, the rest being undefined: nothing, force and moment, or all.
+enum class ContactSums { none, loads, all };
 
 /// Derivatives of the force and the moment of contacts by linear and angular velocity.
 struct ContactSlope {
@@ -91,7 +94,7 @@ class BodyContacts {
   void follow(const BodyState& before, const PackMat3& r0, const BodyState& s, const PackMat3& r);
   /// Forces of what touches. with_slope: slope and slope_of_modes give their derivatives along which the
   /// place changes `lever` times as much as the velocity, s.
-  template <bool with_slope>
+  template <bool with_slope, ContactSums sums = ContactSums::all>
   ContactLoads press(const PreparedLaw& law, const BodyVelocity& u, double lever);
   /// On the modes, N/sqrt(kg), with the forces found last.
   void press_modes(int modes, Amplitudes& load) const;
@@ -207,7 +210,10 @@ class BodyContacts {
   double slope_at_rest(const ContactLaw& law) const;
   double clearance(const Vec3& n, double height) const;
   Points place(const BodyState& s, const Group& group) const;
-  template <bool with_slope, bool plain>
+  template <bool bends>
+  void find_on(int plane, const Vec3& normal, double height, const BodyState& s, const PackMat3& r,
+               std::span<const Vec3> stick);
+  template <bool with_slope, bool plain, ContactSums sums>
   ContactLoads press_all(const PreparedLaw& law, const BodyVelocity& u, double lever);
   template <bool with_slope, bool plain, class Normal>
   void respond(const PreparedLaw& law, const Normal& normal, const Points& velocity, double lever,

@@ -206,12 +206,12 @@ double ImplicitStep::correct(int& node) {
                     Eigen::Map<Vec3>(&w_.right_hand_side[6 * i + 3]));
   const Four size2(s_.size * s_.size);
   for (const NodePack& pack : s_.node_packs) {
-    const double* const x = w_.right_hand_side.data();
-    PackVector<Four> shift, spin;
-    for (int k = 0; k < 4; ++k) {
-      set_lane(shift, k, Vec3(x + 6 * pack.node[k]));
-      set_lane(spin, k, Vec3(x + 6 * pack.node[k] + 3));
-    }
+    const auto part = [&](int which) {
+      std::array<int, 4> at;
+      for (int k = 0; k < 4; ++k) at[k] = 2 * pack.node[k] + which;
+      return gather(reinterpret_cast<const Vec3*>(w_.right_hand_side.data()), at);
+    };
+    const PackVector<Four> shift = part(0), spin = part(1);
     const PackVector<Four> turn = gather(w_.turn.data(), pack.node);
     const PackQuaternion<Four> back = conjugate(gather(w_.start.rotation.data(), pack.node));
     scatter(gather(w_.travel.data(), pack.node) + shift, w_.travel.data(), pack.node);

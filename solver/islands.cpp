@@ -78,7 +78,7 @@ void Islands::arrange(const std::vector<BodyState>& states, const std::vector<El
   const int count = static_cast<int>(model_.bodies.size());
   bool same = near == near_;
   for (int b = 0; b < count; ++b) {
-    const bool frame = !held_[b] && states[b].rung == Rung::frame;
+    const bool frame = states[b].rung == Rung::frame && !held_[b];
     same = same && frame == frame_[b];
     frame_[b] = frame;
   }

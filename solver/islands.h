@@ -36,7 +36,7 @@ class Islands {
 
   const Model& model_;
   std::vector<bool> held_;
-  std::vector<bool> frame_;  // not held
+  std::vector<char> frame_;  // not held
   std::vector<ElementPair> near_;
   std::vector<std::unique_ptr<BodySystem>> alone_, joined_, joined_before_;
   std::vector<BodySystem*> systems_;

@@ -31,6 +31,11 @@ double greatest_stiffness(const ContactLaw& law) {
 Instant::Instant(const Parameters& parameters, double t)
     : time(t), law(contact_law(parameters, t)), floor(floor_acceleration(parameters.shakes, t)) {}
 
+Instant::Instant(const Parameters& parameters, double t, const Instant& before)
+    : time(t),
+      law(parameters.contact_passage.over > 0 ? PreparedLaw(contact_law(parameters, t)) : before.law),
+      floor(floor_acceleration(parameters.shakes, t)) {}
+
 ReducedBody::ReducedBody(const Model& model, int body)
     : model_(model),
       body_(body),
@@ -81,10 +86,9 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   return unpacked(spin);
 }
 
-// The longest part that is stable on what touches, with its springs and stick springs as stiff as they get,
-// in all directions.
+// The longest part that is stable on what touches.
 double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
-  const int m = modes(s), n = 6 + m;
+  const int m = modes(s);
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
   if (!contacts_.any() && !anchors_.any()) return swing / parameters.finer_parts;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
@@ -92,6 +96,15 @@ double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& 
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.rung == s.rung)
       return known.step / parameters.finer_parts;
+  const double step = find_stable_part(law, s, swing);
+  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
+  next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
+  return step / parameters.finer_parts;
+}
+
+// Not above `swing`, with springs and stick springs as stiff as they get, in all directions.
+double ReducedBody::find_stable_part(const ContactLaw& law, const BodyState& s, double swing) const {
+  const int m = modes(s), n = 6 + m;
   const Mat3 root = model_.bodies[body_].inertia.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 + k_modes, 6 + k_modes>;
   Matrix stiffness = Matrix::Zero(n, n);
@@ -111,10 +124,7 @@ double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& 
     stiffness += model_.anchors[tie.index].stiffness * j.transpose() * j;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
-  const double step = std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
-  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
-  next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
-  return step / parameters.finer_parts;
+  return std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
 }
 
 BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const {
@@ -131,11 +141,24 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
 }
 
 // Forces of what touches at the velocity of `s`.
+template <ContactSums sums>
 ContactLoads ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
-  found_ = Found{s.rung, s.rotation, s.position, s.velocity, s.angular_velocity, law, s.amplitude, s.rate};
-  return contacts_.press<false>(
+  Found& found = found_ ? *found_ : found_.emplace();
+  found.rung = s.rung;
+  found.rotation = s.rotation;
+  found.position = s.position;
+  found.velocity = s.velocity;
+  found.angular_velocity = s.angular_velocity;
+  found.law = law;
+  if (s.rung == Rung::elastic) {
+    found.amplitude = s.amplitude;
+    found.rate = s.rate;
+  }
+  return contacts_.press<false, sums>(
       law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
 }
+template ContactLoads ReducedBody::respond_at<ContactSums::none>(const PreparedLaw&, const BodyState&);
+template ContactLoads ReducedBody::respond_at<ContactSums::loads>(const PreparedLaw&, const BodyState&);
 
 bool ReducedBody::known(const Instant& now, const BodyState& s) const {
   if (!found_ || found_->rung != s.rung || !(found_->law == now.law)) return false;
@@ -154,17 +177,16 @@ bool ReducedBody::known(const Instant& now, const BodyState& s) const {
 void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick) {
   if (!known(now, s)) {
     contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
-    respond_at(now.law, s);
+    respond_at<ContactSums::none>(now.law, s);
   }
   anchors_.find(s);
 }
 
 BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now, BodyState& s,
                                 std::span<const Vec3> stick) {
-  found_.reset();
-  find_contacts(now, s, stick);
-  const ContactLoads loads = contacts_.press<false>(
-      now.law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
+  contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
+  anchors_.find(s);
+  const ContactLoads loads = respond_at<ContactSums::loads>(now.law, s);
   s.load.setZero();
   contacts_.press_modes(modes(s), s.load);
   s.force = mass_ * (parameters.gravity - now.floor) + unpacked(loads.force);
@@ -269,7 +291,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   }
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
-  respond_at(end.law, s);
+  respond_at<ContactSums::none>(end.law, s);
   return true;
 }
 
@@ -288,7 +310,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instan
   while (!stiff) {
     const bool last = size >= left;
     const Instant& from = w.from ? *w.from : start;
-    if (!last) w.to.emplace(parameters, from.time + size);
+    if (!last) w.to.emplace(parameters, from.time + size, from);
     double stable;
     if (swing_part(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w, stable)) {
       if (last) break;

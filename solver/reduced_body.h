@@ -40,6 +40,8 @@ struct Instant {
   PreparedLaw law;
   Vec3 floor;  ///< m/s^2, acceleration
   Instant(const Parameters& parameters, double t);
+  /// After `before`, an instant of the same parameters.
+  Instant(const Parameters& parameters, double t, const Instant& before);
 };
 
 /// Scratch of a step, for one body after the other: Newton's matrix or its factors, a right side, and the
@@ -105,6 +107,7 @@ class ReducedBody {
   int modes(const BodyState& s) const { return s.rung == Rung::elastic ? basis_->modes : 0; }
   PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }
   Vec3 angular_acceleration(const BodyState& s) const;
+  template <ContactSums sums>
   ContactLoads respond_at(const PreparedLaw& law, const BodyState& s);
   bool known(const Instant& now, const BodyState& s) const;
   template <class F>
@@ -118,6 +121,7 @@ class ReducedBody {
   void find_swing(double h);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
+  double find_stable_part(const ContactLaw& law, const BodyState& s, double swing) const;
 
   StepStatus::Kind advance_stiffly(const Parameters& parameters, const Instant& start, const Instant& end,
                                    double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy);

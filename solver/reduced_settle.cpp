@@ -82,7 +82,7 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
     contacts_.begin_part();
     contacts_.find(s, r1, stick);
     contacts_.follow(before, packed(r), s, r1);
-    respond_at(now.law, s);
+    respond_at<ContactSums::none>(now.law, s);
     contacts_.keep_sticks(now.law, stick);
     found_.reset();
     sigma = std::clamp(sigma * (size < 0.01 * reach_ ? 2 : 0.5), k_first / 16, k_last);

@@ -174,7 +174,7 @@ bool ReducedBody::stiff_part(const Parameters& parameters, const Instant& start,
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
   // not force2: springs that slipped are shorter now, and the next part compares its forces with these
-  const ContactLoads loads = respond_at(end.law, s);
+  const ContactLoads loads = respond_at<ContactSums::loads>(end.law, s);
   s.force = unpacked(loads.force + mass_ * (gravity - floor2));
   s.moment = unpacked(loads.moment);
   if (anchors_.any()) {

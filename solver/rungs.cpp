@@ -16,7 +16,7 @@ void find_base(const Model& model, const Parameters& p, Workspace::Impl& w) {
 }
 
 void find_near(const Model& model, const State& state, Workspace::Impl& w) {
-  w.near.assign(model.bodies.size(), false);
+  std::ranges::fill(w.near, false);
   for (const ElementPair& pair : state.near)
     for (const int e : {pair.a, pair.b}) w.near[model.members[model.elements[e].member].body] = true;
 }
@@ -138,7 +138,7 @@ void change_rungs(const Model& model, const Parameters& parameters, const Instan
                   Workspace::Impl& w) {
   find_base(model, parameters, w);
   find_near(model, state, w);
-  w.new_frames.assign(model.bodies.size(), false);
+  std::ranges::fill(w.new_frames, false);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodyState& s = state.bodies[b];
     if (s.rung != Rung::frame) w.reduced(model, state, b).find_contacts(now, s, state.stick);

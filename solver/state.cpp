@@ -226,11 +226,12 @@ std::uint64_t hash(const State& state) {
   return sum;
 }
 
-bool is_finite(const State& s, bool nodes) {
-  // Sums that are finite when all their numbers are, and not too large; four, as each waits for itself.
-  Four sums[4]{0., 0., 0., 0.};
-  const auto look_at = [&](Four x, int k = 0) { sums[k] = mul_add(x, Four(k_overflow), sums[k]); };
-  const auto look = [&](const double* x, std::size_t count) {
+namespace {
+
+// Sums that are finite when all their numbers are, and not too large; four, as each waits for itself.
+class Finiteness {
+ public:
+  void look(const double* x, std::size_t count) {
     std::size_t k = 0;
     for (; k + 16 <= count; k += 16) {
       look_at(load(x + k), 0);
@@ -240,41 +241,64 @@ bool is_finite(const State& s, bool nodes) {
     }
     for (; k + 4 <= count; k += 4) look_at(load(x + k), 1);
     for (; k < count; ++k) look_at(Four(x[k]), 2);
-  };
-  const auto look_at_four = [&](double a, double b, double c, double d, int k) {
-    look_at(Four(Four::Vector{a, b, c, d}), k);
-  };
-  const auto total = [](const Vec3& v) { return v.x() + v.y() + v.z(); };
-  if (nodes) {
-    for (const auto* array :
-         {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
-          &s.algorithmic_acceleration, &s.algorithmic_angular_acceleration})
-      if (!array->empty()) look(array->front().data(), 3 * array->size());
-    static_assert(sizeof(Quat) == 4 * sizeof(double) && sizeof(ElementState) == 7 * sizeof(double));
-    if (!s.rotation.empty()) look(s.rotation.front().coeffs().data(), 4 * s.rotation.size());
-    if (!s.elements.empty())
-      look(reinterpret_cast<const double*>(s.elements.data()), 7 * s.elements.size());  // load() may alias
   }
-  for (const BodyState& b : s.bodies) {
+  void look(const BodyState& b, bool modes) {
     static_assert(k_modes % 4 == 0);
-    for (int k = 0; k < k_modes; k += 4) {
+    for (int k = 0; modes && k < k_modes; k += 4) {
       look_at(load(b.amplitude.data() + k), 1);
       look_at(load(b.rate.data() + k), 2);
       look_at(load(b.load.data() + k), 3);
     }
-    look_at(load(b.rotation.coeffs().data()));
-    look_at_four(b.calm_since, b.part, total(b.position), total(b.velocity), 1);
-    look_at_four(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
+    look_at(load(b.rotation.coeffs().data()), 0);
+    look_at(b.calm_since, b.part, total(b.position), total(b.velocity), 1);
+    look_at(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
   }
-  if (!s.stick.empty()) look(s.stick.front().data(), 3 * s.stick.size());
-  for (const MemberStick& stick : s.member_sticks) look_at(Four(total(stick.stick)));
-  static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
-  look(&s.energy.input, 15);
-  for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length));
-  look_at_four(total(s.floor_displacement), total(s.floor_velocity), s.time + s.step_size,
-               s.load_factor + s.near_slack, 0);
-  const Four all = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  return !any_above(all - all, 0);
+  void look_at_rest(const State& s) {
+    static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
+    look(&s.energy.input, 15);
+    look_at(total(s.floor_displacement), total(s.floor_velocity), s.time + s.step_size,
+            s.load_factor + s.near_slack, 0);
+    for (const MemberStick& stick : s.member_sticks) look_at(Four(total(stick.stick)), 0);
+    for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length), 0);
+  }
+  bool all() const {
+    const Four all = (sums_[0] + sums_[1]) + (sums_[2] + sums_[3]);
+    return !any_above(all - all, 0);
+  }
+
+ private:
+  static double total(const Vec3& v) { return v.x() + v.y() + v.z(); }
+  void look_at(Four x, int k) { sums_[k] = mul_add(x, Four(k_overflow), sums_[k]); }
+  void look_at(double a, double b, double c, double d, int k) { look_at(Four(Four::Vector{a, b, c, d}), k); }
+
+  Four sums_[4]{0., 0., 0., 0.};
+};
+
+}  // namespace
+
+bool is_finite(const State& s, bool nodes) {
+  Finiteness found;
+  if (nodes) {
+    for (const auto* array :
+         {&s.position, &s.velocity, &s.angular_velocity, &s.acceleration, &s.angular_acceleration,
+          &s.algorithmic_acceleration, &s.algorithmic_angular_acceleration})
+      if (!array->empty()) found.look(array->front().data(), 3 * array->size());
+    static_assert(sizeof(Quat) == 4 * sizeof(double) && sizeof(ElementState) == 7 * sizeof(double));
+    if (!s.rotation.empty()) found.look(s.rotation.front().coeffs().data(), 4 * s.rotation.size());
+    if (!s.elements.empty())  // load() may alias
+      found.look(reinterpret_cast<const double*>(s.elements.data()), 7 * s.elements.size());
+  }
+  for (const BodyState& b : s.bodies) found.look(b, true);
+  if (!s.stick.empty()) found.look(s.stick.front().data(), 3 * s.stick.size());
+  found.look_at_rest(s);
+  return found.all();
+}
+
+bool moves_finite(const State& s) {
+  Finiteness found;
+  for (const BodyState& b : s.bodies) found.look(b, b.rung == Rung::elastic);
+  found.look_at_rest(s);
+  return found.all();
 }
 
 int body_not_finite(const Model& model, const State& s) {
@@ -304,7 +328,10 @@ namespace {
 
 template <class T>
 void copy_array(const std::vector<T>& from, std::vector<T>& to) {
-  to = from;
+  if (from.empty())
+    to.clear();
+  else
+    to = from;
 }
 // Eigen would copy these numbers one by one.
 void copy_array(const std::vector<Vec3>& from, std::vector<Vec3>& to) {

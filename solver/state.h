@@ -91,6 +91,9 @@ std::uint64_t hash(const State& state);
 /// No NaN, no infinity, nothing above k_largest_number anywhere; without `nodes` in all but the per-node and
 /// per-element arrays.
 bool is_finite(const State& state, bool nodes = true);
+/// The same of what a step changes where no node moves, but for stick springs: one that is not finite makes a
+/// force that is not.
+bool moves_finite(const State& state);
 
 /// The first body whose motion is not finite, as is_finite has it, -1: none.
 int body_not_finite(const Model& model, const State& state);

@@ -29,7 +29,6 @@ constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
 constexpr int k_bodies_per_task = 16;    // that are not frames: some microseconds
 constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
-const PartOfStep k_nothing;
 
 }  // namespace
 
@@ -148,7 +147,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
                      int halvings, Workspace::Impl& w) {
   const double t = state.time;
   const Instant start = w.reached && w.reached->time == t ? *w.reached : Instant(parameters, t);
-  const Instant& end = w.reached.emplace(parameters, t + h);
+  const Instant& end = w.reached.emplace(parameters, t + h, start);
   {
     const InPhase phase(&w.profile, Phase::ladder);
     change_rungs(model, parameters, start, w.next, w);
@@ -191,9 +190,9 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   const int bodies = static_cast<int>(w.moving.size()),
             chunks = (bodies + k_bodies_per_task - 1) / k_bodies_per_task,
             systems = static_cast<int>(w.systems().size());
-  w.parts.assign(chunks + systems, k_nothing);
+  w.parts.resize(chunks + systems);
   const auto move_bodies = [&](int chunk, int worker) {
-    PartOfStep& part = w.parts[chunk];
+    PartOfStep& part = w.parts[chunk] = {};
     for (int k = chunk * k_bodies_per_task; k < std::min(bodies, (chunk + 1) * k_bodies_per_task); ++k) {
       const int b = w.moving[k];
       ReducedBody& body = w.reduced(model, next, b);
@@ -209,7 +208,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   };
   const auto move_system = [&](int s, int worker) {
     BodySystem& system = *w.systems()[s];
-    PartOfStep& part = w.parts[chunks + s];
+    PartOfStep& part = w.parts[chunks + s] = {};
     IntegratorScratch& scratch = w.scratches[worker];
     scratch.profile = &w.profile;
     {
@@ -276,7 +275,7 @@ StepStatus try_known(const Model& model, const Parameters& parameters, const Sta
   e.largest = std::max(
       {e.largest, std::abs(e.input), e.kinetic, std::abs(e.gravity), e.strain + e.contact + e.anchor});
   // central differences have looked at the accelerations
-  if (!is_finite(next, !w.systems().empty() && !is_explicit)) {
+  if (!(w.systems().empty() ? moves_finite(next) : is_finite(next, !is_explicit))) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;
     status.body = body_not_finite(model, next);

@@ -56,7 +56,7 @@ void set_block(ModeMatrix& a, int row, int column, const PackMat3& block) {
 bool ReducedBody::solve_velocity(const Parameters& parameters, const PreparedLaw& law, const PackMat3& r,
                                  double h, const BodyVelocity& free, BodyVelocity& u, ContactLoads& loads,
                                  Amplitudes& load, int m, ReducedScratch& w) {
-  const double per_root_mass = 1 / std::sqrt(mass_);
+  const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
   const auto size_of = [&](const PackVec3& x, const PackVec3& y) {
     const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
     return sum_of(x) + reach_ * sum_of(y);
@@ -67,9 +67,9 @@ bool ReducedBody::solve_velocity(const Parameters& parameters, const PreparedLaw
                            : k_insertion_error;
   double last = 0;
   for (int pass = 0; pass < k_most_insertions; ++pass) {
-    loads = contacts_.press<false>(law, u, 0);
-    BodyVelocity next{mul_add(h / 2 / mass_, loads.force, free.linear),
-                      free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * loads.moment)),
+    const ContactLoads now = contacts_.press<false, ContactSums::loads>(law, u, 0);
+    BodyVelocity next{mul_add(h / 2 / mass_, now.force, free.linear),
+                      free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * now.moment)),
                       {}};
     double size = size_of(u.linear - next.linear, u.angular - next.angular);
     if (m > 0) contacts_.press_modes(m, load);
@@ -79,7 +79,10 @@ bool ReducedBody::solve_velocity(const Parameters& parameters, const PreparedLaw
     }
     // what is left is a geometric series
     const double rate = last > 0 ? size / last : k_contracts;
-    if (size * rate <= (1 - rate) * error * speed()) return true;
+    if (size * rate <= (1 - rate) * error * speed()) {
+      loads = now;
+      return true;
+    }
     if (rate > k_contracts) break;
     u.linear = next.linear;
     u.angular = next.angular;
@@ -93,7 +96,7 @@ bool ReducedBody::solve_velocity(const Parameters& parameters, const PreparedLaw
   bool fresh = m == 0 || w.part != h || w.touching != touching;
   last = 0;
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
-    loads = fresh ? contacts_.press<true>(law, u, 0) : contacts_.press<false>(law, u, 0);
+    loads = fresh ? contacts_.press<true>(law, u, 0) : contacts_.press<false, ContactSums::loads>(law, u, 0);
     PackVec3 x = mass_ * (u.linear - free.linear) - h / 2 * loads.force,
              y = inertia * (u.angular - free.angular) - h / 2 * loads.moment;
     double size = 0;

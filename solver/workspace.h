@@ -27,6 +27,8 @@ struct Workspace::Impl {
       : islands(model),
         search(model),
         reduced_bodies(model.bodies.size()),
+        near(model.bodies.size()),
+        new_frames(model.bodies.size()),
         sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}) {
     moving.reserve(model.bodies.size());
     parts.reserve(model.bodies.size());
