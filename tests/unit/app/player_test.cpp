@@ -1,10 +1,14 @@
 #include "app/player.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <mutex>
+#include <thread>
 
 #include "app/live_recorder.h"
 #include "live.h"
@@ -23,7 +27,7 @@ class PlayerTest : public ::testing::Test {
              std::size_t most_bytes = k_most_row_bytes) {
     const auto scene = source.scene;
     run_.emplace(
-        std::move(source), [] {}, std::move(advance));
+        std::move(source), [] {}, slowed(std::move(advance)));
     player_.emplace(scene, *run_, most_bytes);
     ASSERT_TRUE(until([this] { return player().can_edit() || player().can_continue(); }));
   }
@@ -33,11 +37,13 @@ class PlayerTest : public ::testing::Test {
   }
   /// Runs the live branch to `time`, and stops there or soon after.
   void run_to(double time) {
+    slow_from_ = time;
     while (player().speed() < k_most_speed) player().faster();
     player().play();
     ASSERT_TRUE(until([&] { return player().time() >= time; }));
     player().pause();
     ASSERT_TRUE(until([&] { return player().status().kind != LiveStatus::Kind::going; }));
+    slow_from_ = k_never;
   }
   void run_to_end() {
     while (player().speed() < k_most_speed) player().faster();
@@ -67,6 +73,16 @@ class PlayerTest : public ::testing::Test {
     EXPECT_TRUE(rerun.differences.empty());
     EXPECT_GT(rerun.checkpoints, branches);
   }
+
+  // Where run_to stops, steps take long, so that a machine that is late to pause them does not run on far.
+  LiveRun::Advance slowed(LiveRun::Advance advance) {
+    return [this, advance = std::move(advance)](topple::Run& run) {
+      if (run.time() >= slow_from_) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      return advance(run);
+    };
+  }
+  static constexpr double k_never = std::numeric_limits<double>::infinity();
+  std::atomic<double> slow_from_ = k_never;  // s
 
   const render::Scratch scratch_;
   std::optional<LiveRun> run_;
