@@ -8,6 +8,7 @@
 #include "solver/beam_pack.h"
 #include "solver/block_lu.h"
 #include "solver/contact_law.h"
+#include "solver/copy_values.h"
 #include "solver/member_contact.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
@@ -103,13 +104,13 @@ class BodySystem {
   template <class T>
   void take(const std::vector<T>& all, std::vector<T>& own) const {
     own.resize(count);
-    each_run([&](int global, int i, int nodes) { std::copy_n(&all[global], nodes, &own[i]); });
+    each_run([&](int global, int i, int nodes) { copy_values(&all[global], nodes, &own[i]); });
     for (int i = count - held_nodes(); i < count; ++i) own[i] = all[node[i]];
   }
   /// Held nodes may be in other systems as well: no step writes to them.
   template <class T>
   void put(const std::vector<T>& own, std::vector<T>& all) const {
-    each_run([&](int global, int i, int nodes) { std::copy_n(&own[i], nodes, &all[global]); });
+    each_run([&](int global, int i, int nodes) { copy_values(&own[i], nodes, &all[global]); });
   }
   /// Copies this system's part of the state.
   void load(const State& state, BodyMotion& motion) const;

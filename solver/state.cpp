@@ -2,11 +2,11 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
+#include "solver/copy_values.h"
 #include "solver/overflow.h"
 #include "solver/pack.h"
 #include "solver/rotation.h"
@@ -328,15 +328,8 @@ namespace {
 
 template <class T>
 void copy_array(const std::vector<T>& from, std::vector<T>& to) {
-  if (from.empty())
-    to.clear();
-  else
-    to = from;
-}
-// Eigen would copy these numbers one by one.
-void copy_array(const std::vector<Vec3>& from, std::vector<Vec3>& to) {
-  to.resize(from.size());
-  if (!from.empty()) std::memcpy(to.data()->data(), from.data()->data(), from.size() * sizeof(Vec3));
+  if (from.size() != to.size()) to.resize(from.size());
+  copy_values(from.data(), from.size(), to.data());
 }
 
 // Calls f(member) for the arrays that a step changes where no node moves.
@@ -347,6 +340,20 @@ void each_moved_array(F f) {
   f(&State::member_sticks);
   f(&State::near);
   f(&State::anchors);
+}
+
+// For those that one changes where nodes move.
+template <class F>
+void each_node_array(F f) {
+  f(&State::position);
+  f(&State::rotation);
+  f(&State::velocity);
+  f(&State::angular_velocity);
+  f(&State::acceleration);
+  f(&State::angular_acceleration);
+  f(&State::algorithmic_acceleration);
+  f(&State::algorithmic_angular_acceleration);
+  f(&State::elements);
 }
 
 // And for the rest.
@@ -366,11 +373,9 @@ void each_moved_number(F f) {
 }  // namespace
 
 void copy(const State& from, State& to, bool nodes) {
-  if (nodes) {
-    to = from;
-    return;
-  }
-  each_moved_array([&](auto member) { copy_array(from.*member, to.*member); });
+  const auto array = [&](auto member) { copy_array(from.*member, to.*member); };
+  if (nodes) each_node_array(array);
+  each_moved_array(array);
   each_moved_number([&](auto member) { to.*member = from.*member; });
 }
 
