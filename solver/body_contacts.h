@@ -82,9 +82,37 @@ class BodyContacts {
     Four drag;  // N s/m, of what sticks, less its derivative along the plane
   };
 
+  /// Room for what touched at the start of a part, by the number of pairs.
+  struct Room {
+    std::size_t pairs;
+    std::unique_ptr<Touch[]> touches;
+  };
+  /// Lends room to the parts of one body after the other. Each finds its contacts in the memory that the one
+  /// before has let go, which is in the cache, and leaves its own.
+  class Loan {
+   public:
+    Loan(BodyContacts& contacts, std::vector<Room>& rooms)
+        : own_(contacts.start_.all), lent_(room_for(contacts.pairs(), rooms)) {
+      own_.swap(lent_);
+    }
+    ~Loan() { own_.swap(lent_); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+
+   private:
+    static std::unique_ptr<Touch[]>& room_for(std::size_t pairs, std::vector<Room>& rooms) {
+      for (Room& room : rooms)
+        if (room.pairs == pairs) return room.touches;
+      rooms.push_back({pairs, std::make_unique_for_overwrite<Touch[]>(pairs / 4)});
+      return rooms.back().touches;
+    }
+
+    std::unique_ptr<Touch[]>&own_, &lent_;
+  };
+
   BodyContacts(const Model& model, int body);
 
-  /// What touches becomes what touched at the start of a part.
+  /// What touches becomes what touched at the start of a part, for which there is a Loan.
   void begin_part() { std::swap(now_, start_); }
   /// Undoes begin_part.
   void give_up_part() { std::swap(now_, start_); }

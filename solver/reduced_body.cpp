@@ -298,6 +298,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
 StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
                                       double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
                                       ReducedScratch& w) {
+  const BodyContacts::Loan loan(contacts_, w.rooms);
   const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
   const auto parts_of = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;

@@ -53,6 +53,7 @@ struct ReducedScratch {
   std::uint64_t touching = 0;  ///< what touched
   double side[6 + k_modes];
   std::optional<Instant> from, to;
+  std::vector<BodyContacts::Room> rooms;
 };
 
 /// Constants of one body, and its contacts.

@@ -35,6 +35,8 @@ bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<V
               std::max(now.law.q, k_stick_stiffness) * contacts_.pairs() / contacts_.least_length();
   balanced +=
       8 * std::numeric_limits<double>::epsilon() * (reach_ + origin.norm()) * anchors_.greatest_stiffness();
+  std::vector<BodyContacts::Room> rooms;
+  const BodyContacts::Loan loan(contacts_, rooms);
   double sigma = k_first;
   for (int round = 0; round < k_rounds; ++round) {
     balance(still, now, s, stick);
