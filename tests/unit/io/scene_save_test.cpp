@@ -52,7 +52,7 @@ TEST(RewriteToml, what_is_written_inline_is_written_anew) {
   EXPECT_NE(text.find("settle = true"), std::string::npos);
 }
 
-const std::string k_scene = R"(topple = 1
+const std::string k_to_be_saved = R"(topple = 1
 title = "A scene to be saved"   # 題
 [run]
 duration = "2 s"
@@ -110,7 +110,7 @@ stiffness = "50 kN/m"
 )";
 
 Scene original() {
-  return parse_scene(k_scene, "saved.toml");
+  return parse_scene(k_to_be_saved, "saved.toml");
 }
 
 /// What an edit may set besides the present value.
@@ -207,7 +207,7 @@ TEST(SavedScene, a_sweep_that_does_not_change_is_saved_next_to_what_it_is_and_sa
 }
 
 TEST(SavedScene, what_an_absent_key_means_is_written_where_another_edit_would_change_it) {
-  std::string text = k_scene;
+  std::string text = k_to_be_saved;
   text.erase(text.find("alpha = \"500 kgf\""), std::string("alpha = \"500 kgf\"").size());
   const Scene scene = parse_scene(text, "absent.toml");
   ASSERT_TRUE(scene.setup.parameters.adaptive);  // as alpha is left out
@@ -265,8 +265,9 @@ TEST(SceneWithRecord, a_built_in_record_takes_the_place_of_the_first_shake) {
 }
 
 TEST(SceneWithRecord, a_scene_without_a_shake_gains_one) {
-  const Scene bare = parse_scene(
-      k_scene.substr(0, k_scene.find("[[shake]]")) + k_scene.substr(k_scene.find("[contact]")), "bare.toml");
+  const Scene bare = parse_scene(k_to_be_saved.substr(0, k_to_be_saved.find("[[shake]]")) +
+                                     k_to_be_saved.substr(k_to_be_saved.find("[contact]")),
+                                 "bare.toml");
   ASSERT_TRUE(bare.setup.parameters.shakes.empty());
   EXPECT_EQ(scene_with_record(bare, {"near-fault.csv"}).setup.parameters.shakes.size(), 1u);
 }
