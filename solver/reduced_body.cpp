@@ -149,7 +149,7 @@ ContactLoads ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s)
   found.position = s.position;
   found.velocity = s.velocity;
   found.angular_velocity = s.angular_velocity;
-  found.law = law;
+  found.law = static_cast<const ContactLaw&>(law);
   if (s.rung == Rung::elastic) {
     found.amplitude = s.amplitude;
     found.rate = s.rate;
