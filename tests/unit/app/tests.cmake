@@ -20,6 +20,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/manual_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp

@@ -54,6 +54,16 @@ inline std::string error_of(const std::string& text, const std::vector<std::stri
   return "no error";
 }
 
+/// The error of line 17 and on of a scene with a beam.
+inline std::string after_beam(const std::string& lines) {
+  return error_of(k_scene + lines);
+}
+
+/// The error of line 16 and on of a scene with a cabinet, within it.
+inline std::string in_cabinet(const std::string& lines) {
+  return error_of(k_cabinet_scene + lines);
+}
+
 /// `text` with `to` in place of `from`, which must be there.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
