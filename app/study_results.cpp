@@ -28,8 +28,9 @@ std::string place_for_results(const std::string& folder, const std::string& kind
 }
 
 std::string origin_text() {
-  return fmt::format("topple {} on {}, {} cores", TOPPLE_VERSION, study::processor_name(),
-                     study::core_count());
+  const int cores = study::core_count();
+  return fmt::format("topple {} on {}, {} {}", TOPPLE_VERSION, study::processor_name(), cores,
+                     cores == 1 ? "core" : "cores");
 }
 
 ordered_json machine_json() {

@@ -284,7 +284,8 @@ class Chart {
            titles(at, "Fronts under other laws and alpha",
                   "tilt, each against a reference of its own physics") +
            box.ranges() + at.axes() +
-           "set key at graph 1.03,1.03 right top Left reverse noenhanced samplen 3 spacing 1 font ',10.5'\n"
+           "set key at graph 1.03,1.03 right top Left reverse noenhanced samplen 2 width -1 spacing 1 font "
+           "',10'\n"
            "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\n"
            "set ylabel 'error, %' offset 0.6,0\nplot " +
            plot.substr(2) + "\nunset label\nunset key\n";
