@@ -104,6 +104,7 @@ void change_rung(const Model& model, const Parameters& parameters, const Instant
     s.amplitude.setZero();
     s.rate.setZero();
   }
+  if ((choice.rung == Rung::frame) != (s.rung == Rung::frame)) w.explicit_limit.reset();
   s.rung = choice.rung;
   s.reason = choice.reason;
   s.calm_since = -1;

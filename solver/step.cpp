@@ -352,8 +352,9 @@ void accept(const Model& model, const Parameters& parameters, State& state, Work
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w,
                          double until) {
-  const bool is_explicit = parameters.integrator == Integrator::central_difference;
-  if (is_explicit) find_explicit_limit(model, parameters, state, w);
+  if (parameters.integrator == Integrator::central_difference)
+    find_explicit_limit(model, parameters, state, w);
+  const bool is_explicit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
   h = is_explicit ? k_explicit_share * *w.explicit_limit
@@ -372,6 +373,11 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, State
       if (!is_explicit) change_step(w.next, std::min(wanted, next_limit(model, parameters, w.next, w)));
       accept(model, parameters, state, w);
       break;
+    }
+    if (status.kind == StepStatus::Kind::step_too_long) {  // a body becomes a frame
+      ++rejected;
+      h = k_explicit_share * status.limit;
+      continue;
     }
     if (is_explicit || h < 2 * k_least_step) {
       if (status.ok()) {

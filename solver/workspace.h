@@ -58,7 +58,7 @@ struct Workspace::Impl {
   std::optional<Parameters> parameters;            // met last; for them hold:
   std::vector<RungChoice> base;                    //   per body
   std::optional<Instant> reached;                  //   the end of the last step that was tried
-  std::optional<double> explicit_limit;            //   s, and the body that sets it
+  std::optional<double> explicit_limit;            //   s, of the frames there are, and the body that sets it
   int limiting_body = -1, limiting_node = -1;
   std::vector<char> near;                       // per body: another is
   std::vector<char> new_frames;                 // per body: since the last step

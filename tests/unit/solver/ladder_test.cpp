@@ -386,6 +386,47 @@ TEST(Ladder, climbs_before_a_section_yields_and_stays) {
   EXPECT_LT(run.state().energy.balance_error(), 0.02);
 }
 
+// Integrators are of frames: without one nothing differs, down to the last bit.
+TEST(Ladder, adaptive_central_differences_without_a_frame_step_as_without_them) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = paper_cabinet(model);
+    setup.parameters.adaptive = true;
+    shake(setup, 4, 2);
+    topple::Run implicit(setup);
+    setup.parameters.integrator = Integrator::central_difference;
+    topple::Run run(setup);
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(run.advance().ok() && implicit.advance().ok());
+    EXPECT_GT(run.time(), 0.1);
+    EXPECT_EQ(hash(run.state()), hash(implicit.state()));
+    EXPECT_FALSE(run.stable_step());
+  }
+}
+
+TEST(Ladder, adaptive_central_differences_shorten_their_step_for_a_new_frame) {
+  topple::Setup setup = shaken(3, 12 / k_degrees);
+  for (Element& element : setup.model.elements) {
+    const Section& post = setup.model.sections[0];
+    element.capacity << 60e6 * post.area, 60e6 * post.zt / std::sqrt(3), 60e6 * post.zy, 60e6 * post.zz;
+  }
+  setup.parameters.integrator = Integrator::central_difference;
+  setup.parameters.adaptive = true;
+  compute_as(setup, BodyModel::automatic);
+  topple::Run run(setup);
+  double before = 0;
+  while (run.state().bodies[0].rung != Rung::frame) {
+    EXPECT_FALSE(run.stable_step());
+    before = run.time();
+    ASSERT_TRUE(run.advance().ok());
+    ASSERT_FALSE(run.over());
+  }
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_NEAR(run.time() - before, 0.9 * run.stable_step().value(), 1e-9 * run.time());
+    before = run.time();
+    ASSERT_TRUE(run.advance().ok());
+  }
+  EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+}
+
 // Two that meet are frames from before they touch until they are apart and calm again.
 TEST(Ladder, is_a_frame_while_another_body_is_near) {
   topple::Setup setup;
