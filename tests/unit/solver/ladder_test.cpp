@@ -360,13 +360,19 @@ TEST(Ladder, is_elastic_from_half_the_first_frequency_on) {
   }
 }
 
-// A cabinet that falls yields where it lands; what has hinges stays a frame.
-TEST(Ladder, climbs_before_a_section_yields_and_stays) {
+// A cabinet that falls and yields where it lands.
+topple::Setup shaken_until_it_yields() {
   topple::Setup setup = shaken(3, 12 / k_degrees);
   for (Element& element : setup.model.elements) {
     const Section& post = setup.model.sections[0];
     element.capacity << 60e6 * post.area, 60e6 * post.zt / std::sqrt(3), 60e6 * post.zy, 60e6 * post.zz;
   }
+  return setup;
+}
+
+// What has hinges stays a frame.
+TEST(Ladder, climbs_before_a_section_yields_and_stays) {
+  topple::Setup setup = shaken_until_it_yields();
   setup.parameters.contact.restitution = 0.5;
   compute_as(setup, BodyModel::automatic);
   topple::Run run(setup);
@@ -403,11 +409,7 @@ TEST(Ladder, adaptive_central_differences_without_a_frame_step_as_without_them) 
 }
 
 TEST(Ladder, adaptive_central_differences_shorten_their_step_for_a_new_frame) {
-  topple::Setup setup = shaken(3, 12 / k_degrees);
-  for (Element& element : setup.model.elements) {
-    const Section& post = setup.model.sections[0];
-    element.capacity << 60e6 * post.area, 60e6 * post.zt / std::sqrt(3), 60e6 * post.zy, 60e6 * post.zz;
-  }
+  topple::Setup setup = shaken_until_it_yields();
   setup.parameters.integrator = Integrator::central_difference;
   setup.parameters.adaptive = true;
   compute_as(setup, BodyModel::automatic);
