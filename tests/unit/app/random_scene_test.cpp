@@ -281,14 +281,44 @@ OwnSums own_sums(const topple::Run& run) {
   return sums;
 }
 
-/// How a run ended, in a word.
+/// Why a run ended, in two words.
+std::string reason(StepStatus::Kind kind) {
+  switch (kind) {
+    case StepStatus::Kind::ok:
+      return "ok";
+    case StepStatus::Kind::newton_diverged:
+      return "newton diverged";
+    case StepStatus::Kind::not_accurate:
+      return "not accurate";
+    case StepStatus::Kind::not_finite:
+      return "not finite";
+    case StepStatus::Kind::singular:
+      return "singular";
+    case StepStatus::Kind::not_settled:
+      return "not settled";
+    case StepStatus::Kind::step_too_long:
+      return "step too long";
+    case StepStatus::Kind::no_equilibrium:
+      return "no equilibrium";
+    case StepStatus::Kind::uncontrolled:
+      return "uncontrolled";
+    case StepStatus::Kind::passed_through:
+      return "passed through";
+    case StepStatus::Kind::energy_lost:
+      return "energy lost";
+    case StepStatus::Kind::bad_parameter:
+      return "bad parameter";
+  }
+  return {};
+}
+
+/// How a run ended.
 std::string outcome(const std::string& text, unsigned seed, int most_steps) {
   const io::Scene scene = io::parse_scene(text, "s.toml");
   topple::Run run(scene.setup);
   const Model& model = scene.setup.model;
   EXPECT_TRUE(is_finite(run.state()));
-  if (!run.status().ok())
-    return "does not start, kind " + std::to_string(static_cast<int>(run.status().kind));
+  if (!run.status().ok()) return "does not start: " + reason(run.status().kind);
   const OwnSums start = own_sums(run);
   int steps = 0;
   double worst = 0;
@@ -318,7 +348,7 @@ std::string outcome(const std::string& text, unsigned seed, int most_steps) {
   }
   if (!run.status().ok()) {
     EXPECT_GT(run.status().message(model).size(), 20u);
-    return "refused, kind " + std::to_string(static_cast<int>(run.status().kind));
+    return "refused: " + reason(run.status().kind);
   }
   // more would be no motion of the model, and is to be refused
   if (e.largest > 1e-3) {
