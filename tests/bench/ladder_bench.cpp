@@ -15,7 +15,6 @@ namespace topple::test {
 namespace {
 
 constexpr double k_step = 1e-3;  // s
-constexpr double k_degrees = 180 / k_pi;
 
 void compute_as(Setup& setup, BodyModel model) {
   setup.parameters.models.assign(setup.model.bodies.size(), model);

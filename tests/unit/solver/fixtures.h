@@ -22,6 +22,7 @@
 namespace topple::test {
 
 inline constexpr double k_g = k_standard_gravity;
+inline constexpr double k_degrees = 180 / k_pi;
 
 inline Vec3 random_vector(std::mt19937& rng, double size = 1) {
   std::uniform_real_distribution<double> u(-size, size);

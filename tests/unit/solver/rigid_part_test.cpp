@@ -5,8 +5,6 @@
 namespace topple::test {
 namespace {
 
-constexpr double k_degrees = 180 / k_pi;
-
 // Contacts on which the block bounces with 700 Hz.
 Setup stiff_block(double tilt, double h, BodyModel model = BodyModel::rigid) {
   Setup setup = rocking_block(tilt, 1e6, h);
