@@ -100,29 +100,11 @@ std::string without_control_characters(const std::string& text) {
   return line;
 }
 
-std::string quoted(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04X", byte);
-      result += escape;
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
 std::string written_key(const std::string& key) {
   const auto bare = [](unsigned char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? key : quoted(key);
+  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? key : written_text(key);
 }
 
 std::string written_real(double value) {
@@ -143,7 +125,7 @@ std::string written(const Node& node) {
     case Node::Kind::real:
       return written_real(node.real);
     case Node::Kind::text:
-      return quoted(node.text);
+      return written_text(node.text);
     case Node::Kind::date:
       return "1970-01-01";  // no key takes one: a tree that passed the checks has none
     case Node::Kind::list:
@@ -171,6 +153,24 @@ bool holds_tables(const Node& node) {
 }
 
 }  // namespace
+
+std::string written_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (byte < 0x20 || byte == 0x7f) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04X", byte);
+      result += escape;
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
 
 const Item* Node::find_item(std::string_view key) const {
   for (const Item& item : items) {

@@ -55,8 +55,12 @@ std::string error_line(const std::string& origin, const Place& place, const std:
 Node parse_toml(std::string_view text, const std::string& origin);
 
 /// Applies "KEY=VALUE". KEY is dotted; entries of arrays go by their name or number from 1. Creates absent
-/// keys and the tables above them, but no entry of an array. Throws InputError.
+/// keys and the tables above them, but no entry of an array. Throws InputError, also for bytes that are not
+/// UTF-8, which no scene can hold.
 void apply_override(Node& root, const std::string& override_text);
+
+/// A text as TOML has it between double quotes, which stand around it.
+std::string written_text(std::string_view text);
 
 /// TOML text of the tree; comments are lost, order is kept.
 std::string write_toml(const Node& root);

@@ -206,15 +206,6 @@ class Rewriting {
   std::vector<KeyChange> changes_;
 };
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 }  // namespace
 
 ReadSceneFile files_of(const Scene& scene) {
@@ -231,7 +222,7 @@ SavedScene edited_scene(const Scene& scene, const Parameters& now) {
 
 Scene scene_with_record(const Scene& scene, const std::vector<std::string>& files) {
   std::string names;
-  for (const std::string& file : files) names += (names.empty() ? "" : ", ") + quoted(file);
+  for (const std::string& file : files) names += (names.empty() ? "" : ", ") + written_text(file);
   std::vector<KeyChange> changes{{{"shake", "1", "type"}, "\"record\""},
                                  {{"shake", "1", "files"}, "[" + names + "]"}};
   const Node root = parse_toml(scene.text, scene.name);

@@ -336,6 +336,7 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
             "--set cabinet.free=3: cabinet.free: is a whole entry; set one of its keys");
   EXPECT_EQ(error("cabinet.free.cg_height=1.7").substr(0, 53),
             "--set cabinet.free.cg_height=1.7: cabinet.free.cg_hei");
+  EXPECT_EQ(error("title=\x8d"), "--set title=\x8d: is not UTF-8");
   EXPECT_EQ(error("topple.x=3"), "--set topple.x=3: topple: is an integer and has no keys");
   EXPECT_EQ(error("nonsense"), "--set nonsense: expected KEY=VALUE, such as contact.friction=0.5");
   EXPECT_EQ(error_of(k_cabinet_scene + "[contact]\nrestitution = 0.5\n", {"contact.law=paper"}),
