@@ -16,6 +16,11 @@ namespace {
 
 constexpr haddr_t k_last_address = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
 
+#ifdef H5FD_CLASS_VERSION
+// Known to this program alone.
+constexpr H5FD_class_value_t k_driver_value = H5_VFD_RESERVED + 144;
+#endif
+
 struct ReadFile {
   H5FD_t common;  ///< HDF5's part, first
   int descriptor;
@@ -88,7 +93,11 @@ herr_t write_bytes(H5FD_t*, H5FD_mem_t, hid_t, haddr_t, size_t, const void*) {
 }
 
 H5FD_class_t driver_class() {
-  H5FD_class_t driver{};  // without `cmp`, no two opens are the same file
+  H5FD_class_t driver{};   // without `cmp`, no two opens are the same file
+#ifdef H5FD_CLASS_VERSION  // from HDF5 1.14 on
+  driver.version = H5FD_CLASS_VERSION;
+  driver.value = k_driver_value;
+#endif
   driver.name = "topple-read";
   driver.maxaddr = k_last_address;
   driver.fc_degree = H5F_CLOSE_STRONG;

@@ -43,4 +43,5 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene_rewrite.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_save.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_shakes.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/toml_precheck.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)
