@@ -11,9 +11,9 @@
 #include "app/drawing_processes.h"
 #include "app/interrupt.h"
 #include "app/log.h"
-#include "app/off_screen.h"
 #include "app/progress.h"
 #include "app/words.h"
+#include "render/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"
 
@@ -123,14 +123,14 @@ int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const Nam
     };
     draw_pictures(
         count,
-        [&](int process) -> DrawPicture {
+        [&](int) -> DrawPicture {
           struct Easel {
             std::unique_ptr<render::Context> context;
             render::Picture picture;
             explicit Easel(std::unique_ptr<render::Context> of)
                 : context(std::move(of)), picture(context->get_proc(), k_width, k_height) {}
           };
-          const auto easel = std::make_shared<Easel>(open_off_screen(render::Renderer::any, process == 0));
+          const auto easel = std::make_shared<Easel>(render::make_off_screen_context(render::Renderer::any));
           return [&draw, easel](int i) { return draw(easel->picture, i).rgba; };
         },
         [&](int i, std::vector<std::uint8_t> answer) {

@@ -15,7 +15,6 @@
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
-#include "app/off_screen.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
@@ -24,6 +23,7 @@
 #include "app/window_picture.h"
 #include "app/window_words.h"
 #include "app/words.h"
+#include "render/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"
 #include "solver/io/recording.h"
@@ -193,7 +193,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
         std::optional<WindowPicture> window;
       };
       const auto easel = std::make_shared<Easel>();
-      easel->context = open_off_screen(o.renderer, process == 0);
+      easel->context = render::make_off_screen_context(o.renderer);
       if (o.ui)
         easel->window.emplace(*easel->context, scene, path, o.view, o.picture, inspected, followed, o.width,
                               o.height);

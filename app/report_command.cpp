@@ -8,12 +8,12 @@
 #include "app/files.h"
 #include "app/interrupt.h"
 #include "app/log.h"
-#include "app/off_screen.h"
 #include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
 #include "app/report.h"
 #include "app/words.h"
+#include "render/off_screen.h"
 #include "render/picture.h"
 #include "solver/study/anchors.h"
 #include "solver/study/measure.h"
@@ -113,7 +113,7 @@ std::vector<KeyPicture::Label> labels_of(const io::FrameRow& row, const render::
 void draw(const io::Scene& scene, const Replay& replay, std::vector<KeyPicture>& pictures) {
   const RunExtent extent = extent_of(replay, scene);
   const Bridge bridge(scene, extent);
-  const std::unique_ptr<render::Context> context = open_off_screen();
+  const std::unique_ptr<render::Context> context = render::make_off_screen_context(render::Renderer::any);
   render::Picture picture(context->get_proc(), k_width, k_height);
   for (KeyPicture& key : pictures) {
     const io::FrameRow row = replay.at(key.time);

@@ -6,13 +6,13 @@
 
 #include <Eigen/Geometry>
 
-#include "render/osmesa_context.h"
+#include "render/off_screen.h"
 #include "render/picture.h"
 
 namespace topple::render {
 
 inline GetProc off_screen() {
-  static const std::unique_ptr<Context> context = make_osmesa_context();
+  static const std::unique_ptr<Context> context = make_off_screen_context(Renderer::any);
   return context->get_proc();
 }
 
