@@ -43,10 +43,10 @@ void send_answer(int to, const void* bytes, std::size_t size, bool failed) {
 }
 
 /// What one of the processes does: every `step`-th picture.
-[[noreturn]] void draw_some(int first, int step, int count, const std::function<DrawPicture(int)>& open,
+[[noreturn]] void draw_some(int first, int step, int count, const std::function<DrawPicture()>& open,
                             int to) {
   try {
-    const DrawPicture draw = open(first);
+    const DrawPicture draw = open();
     for (int i = first; i < count; i += step) {
       const std::vector<std::uint8_t> answer = draw(i);
       send_answer(to, answer.data(), answer.size(), false);
@@ -71,7 +71,7 @@ class Processes {
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;
 
-  void start(int number, int step, int count, const std::function<DrawPicture(int)>& open) {
+  void start(int number, int step, int count, const std::function<DrawPicture()>& open) {
     int ends[2];
     if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "drawing: pipe");
     const pid_t parent = getpid(), id = fork();
@@ -127,12 +127,12 @@ class Processes {
 
 }  // namespace
 
-void draw_pictures(int count, const std::function<DrawPicture(int)>& open,
+void draw_pictures(int count, const std::function<DrawPicture()>& open,
                    const std::function<void(int, std::vector<std::uint8_t>)>& take) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency()),
             wanted = std::min({cores, k_most_processes, count / k_worth_it});
   if (wanted < 2) {
-    const DrawPicture draw = open(0);
+    const DrawPicture draw = open();
     for (int i = 0; i < count && !interrupted(); ++i) take(i, draw(i));
     return;
   }

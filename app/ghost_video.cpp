@@ -123,7 +123,7 @@ int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const Nam
     };
     draw_pictures(
         count,
-        [&](int) -> DrawPicture {
+        [&]() -> DrawPicture {
           struct Easel {
             std::unique_ptr<render::Context> context;
             render::Picture picture;

@@ -132,12 +132,12 @@ class Drawing {
 };
 
 using DrawAt = std::function<render::Image(double time)>;
-/// Of a process of this number.
-using OpenDrawing = std::function<DrawAt(int process)>;
+/// Called once in each process that draws.
+using OpenDrawing = std::function<DrawAt()>;
 
 int draw_still(const RenderOptions& o, const OpenDrawing& open) {
   if (interrupted()) return k_interrupted;
-  render::write_png(o.still, open(0)(*o.at));
+  render::write_png(o.still, open()(*o.at));
   return k_done;
 }
 
@@ -153,8 +153,8 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
   Progress progress("drawing", "pictures", count, o.quiet);
   draw_pictures(
       count,
-      [&](int process) -> DrawPicture {
-        return [&, draw_at = open(process)](int i) -> std::vector<std::uint8_t> {
+      [&]() -> DrawPicture {
+        return [&, draw_at = open()](int i) -> std::vector<std::uint8_t> {
           render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
           if (video) return std::move(image.rgba);
           render::write_png(fs::path(o.png) / picture_name(i), image);
@@ -186,7 +186,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   const auto followed = followed_by(o, scene->setup.model, inspected);
   int code = k_done;
   try {
-    const OpenDrawing open = [&](int process) -> DrawAt {
+    const OpenDrawing open = [&]() -> DrawAt {
       struct Easel {
         std::unique_ptr<render::Context> context;
         std::optional<Drawing> drawing;
