@@ -2,6 +2,8 @@
 #include "solver/study/elements.h"
 
 #include <gtest/gtest.h>
+#include <string>
+#include <string_view>
 
 #include <cmath>
 #include <map>
@@ -24,12 +26,12 @@ const ElementsStudy& solved() {
   return study;
 }
 
-const ElementsRow& row(const std::string& quantity, Scheme scheme, int elements_per_member) {
+const ElementsRow& row(std::string_view quantity, Scheme scheme, int elements_per_member) {
   for (const ElementsRow& found : solved().rows)
     if (found.quantity == quantity && found.scheme == scheme &&
         found.elements_per_member == elements_per_member)
       return found;
-  throw std::out_of_range(quantity);
+  throw std::out_of_range(std::string(quantity));
 }
 
 double error(const std::string& quantity, Scheme scheme, int elements_per_member) {
