@@ -1,6 +1,7 @@
 // The element of beam.h for a pack of elements at once: P is Four, or another type with its operations.
 #pragma once
 
+#include "solver/elementary.h"
 #include "solver/pack.h"
 #include "solver/rotation.h"
 
@@ -74,7 +75,7 @@ inline Four any_log_factor(const PackQuaternion<Four>& q) {
   Four factor = log_factor(q);
   for (int k = 0; k < 4; ++k) {
     const double s2 = q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k], s = std::sqrt(s2);
-    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k])) factor.set(k, 2 * std::atan2(s, q.w[k]) / s);
+    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k])) factor.set(k, 2 * elementary::atan2(s, q.w[k]) / s);
   }
   return factor;
 }
@@ -85,8 +86,8 @@ inline PackAngle<Four> any_angle(Four x, Four t) {
     if (x[k] < k_small_angle) continue;
     const double half = t[k] * std::sqrt(x[k]) / 2;
     const ExpCoefficients f(t[k] * t[k] * x[k]);
-    out.cosine.set(k, std::cos(half));
-    out.sine.set(k, half > 0 ? t[k] / 2 * (std::sin(half) / half) : 0);
+    out.cosine.set(k, elementary::cos(half));
+    out.sine.set(k, half > 0 ? t[k] / 2 * (elementary::sin(half) / half) : 0);
     out.left1.set(k, t[k] * f.f1);
     out.left2.set(k, t[k] * t[k] * f.f2);
     out.g.set(k, InverseJacobianCoefficient(x[k]).g);

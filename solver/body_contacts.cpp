@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "solver/elastic_basis.h"
+#include "solver/elementary.h"
 
 namespace topple {
 namespace {
@@ -16,7 +17,7 @@ constexpr double k_bend = 0.05;       // of the reach: more than an elastic body
 [[gnu::always_inline]] inline Four power(Four depth, double q) {
   if (q == 1) return depth;
   if (q == 2) return depth * depth;
-  for (int i = 0; i < 4; ++i) depth.set(i, std::pow(depth[i], q));
+  for (int i = 0; i < 4; ++i) depth.set(i, elementary::pow(depth[i], q));
   return depth;
 }
 
@@ -119,7 +120,7 @@ double BodyContacts::clearance(const Vec3& n, double height) const {
 // dP/d depth over alpha where a contact bears a quarter of the weight.
 double BodyContacts::slope_at_rest(const ContactLaw& law) const {
   if (law.q == 1) return 1;
-  return law.q * std::pow(mass_ * k_standard_gravity / 4 / law.alpha, 1 - 1 / law.q);
+  return law.q * elementary::pow(mass_ * k_standard_gravity / 4 / law.alpha, 1 - 1 / law.q);
 }
 
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {

@@ -7,7 +7,9 @@
 #include <map>
 
 #include "solver/body_builder.h"
+#include "solver/elementary.h"
 #include "solver/mass_fit.h"
+#include "solver/rotation.h"
 
 namespace topple {
 namespace {
@@ -90,7 +92,7 @@ Placing place(const CabinetSpec& spec, double width) {
   if (spec.pose == CabinetSpec::Pose::on_side) pose << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   const Vec3 half = spec.size / 2;
   const Vec3 posed_half = (pose * half).cwiseAbs();
-  const Mat3 rotation = Eigen::AngleAxisd(spec.yaw, Vec3::UnitZ()).toRotationMatrix() * pose;
+  const Mat3 rotation = exp_quaternion(spec.yaw * Vec3::UnitZ()).toRotationMatrix() * pose;
   // local z runs from 0 to the height: turn about the box's middle
   return {rotation, spec.at + Vec3(0, 0, posed_half.z() + width / 2) - rotation * Vec3(0, 0, half.z())};
 }
@@ -152,7 +154,7 @@ class CabinetBuilder {
   int brace_section(const std::string& name, double a, double b) {
     const Section& post = model_.sections[spec_.section];
     const Material& material = model_.materials[spec_.material];
-    const double diagonal = std::hypot(a, b);
+    const double diagonal = elementary::hypot(a, b);
     Section brace = post;
     brace.name = spec_.name + "." + name;
     brace.shape = Section::Shape::custom;
@@ -339,10 +341,10 @@ BodyStart add_cabinet(Model& model, const CabinetSpec& spec) {
   start.velocity = spec.velocity;
   start.angular_velocity = spec.angular_velocity;
   if (spec.tilt != 0) {
-    const Eigen::AngleAxisd yaw(spec.yaw, Vec3::UnitZ());
+    const Quat yaw = exp_quaternion(spec.yaw * Vec3::UnitZ());
     double reach = 0, lowest = 1e300;
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
-      const Vec3 x = yaw.inverse() * (model.node_position[i] - Vec3(spec.at.x(), spec.at.y(), 0));
+      const Vec3 x = yaw.conjugate() * (model.node_position[i] - Vec3(spec.at.x(), spec.at.y(), 0));
       reach = std::max(reach, std::abs(x.x()));
       lowest = std::min(lowest, x.z());
     }

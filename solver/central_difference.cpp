@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/beam.h"
+#include "solver/elementary.h"
 #include "solver/hinges.h"
 #include "solver/rotation.h"
 
@@ -51,7 +52,7 @@ Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double
 // Of closed and sticking contacts, per node of the system.
 std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) {
   std::vector<Mat3> sum(s.count, Mat3::Zero());
-  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
+  const double slope = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
   for (const ContactPoint& point : s.model.contact_points) {
     const int i = s.local(point.node);
     if (i < 0) continue;
@@ -253,7 +254,7 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
   for (int i = 0; i < n; ++i) inverse[i] = s.model.node_inertia[s.node[i]].inverse();
   Eigen::VectorXd v(6 * n), kv(6 * n);
   for (int i = 0; i < 6 * n; ++i)
-    v[i] = std::sin(1 + 2.7 * i);  // any start that no symmetry of a body shares
+    v[i] = elementary::sin(1 + 2.7 * i);  // any start that no symmetry of a body shares
   double value = 0;
   for (int iteration = 0; iteration < k_power_iterations; ++iteration) {
     kv.setZero();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/elementary.h"
+
 namespace topple {
 namespace {
 
@@ -32,7 +34,7 @@ double of_edge(const Edge& edge, double weight, double height, double q) {
   const double b = edge.distance, slope = b / height;
   const double depth =
       std::min(b * slope * std::min(2 * k_early_uplift, k_landing * slope * slope), k_depth * edge.width);
-  return weight / edge.points * std::pow(edge.width / depth, q);
+  return weight / edge.points * elementary::pow(edge.width / depth, q);
 }
 
 bool is_supported(const Model& model, int body) {

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/elementary.h"
+
 namespace topple {
 namespace {
 
 double power(double x, double q) {
   if (q == 1) return x;
   if (q == 2) return x * x;
-  return std::pow(x, q);
+  return elementary::pow(x, q);
 }
 
 // Hardening between members over alpha, as a function of x = (depth - 0.8)/0.2.
@@ -32,7 +34,7 @@ double hardening_force(double x) {
 // Integral of hardening_force from 0.
 double hardening_energy(double x) {
   const double y = std::min(x, k_steepest), beyond = x - y;
-  return k_hardening * (y + 2 * std::log1p(-y) + y / (1 - y)) + hardening_force(y) * beyond +
+  return k_hardening * (y + 2 * elementary::log1p(-y) + y / (1 - y)) + hardening_force(y) * beyond +
          hardening_slope(x) * beyond * beyond / 2;
 }
 
@@ -157,7 +159,7 @@ ContactLaw contact_law(const Parameters& parameters, double t) {
   if (share == 1) return law;
   const ContactLaw& before = parameters.contact_before;
   const auto mix = [share](double a, double b) { return (1 - share) * a + share * b; };
-  law.alpha = before.alpha * std::pow(law.alpha / before.alpha, share);
+  law.alpha = before.alpha * elementary::pow(law.alpha / before.alpha, share);
   law.q = mix(before.q, law.q);
   law.friction_static = mix(before.friction + before.excess(), law.friction + law.excess());
   law.friction = mix(before.friction, law.friction);

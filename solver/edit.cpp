@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/contact_law.h"
+#include "solver/elementary.h"
 #include "solver/excitation.h"
 
 namespace topple {
@@ -264,7 +265,7 @@ double contact_period(const Model& model, int index, const ContactLaw& law, cons
   const ContactPoint& point = model.contact_points[body.first_contact_point];
   const double width = model.planes.front().width > 0 ? model.planes.front().width : point.width;
   const double L = (point.width + width) / 2, g = gravity.norm();
-  const double depth = std::pow(body.mass * g / (points * law.alpha), 1 / law.q);
+  const double depth = elementary::pow(body.mass * g / (points * law.alpha), 1 / law.q);
   return 2 * k_pi * std::sqrt(L * depth / (law.q * g));
 }
 

@@ -5,6 +5,7 @@
 
 #include "solver/beam.h"
 #include "solver/block_lu.h"
+#include "solver/elementary.h"
 #include "solver/modes.h"
 #include "solver/plasticity.h"
 #include "solver/section_forces.h"
@@ -121,7 +122,7 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index)
   for (int k = 0; k < basis->modes; ++k) basis->frequency[k] = 2 * k_pi * modes[k_rigid + k].frequency;
   basis->section = recover(model, body, basis->shape);
 
-  const BlockLu lu = shifted_stiffness(model, body, k_shift * std::pow(basis->frequency[0], 2));
+  const BlockLu lu = shifted_stiffness(model, body, k_shift * elementary::pow(basis->frequency[0], 2));
   const MatrixXd mass_all = mass_times(model, body, all);
   MatrixXd& residual = basis->residual_shape;
   residual = MatrixXd::Zero(6 * n, 3 * n);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/accelerogram.h"
+#include "solver/elementary.h"
 
 namespace topple {
 namespace {
@@ -17,20 +18,20 @@ double sine(const Shake& shake, double t) {
   if (cycles > 0 && turns >= cycles) return 0;
   double window = 1;
   if (shake.taper > 0) {
-    const auto rise = [](double x) { return x >= 1 ? 1 : (1 - std::cos(k_pi * x)) / 2; };
+    const auto rise = [](double x) { return x >= 1 ? 1 : (1 - elementary::cos(k_pi * x)) / 2; };
     window = rise(turns / shake.taper);
     if (cycles > 0) window *= rise((cycles - turns) / shake.taper);
   }
-  return window * std::sin(2 * k_pi * turns);
+  return window * elementary::sin(2 * k_pi * turns);
 }
 
 double pulse(const Shake& shake, double tau) {
   if (tau >= shake.duration) return 0;
   switch (shake.shape) {
     case Shake::Shape::half_sine:
-      return std::sin(k_pi * tau / shake.duration);
+      return elementary::sin(k_pi * tau / shake.duration);
     case Shake::Shape::full_sine:
-      return std::sin(2 * k_pi * tau / shake.duration);
+      return elementary::sin(2 * k_pi * tau / shake.duration);
     case Shake::Shape::rectangle:
       return 1;
   }
@@ -41,7 +42,7 @@ double pulse(const Shake& shake, double tau) {
 
 double Passage::share(double t) const {
   if (t >= since + over) return 1;
-  return (1 - std::cos(k_pi * std::max(t - since, 0.) / over)) / 2;
+  return (1 - elementary::cos(k_pi * std::max(t - since, 0.) / over)) / 2;
 }
 
 Vec3 shake_amplitude(const Shake& shake, double t) {
@@ -60,10 +61,10 @@ double shake_scale(const Shake& shake, double t) {
 
 double shake_turns(const Shake& shake, double t) {
   if (shake.kind == Shake::Kind::sweep) {
-    const double octaves = std::log(shake.last_frequency / shake.frequency);
+    const double octaves = elementary::log(shake.last_frequency / shake.frequency);
     if (octaves == 0) return shake.frequency * (t - shake.start);
     return shake.frequency * shake.duration / octaves *
-           std::expm1(octaves * (t - shake.start) / shake.duration);
+           elementary::expm1(octaves * (t - shake.start) / shake.duration);
   }
   return shake.turns + shake.frequency * (t - shake.start - shake.turned);
 }
@@ -71,7 +72,7 @@ double shake_turns(const Shake& shake, double t) {
 double shake_frequency(const Shake& shake, double t) {
   if (shake.kind != Shake::Kind::sweep) return shake.frequency;
   const double share = std::clamp((t - shake.start) / shake.duration, 0., 1.);
-  return shake.frequency * std::pow(shake.last_frequency / shake.frequency, share);
+  return shake.frequency * elementary::pow(shake.last_frequency / shake.frequency, share);
 }
 
 double shake_end(const Shake& shake) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "solver/ladder.h"
+#include "solver/rotation.h"
 
 namespace topple {
 namespace {
@@ -35,8 +36,9 @@ double greatest_travel(const Model& model, const State& from, const State& to) {
     const Body& body = model.bodies[b];
     if (const BodyState& s = from.bodies[b], &e = to.bodies[b];
         s.rung != Rung::frame && e.rung != Rung::frame) {
-      greatest = std::max(
-          greatest, (e.position - s.position).norm() + body.reach * s.rotation.angularDistance(e.rotation));
+      greatest =
+          std::max(greatest, (e.position - s.position).norm() +
+                                 body.reach * log_quaternion(s.rotation.conjugate() * e.rotation).norm());
       continue;
     }
     if (from.bodies[b].rung != to.bodies[b].rung) continue;  // where it changes nothing moves far

@@ -9,6 +9,7 @@
 #include "solver/beam.h"
 #include "solver/block_lu.h"
 #include "solver/body_system.h"
+#include "solver/elementary.h"
 #include "solver/rotation.h"
 
 namespace topple {
@@ -197,7 +198,7 @@ Pairs elastic_pairs(Pencil& p, const MatrixXd& rigid, int count) {
   double shift = 1e-9 * p.highest();
   MatrixXd start(p.rows(), count + k_guard);
   for (int c = 0; c < start.cols(); ++c)
-    for (int r = 0; r < p.rows(); ++r) start(r, c) = std::sin(1 + 2.7 * r + 1.3 * c * (r % 7));
+    for (int r = 0; r < p.rows(); ++r) start(r, c) = elementary::sin(1 + 2.7 * r + 1.3 * c * (r % 7));
   start = p.clear_fixed(std::move(start));
   Pairs found;
   for (int restart = 0; restart < k_most_restarts; ++restart) {

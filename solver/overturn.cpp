@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/elementary.h"
 #include "solver/hinges.h"
 #include "solver/plasticity.h"
 #include "solver/rotation.h"
@@ -78,7 +79,7 @@ BodyPose body_pose(const Model& model, const State& state, int index) {
 
 double tilt(const BodyPose& pose) {
   const Vec3 up = pose.rotation * Vec3::UnitZ();
-  return std::atan2(std::hypot(up.x(), up.y()), up.z());
+  return elementary::atan2(up.head<2>().norm(), up.z());
 }
 
 BodyMomentum body_momentum(const Model& model, const State& state, int index) {
@@ -109,7 +110,7 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
   if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index)) return std::nullopt;
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
-  const double lean = std::hypot(up.x(), up.y());
+  const double lean = up.head<2>().norm();
   double distance = std::numeric_limits<double>::infinity();
   if (lean > 1e-12) {
     distance =
@@ -128,17 +129,17 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
 
 double critical_angle(const Model& model, int index, const BodyPose& pose) {
   const auto edge = edge_ahead(model, index, pose);
-  return edge ? std::atan2(edge->distance, edge->height) : std::numeric_limits<double>::infinity();
+  return edge ? elementary::atan2(edge->distance, edge->height) : std::numeric_limits<double>::infinity();
 }
 
 OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, double gravity) {
   const auto edge = edge_ahead(model, index, pose);
   constexpr double k_never = std::numeric_limits<double>::infinity();
   if (!edge) return {k_never, k_never};
-  const double critical = std::atan2(edge->distance, edge->height);
+  const double critical = elementary::atan2(edge->distance, edge->height);
   const auto barrier = [&](double angle) {
-    return model.bodies[index].mass * gravity * std::hypot(edge->distance, edge->height) *
-           (1 - std::cos(critical - std::min(angle, critical)));
+    return model.bodies[index].mass * gravity * elementary::hypot(edge->distance, edge->height) *
+           (1 - elementary::cos(critical - std::min(angle, critical)));
   };
   return {barrier(tilt(pose)), barrier(0)};
 }
@@ -146,7 +147,7 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
 double slide(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
   const Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
-  return std::hypot(now.x() - body.base_centre.x(), now.y() - body.base_centre.y());
+  return (now - body.base_centre).head<2>().norm();
 }
 
 Outcome::Outcome(const Model& model)

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "solver/damping.h"
+#include "solver/elementary.h"
 #include "solver/excitation.h"
 #include "solver/rotation.h"
 #include "solver/step_control.h"
@@ -22,7 +23,7 @@ constexpr double k_least_part = 1. / 4096;  // of a step
 
 // Of a contact's springs, in any direction, over alpha/L.
 double greatest_stiffness(const ContactLaw& law) {
-  const double slope = law.q < 1 ? law.q * std::pow(0.01, law.q - 1) : law.q;
+  const double slope = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
   return std::max(slope, law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0.);
 }
 
@@ -53,15 +54,17 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
   return unpacked(inverse_inertia_ * (moment - cross(omega, inertia_ * omega)));
 }
 
-void ReducedBody::find_swing(double h) {
-  if (swing_step_ == h) return;
+void ReducedBody::find_swing(double h, double damping) {
+  if (swing_step_ == h && swing_damping_ == damping) return;
   swing_step_ = h;
+  swing_damping_ = damping;
   for (int k = 0; k < k_modes; ++k) {
     const double w = basis_->frequency[k], half = w * h / 2;
-    cosine_[k] = std::cos(w * h);
-    sine_[k] = w > 0 ? std::sin(w * h) / w : 0;
-    back_[k] = -w * std::sin(w * h);
-    kick_[k] = half > 0 ? std::tan(half) / half : 1;
+    cosine_[k] = elementary::cos(w * h);
+    sine_[k] = w > 0 ? elementary::sin(w * h) / w : 0;
+    back_[k] = -w * elementary::sin(w * h);
+    kick_[k] = half > 0 ? elementary::tan(half) / half : 1;
+    damped_[k] = damping > 0 ? elementary::exp(-damping * h * (w * w)) : 1;
   }
 }
 
@@ -213,19 +216,18 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
     contacts_.give_up_part();
     return false;
   };
-  const double damping = damping_time(model_, parameters, body_);
-  if (damping > 0 && s.rung == Rung::elastic) s.rate *= (-damping * h * basis_->frequency.square()).exp();
+  const bool bends = s.rung == Rung::elastic;
+  if (bends) {
+    find_swing(h, damping_time(model_, parameters, body_));
+    s.rate *= damped_;
+  }
   const Amplitudes rate0 = s.rate;
   const PackQuaternion<double> q0 = packed(before.rotation);
   const PackMat3 r0 = rotation_matrix(q0);
   const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(r0, packed(before.moment)));
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(kick0);
-  const bool bends = s.rung == Rung::elastic;
-  if (bends) {
-    find_swing(h);
-    s.rate += h / 2 * kick_ * s.load;
-  }
+  if (bends) s.rate += h / 2 * kick_ * s.load;
   const Vec3 spin = drift(h, s);
 
   const PackMat3 r = rotation_matrix(packed(s.rotation));

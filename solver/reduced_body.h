@@ -119,7 +119,7 @@ class ReducedBody {
                       int modes, ReducedScratch& w);
   bool swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
                   BodyState& s, std::span<Vec3> stick, StepEnergy& energy, ReducedScratch& w, double& stable);
-  void find_swing(double h);
+  void find_swing(double h, double damping);
   Vec3 drift(double h, BodyState& s) const;
   double stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
   double find_stable_part(const ContactLaw& law, const BodyState& s, double swing) const;
@@ -153,9 +153,10 @@ class ReducedBody {
   std::optional<Found> found_;
   Eigen::VectorXd section_;
   // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine, and
-  // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection.
-  double swing_step_ = 0;
-  Amplitudes cosine_, sine_, back_, kick_;
+  // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection;
+  // and what damping leaves of the rates.
+  double swing_step_ = 0, swing_damping_ = 0;
+  Amplitudes cosine_, sine_, back_, kick_, damped_;
   // Stable parts by what touches.
   struct Known {
     std::uint64_t touching;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/elementary.h"
 #include "solver/reduced_body.h"
 #include "solver/rigid_solver.h"
 #include "solver/rotation.h"
@@ -216,7 +217,7 @@ StepStatus::Kind ReducedBody::advance_stiffly(const Parameters& parameters, cons
     double error;
     const bool good = stiff_part(parameters, from, to, size, allowed, s, stick, booked, error);
     const double next =
-        size * std::clamp(k_safety / std::cbrt(error), 1 / k_most_shrinking, good ? growth : k_safety);
+        size * std::clamp(k_safety / elementary::cbrt(error), 1 / k_most_shrinking, good ? growth : k_safety);
     if (!good) {
       if (size < k_least_part * first)
         return parameters.adaptive && error < k_no_stage ? StepStatus::Kind::not_accurate

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "solver/elementary.h"
 #include "solver/types.h"
 
 namespace topple {
@@ -27,7 +28,7 @@ struct ExpCoefficients {
       df1 = -1. / 24 + x * (1. / 360 + x * (-1. / 13440 + x * (1. / 907200 - x / 95800320)));
       df2 = -1. / 120 + x * (1. / 2520 + x * (-1. / 120960 + x * (1. / 9979200)));
     } else {
-      const double a = std::sqrt(x), s = std::sin(a), c = std::cos(a);
+      const double a = std::sqrt(x), s = elementary::sin(a), c = elementary::cos(a);
       f0 = s / a;
       f1 = (1 - c) / x;
       f2 = (a - s) / (a * x);
@@ -47,8 +48,8 @@ inline Quat exp_quaternion(const Vec3& psi) {
     sinc = (1 - 1. / 6 * x) + x2 * ((1. / 120 - 1. / 5040 * x) + 1. / 362880 * x2);
   } else {
     const double a = std::sqrt(x);
-    cosine = std::cos(a);
-    sinc = std::sin(a) / a;
+    cosine = elementary::cos(a);
+    sinc = elementary::sin(a) / a;
   }
   return Quat(cosine, 0.5 * sinc * psi.x(), 0.5 * sinc * psi.y(), 0.5 * sinc * psi.z());
 }
@@ -65,7 +66,7 @@ inline Vec3 log_quaternion(const Quat& rotation) {
     return 2 / q.w() * series * q.vec();
   }
   const double s = std::sqrt(s2);
-  return 2 * std::atan2(s, q.w()) / s * q.vec();
+  return 2 * elementary::atan2(s, q.w()) / s * q.vec();
 }
 
 /// Left Jacobian T: exp(psi + dpsi) = exp(T dpsi) exp(psi).  T = I + f1 [psi] + f2 [psi]^2.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/elementary.h"
 #include "solver/types.h"
 
 namespace topple {
@@ -27,15 +28,16 @@ double rectangle_plastic(double b, double h) {
 double rectangle_torsion(double a, double b) {
   if (a < b) std::swap(a, b);
   double sum = 0;
-  for (int n = 1; n < 40; n += 2) sum += std::tanh(n * k_pi * a / (2 * b)) / std::pow(n, 5);
-  return a * b * b * b * (1. / 3 - 64 / std::pow(k_pi, 5) * b / a * sum);
+  for (int n = 1; n < 40; n += 2)
+    sum += (1 - 2 / (elementary::exp(n * k_pi * a / b) + 1)) / elementary::pow(n, 5);
+  return a * b * b * b * (1. / 3 - 64 / elementary::pow(k_pi, 5) * b / a * sum);
 }
 
 // Shear coefficients after Cowper (1966). Box: thin-walled rectangular tube of uniform wall, web height along
 // the shear force m = flange width / web height.
 double box_shear(double poisson, double along, double across) {
   const double m = across / along, n = poisson;
-  return 10 * (1 + n) * std::pow(1 + 3 * m, 2) /
+  return 10 * (1 + n) * elementary::pow(1 + 3 * m, 2) /
          ((12 + 72 * m + 150 * m * m + 90 * m * m * m) + n * (11 + 66 * m + 135 * m * m + 90 * m * m * m) +
           10 * m * m * ((3 + n) * m + 3 * m * m));
 }
@@ -74,10 +76,10 @@ void complete_section(Section& section, double poisson) {
       const double outer = a / 2, inner = outer - t, m = inner / outer, m2 = 1 + m * m;
       section.size_z = a;
       section.area = k_pi * (outer * outer - inner * inner);
-      section.iy = section.iz = k_pi / 4 * (std::pow(outer, 4) - std::pow(inner, 4));
+      section.iy = section.iz = k_pi / 4 * (elementary::pow(outer, 4) - elementary::pow(inner, 4));
       section.j = 2 * section.iy;
       section.ky = section.kz = 6 * (1 + n) * m2 * m2 / ((7 + 6 * n) * m2 * m2 + (20 + 12 * n) * m * m);
-      section.zy = section.zz = 4. / 3 * (std::pow(outer, 3) - std::pow(inner, 3));
+      section.zy = section.zz = 4. / 3 * (elementary::pow(outer, 3) - elementary::pow(inner, 3));
       section.zt = k_pi / 2 * section.zy;
       break;
     }

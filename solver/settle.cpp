@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/elementary.h"
 #include "solver/hinges.h"
 #include "solver/rotation.h"
 
@@ -53,7 +54,8 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
   add_mass(s, sigma);
   if (s.lu.factor() >= 0) return true;
   std::vector<double>& v = w.right_hand_side;
-  for (int i = 0; i < 6 * s.count; ++i) v[i] = std::sin(1 + 2.7 * i);  // no symmetry of a body shares it
+  for (int i = 0; i < 6 * s.count; ++i)
+    v[i] = elementary::sin(1 + 2.7 * i);  // no symmetry of a body shares it
   double growth = 1;
   for (int round = 0; round < k_rounds; ++round) {
     double before = 0, after = 0;

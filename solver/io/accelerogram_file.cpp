@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/accelerogram.h"
+#include "solver/elementary.h"
 #include "solver/io/accelerogram_text.h"
 #include "solver/io/units.h"
 
@@ -154,7 +155,7 @@ double knet_scale(Lines& lines) {
 double last_digit(std::string_view text) {
   const auto point = text.find('.');
   if (point == std::string_view::npos) return 1;
-  return std::pow(10., -static_cast<double>(text.size() - point - 1));
+  return elementary::pow(10., -static_cast<double>(text.size() - point - 1));
 }
 
 AccelerogramFile read_knet(std::string_view text, const std::string& name, const AccelerogramNotes& notes) {

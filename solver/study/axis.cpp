@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solver/elementary.h"
 #include "solver/io/scene_check.h"
 #include "solver/io/scene_document.h"
 #include "solver/io/scene_number.h"
@@ -120,7 +121,7 @@ Axis parse_axis(const std::string& text, const io::Scene& scene) {
   axis.logarithmic = spacing.empty() ? from > 0 && to >= k_wide * from : spacing == "log";
   for (int i = 0; i < count; ++i) {
     const double part = i / (count - 1.);
-    const double si = axis.logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
+    const double si = axis.logarithmic ? from * elementary::pow(to / from, part) : from + part * (to - from);
     axis.values.push_back(six_digits(si / axis.si));
   }
   if (std::adjacent_find(axis.values.begin(), axis.values.end(), std::greater_equal<>()) != axis.values.end())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "solver/elementary.h"
 #include "solver/study/alone.h"
 
 namespace topple::study {
@@ -96,7 +97,7 @@ Criterion curve(const std::string& name, const std::string& label, const std::st
   const double from = x.edges().front(), to = x.edges().back();
   for (int k = 0; k <= k_places; ++k) {
     const double part = static_cast<double>(k) / k_places;
-    const double at = x.logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
+    const double at = x.logarithmic ? from * elementary::pow(to / from, part) : from + part * (to - from);
     if (const std::optional<double> a = amplitude(x.si * at)) {
       out.x.push_back(at);
       out.y.push_back(*a / y.si);

@@ -7,6 +7,7 @@
 
 #include "solver/edit.h"
 #include "solver/elastic_basis.h"
+#include "solver/elementary.h"
 #include "solver/io/scene_keys.h"
 #include "solver/step_control.h"
 #include "solver/study/kept_rows.h"
@@ -138,7 +139,7 @@ PrecisionPlan plan_precision(io::Scene scene) {
   };
   const auto add_tolerances = [&](Method method) {
     for (int k = k_looser; k >= k_tighter; --k)
-      plan.settings.push_back({method, 0, tolerance * std::pow(10., k / 2.)});
+      plan.settings.push_back({method, 0, tolerance * elementary::pow(10., k / 2.)});
   };
   for (const auto& [fixed, adaptive] :
        {std::pair{Method::rigid, Method::rigid_auto}, {Method::elastic, Method::elastic_auto}}) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/overturn.h"
+#include "solver/rotation.h"
 #include "solver/study/convergence.h"
 #include "solver/study/precision.h"
 
@@ -51,7 +52,7 @@ std::optional<double> least_critical(const Model& model, int b) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec3 edge = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized();
     const BodyPose lean{model.bodies[static_cast<std::size_t>(b)].centre_of_gravity,
-                        Quat(Eigen::AngleAxisd(k_little, edge))};
+                        exp_quaternion(k_little * edge)};
     least = std::min(least, critical_angle(model, b, lean));
   }
   return std::isfinite(least) ? std::optional(least) : std::nullopt;

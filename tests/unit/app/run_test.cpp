@@ -175,7 +175,7 @@ TEST_F(RunTest, what_takes_no_steps_of_time_has_no_error_of_them) {
 
 TEST_F(RunTest, progress_is_drawn_on_a_terminal_only_and_not_when_quiet) {
   const std::vector<std::string> call{"run",   "s.toml",
-                                      "--set", "run.duration=0.5",
+                                      "--set", "run.duration=3",
                                       "--set", "run.time_step=0.1 ms",
                                       "--set", "cabinet.free.model=frame"};
   std::vector<std::string> quiet = call;

@@ -51,6 +51,11 @@ class ShellTest : public ::testing::Test {
   }
   /// Maps keys as the window does; the keyboard then moves among controls, too.
   static void connect_keyboard() {
+#if IMGUI_VERSION_NUM < 18700
+    constexpr int keypad_enter = ImGuiKey_KeyPadEnter;
+#else
+    constexpr int keypad_enter = ImGuiKey_KeypadEnter;
+#endif
     const std::pair<int, int> keys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
                                         {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
                                         {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
@@ -66,7 +71,7 @@ class ShellTest : public ::testing::Test {
                                         {ImGuiKey_Space, GLFW_KEY_SPACE},
                                         {ImGuiKey_Enter, GLFW_KEY_ENTER},
                                         {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-                                        {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                                        {keypad_enter, GLFW_KEY_KP_ENTER},
                                         {ImGuiKey_A, GLFW_KEY_A},
                                         {ImGuiKey_C, GLFW_KEY_C},
                                         {ImGuiKey_V, GLFW_KEY_V},
@@ -115,8 +120,12 @@ class ShellTest : public ::testing::Test {
     text << std::ifstream(path).rdbuf();
     return text.str();
   }
-  Player& player() { return shell_->session()->player(); }
-  bool ready() { return shell_->session() && player().can_edit(); }
+  Player& player() {
+    return shell_->session()->player();
+  }
+  bool ready() {
+    return shell_->session() && player().can_edit();
+  }
   void open_rocking() {
     shell_->open(write("rocking.toml", k_rocking));
     ASSERT_TRUE(until([&] { return ready(); }));
