@@ -29,7 +29,7 @@ constexpr float k_least_letters = 12;    // px
 /// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
 void set_keyboard_navigation(bool on) {
   ImGuiIO& io = ImGui::GetIO();
-  if (io.KeyMap[ImGuiKey_Space] == -1) return;
+  if (io.BackendPlatformName == nullptr) return;
   if (on)
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   else

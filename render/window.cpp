@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -27,9 +28,15 @@ std::string glfw_error() {
 /// GLFW from the first to the last use of it.
 struct Library {
   Library() {
+#ifdef GLFW_PLATFORM  // from 3.4 on; without this folder there is no Wayland, and its library says so on
+                      // stderr
+    if (std::getenv("XDG_RUNTIME_DIR") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (!glfwInit()) refuse("no display");
   }
-  ~Library() { glfwTerminate(); }
+  ~Library() {
+    glfwTerminate();
+  }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 };

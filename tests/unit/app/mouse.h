@@ -8,6 +8,13 @@
 
 namespace topple::app {
 
+/// Keys and modifiers are what is written into ImGuiIO; from 1.87 on Dear ImGui otherwise waits for events.
+inline void hold_keys_by_hand() {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui::GetIO().BackendUsingLegacyKeyArrays = 1;
+#endif
+}
+
 /// Presses and releases the left button at a place; `frame` draws one.
 template <typename Frame>
 void click_at(ImVec2 at, Frame frame) {

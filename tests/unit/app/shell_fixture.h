@@ -26,6 +26,7 @@ class ShellTest : public ::testing::Test {
   ShellTest() : interface_(ImGui::CreateContext()), stage_(render::off_screen()) {
     setenv("XDG_STATE_HOME", (scratch_ / "state").c_str(), 1);
     setenv("XDG_CACHE_HOME", (scratch_ / "cache").c_str(), 1);
+    hold_keys_by_hand();
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {1280, 720};
     io.DeltaTime = 1.f / 60;
@@ -79,6 +80,7 @@ class ShellTest : public ::testing::Test {
                                         {ImGuiKey_Y, GLFW_KEY_Y},
                                         {ImGuiKey_Z, GLFW_KEY_Z}};
     for (const auto& [key, code] : keys) ImGui::GetIO().KeyMap[key] = code;
+    ImGui::GetIO().BackendPlatformName = "test";
   }
   /// Presses and releases a key as a person does: Dear ImGui, the program and the text under way see it.
   void tap(int code, bool control = false, bool shift = false) {

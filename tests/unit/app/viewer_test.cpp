@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include "live.h"
+#include "mouse.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/read_png.h"
 #include "unit/render/scratch.h"
@@ -23,7 +24,7 @@ constexpr int k_space = ' ';
 
 class ViewerTest : public ::testing::Test {
  protected:
-  ViewerTest() : interface_(ImGui::CreateContext()) {}
+  ViewerTest() : interface_(ImGui::CreateContext()) { hold_keys_by_hand(); }
   ~ViewerTest() override {
     viewer_.reset();
     player_.reset();

@@ -99,6 +99,8 @@ TEST(Allocation, counter_counts) {
   const long before = allocations;
   std::vector<int> plain(3);
   const std::vector<Four> aligned(3);
+  [[maybe_unused]] const void* volatile used = aligned.data();  // else compilers may do without them
+  used = plain.data();
   EXPECT_EQ(allocations, before + 2);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   plain.resize(static_cast<std::size_t>(Eigen::VectorXd::Zero(plain.size()).eval().size()));
