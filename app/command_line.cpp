@@ -17,6 +17,7 @@
 #include "app/option_values.h"
 #include "app/ranks.h"
 #include "solver/io/scene.h"
+#include "solver/processor.h"
 
 namespace topple::app {
 namespace {
@@ -41,7 +42,8 @@ constexpr int k_most_jobs = 256;
 class CommandLine {
  public:
   CommandLine() : app_("Shows how furniture tips over when the floor shakes.", "topple") {
-    app_.set_version_flag("--version", std::string("topple ") + TOPPLE_VERSION);
+    app_.set_version_flag("--version",
+                          std::string("topple ") + TOPPLE_VERSION + "\nsolver for " + instruction_set());
     app_.require_subcommand(1);
     app_.footer(
         "Examples:\n  topple scenes\n  topple run paper-a -o paper-a.h5\n  topple render paper-a --mp4 "

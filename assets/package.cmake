@@ -12,6 +12,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/solver)
 # Loaded while it runs, so that no linker knows: OSMesa or EGL and the font for pictures, OpenGL for the window.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1, libosmesa6 | libegl-mesa0, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1, libegl1, libegl-mesa0, ffmpeg, gnuplot-nox, fonts-vlgothic")

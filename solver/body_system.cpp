@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <new>
 #include <tuple>
 
 #include "solver/beam.h"
@@ -243,10 +244,14 @@ void BodySystem::add_anchors(const BodyMotion& motion) {
 
 ContactInput BodySystem::plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                                        std::span<const Vec3> stick_start, std::span<const Vec3> start) const {
-  const Vec3 stick = stick_start[pair.point * model.planes.size() + pair.plane] + motion.position[pair.node] -
-                     start[pair.node];
-  return {model.planes[pair.plane].normal, pair.depth, pair.L, motion.velocity[pair.node], stick,
-          contact_mass_[pair.own_body],    false};
+  return {model.planes[pair.plane].normal,
+          pair.depth,
+          pair.L,
+          motion.velocity[pair.node],
+          stick_start[pair.point * model.planes.size() + pair.plane] + motion.position[pair.node] -
+              start[pair.node],
+          contact_mass_[pair.own_body],
+          false};
 }
 
 void BodySystem::find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const {
@@ -277,7 +282,8 @@ void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
                                Contacts& found) const {
   find_plane_contacts(motion, found.planes);
   for (TouchingPair& pair : found.planes)
-    pair.out = contact_force(law, plane_contact(pair, motion, stick_start, start));
+    new (&pair.out)  // in its place: a copy waits for what was just stored
+        ContactOutput(contact_force(law, plane_contact(pair, motion, stick_start, start)));
   find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "solver/beam.h"
 #include "solver/elementary.h"
@@ -119,7 +120,8 @@ void add_member_contacts(BodySystem& s, const ContactLaw& law, double h, Integra
   solve_member_contacts(s, law, h, w.trial.velocity);
 }
 
-// Forces of planes, solved at each touching node for its new velocity.
+// Forces of planes, solved at each touching node for its new velocity. Inputs and outputs are made in their
+// places: a copy waits for what was just stored.
 void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Vec3> stick, double h,
                         const IntegratorScratch& w) {
   std::vector<TouchingPair>& touching = s.contacts.planes;
@@ -129,10 +131,11 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Ve
     std::size_t end = k;
     ContactInput inputs[8];
     for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end)
-      inputs[end - k] = s.plane_contact(touching[end], w.trial, stick, w.start.position);
+      new (&inputs[end - k]) ContactInput(s.plane_contact(touching[end], w.trial, stick, w.start.position));
     const double mass = s.model.node_mass[s.node[i]], impedance = 2 * mass / h;
     if (end - k == 1 && law.kind == ContactLawKind::coulomb && s.fixed[i] == 0) {
-      touching[k].out = coulomb_contact(law, inputs[0], impedance, half + s.force[i] / impedance);
+      new (&touching[k].out)
+          ContactOutput(coulomb_contact(law, inputs[0], impedance, half + s.force[i] / impedance));
       s.force[i] = impedance * (inputs[0].velocity - half);
     } else {
       const std::span<TouchingPair> own(touching.data() + k, end - k);

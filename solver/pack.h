@@ -3,20 +3,54 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 
-#include "solver/types.h"  // Eigen brings the intrinsics
+#include "solver/types.h"
+
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+#if !defined(__FMA__) && !defined(__aarch64__)
+#include "solver/fused.h"
+#endif
 
 namespace topple {
 
-/// GNU vectors: the same operations in every build type.
+/// a b + c, rounded once.
+[[gnu::always_inline]] inline double mul_add(double a, double b, double c) {
+#if defined(__FMA__) || defined(__aarch64__)
+  return std::fma(a, b, c);
+#else
+  return fused_multiply_add(Two{a, a}, Two{b, b}, Two{c, c})[0];
+#endif
+}
+/// c - a b, rounded once.
+[[gnu::always_inline]] inline double less_product(double c, double a, double b) {
+  return mul_add(-a, b, c);
+}
+
+using FourMask = long long __attribute__((vector_size(32)));  ///< per lane all bits or none
+
+/// Bit k: lane k is set.
+[[gnu::always_inline]] inline unsigned bits(FourMask mask) {
+#ifdef __AVX2__
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+#else
+  return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+#endif
+}
+inline constexpr unsigned k_all_lanes = 15;
+
+/// GNU vectors: the same operations in every build type and on every processor. Where compilers do not find
+/// the instruction for several lanes, it is named for AVX2 and FMA; the bits are the same.
 struct Four {
   using Vector = double __attribute__((vector_size(32)));
-  using Mask = long long __attribute__((vector_size(32)));  ///< per lane all bits or none
+  using Mask = FourMask;
   Vector v;
 
   Four() = default;
-  Four(Vector of) : v(of) {}
-  Four(double all) : v{all, all, all, all} {}
+  [[gnu::always_inline]] Four(Vector of) : v(of) {}
+  [[gnu::always_inline]] Four(double all) : v{all, all, all, all} {}
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double value) { v[lane] = value; }
 
@@ -27,47 +61,69 @@ struct Four {
   [[gnu::always_inline]] friend Four operator-(Four a) { return -a.v; }
   [[gnu::always_inline]] Four& operator+=(Four b) { return v += b.v, *this; }
   [[gnu::always_inline]] Four& operator-=(Four b) { return v -= b.v, *this; }
-  [[gnu::always_inline]] friend Four sqrt(Four a) { return Vector(_mm256_sqrt_pd(a.v)); }
-  [[gnu::always_inline]] friend Four operator|(Four a, Four b) { return Vector(_mm256_or_pd(a.v, b.v)); }
-  /// a b + c, rounded once.
-  [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
-    return Vector(_mm256_fmadd_pd(a.v, b.v, c.v));
-  }
-  /// c - a b, rounded once.
-  [[gnu::always_inline]] friend Four less_product(Four c, Four a, Four b) {
-    return Vector(_mm256_fnmadd_pd(a.v, b.v, c.v));
-  }
+  [[gnu::always_inline]] friend Four operator|(Four a, Four b) { return Vector(Mask(a.v) | Mask(b.v)); }
   [[gnu::always_inline]] friend Mask operator<(Four a, Four b) { return a.v < b.v; }
   [[gnu::always_inline]] friend Mask operator<=(Four a, Four b) { return a.v <= b.v; }
   [[gnu::always_inline]] friend Mask operator==(Four a, Four b) { return a.v == b.v; }
+#ifdef __AVX2__
+  [[gnu::always_inline]] friend Four sqrt(Four a) {
+    return Vector(_mm256_sqrt_pd(a.v));
+  }
+#else
+  [[gnu::always_inline]] friend Four sqrt(Four a) {
+    return Vector{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+  }
+#endif
+#ifdef __FMA__
+  [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
+    return Vector(_mm256_fmadd_pd(a.v, b.v, c.v));
+  }
+  [[gnu::always_inline]] friend Four less_product(Four c, Four a, Four b) {
+    return Vector(_mm256_fnmadd_pd(a.v, b.v, c.v));
+  }
+#else
+#ifdef __aarch64__
+  [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
+    return Vector{std::fma(a[0], b[0], c[0]), std::fma(a[1], b[1], c[1]), std::fma(a[2], b[2], c[2]),
+                  std::fma(a[3], b[3], c[3])};
+  }
+#else
+  [[gnu::always_inline]] friend Four mul_add(Four a, Four b, Four c) {
+    const Two low = fused_multiply_add(Two{a[0], a[1]}, Two{b[0], b[1]}, Two{c[0], c[1]});
+    const Two high = fused_multiply_add(Two{a[2], a[3]}, Two{b[2], b[3]}, Two{c[2], c[3]});
+    return Vector{low[0], low[1], high[0], high[1]};
+  }
+#endif
+  [[gnu::always_inline]] friend Four less_product(Four c, Four a, Four b) {
+    return mul_add(-a, b, c);
+  }
+#endif
   /// a where the mask is set, else b.
   [[gnu::always_inline]] friend Four choose(Mask mask, Four a, Four b) {
-    return Vector(_mm256_blendv_pd(b.v, a.v, reinterpret_cast<__m256d>(mask)));
+    return mask ? a.v : b.v;
   }
   /// Bit k: lane k of a is above b, or is not a number.
   [[gnu::always_inline]] friend int lanes_above(Four a, double b) {
-    return _mm256_movemask_pd(_mm256_cmp_pd(a.v, Four(b).v, _CMP_NLE_UQ));
+    return static_cast<int>(bits(~(a <= Four(b))));
   }
   /// Some lane of a is above b, or is not a number.
-  [[gnu::always_inline]] friend bool any_above(Four a, double b) { return lanes_above(a, b) != 0; }
+  [[gnu::always_inline]] friend bool any_above(Four a, double b) {
+    return lanes_above(a, b) != 0;
+  }
   /// a with the sign that b has.
   [[gnu::always_inline]] friend Four with_sign_of(Four a, Four b) {
-    const __m256d sign = _mm256_set1_pd(-0.);
-    return Vector(_mm256_or_pd(_mm256_andnot_pd(sign, a.v), _mm256_and_pd(sign, b.v)));
+    const Mask sign = Mask(Four(-0.).v);
+    return Vector((Mask(a.v) & ~sign) | (Mask(b.v) & sign));
   }
 };
 
-/// Bit k: lane k is set.
-[[gnu::always_inline]] inline unsigned bits(Four::Mask mask) {
-  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
-}
-inline constexpr unsigned k_all_lanes = 15;
-
 [[gnu::always_inline]] inline Four load(const double* from) {
-  return Four::Vector(_mm256_loadu_pd(from));
+  Four to;
+  std::memcpy(&to.v, from, sizeof to.v);
+  return to;
 }
 [[gnu::always_inline]] inline void store(double* to, Four value) {
-  _mm256_storeu_pd(to, value.v);
+  std::memcpy(to, &value.v, sizeof value.v);
 }
 /// In the order of the lanes.
 [[gnu::always_inline]] inline double sum(Four a) {
@@ -75,19 +131,14 @@ inline constexpr unsigned k_all_lanes = 15;
 }
 /// Rows become columns.
 [[gnu::always_inline]] inline void transpose(Four& a, Four& b, Four& c, Four& d) {
-  const __m256d ab0 = _mm256_unpacklo_pd(a.v, b.v), ab1 = _mm256_unpackhi_pd(a.v, b.v);
-  const __m256d cd0 = _mm256_unpacklo_pd(c.v, d.v), cd1 = _mm256_unpackhi_pd(c.v, d.v);
-  a = Four::Vector(_mm256_permute2f128_pd(ab0, cd0, 0x20));
-  b = Four::Vector(_mm256_permute2f128_pd(ab1, cd1, 0x20));
-  c = Four::Vector(_mm256_permute2f128_pd(ab0, cd0, 0x31));
-  d = Four::Vector(_mm256_permute2f128_pd(ab1, cd1, 0x31));
-}
-
-[[gnu::always_inline]] inline double mul_add(double a, double b, double c) {
-  return std::fma(a, b, c);
-}
-[[gnu::always_inline]] inline double less_product(double c, double a, double b) {
-  return std::fma(-a, b, c);
+  const Four::Vector ab0 = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6),
+                     ab1 = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
+  const Four::Vector cd0 = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6),
+                     cd1 = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
 template <class P>
@@ -283,12 +334,16 @@ template <class P, class... Rest>
 
 /// Of four nodes.
 [[gnu::always_inline]] inline PackVector<Four> gather(const Vec3* x, const std::array<int, 4>& node) {
+  using First = double __attribute__((vector_size(16)));  // two numbers of a vector
   const auto two = [x](int a, int b) {
-    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(x[a].data())), _mm_loadu_pd(x[b].data()),
-                                1);
+    First of_a, of_b;
+    std::memcpy(&of_a, x[a].data(), sizeof of_a);
+    std::memcpy(&of_b, x[b].data(), sizeof of_b);
+    return __builtin_shufflevector(of_a, of_b, 0, 1, 2, 3);
   };
-  const __m256d ac = two(node[0], node[2]), bd = two(node[1], node[3]);
-  return {Four::Vector(_mm256_unpacklo_pd(ac, bd)), Four::Vector(_mm256_unpackhi_pd(ac, bd)),
+  const Four::Vector ac = two(node[0], node[2]), bd = two(node[1], node[3]);
+  return {Four(__builtin_shufflevector(ac, bd, 0, 4, 2, 6)),
+          Four(__builtin_shufflevector(ac, bd, 1, 5, 3, 7)),
           Four::Vector{x[node[0]].z(), x[node[1]].z(), x[node[2]].z(), x[node[3]].z()}};
 }
 
@@ -308,8 +363,9 @@ template <class P, class... Rest>
 }
 
 [[gnu::always_inline]] inline void store_three(double* to, Four lane) {
-  _mm_storeu_pd(to, _mm256_castpd256_pd128(lane.v));
-  _mm_store_sd(to + 2, _mm256_extractf128_pd(lane.v, 1));
+  const auto first = __builtin_shufflevector(lane.v, lane.v, 0, 1);
+  std::memcpy(to, &first, sizeof first);
+  to[2] = lane[2];
 }
 
 [[gnu::always_inline]] inline void scatter(const PackVector<Four>& v, Vec3* x,

@@ -362,6 +362,21 @@ void ReducedBody::each_force(const BodyState& s, F f) const {
   for (const BodyAnchors::Tie& tie : anchors_.ties()) f(tie.node, Vec3(back * tie.now.force));
 }
 
+// to += n columns of the matrix, from the first on, times the factors
+template <int n>
+void add_columns(const Eigen::MatrixXd& matrix, int first, const double* factors, Eigen::VectorXd& to) {
+  double factor[n];
+  std::copy_n(factors, n, factor);
+  const double* const __restrict column = matrix.col(first).data();
+  double* const __restrict sum = to.data();
+  const Eigen::Index rows = matrix.rows();
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    double row = column[i] * factor[0];
+    for (int k = 1; k < n; ++k) row += column[i + k * rows] * factor[k];
+    sum[i] += row;
+  }
+}
+
 void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>& sections) {
   const Body& body = model_.bodies[body_];
   if (s.rung == Rung::rigid) {
@@ -369,9 +384,12 @@ void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>&
                 SectionForces{Vec3::Zero(), Vec3::Zero()});
     return;
   }
-  section_.noalias() = basis_->section * s.amplitude.head(basis_->modes).matrix();
+  section_.setZero(basis_->section.rows());
+  int k = 0;
+  for (; k + 4 <= basis_->modes; k += 4) add_columns<4>(basis_->section, k, &s.amplitude[k], section_);
+  for (; k < basis_->modes; ++k) add_columns<1>(basis_->section, k, &s.amplitude[k], section_);
   each_force(s, [&](int node, const Vec3& f) {
-    section_.noalias() += basis_->residual_section.middleCols<3>(3 * node) * f;
+    add_columns<3>(basis_->residual_section, 3 * node, f.data(), section_);
   });
   for (int e = 0; e < body.element_count; ++e)
     sections[body.first_element + e] = {section_.segment<3>(6 * e), section_.segment<3>(6 * e + 3)};

@@ -1,8 +1,8 @@
 #include "solver/io/hdf5_handle.h"
 
-#include <nmmintrin.h>
-
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 
 namespace topple::io {
@@ -12,6 +12,22 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* text) {
   if (error->desc != nullptr && *error->desc != '\0') *static_cast<std::string*>(text) = error->desc;
   return 0;
 }
+
+static_assert(std::endian::native == std::endian::little);
+
+// Row k: the remainder of a byte with k bytes of zeros after it.
+constexpr auto k_remainders = [] {
+  std::array<std::array<std::uint32_t, 256>, 8> rows{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t crc = byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0x82f63b78 : 0);
+    rows[0][byte] = crc;
+  }
+  for (std::size_t k = 1; k < 8; ++k)
+    for (std::size_t byte = 0; byte < 256; ++byte)
+      rows[k][byte] = (rows[k - 1][byte] >> 8) ^ rows[0][rows[k - 1][byte] & 255];
+  return rows;
+}();
 
 }  // namespace
 
@@ -40,16 +56,18 @@ QuietHdf5::~QuietHdf5() {
 }
 
 std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
-  std::uint64_t crc = ~before;
+  std::uint32_t crc = ~before;
   std::size_t i = 0;
-  for (; i + 8 <= bytes.size(); i += 8) {
+  for (; i + 8 <= bytes.size(); i += 8) {  // eight at a time
     std::uint64_t word;
     std::memcpy(&word, bytes.data() + i, 8);
-    crc = _mm_crc32_u64(crc, word);
+    word ^= crc;
+    crc = 0;
+    for (int k = 0; k < 8; ++k) crc ^= k_remainders[7 - k][(word >> (8 * k)) & 255];
   }
-  auto tail = static_cast<std::uint32_t>(crc);
-  for (; i < bytes.size(); ++i) tail = _mm_crc32_u8(tail, std::to_integer<std::uint8_t>(bytes[i]));
-  return ~tail;
+  for (; i < bytes.size(); ++i)
+    crc = (crc >> 8) ^ k_remainders[0][(crc ^ std::to_integer<std::uint8_t>(bytes[i])) & 255];
+  return ~crc;
 }
 
 Handle text_type(std::size_t length) {

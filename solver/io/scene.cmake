@@ -19,7 +19,7 @@ topple_embed(
   WITH_EXTENSION
   FILES ${record_files})
 
-target_sources(topple_io PRIVATE
+target_sources(topple_scene PRIVATE
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_csv.cpp
