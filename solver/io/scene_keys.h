@@ -1,5 +1,5 @@
 // Every key of a scene file: type, unit, range, default and meaning, in one table. The checks, the reference
-// in assets/scene-reference.md and the app's sliders are driven by it.
+// in assets/guide/scene-reference.md and the app's sliders are driven by it.
 #pragma once
 
 #include <limits>
@@ -63,7 +63,7 @@ std::string value_text(const Key& key, double si);
 /// "0.6", "50 kgf", "[0, 0, -9.80665] m/s^2", "coulomb", "true"; empty without default.
 std::string default_text(const Key& key);
 
-/// The table as Markdown: assets/scene-reference.md.
+/// The table as Markdown: assets/guide/scene-reference.md.
 std::string scene_reference();
 
 }  // namespace topple::io

@@ -147,7 +147,7 @@ TEST_F(ExportTest, columns_of_all_tables_are_explained_in_their_order) {
     const std::string text = bytes_of(entry.path());
     written[entry.path().filename().string()] = text.substr(0, text.find('\n'));
   }
-  const std::string theory = bytes_of(TOPPLE_SOURCE_DIR "/assets/theory.md");
+  const std::string theory = bytes_of(TOPPLE_SOURCE_DIR "/assets/guide/theory.md");
   const std::regex row(R"(\n\| (\w+\.csv) \| ([^|\n]+) \| ([^|\n]+) \|)"), column("`(\\w+)`");
   for (std::sregex_iterator i(theory.begin(), theory.end(), row), none; i != none; ++i) {
     const std::string cells = (*i)[2], units = (*i)[3];

@@ -60,7 +60,7 @@ TEST(Scene, the_wall_of_the_paper_scenes_is_10_mm_behind_the_walled_cabinet_and_
 }
 
 TEST(Scene, the_reference_that_is_checked_in_is_the_table_in_the_code) {
-  const std::string path = TOPPLE_SOURCE_DIR "/assets/scene-reference.md";
+  const std::string path = TOPPLE_SOURCE_DIR "/assets/guide/scene-reference.md";
   if (std::getenv("TOPPLE_WRITE_REFERENCE")) std::ofstream(path, std::ios::binary) << scene_reference();
   EXPECT_EQ(file_text(path), scene_reference()) << "write it anew with TOPPLE_WRITE_REFERENCE=1 scene_test";
 }

@@ -50,7 +50,8 @@ double least_half_sine_of(const test::Block& block, double duration) {
   return high * block.gravity * std::tan(block.critical);
 }
 
-// Contacts by default overturn up to 1.6 % below the rigid block (README); the next value is up to 2 % off.
+// Contacts by default overturn up to 1.6 % below the rigid block (contact-default.md); the next
+// value is up to 2 % off.
 TEST(OverturnMap, the_boundary_is_the_exact_pulse_curve_within_two_percent) {
   const OverturnPlan plan = pulses("0.25..0.5:2", "3.4 m/s^2..7 m/s^2:37log");
   const OverturnMap map = gather(plan, run_all(plan));
