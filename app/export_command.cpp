@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
+#include "solver/io/export_csv.h"
 #include "solver/io/export_vtk.h"
 #include "solver/io/export_xdmf.h"
 #include "solver/io/recording.h"

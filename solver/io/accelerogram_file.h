@@ -1,31 +1,12 @@
 // Accelerograms from text: PEER AT2, K-NET and KiK-net ASCII, CSV. The content tells which.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "solver/io/accelerogram_content.h"
 
 namespace topple::io {
-
-inline constexpr double k_most_samples = 1e7;        ///< of one component
-inline constexpr double k_shortest_interval = 1e-5;  ///< s between samples
-inline constexpr double k_longest_interval = 1;      ///< s
-inline constexpr double k_highest_peak = 5;          ///< g; above it the unit is taken to be wrong
-
-/// Components that were sampled together.
-struct AccelerogramFile {
-  enum class Format { at2, knet, csv };
-  Format format = Format::at2;
-  double interval = 0;                          ///< s between samples
-  std::vector<std::vector<double>> components;  ///< m/s^2, two samples or more; csv: one to three, else one
-};
-
-/// What the scene says of a file.
-struct AccelerogramNotes {
-  std::string unit;                ///< symbol of an acceleration; empty: the file has to tell
-  std::optional<double> interval;  ///< s, of a csv without a column of times
-};
 
 /// Reads
 /// - PEER AT2: two lines of text, "ACCELERATION TIME SERIES IN UNITS OF G", a line with NPTS and DT in one

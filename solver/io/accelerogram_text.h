@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/accelerogram_file.h"
-#include "solver/io/scene.h"
+#include "solver/io/accelerogram_content.h"
+#include "solver/io/errors.h"
 
 namespace topple::io::accelerogram {
 

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/errors.h"
 
 namespace topple::io {
 namespace {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "solver/io/exported_values.h"
+#include "solver/io/recording_format.h"
 #include "solver/io/scene.h"
 #include "solver/io/staged_file.h"
 

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "solver/io/exported_values.h"
+#include "solver/io/recording_format.h"
 #include "solver/io/scene.h"
 #include "solver/io/staged_file.h"
 

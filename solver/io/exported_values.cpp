@@ -4,19 +4,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "solver/io/recording.h"
 #include "solver/plasticity.h"
 #include "solver/rotation.h"
 #include "solver/section_forces.h"
 
 namespace topple::io {
-
-void expect_same_model(const Model& model, const FrameRow& row) {
-  if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
-      row.contact_depth.size() != model.contact_points.size() * model.planes.size() ||
-      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
-    throw InputError(k_another_model);
-}
 
 ElementLoading element_loading(const Model& model, const FrameRow& row, std::size_t e) {
   const Element& element = model.elements[e];

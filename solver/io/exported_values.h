@@ -6,13 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/observer.h"
+#include "solver/io/frame_row.h"
 #include "solver/model.h"
 
 namespace topple::io {
-
-/// Throws InputError when the rows are not those of the model.
-void expect_same_model(const Model& model, const FrameRow& row);
 
 struct ElementLoading {
   double stress;      ///< Pa, equivalent_stress() at the stress point

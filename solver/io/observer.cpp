@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "solver/excitation.h"
-#include "solver/io/recording_format.h"
 #include "solver/plasticity.h"
 
 namespace topple::io {
@@ -153,31 +152,9 @@ void fill_anchors(const Run& run, FrameRow& row) {
 
 }  // namespace
 
-const char* anchor_word(float state) {
-  if (state == k_anchor_away) return "away";
-  if (state == k_anchor_slack) return "slack";
-  return state == k_anchor_holds ? "holds" : "broken";
-}
-
-namespace {
-
-template <typename Numbers>
-bool all_finite(const Numbers& numbers) {
-  return std::all_of(std::begin(numbers), std::end(numbers), [](auto x) { return std::isfinite(x); });
-}
-
-}  // namespace
-
-bool is_finite(const FrameRow& row) {
-  return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
-         all_finite(row.section_force) && all_finite(row.s) && all_finite(row.contact_depth) &&
-         all_finite(row.contact_force) && all_finite(row.member_contact) && all_finite(row.energy) &&
-         all_finite(row.body) && all_finite(row.floor_acceleration) && all_finite(row.floor_displacement) &&
-         std::isfinite(row.load_factor) && all_finite(row.anchor);
-}
-
 bool is_finite(const Checkpoint& checkpoint) {
-  return std::isfinite(checkpoint.time) && all_finite(checkpoint.state);
+  return std::isfinite(checkpoint.time) &&
+         std::ranges::all_of(checkpoint.state, [](double x) { return std::isfinite(x); });
 }
 
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {

@@ -1,6 +1,7 @@
 # Recordings (HDF5) and their export.
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial)
 target_sources(topple_io PRIVATE
+  ${CMAKE_CURRENT_LIST_DIR}/frame_row.cpp
   ${CMAKE_CURRENT_LIST_DIR}/hdf5_handle.cpp
   ${CMAKE_CURRENT_LIST_DIR}/hdf5_read_driver.cpp
   ${CMAKE_CURRENT_LIST_DIR}/observer.cpp

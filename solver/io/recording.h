@@ -4,20 +4,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "solver/history.h"
+#include "solver/io/errors.h"
 #include "solver/io/observer.h"
 #include "solver/io/scene.h"
 
 namespace topple::io {
-
-/// A recording cannot be written (disk full, no permission): one line with path and cause.
-struct WriteError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// Text of the InputError where a scene no longer gives the model that it was recorded with.
 inline constexpr const char* k_another_model =
@@ -60,7 +55,7 @@ struct Instant {
   double time;  ///< s
 };
 
-/// Reads a recording, also one that is being written or whose writer was killed. Throws InputError (scene.h)
+/// Reads a recording, also one that is being written or whose writer was killed. Throws InputError (errors.h)
 /// with one line for a missing, foreign, truncated, damaged or unknown-version file.
 class Recording {
  public:
@@ -111,10 +106,5 @@ Scene recorded_scene(const Recording& recording);
 
 /// True when the file's first bytes are those of HDF5.
 bool is_recording(const std::string& path);
-
-/// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
-/// run), and anchors.csv where there are any, into `folder` (created when missing), of the way to the newest
-/// branch. Each file appears whole or not at all. Throws WriteError, InputError.
-void export_csv(const Recording& recording, const std::string& folder);
 
 }  // namespace topple::io

@@ -159,30 +159,11 @@ std::size_t field_count(const RowShape& shape) {
   return shape.anchors > 0 ? k_field_count : k_field_count - 1;
 }
 
-RowShape row_shape(const Model& model) {
-  return {.nodes = model.node_position.size(),
-          .elements = model.elements.size(),
-          .contacts = model.contact_points.size() * model.planes.size(),
-          .touched = model.bodies.size() > 1 ? model.elements.size() : 0,
-          .bodies = model.bodies.size(),
-          .anchors = model.anchors.size()};
-}
-
-FrameRow blank_row(const RowShape& shape) {
-  FrameRow row;
-  row.position.resize(3 * shape.nodes);
-  row.rotation.resize(4 * shape.nodes);
-  row.section_force.resize(6 * shape.elements);
-  row.s.resize(shape.elements);
-  row.hinge.resize(shape.elements);
-  row.contact_depth.resize(shape.contacts);
-  row.contact_force.resize(3 * shape.contacts);
-  row.member_contact.resize(4 * shape.touched);
-  row.energy.resize(shape.anchors > 0 ? 14 : 12);
-  row.body.resize(11 * shape.bodies);
-  row.rung.resize(shape.bodies);
-  row.anchor.resize(4 * shape.anchors);
-  return row;
+void expect_same_model(const Model& model, const FrameRow& row) {
+  if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
+      row.contact_depth.size() != model.contact_points.size() * model.planes.size() ||
+      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
+    throw InputError(k_another_model);
 }
 
 }  // namespace topple::io

@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/io/frame_row.h"
 #include "solver/io/hdf5_handle.h"
 #include "solver/io/recording.h"
 
@@ -32,13 +33,6 @@ inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that 
 
 /// Rows per chunk of the frame fields, and rows gathered before they are handed to HDF5.
 inline constexpr hsize_t k_chunk_rows = 32;
-
-/// Sizes that all rows of one recording share.
-struct RowShape {
-  std::size_t nodes = 0, elements = 0, contacts = 0, touched = 0, bodies = 0, anchors = 0;
-};
-/// Of a model's rows.
-RowShape row_shape(const Model& model);
 
 // Records. `checksum` is the CRC-32C of the bytes before it; the order of the members leaves no gaps.
 struct FrameRecord {
@@ -147,8 +141,8 @@ auto field_bytes(Row& row) {
                                           bytes(row.anchor)};
 }
 
-/// A row of zeros with arrays of the right sizes.
-FrameRow blank_row(const RowShape& shape);
+/// Throws InputError when the rows are not those of the model.
+void expect_same_model(const Model& model, const FrameRow& row);
 
 /// Writes the group /model.
 void write_model(hid_t file, const Model& model);

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "solver/io/edit_text.h"
+#include "solver/io/errors.h"
 #include "solver/io/recording_reader.h"
-#include "solver/io/scene.h"
 
 namespace topple::io {
 namespace {

@@ -1,6 +1,6 @@
 #include "solver/io/recover.h"
 
-#include "solver/io/exported_values.h"
+#include "solver/io/recording_format.h"
 #include "solver/io/recording_writer.h"
 #include "solver/io/scene.h"
 #include "solver/io/staged_file.h"

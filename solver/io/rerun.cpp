@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "solver/io/edit_text.h"
-#include "solver/io/exported_values.h"
 #include "solver/io/recording_format.h"
 #include "solver/io/scene.h"
 

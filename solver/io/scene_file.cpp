@@ -4,6 +4,8 @@
 #include <fstream>
 #include <optional>
 
+#include "solver/io/builtin.h"
+
 namespace topple::io {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/io/scene_keys.h"
+#include "solver/io/scene_key.h"
 #include "solver/types.h"
 
 namespace topple::io {

@@ -1,5 +1,5 @@
 // --set KEY=VALUE: changes of a scene's tree before it is checked.
-#include "solver/io/scene.h"
+#include "solver/io/errors.h"
 #include "solver/io/scene_document.h"
 
 namespace topple::io {

@@ -1,7 +1,7 @@
 // From a checked scene to a Setup, part by part. All throw InputError.
 #pragma once
 
-#include "solver/io/scene.h"
+#include "solver/io/scene_content.h"
 #include "solver/io/scene_entry.h"
 #include "solver/run.h"
 

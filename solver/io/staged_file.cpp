@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "solver/io/recording.h"
+#include "solver/io/errors.h"
 
 namespace topple::io {
 

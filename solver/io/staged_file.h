@@ -17,7 +17,7 @@ class StagedFile {
   const std::filesystem::path& path() const { return path_; }
   /// Where to write: "PATH.part".
   const std::filesystem::path& part() const { return part_; }
-  /// Gives the written and closed file its name, in place of an older one. Throws WriteError (recording.h).
+  /// Gives the written and closed file its name, in place of an older one. Throws WriteError (errors.h).
   void publish();
 
  private:

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "recording_fixture.h"
+#include "solver/io/export_csv.h"
 #include "solver/io/rerun.h"
 
 namespace topple::io::testing {
