@@ -10,6 +10,7 @@
 #include "app/progress.h"
 #include "app/study_results.h"
 #include "solver/io/scene.h"
+#include "solver/study/laws.h"
 #include "solver/study/penalty_chart.h"
 
 namespace topple::app {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/report_parts.h"
-#include "solver/study/penalty.h"
+#include "solver/study/laws.h"
 
 namespace topple::app {
 namespace {

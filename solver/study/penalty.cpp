@@ -8,6 +8,7 @@
 #include "solver/study/alone.h"
 #include "solver/study/contact_trials.h"
 #include "solver/study/impact.h"
+#include "solver/study/laws.h"
 #include "solver/study/parallel.h"
 
 namespace topple::study {

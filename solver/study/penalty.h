@@ -18,11 +18,6 @@ inline constexpr double k_creep_bound = 1e-6;       ///< m, of the way in k_cree
 inline constexpr double k_creep_time = 10;          ///< s
 inline constexpr double k_period_steps = 20;        ///< time steps that resolve a period of the bounce
 inline constexpr double k_pulse_ratios[] = {2, 4};  ///< w/p of the half-sines
-inline constexpr ContactLawKind k_laws[] = {ContactLawKind::coulomb, ContactLawKind::paper,
-                                            ContactLawKind::printed};
-
-/// A law as scenes call it: "coulomb".
-std::string law_name(ContactLawKind kind);
 
 /// One number of the study.
 struct PenaltyRow {

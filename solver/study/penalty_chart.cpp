@@ -9,6 +9,7 @@
 
 #include "solver/study/gnuplot.h"
 #include "solver/study/impact.h"
+#include "solver/study/laws.h"
 
 namespace topple::study {
 namespace {

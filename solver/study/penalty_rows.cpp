@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solver/study/laws.h"
 #include "solver/study/penalty.h"
 #include "solver/study/rows.h"
 
@@ -16,18 +17,6 @@ ordered_json positive_or_null(double value) {
 }
 
 }  // namespace
-
-std::string law_name(ContactLawKind kind) {
-  switch (kind) {
-    case ContactLawKind::coulomb:
-      return "coulomb";
-    case ContactLawKind::paper:
-      return "paper";
-    case ContactLawKind::printed:
-      break;
-  }
-  return "printed";
-}
 
 std::optional<double> PenaltyRow::error() const {
   if (!computed || !reference || *reference == 0) return std::nullopt;

@@ -12,7 +12,7 @@
 #include "solver/step_control.h"
 #include "solver/study/kept_rows.h"
 #include "solver/study/measure.h"
-#include "solver/study/penalty.h"
+#include "solver/study/laws.h"
 
 namespace topple::study {
 namespace {

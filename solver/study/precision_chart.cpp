@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "solver/study/gnuplot.h"
-#include "solver/study/penalty.h"
+#include "solver/study/laws.h"
 
 namespace topple::study {
 namespace {

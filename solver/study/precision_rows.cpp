@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "solver/study/penalty.h"
+#include "solver/study/laws.h"
 #include "solver/study/precision.h"
 #include "solver/study/rows.h"
 
