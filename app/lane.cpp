@@ -7,7 +7,7 @@
 
 #include "app/window_words.h"
 #include "app/words.h"
-#include "render/overlay.h"
+#include "render/ticks.h"
 
 namespace topple::app {
 

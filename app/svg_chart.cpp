@@ -7,7 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "render/overlay.h"
+#include "render/ticks.h"
 
 namespace topple::app {
 namespace {

@@ -10,7 +10,6 @@
 #include "app/panels.h"
 #include "app/window_words.h"
 #include "app/words.h"
-#include "render/overlay.h"
 #include "render/text_layout.h"
 #include "solver/io/edit_text.h"
 #include "solver/ladder.h"

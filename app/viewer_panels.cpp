@@ -12,6 +12,7 @@
 #include "app/viewer.h"
 #include "app/words.h"
 #include "render/canvas.h"
+#include "render/legend.h"
 #include "render/overlay.h"
 #include "render/text_layout.h"
 

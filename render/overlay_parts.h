@@ -1,13 +1,12 @@
-// What the parts of an overlay are drawn with, and its legend.
+// What the parts of an overlay are drawn with.
 #pragma once
 
 #include <imgui.h>
 
 #include <cmath>
 #include <string>
-#include <vector>
 
-#include "render/overlay.h"
+#include "render/font.h"
 
 namespace topple::render {
 
@@ -35,16 +34,5 @@ struct Layout {
 
 /// With a minus sign, and a power of ten where it is large or small.
 std::string number(double value, int decimals);
-
-/// There is a legend, and its range can be shown.
-bool can_be_drawn(const Legend& legend, LeftOut& left_out);
-
-/// Where a legend may lie, px, and how long its bar may be.
-struct LegendRoom {
-  float left, top, right, bottom;
-  float bar;
-};
-void draw_legend(const Layout& at, const Legend& legend, ColourMap map, const LegendRoom& room,
-                 std::vector<OverlayBox>& boxes);
 
 }  // namespace topple::render

@@ -5,7 +5,9 @@
 
 #include <limits>
 
+#include "render/legend.h"
 #include "render/text_layout.h"
+#include "render/ticks.h"
 #include "tests/unit/render/off_screen.h"
 #include "tests/unit/render/synthetic_cabinet.h"
 
