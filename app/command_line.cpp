@@ -9,13 +9,24 @@
 #include <new>
 #include <string_view>
 
-#include "app/commands.h"
+#include "app/compare_command.h"
+#include "app/describe_commands.h"
+#include "app/errors.h"
+#include "app/export_command.h"
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/misuse.h"
+#include "app/modes_command.h"
 #include "app/option_values.h"
 #include "app/ranks.h"
+#include "app/recover_command.h"
+#include "app/render_command.h"
+#include "app/report_command.h"
+#include "app/run_command.h"
+#include "app/study_commands.h"
+#include "app/verify_command.h"
+#include "app/view_command.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

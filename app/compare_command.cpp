@@ -1,3 +1,5 @@
+#include "app/compare_command.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "app/ghost_video.h"
@@ -16,7 +18,7 @@
 #include "app/recorded_run.h"
 #include "app/replay.h"
 #include "app/summary.h"
-#include "app/words.h"
+#include "app/terms.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
 #include "solver/io/scene_difference.h"

@@ -1,16 +1,18 @@
+#include "app/describe_commands.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "app/log.h"
 #include "app/progress.h"
 #include "app/summary.h"
-#include "app/words.h"
+#include "app/terms.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"

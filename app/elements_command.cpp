@@ -3,10 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/clock.h"
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/progress.h"
+#include "app/study_commands.h"
 #include "app/study_results.h"
 #include "solver/study/elements.h"
 #include "solver/study/elements_chart.h"

@@ -8,7 +8,6 @@
 #include "app/log_chart.h"
 #include "app/teaching_panel.h"
 #include "app/teaching_words.h"
-#include "app/words.h"
 #include "solver/accelerogram.h"
 #include "solver/study/alone.h"
 #include "solver/study/criteria.h"

@@ -1,8 +1,10 @@
+#include "app/export_command.h"
+
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "solver/io/export_csv.h"

@@ -13,7 +13,7 @@
 #include "app/files.h"
 #include "app/row.h"
 #include "app/shell_words.h"
-#include "app/words.h"
+#include "app/terms.h"
 
 namespace topple::app {
 namespace {

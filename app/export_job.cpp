@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "app/commands.h"
+#include "app/errors.h"
 
 namespace topple::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "app/commands.h"
+#include "app/errors.h"
 
 namespace topple::app {
 namespace {

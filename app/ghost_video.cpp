@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "app/bridge.h"
-#include "app/commands.h"
 #include "app/drawing_processes.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/progress.h"

@@ -17,7 +17,7 @@ struct NamedReplay {
 };
 
 /// Writes a video of 1280 x 720 and 30 pictures a second, seen from the floor: A solid and blue, B
-/// translucent and grey, both named, until the longer one ends. Returns an exit code (commands.h); says why
+/// translucent and grey, both named, until the longer one ends. Returns an exit code (errors.h); says why
 /// when Ctrl+C came. Throws std::runtime_error.
 int draw_ghost_video(const std::string& path, const NamedReplay& a, const NamedReplay& b, bool quiet);
 

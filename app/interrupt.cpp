@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "app/commands.h"
+#include "app/errors.h"
 
 namespace topple::app {
 namespace {

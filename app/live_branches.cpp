@@ -12,7 +12,7 @@ constexpr std::int64_t k_return_steps = 50;  // between two looks at the stop fl
 
 }  // namespace
 
-void LiveRun::Worker::read_recording() {
+void LiveWorker::read_recording() {
   const io::Recording& from = *source_.recording;
   io::check_edits(from.history(), setup_);
   history_ = from.history();
@@ -35,7 +35,7 @@ void LiveRun::Worker::read_recording() {
   });
 }
 
-void LiveRun::Worker::read_rows() {
+void LiveWorker::read_rows() {
   const io::Recording& from = *source_.recording;
   std::vector<RowPtr> rows;
   const auto tell_rows = [&] {
@@ -56,7 +56,7 @@ void LiveRun::Worker::read_rows() {
   tell_rows();
 }
 
-void LiveRun::Worker::follow() {
+void LiveWorker::follow() {
   try {
     if (!status_.message.empty() || !source_.recording->refresh()) return;
     read_recording();
@@ -66,7 +66,7 @@ void LiveRun::Worker::follow() {
   set(LiveStatus::Kind::replay);
 }
 
-void LiveRun::Worker::start_recording() {
+void LiveWorker::start_recording() {
   if (source_.output.empty()) return;
   try {
     auto recorder = std::make_shared<LiveRecorder>(source_.output, *source_.scene);
@@ -79,7 +79,7 @@ void LiveRun::Worker::start_recording() {
 }
 
 // From the nearest point that is kept.
-Run LiveRun::Worker::run_before(std::int32_t branch, std::int64_t step) const {
+Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
   const std::vector<Stretch> way = history_.way_to(branch);
   const auto on_way = [&](std::int32_t id, std::int64_t at) {
     return at <= step && std::any_of(way.begin(), way.end(),
@@ -103,7 +103,7 @@ Run LiveRun::Worker::run_before(std::int32_t branch, std::int64_t step) const {
   return Run(setup_, unpack(setup_.model, read->state), parameters_at(setup_, history_, branch, read->step));
 }
 
-void LiveRun::Worker::fork(const Fork& from) {
+void LiveWorker::fork(const Fork& from) {
   const bool replayed = source_.recording.has_value();
   if (run_) record(observer_.last(*run_));
   going_ = false;
@@ -138,7 +138,7 @@ void LiveRun::Worker::fork(const Fork& from) {
 }
 
 // The new file holds all of the one that was replayed, and goes on from there.
-void LiveRun::Worker::carry_on_recording() {
+void LiveWorker::carry_on_recording() {
   const io::Recording from = std::move(*source_.recording);
   source_.recording.reset();
   start_recording();

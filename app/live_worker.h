@@ -1,4 +1,4 @@
-// The thread of a live run, for live_run.cpp and live_branches.cpp alone.
+// The thread of a live run.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/live_recorder.h"
-#include "app/live_run.h"
+#include "app/live_report.h"
 
 namespace topple::app {
 
@@ -40,9 +40,9 @@ struct Point {
 
 inline constexpr std::chrono::milliseconds k_patience{300};  // with a step under way when the run is closed
 
-class LiveRun::Worker {
+class LiveWorker {
  public:
-  Worker(LiveSource source, std::function<void()> wake, Advance advance)
+  LiveWorker(LiveSource source, std::function<void()> wake, LiveAdvance advance)
       : source_(std::move(source)),
         setup_(source_.scene->setup),
         wake_(std::move(wake)),
@@ -66,7 +66,7 @@ class LiveRun::Worker {
     report_.status = report.status;
     return report;
   }
-  void start(std::shared_ptr<Worker> self) {
+  void start(std::shared_ptr<LiveWorker> self) {
     thread_ = std::thread([self = std::move(self)] { self->work(); });
   }
   LiveStatus close(const std::string& status) {
@@ -126,7 +126,7 @@ class LiveRun::Worker {
   LiveSource source_;
   const Setup& setup_;
   const std::function<void()> wake_;
-  const Advance advance_;
+  const LiveAdvance advance_;
 
   // Shared; the lock is never held while anything is computed or written.
   std::mutex mutex_;
@@ -157,7 +157,7 @@ class LiveRun::Worker {
 
 // What happened and how it stands with the run become known together.
 template <typename Add>
-void LiveRun::Worker::tell(Add add) {
+void LiveWorker::tell(Add add) {
   const std::lock_guard lock(mutex_);
   add(report_);
   report_.status = status_;

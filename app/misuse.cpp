@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/nearest_name.h"
 
 namespace topple::app {

@@ -1,8 +1,10 @@
+#include "app/modes_command.h"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/summary.h"
 #include "solver/io/scene.h"

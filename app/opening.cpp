@@ -11,6 +11,7 @@
 #include <fstream>
 #include <thread>
 
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "app/run_extent.h"

@@ -3,13 +3,21 @@
 
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/commands.h"
+#include "app/language.h"
 #include "app/live_run.h"
 
 namespace topple::app {
+
+struct ViewOptions {
+  std::string source;                  ///< scene or recording; empty: a person chooses
+  std::vector<std::string> overrides;  ///< of a scene
+  std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
+  std::optional<Language> language;    ///< absent: as kept, or that of the locale
+};
 
 /// "~/.local/state/topple" or what XDG_STATE_HOME says, created; empty when there is no place for it.
 std::string state_folder();

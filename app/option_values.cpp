@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+#include "app/errors.h"
+
 namespace topple::app {
 namespace {
 

@@ -7,7 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/commands.h"
+#include "app/language.h"
+#include "app/render_command.h"
 
 namespace topple::app {
 

@@ -4,9 +4,11 @@
 #include <filesystem>
 
 #include "app/clock.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/present_studies.h"
+#include "app/study_commands.h"
 #include "app/study_results.h"
 #include "app/told_scene.h"
 #include "solver/study/map_panel.h"

@@ -4,10 +4,11 @@
 #include <sstream>
 
 #include "app/clock.h"
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/progress.h"
+#include "app/study_commands.h"
 #include "app/study_results.h"
 #include "solver/io/scene.h"
 #include "solver/study/laws.h"

@@ -6,8 +6,8 @@
 
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/terms.h"
 #include "app/window_words.h"
-#include "app/words.h"
 #include "render/text_layout.h"
 
 namespace topple::app {

@@ -3,8 +3,10 @@
 #include <filesystem>
 
 #include "app/clock.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
+#include "app/study_commands.h"
 #include "app/study_results.h"
 #include "app/sweep.h"
 #include "app/told_scene.h"

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <thread>
 
-#include "app/commands.h"
+#include "app/errors.h"
 
 namespace topple::app {
 namespace {

@@ -11,7 +11,7 @@ namespace topple::app {
 
 struct RecordedRun {
   nlohmann::ordered_json summary;
-  int exit_code;        ///< as in commands.h
+  int exit_code;        ///< as in errors.h
   std::string trouble;  ///< why the run ended before its time, one line; empty: it did not
   bool recorded;        ///< there is a recording, closed
 };
@@ -22,6 +22,9 @@ struct RunManner {
   std::optional<int> jobs = {};  ///< threads; absent: as many as pay
   bool estimate = false;  ///< runs it again at finer steps: "error_estimate" of the summary; no statics
 };
+
+/// What follows the number up to which there is something: of a static run its part of the way.
+const char* extent_unit(bool loads);
 
 /// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C, which is
 /// deferred (interrupt.h). Throws io::WriteError when the recording cannot be written; it says what can still

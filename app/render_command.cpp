@@ -1,3 +1,5 @@
+#include "app/render_command.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +11,8 @@
 
 #include "app/appearance.h"
 #include "app/bridge.h"
-#include "app/commands.h"
 #include "app/drawing_processes.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/foreign_recording.h"
 #include "app/interrupt.h"
@@ -20,9 +22,9 @@
 #include "app/replay.h"
 #include "app/row.h"
 #include "app/subject.h"
+#include "app/terms.h"
 #include "app/window_picture.h"
 #include "app/window_words.h"
-#include "app/words.h"
 #include "render/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"

@@ -1,10 +1,12 @@
+#include "app/report_command.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/interrupt.h"
 #include "app/log.h"
@@ -12,7 +14,7 @@
 #include "app/recorded_run.h"
 #include "app/replay.h"
 #include "app/report.h"
-#include "app/words.h"
+#include "app/terms.h"
 #include "render/off_screen.h"
 #include "render/picture.h"
 #include "solver/study/anchors.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/words.h"
+#include "app/terms.h"
 #include "solver/accelerogram.h"
 #include "solver/edit.h"
 #include "solver/ladder.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/summary.h"
 #include "solver/study/gnuplot.h"

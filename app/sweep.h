@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/clock.h"
-#include "app/commands.h"
+#include "app/study_options.h"
 #include "solver/io/scene.h"
 #include "solver/study/chart.h"
 

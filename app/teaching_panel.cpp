@@ -4,7 +4,7 @@
 #include <imgui.h>
 
 #include "app/teaching_words.h"
-#include "app/words.h"
+#include "app/terms.h"
 
 namespace topple::app {
 namespace {

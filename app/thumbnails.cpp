@@ -14,7 +14,7 @@
 
 #include "app/bridge.h"
 #include "app/opening.h"
-#include "app/words.h"
+#include "app/terms.h"
 #include "render/orbit.h"
 #include "solver/io/scene.h"
 

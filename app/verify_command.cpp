@@ -1,3 +1,5 @@
+#include "app/verify_command.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +12,7 @@
 #include <thread>
 
 #include "app/clock.h"
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/files.h"
 #include "app/interrupt.h"
 #include "app/log.h"

@@ -1,3 +1,5 @@
+#include "app/view_command.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -7,7 +9,7 @@
 #include <utility>
 
 #include "app/clock.h"
-#include "app/commands.h"
+#include "app/errors.h"
 #include "app/interrupt.h"
 #include "app/log.h"
 #include "app/opening.h"

@@ -8,6 +8,7 @@
 
 #include "app/files.h"
 #include "app/shell_words.h"
+#include "app/status_line.h"
 #include "app/theme.h"
 #include "app/viewer.h"
 #include "app/words.h"

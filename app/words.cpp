@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "app/terms.h"
 #include "app/window_words.h"
 #include "solver/accelerogram.h"
 
@@ -96,11 +97,6 @@ std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow&
   return lines;
 }
 
-const char* anchor_type(const Anchor& anchor) {
-  static const char* const k_types[] = {"strap", "bracket", "pole"};
-  return k_types[static_cast<std::size_t>(anchor.type)];
-}
-
 std::string anchor_type_in_words(const Anchor& anchor) {
   static constexpr const Phrase* k_types[] = {&k_strap, &k_bracket, &k_pole};
   return say(*k_types[static_cast<std::size_t>(anchor.type)]);
@@ -145,10 +141,6 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
   return lines;
 }
 
-bool is_static(const Setup& setup) {
-  return setup.run.analysis == Analysis::statics;
-}
-
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
   return is_static(setup) ? say(k_load_instant, row.step, setup.run.statics.load_steps, row.load_factor)
                           : fmt::format("t = {:.2f} s", row.time);
@@ -169,39 +161,6 @@ std::string shake_in_words(const Parameters& parameters) {
       return say(k_floor_record, shake.record->duration, std::abs(shake.scale) * shake.record->peak / k_gal);
   }
   return "";
-}
-
-std::string status_in_words(const Player& player) {
-  const LiveStatus& status = player.status();
-  const bool loads = is_static(player.scene().setup);
-  switch (status.kind) {
-    case LiveStatus::Kind::starting:
-      return say(k_settling);
-    case LiveStatus::Kind::reading:
-      return say(k_reading);
-    case LiveStatus::Kind::ended:
-      return say(k_ended, status.message);
-    case LiveStatus::Kind::returning:
-      return say(k_returning);
-    case LiveStatus::Kind::failed:
-      if (player.at_head()) return say(k_stopped, status.message);
-      break;
-    case LiveStatus::Kind::over:
-      if (player.at_head())
-        return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end);
-      break;
-    default:
-      break;
-  }
-  if (player.way().empty()) return status.message.empty() ? say(k_no_instants) : status.message;
-  if (player.at_head())
-    return !player.playing() ? say(k_paused)
-           : loads           ? say(k_running_loads)
-                             : say(k_running, player.speed(), status.achieved);
-  std::string words = say(player.replay() ? k_recording : k_looking_back);
-  if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
-  if (!status.message.empty()) return say(k_says, words, status.message);
-  return say(player.replay() ? k_can_branch : k_can_branch_or_return, words);
 }
 
 }  // namespace topple::app

@@ -4,12 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "app/player.h"
-#include "solver/types.h"
+#include "solver/io/observer.h"
+#include "solver/run.h"
 
 namespace topple::app {
-
-inline constexpr double k_degrees = 180 / k_pi;  ///< in a radian
 
 /// "free: rocking, 4.2° of 10.9°".
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
@@ -18,10 +16,7 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
 /// counts the others.
 std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row);
 
-/// "strap", "bracket" or "pole", as files name it.
-const char* anchor_type(const Anchor& anchor);
-
-/// The same in the language of the window.
+/// "strap" in the language of the window.
 std::string anchor_type_in_words(const Anchor& anchor);
 
 /// "strap left: pulls 430 N, 22 % of its strength".
@@ -30,16 +25,10 @@ std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::si
 /// One line for each of a few anchors, else one that counts them.
 std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row);
 
-/// Its rows go by load step and load factor, not by time.
-bool is_static(const Setup& setup);
-
 /// "t = 1.23 s"; of a static run "load step 12 of 40, load factor 3.42".
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row);
 
 /// "floor: 0.5 Hz, 190 gal" of the first shake; empty without one.
 std::string shake_in_words(const Parameters& parameters);
-
-/// One sentence for the status line: what plays, and how it stands with it.
-std::string status_in_words(const Player& player);
 
 }  // namespace topple::app

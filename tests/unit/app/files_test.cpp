@@ -1,6 +1,6 @@
 #include "app/files.h"
 
-#include "app/commands.h"
+#include "app/errors.h"
 #include "program.h"
 
 namespace topple::app {
