@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/background.h"
+#include "app/support/background.h"
 #include "solver/study/refinement.h"
 
 namespace topple::app {

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <string_view>
 
-#include "app/files.h"
 #include "app/phrase_tables.h"
+#include "app/support/files.h"
 #include "app/window_words.h"
 
 namespace topple::app {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/language.h"
+#include "app/support/language.h"
 #include "render/font.h"
 #include "solver/io/scene.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "app/language.h"
 #include "app/rigid_fit.h"
+#include "app/support/language.h"
 #include "solver/element_state.h"
 
 namespace topple::app {

@@ -8,7 +8,7 @@
 #include "app/anchor_picture.h"
 #include "app/annotations.h"
 #include "app/row.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 #include "app/words.h"
 

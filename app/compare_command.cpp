@@ -9,16 +9,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/foreign_recording.h"
 #include "app/ghost_video.h"
-#include "app/interrupt.h"
-#include "app/log.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
 #include "app/summary.h"
-#include "app/terms.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/foreign_recording.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/terms.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
 #include "solver/io/scene_difference.h"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "app/language.h"
 #include "app/player.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 

@@ -6,13 +6,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/foreign_recording.h"
-#include "app/log.h"
-#include "app/progress.h"
 #include "app/summary.h"
-#include "app/terms.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/foreign_recording.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
+#include "app/support/terms.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include "app/interrupt.h"
+#include "app/support/interrupt.h"
 
 namespace topple::app {
 namespace {

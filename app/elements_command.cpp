@@ -2,13 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/clock.h"
-#include "app/errors.h"
-#include "app/interrupt.h"
-#include "app/log.h"
-#include "app/progress.h"
 #include "app/study_commands.h"
 #include "app/study_results.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
 #include "solver/study/elements.h"
 #include "solver/study/elements_chart.h"
 #include "solver/study/measure.h"

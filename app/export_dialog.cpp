@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/files.h"
 #include "app/row.h"
 #include "app/shell_words.h"
-#include "app/terms.h"
+#include "app/support/files.h"
+#include "app/support/terms.h"
 
 namespace topple::app {
 namespace {

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "app/errors.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {

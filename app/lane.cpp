@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 #include "render/ticks.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/clock.h"
 #include "app/summary.h"
+#include "app/support/clock.h"
 #include "app/thinning.h"
 
 namespace topple::app {

@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "app/command_line.h"
-#include "app/files.h"
 #include "app/manual.h"
+#include "app/support/files.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/errors.h"
 #include "app/nearest_name.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
-#include "app/files.h"
 #include "app/summary.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
 #include "solver/io/scene.h"
 #include "solver/modes.h"
 

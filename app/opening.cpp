@@ -11,10 +11,10 @@
 #include <fstream>
 #include <thread>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/foreign_recording.h"
 #include "app/run_extent.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/foreign_recording.h"
 #include "solver/io/rerun.h"
 #include "solver/io/scene_save.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/language.h"
 #include "app/live_run.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 

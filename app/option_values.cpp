@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "app/errors.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/language.h"
 #include "app/render_command.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 

@@ -8,7 +8,7 @@
 
 #include "app/panels.h"
 #include "app/precision_words.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/scene.h"
 

@@ -6,7 +6,7 @@
 
 #include "app/lane.h"
 #include "app/panels.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 #include "render/text_layout.h"
 

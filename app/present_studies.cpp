@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/clock.h"
 #include "app/study_results.h"
+#include "app/support/clock.h"
 #include "solver/io/scene_save.h"
 #include "solver/study/measure.h"
 #include "solver/study/parallel.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/background.h"
+#include "app/support/background.h"
 #include "app/sweep.h"
 #include "solver/edit.h"
 #include "solver/study/overturn_map.h"

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <thread>
 
-#include "app/errors.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <thread>
 
-#include "app/clock.h"
-#include "app/errors.h"
-#include "app/interrupt.h"
-#include "app/progress.h"
 #include "app/run_profile.h"
 #include "app/summary.h"
-#include "app/terms.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/interrupt.h"
+#include "app/support/progress.h"
+#include "app/support/terms.h"
 #include "solver/io/recording.h"
 #include "solver/ladder.h"
 #include "solver/study/refinement.h"

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/foreign_recording.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/foreign_recording.h"
 #include "solver/io/recover.h"
 
 namespace topple::app {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/language.h"
 #include "app/picture_settings.h"
+#include "app/support/language.h"
 #include "render/camera.h"
 #include "render/off_screen.h"
 #include "render/orbit.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/interrupt.h"
+#include "app/support/interrupt.h"
 
 namespace topple::app {
 

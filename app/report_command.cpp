@@ -6,15 +6,15 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/interrupt.h"
-#include "app/log.h"
-#include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/replay.h"
 #include "app/report.h"
-#include "app/terms.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
+#include "app/support/terms.h"
 #include "render/off_screen.h"
 #include "render/picture.h"
 #include "solver/study/anchors.h"

@@ -1,7 +1,7 @@
 // Every sentence of the report page, in its languages: one table.
 #pragma once
 
-#include "app/language.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 

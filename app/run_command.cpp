@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/interrupt.h"
-#include "app/log.h"
 #include "app/modes_command.h"
 #include "app/recorded_run.h"
 #include "app/run_profile.h"
 #include "app/summary.h"
-#include "app/terms.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/terms.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

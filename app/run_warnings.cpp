@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "solver/accelerogram.h"
 #include "solver/edit.h"
 #include "solver/ladder.h"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/files.h"
 #include "app/shell_words.h"
+#include "app/support/files.h"
 #include "solver/io/scene_file.h"
 #include "solver/io/scene_save.h"
 

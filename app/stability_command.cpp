@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "app/clock.h"
-#include "app/errors.h"
-#include "app/interrupt.h"
-#include "app/log.h"
 #include "app/study_commands.h"
 #include "app/study_results.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
 #include "app/sweep.h"
 #include "app/told_scene.h"
 #include "solver/study/stability.h"

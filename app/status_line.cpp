@@ -1,6 +1,6 @@
 #include "app/status_line.h"
 
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 
 namespace topple::app {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
-#include "app/files.h"
 #include "app/summary.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
 #include "solver/study/gnuplot.h"
 #include "solver/study/measure.h"
 #include "solver/study/rows.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run_warnings.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "solver/ladder.h"
 
 namespace topple::app {

@@ -8,11 +8,11 @@
 #include <mutex>
 #include <thread>
 
-#include "app/interrupt.h"
-#include "app/log.h"
-#include "app/progress.h"
 #include "app/ranks.h"
 #include "app/study_results.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
 #include "solver/study/kept_rows.h"
 #include "solver/study/measure.h"
 #include "solver/study/parallel.h"

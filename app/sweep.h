@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "app/clock.h"
 #include "app/study_options.h"
+#include "app/support/clock.h"
 #include "solver/io/scene.h"
 #include "solver/study/chart.h"
 

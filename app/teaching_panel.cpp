@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/support/terms.h"
 #include "app/teaching_words.h"
-#include "app/terms.h"
 
 namespace topple::app {
 namespace {

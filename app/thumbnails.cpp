@@ -14,7 +14,7 @@
 
 #include "app/bridge.h"
 #include "app/opening.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "render/orbit.h"
 #include "solver/io/scene.h"
 

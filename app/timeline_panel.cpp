@@ -8,7 +8,7 @@
 #include "app/body_colour.h"
 #include "app/lane.h"
 #include "app/panels.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 #include "app/words.h"
 #include "render/text_layout.h"

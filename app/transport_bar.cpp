@@ -7,7 +7,7 @@
 
 #include "app/panels.h"
 #include "app/shell_words.h"
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/words.h"
 
 namespace topple::app {

@@ -11,14 +11,14 @@
 #include <numeric>
 #include <thread>
 
-#include "app/clock.h"
-#include "app/errors.h"
-#include "app/files.h"
-#include "app/interrupt.h"
-#include "app/log.h"
-#include "app/progress.h"
 #include "app/recorded_run.h"
 #include "app/summary.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

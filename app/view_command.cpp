@@ -8,12 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "app/clock.h"
-#include "app/errors.h"
-#include "app/interrupt.h"
-#include "app/log.h"
 #include "app/opening.h"
 #include "app/shell.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
 #include "render/window.h"
 
 namespace topple::app {

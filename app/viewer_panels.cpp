@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/files.h"
 #include "app/shell_words.h"
 #include "app/status_line.h"
+#include "app/support/files.h"
 #include "app/theme.h"
 #include "app/viewer.h"
 #include "app/words.h"

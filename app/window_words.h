@@ -1,7 +1,7 @@
 // Texts of the window, in its languages. Numbers are of those languages alike.
 #pragma once
 
-#include "app/language.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <span>
 
-#include "app/terms.h"
+#include "app/support/terms.h"
 #include "app/window_words.h"
 #include "solver/accelerogram.h"
 

@@ -1,4 +1,4 @@
-#include "app/log.h"
+#include "app/support/log.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/clock.h"
+#include "app/support/clock.h"
 
 namespace topple::app {
 

@@ -1,10 +1,10 @@
-#include "app/interrupt.h"
+#include "app/support/interrupt.h"
 
 #include <unistd.h>
 
 #include <csignal>
 
-#include "app/errors.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {

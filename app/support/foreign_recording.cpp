@@ -1,4 +1,4 @@
-#include "app/foreign_recording.h"
+#include "app/support/foreign_recording.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

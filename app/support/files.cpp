@@ -1,4 +1,4 @@
-#include "app/files.h"
+#include "app/support/files.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "app/errors.h"
+#include "app/support/errors.h"
 
 namespace topple::app {
 namespace {
