@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "app/phrase_tables.h"
+#include "app/picture/window_words.h"
 #include "app/support/files.h"
-#include "app/window_words.h"
 
 namespace topple::app {
 namespace {

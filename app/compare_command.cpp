@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/ghost_video.h"
+#include "app/picture/ghost_video.h"
+#include "app/picture/replay.h"
 #include "app/recorded_run.h"
-#include "app/replay.h"
 #include "app/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"

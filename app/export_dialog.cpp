@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 #include "app/shell_words.h"
 #include "app/support/files.h"
 #include "app/support/terms.h"

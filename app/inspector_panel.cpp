@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/anchor_picture.h"
-#include "app/annotations.h"
 #include "app/lane.h"
 #include "app/panels.h"
-#include "app/row.h"
-#include "app/window_words.h"
-#include "app/words.h"
+#include "app/picture/anchor_picture.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
+#include "app/picture/words.h"
 #include "solver/ladder.h"
 
 namespace topple::app {

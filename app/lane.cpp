@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
 #include "render/ticks.h"
 
 namespace topple::app {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/picture/thinning.h"
 #include "app/summary.h"
 #include "app/support/clock.h"
-#include "app/thinning.h"
 
 namespace topple::app {
 namespace {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-#include "app/run_extent.h"
+#include "app/picture/run_extent.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"

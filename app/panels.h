@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/appearance.h"
-#include "app/picture_settings.h"
+#include "app/picture/picture_settings.h"
 #include "app/player.h"
 #include "app/subject.h"
 #include "render/font.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/panels.h"
-#include "app/window_words.h"
+#include "app/picture/window_words.h"
 
 namespace topple::app {
 namespace {

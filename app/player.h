@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "app/bridge.h"
 #include "app/live_run.h"
-#include "app/thinning.h"
+#include "app/picture/bridge.h"
+#include "app/picture/thinning.h"
 
 namespace topple::app {
 

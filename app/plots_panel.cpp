@@ -6,8 +6,8 @@
 
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
 #include "render/text_layout.h"
 
 namespace topple::app {

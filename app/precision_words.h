@@ -1,7 +1,7 @@
 // Texts of the chart of error against cost.
 #pragma once
 
-#include "app/window_words.h"
+#include "app/picture/window_words.h"
 
 namespace topple::app::window_words {
 

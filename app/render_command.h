@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/picture_settings.h"
+#include "app/picture/picture_settings.h"
 #include "app/support/language.h"
 #include "render/camera.h"
 #include "render/off_screen.h"

@@ -1,7 +1,7 @@
 // What the window says around a scene: choosing, opening, saving, exporting.
 #pragma once
 
-#include "app/window_words.h"
+#include "app/picture/window_words.h"
 
 namespace topple::app::window_words {
 

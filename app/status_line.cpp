@@ -1,7 +1,7 @@
 #include "app/status_line.h"
 
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
 
 namespace topple::app {
 

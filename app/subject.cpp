@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "app/anchor_picture.h"
-#include "app/annotations.h"
-#include "app/row.h"
+#include "app/picture/anchor_picture.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
 #include "solver/overturn.h"
 #include "solver/rotation.h"
 

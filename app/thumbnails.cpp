@@ -12,8 +12,8 @@
 #include <optional>
 #include <thread>
 
-#include "app/bridge.h"
 #include "app/opening.h"
+#include "app/picture/bridge.h"
 #include "app/support/terms.h"
 #include "render/orbit.h"
 #include "solver/io/scene.h"

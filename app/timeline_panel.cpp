@@ -5,12 +5,12 @@
 #include <cmath>
 #include <functional>
 
-#include "app/body_colour.h"
 #include "app/lane.h"
 #include "app/panels.h"
+#include "app/picture/body_colour.h"
+#include "app/picture/window_words.h"
+#include "app/picture/words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
-#include "app/words.h"
 #include "render/text_layout.h"
 #include "solver/io/edit_text.h"
 #include "solver/ladder.h"

@@ -6,9 +6,9 @@
 #include <tuple>
 
 #include "app/panels.h"
+#include "app/picture/words.h"
 #include "app/shell_words.h"
 #include "app/support/terms.h"
-#include "app/words.h"
 
 namespace topple::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 #include "app/shell_words.h"
 #include "app/theme.h"
 

@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "app/row.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
 #include "app/viewer.h"
-#include "app/window_words.h"
 
 namespace topple::app {
 namespace {

@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/picture/words.h"
 #include "app/shell_words.h"
 #include "app/status_line.h"
 #include "app/support/files.h"
 #include "app/theme.h"
 #include "app/viewer.h"
-#include "app/words.h"
 #include "render/canvas.h"
 #include "render/legend.h"
 #include "render/overlay.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "app/window_words.h"
+#include "app/picture/window_words.h"
 
 namespace topple::app {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "app/phrase_tables.h"
-#include "app/window_words.h"
+#include "app/picture/window_words.h"
 #include "unit/render/scratch.h"
 
 namespace topple::app {

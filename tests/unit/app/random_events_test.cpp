@@ -13,8 +13,8 @@
 #include <random>
 #include <set>
 
+#include "app/picture/window_words.h"
 #include "app/theme.h"
-#include "app/window_words.h"
 #include "shell_fixture.h"
 #include "solver/io/recording.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "app/annotations.h"
-#include "app/row.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
 #include "live.h"
 #include "solver/overturn.h"
 

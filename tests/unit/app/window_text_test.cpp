@@ -11,12 +11,12 @@
 #include <ostream>
 #include <set>
 
+#include "app/picture/window_words.h"
 #include "app/precision_words.h"
 #include "app/shell.h"
 #include "app/teaching_words.h"
 #include "app/theme.h"
 #include "app/viewer.h"
-#include "app/window_words.h"
 #include "live.h"
 #include "mouse.h"
 #include "render/image.h"

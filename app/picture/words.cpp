@@ -1,4 +1,4 @@
-#include "app/words.h"
+#include "app/picture/words.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <span>
 
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
 #include "solver/accelerogram.h"
 
 namespace topple::app {

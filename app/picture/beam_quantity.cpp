@@ -1,10 +1,10 @@
-#include "app/beam_quantity.h"
+#include "app/picture/beam_quantity.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/row.h"
-#include "app/window_words.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
 #include "solver/plasticity.h"
 
 namespace topple::app {

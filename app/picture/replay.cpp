@@ -1,4 +1,4 @@
-#include "app/replay.h"
+#include "app/picture/replay.h"
 
 #include <algorithm>
 

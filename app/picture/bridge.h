@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "app/picture_settings.h"
-#include "app/run_extent.h"
+#include "app/picture/picture_settings.h"
+#include "app/picture/run_extent.h"
 #include "render/scene_frame.h"
 #include "solver/io/recording.h"
 #include "solver/io/scene.h"

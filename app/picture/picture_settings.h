@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "app/beam_quantity.h"
+#include "app/picture/beam_quantity.h"
 #include "render/colour_map.h"
 
 namespace topple::app {

@@ -1,16 +1,16 @@
-#include "app/bridge.h"
+#include "app/picture/bridge.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/anchor_picture.h"
-#include "app/annotations.h"
-#include "app/row.h"
+#include "app/picture/anchor_picture.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
+#include "app/picture/words.h"
 #include "app/support/terms.h"
-#include "app/window_words.h"
-#include "app/words.h"
 
 namespace topple::app {
 namespace {

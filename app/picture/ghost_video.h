@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/replay.h"
+#include "app/picture/replay.h"
 #include "render/image.h"
 #include "solver/io/scene.h"
 

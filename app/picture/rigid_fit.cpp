@@ -1,4 +1,4 @@
-#include "app/rigid_fit.h"
+#include "app/picture/rigid_fit.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 #include "solver/rotation.h"
 
 namespace topple::app {

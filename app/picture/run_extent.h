@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "app/beam_quantity.h"
+#include "app/picture/beam_quantity.h"
 #include "render/scene_frame.h"
 #include "solver/io/observer.h"
 #include "solver/parameters.h"

@@ -1,12 +1,12 @@
-#include "app/annotations.h"
+#include "app/picture/annotations.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/body_colour.h"
-#include "app/row.h"
+#include "app/picture/body_colour.h"
+#include "app/picture/row.h"
 
 namespace topple::app {
 namespace {

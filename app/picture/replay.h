@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/bridge.h"
+#include "app/picture/bridge.h"
 #include "solver/io/recording.h"
 
 namespace topple::app {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "app/picture_settings.h"
-#include "app/run_extent.h"
+#include "app/picture/picture_settings.h"
+#include "app/picture/run_extent.h"
 #include "render/scene_frame.h"
 
 namespace topple::app {

@@ -1,4 +1,4 @@
-#include "app/row.h"
+#include "app/picture/row.h"
 
 namespace topple::app {
 

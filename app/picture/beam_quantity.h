@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "app/rigid_fit.h"
+#include "app/picture/rigid_fit.h"
 #include "app/support/language.h"
 #include "solver/element_state.h"
 

@@ -1,10 +1,10 @@
-#include "app/run_extent.h"
+#include "app/picture/run_extent.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/row.h"
-#include "app/thinning.h"
+#include "app/picture/row.h"
+#include "app/picture/thinning.h"
 #include "solver/io/recording.h"
 
 namespace topple::app {

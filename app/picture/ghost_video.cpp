@@ -1,4 +1,4 @@
-#include "app/ghost_video.h"
+#include "app/picture/ghost_video.h"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <memory>
 
-#include "app/bridge.h"
-#include "app/drawing_processes.h"
+#include "app/picture/bridge.h"
+#include "app/picture/drawing_processes.h"
+#include "app/picture/words.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
-#include "app/words.h"
 #include "render/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"

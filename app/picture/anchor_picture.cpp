@@ -1,9 +1,9 @@
-#include "app/anchor_picture.h"
+#include "app/picture/anchor_picture.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 
 namespace topple::app {
 namespace {

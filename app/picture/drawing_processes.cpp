@@ -1,4 +1,4 @@
-#include "app/drawing_processes.h"
+#include "app/picture/drawing_processes.h"
 
 #include <signal.h>
 #include <sys/prctl.h>
