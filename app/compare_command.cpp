@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/batch/recorded_run.h"
+#include "app/batch/summary.h"
 #include "app/picture/ghost_video.h"
 #include "app/picture/replay.h"
-#include "app/recorded_run.h"
-#include "app/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"

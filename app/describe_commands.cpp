@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/summary.h"
+#include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"

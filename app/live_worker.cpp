@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/batch/summary.h"
 #include "app/picture/thinning.h"
-#include "app/summary.h"
 #include "app/support/clock.h"
 
 namespace topple::app {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/summary.h"
+#include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "solver/io/scene.h"

@@ -10,12 +10,12 @@
 #include <optional>
 
 #include "app/appearance.h"
+#include "app/batch/recorded_run.h"
 #include "app/picture/bridge.h"
 #include "app/picture/drawing_processes.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
-#include "app/recorded_run.h"
 #include "app/subject.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"

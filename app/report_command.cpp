@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/batch/recorded_run.h"
 #include "app/picture/replay.h"
-#include "app/recorded_run.h"
 #include "app/report.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/batch/recorded_run.h"
+#include "app/batch/run_profile.h"
+#include "app/batch/summary.h"
 #include "app/modes_command.h"
-#include "app/recorded_run.h"
-#include "app/run_profile.h"
-#include "app/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/interrupt.h"

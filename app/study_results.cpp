@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/summary.h"
+#include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "solver/study/gnuplot.h"

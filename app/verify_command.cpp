@@ -11,8 +11,8 @@
 #include <numeric>
 #include <thread>
 
-#include "app/recorded_run.h"
-#include "app/summary.h"
+#include "app/batch/recorded_run.h"
+#include "app/batch/summary.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"

@@ -12,7 +12,7 @@
 #include <map>
 #include <random>
 
-#include "app/run_warnings.h"
+#include "app/batch/run_warnings.h"
 #include "solver/io/observer.h"
 #include "solver/io/scene.h"
 #include "solver/io/scene_keys.h"

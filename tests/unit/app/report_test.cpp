@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "app/summary.h"
+#include "app/batch/summary.h"
 #include "app/svg_chart.h"
 #include "program.h"
 #include "scenes.h"

@@ -1,4 +1,4 @@
-#include "app/run_profile.h"
+#include "app/batch/run_profile.h"
 
 #include <fmt/format.h>
 

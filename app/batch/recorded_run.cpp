@@ -1,12 +1,12 @@
-#include "app/recorded_run.h"
+#include "app/batch/recorded_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <thread>
 
-#include "app/run_profile.h"
-#include "app/summary.h"
+#include "app/batch/run_profile.h"
+#include "app/batch/summary.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"

@@ -1,4 +1,4 @@
-#include "app/summary.h"
+#include "app/batch/summary.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/run_warnings.h"
+#include "app/batch/run_warnings.h"
 #include "app/support/terms.h"
 #include "solver/ladder.h"
 

@@ -1,4 +1,4 @@
-#include "app/run_warnings.h"
+#include "app/batch/run_warnings.h"
 
 #include <fmt/format.h>
 
