@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "app/player.h"
+#include "app/live/player.h"
 #include "app/support/language.h"
 
 namespace topple::app {

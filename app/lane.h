@@ -7,7 +7,7 @@
 
 #include <imgui.h>
 
-#include "app/player.h"
+#include "app/live/player.h"
 #include "app/theme.h"
 
 namespace topple::app {

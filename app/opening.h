@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/live_run.h"
+#include "app/live/live_run.h"
 #include "app/support/language.h"
 
 namespace topple::app {

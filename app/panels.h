@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/appearance.h"
+#include "app/live/player.h"
 #include "app/picture/picture_settings.h"
-#include "app/player.h"
 #include "app/subject.h"
 #include "render/font.h"
 #include "render/stage.h"

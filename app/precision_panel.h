@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/player.h"
+#include "app/live/player.h"
 #include "app/present_studies.h"
 
 namespace topple::app {

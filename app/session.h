@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "app/live_run.h"
-#include "app/player.h"
+#include "app/live/live_run.h"
+#include "app/live/player.h"
 #include "app/viewer.h"
 
 namespace topple::app {

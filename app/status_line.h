@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/player.h"
+#include "app/live/player.h"
 
 namespace topple::app {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/player.h"
+#include "app/live/player.h"
 #include "app/support/language.h"
 
 namespace topple::app {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/appearance.h"
+#include "app/live/player.h"
 #include "app/panels.h"
-#include "app/player.h"
 #include "app/precision_panel.h"
 #include "app/teaching_panel.h"
 #include "render/font.h"

@@ -1,6 +1,6 @@
-#include "app/live_run.h"
+#include "app/live/live_run.h"
 
-#include "app/live_worker.h"
+#include "app/live/live_worker.h"
 
 namespace topple::app {
 

@@ -1,7 +1,7 @@
 // What a live run reads of a recording, and how it returns to an instant of the past.
 #include <algorithm>
 
-#include "app/live_worker.h"
+#include "app/live/live_worker.h"
 #include "solver/io/rerun.h"
 
 namespace topple::app {

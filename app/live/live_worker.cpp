@@ -1,4 +1,4 @@
-#include "app/live_worker.h"
+#include "app/live/live_worker.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/live_run.h"
+#include "app/live/live_run.h"
 #include "app/picture/bridge.h"
 #include "app/picture/thinning.h"
 

@@ -15,8 +15,8 @@
 #include <variant>
 #include <vector>
 
-#include "app/live_recorder.h"
-#include "app/live_report.h"
+#include "app/live/live_recorder.h"
+#include "app/live/live_report.h"
 
 namespace topple::app {
 

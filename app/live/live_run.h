@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/live_report.h"
+#include "app/live/live_report.h"
 
 namespace topple::app {
 

@@ -1,4 +1,4 @@
-#include "app/player.h"
+#include "app/live/player.h"
 
 #include <algorithm>
 
