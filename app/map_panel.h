@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/panels.h"
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
 
 namespace topple::app {
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
+#include "app/study/study_results.h"
+#include "app/study/told_scene.h"
 #include "app/study_commands.h"
-#include "app/study_results.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "app/told_scene.h"
 #include "solver/study/map_panel.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
+#include "app/study/study_results.h"
+#include "app/study/sweep.h"
+#include "app/study/told_scene.h"
 #include "app/study_commands.h"
-#include "app/study_results.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "app/sweep.h"
-#include "app/told_scene.h"
 #include "solver/study/measure.h"
 #include "solver/study/precision_chart.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/live/player.h"
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
 
 namespace topple::app {
 

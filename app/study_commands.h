@@ -1,7 +1,7 @@
 // `topple study`: one command a study.
 #pragma once
 
-#include "app/study_options.h"
+#include "app/study/study_options.h"
 
 namespace topple::app {
 

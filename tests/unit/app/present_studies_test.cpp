@@ -1,5 +1,5 @@
 // Studies that are computed beside the window, and the panels that show them.
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
 
 #include "app/precision_words.h"
 #include "app/teaching_words.h"

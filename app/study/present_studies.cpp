@@ -1,9 +1,9 @@
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "app/study_results.h"
+#include "app/study/study_results.h"
 #include "app/support/clock.h"
 #include "solver/io/scene_save.h"
 #include "solver/study/measure.h"

@@ -1,4 +1,4 @@
-#include "app/study_results.h"
+#include "app/study/study_results.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study_options.h"
+#include "app/study/study_options.h"
 #include "app/support/clock.h"
 #include "solver/io/scene.h"
 #include "solver/study/chart.h"

@@ -1,4 +1,4 @@
-#include "app/sweep.h"
+#include "app/study/sweep.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "app/ranks.h"
-#include "app/study_results.h"
+#include "app/study/ranks.h"
+#include "app/study/study_results.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"

@@ -1,4 +1,4 @@
-#include "app/ranks.h"
+#include "app/study/ranks.h"
 
 #ifdef TOPPLE_MPI
 #define OMPI_SKIP_MPICXX

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/study/sweep.h"
 #include "app/support/background.h"
-#include "app/sweep.h"
 #include "solver/edit.h"
 #include "solver/study/overturn_map.h"
 #include "solver/study/precision.h"

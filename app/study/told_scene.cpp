@@ -1,4 +1,4 @@
-#include "app/told_scene.h"
+#include "app/study/told_scene.h"
 
 namespace topple::app {
 
