@@ -8,7 +8,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/picture/replay.h"
-#include "app/report.h"
+#include "app/report/report.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/interrupt.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "app/report_parts.h"
+#include "app/report/report_parts.h"
 #include "solver/study/refinement.h"
 
 namespace topple::app {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report_words.h"
+#include "app/report/report_words.h"
 #include "solver/io/scene.h"
 #include "solver/study/intensity.h"
 #include "solver/study/spread.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/report.h"
-#include "app/svg_chart.h"
+#include "app/report/report.h"
+#include "app/report/svg_chart.h"
 
 namespace topple::app {
 

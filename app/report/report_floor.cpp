@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report_parts.h"
+#include "app/report/report_parts.h"
 #include "solver/accelerogram.h"
 #include "solver/excitation.h"
 

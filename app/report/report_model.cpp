@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "app/report_parts.h"
+#include "app/report/report_parts.h"
 #include "solver/study/laws.h"
 
 namespace topple::app {

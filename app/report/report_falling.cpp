@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "app/report_parts.h"
+#include "app/report/report_parts.h"
 #include "solver/overturn.h"
 
 namespace topple::app {
