@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "app/opening.h"
-#include "app/shell_words.h"
+#include "app/panels/shell_words.h"
 #include "solver/io/scene.h"
 #include "solver/io/scene_document.h"
 

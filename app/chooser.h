@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/thumbnails.h"
 #include "render/font.h"
 #include "render/key_press.h"

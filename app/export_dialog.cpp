@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/panels/shell_words.h"
 #include "app/picture/row.h"
-#include "app/shell_words.h"
 #include "app/support/files.h"
 #include "app/support/terms.h"
 

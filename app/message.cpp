@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/shell_words.h"
+#include "app/panels/shell_words.h"
 
 namespace topple::app {
 namespace {

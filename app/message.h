@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "render/font.h"
 
 namespace topple::app {

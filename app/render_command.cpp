@@ -9,14 +9,14 @@
 #include <memory>
 #include <optional>
 
-#include "app/appearance.h"
 #include "app/batch/recorded_run.h"
+#include "app/panels/appearance.h"
+#include "app/panels/subject.h"
 #include "app/picture/bridge.h"
 #include "app/picture/drawing_processes.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
-#include "app/subject.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/shell_words.h"
+#include "app/panels/shell_words.h"
 #include "app/support/files.h"
 #include "solver/io/scene_file.h"
 #include "solver/io/scene_save.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/shell_words.h"
+#include "app/panels/shell_words.h"
 #include "solver/io/recording.h"
 
 namespace topple::app {

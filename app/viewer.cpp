@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/panels/shell_words.h"
+#include "app/panels/theme.h"
 #include "app/picture/row.h"
-#include "app/shell_words.h"
-#include "app/theme.h"
 
 namespace topple::app {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "app/appearance.h"
 #include "app/live/player.h"
-#include "app/panels.h"
-#include "app/precision_panel.h"
-#include "app/teaching_panel.h"
+#include "app/panels/appearance.h"
+#include "app/panels/panels.h"
+#include "app/panels/precision_panel.h"
+#include "app/panels/teaching_panel.h"
 #include "render/font.h"
 #include "render/key_press.h"
 #include "render/orbit.h"

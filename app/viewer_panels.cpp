@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/panels/shell_words.h"
+#include "app/panels/theme.h"
 #include "app/picture/words.h"
-#include "app/shell_words.h"
 #include "app/status_line.h"
 #include "app/support/files.h"
-#include "app/theme.h"
 #include "app/viewer.h"
 #include "render/canvas.h"
 #include "render/legend.h"

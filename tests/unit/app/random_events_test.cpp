@@ -13,8 +13,8 @@
 #include <random>
 #include <set>
 
+#include "app/panels/theme.h"
 #include "app/picture/window_words.h"
-#include "app/theme.h"
 #include "shell_fixture.h"
 #include "solver/io/recording.h"
 

@@ -1,5 +1,5 @@
 // What is to be known of members, bodies and anchors.
-#include "app/subject.h"
+#include "app/panels/subject.h"
 
 #include <gtest/gtest.h>
 

@@ -11,11 +11,11 @@
 #include <ostream>
 #include <set>
 
+#include "app/panels/precision_words.h"
+#include "app/panels/teaching_words.h"
+#include "app/panels/theme.h"
 #include "app/picture/window_words.h"
-#include "app/precision_words.h"
 #include "app/shell.h"
-#include "app/teaching_words.h"
-#include "app/theme.h"
 #include "app/viewer.h"
 #include "live.h"
 #include "mouse.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/lane.h"
-#include "app/panels.h"
+#include "app/panels/lane.h"
+#include "app/panels/panels.h"
 #include "app/picture/anchor_picture.h"
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"

@@ -1,4 +1,4 @@
-#include "app/appearance.h"
+#include "app/panels/appearance.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "app/phrase_tables.h"
+#include "app/panels/phrase_tables.h"
 #include "app/picture/window_words.h"
 #include "app/support/files.h"
 

@@ -1,13 +1,13 @@
-#include "app/map_panel.h"
+#include "app/panels/map_panel.h"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/lane.h"
-#include "app/log_chart.h"
-#include "app/teaching_words.h"
+#include "app/panels/lane.h"
+#include "app/panels/log_chart.h"
+#include "app/panels/teaching_words.h"
 #include "solver/io/edit_text.h"
 
 namespace topple::app {

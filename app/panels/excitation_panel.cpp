@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/lane.h"
-#include "app/log_chart.h"
-#include "app/teaching_panel.h"
-#include "app/teaching_words.h"
+#include "app/panels/lane.h"
+#include "app/panels/log_chart.h"
+#include "app/panels/teaching_panel.h"
+#include "app/panels/teaching_words.h"
 #include "solver/accelerogram.h"
 #include "solver/study/alone.h"
 #include "solver/study/criteria.h"

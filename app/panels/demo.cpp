@@ -1,8 +1,8 @@
-#include "app/demo.h"
+#include "app/panels/demo.h"
 
 #include <algorithm>
 
-#include "app/teaching_words.h"
+#include "app/panels/teaching_words.h"
 #include "solver/accelerogram.h"
 #include "solver/study/alone.h"
 

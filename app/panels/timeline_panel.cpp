@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "app/lane.h"
-#include "app/panels.h"
+#include "app/panels/lane.h"
+#include "app/panels/panels.h"
 #include "app/picture/body_colour.h"
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"

@@ -1,7 +1,7 @@
-#include "app/accuracy.h"
+#include "app/panels/accuracy.h"
 
+#include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
-#include "app/teaching_words.h"
 
 namespace topple::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/subject.h"
+#include "app/panels/subject.h"
 
 #include <fmt/format.h>
 

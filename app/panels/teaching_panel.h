@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "app/accuracy.h"
-#include "app/demo.h"
-#include "app/map_panel.h"
+#include "app/panels/accuracy.h"
+#include "app/panels/demo.h"
+#include "app/panels/map_panel.h"
 
 namespace topple::app {
 

@@ -8,7 +8,7 @@
 #include <imgui.h>
 
 #include "app/live/player.h"
-#include "app/theme.h"
+#include "app/panels/theme.h"
 
 namespace topple::app {
 

@@ -1,15 +1,15 @@
-#include "app/precision_panel.h"
+#include "app/panels/precision_panel.h"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/lane.h"
-#include "app/log_chart.h"
-#include "app/precision_words.h"
-#include "app/shell_words.h"
-#include "app/teaching_words.h"
+#include "app/panels/lane.h"
+#include "app/panels/log_chart.h"
+#include "app/panels/precision_words.h"
+#include "app/panels/shell_words.h"
+#include "app/panels/teaching_words.h"
 #include "solver/io/edit_text.h"
 
 namespace topple::app {

@@ -1,7 +1,7 @@
 // Texts of what the window teaches.
 #pragma once
 
-#include "app/shell_words.h"
+#include "app/panels/shell_words.h"
 
 namespace topple::app::window_words {
 

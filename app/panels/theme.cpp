@@ -1,4 +1,4 @@
-#include "app/theme.h"
+#include "app/panels/theme.h"
 
 namespace topple::app {
 namespace {

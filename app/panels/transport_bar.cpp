@@ -5,9 +5,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
+#include "app/panels/shell_words.h"
 #include "app/picture/words.h"
-#include "app/shell_words.h"
 #include "app/support/terms.h"
 
 namespace topple::app {

@@ -1,4 +1,4 @@
-#include "app/lane.h"
+#include "app/panels/lane.h"
 
 #include <fmt/format.h>
 

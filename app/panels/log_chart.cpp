@@ -1,4 +1,4 @@
-#include "app/log_chart.h"
+#include "app/panels/log_chart.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "app/lane.h"
+#include "app/panels/lane.h"
 
 namespace topple::app {
 namespace {

@@ -1,10 +1,10 @@
-#include "app/teaching_panel.h"
+#include "app/panels/teaching_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
-#include "app/teaching_words.h"
 
 namespace topple::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 
 namespace topple::app {

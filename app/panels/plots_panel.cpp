@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/lane.h"
-#include "app/panels.h"
+#include "app/panels/lane.h"
+#include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "render/text_layout.h"

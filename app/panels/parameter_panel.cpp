@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "app/panels.h"
-#include "app/precision_words.h"
+#include "app/panels/panels.h"
+#include "app/panels/precision_words.h"
 #include "app/support/terms.h"
 #include "solver/io/edit_text.h"
 #include "solver/io/scene.h"

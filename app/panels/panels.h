@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "app/appearance.h"
 #include "app/live/player.h"
+#include "app/panels/appearance.h"
+#include "app/panels/subject.h"
 #include "app/picture/picture_settings.h"
-#include "app/subject.h"
 #include "render/font.h"
 #include "render/stage.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "app/panels.h"
+#include "app/panels/panels.h"
 #include "app/study/present_studies.h"
 
 namespace topple::app {
