@@ -24,7 +24,7 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "app/window_picture.h"
+#include "app/window/window_picture.h"
 #include "render/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"

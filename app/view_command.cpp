@@ -8,12 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "app/opening.h"
-#include "app/shell.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
+#include "app/window/opening.h"
+#include "app/window/shell.h"
 #include "render/window.h"
 
 namespace topple::app {

@@ -1,7 +1,7 @@
 // `topple view`: the window.
 #pragma once
 
-#include "app/opening.h"
+#include "app/window/opening.h"
 
 namespace topple::app {
 

@@ -1,4 +1,4 @@
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,4 +1,4 @@
-#include "app/export_dialog.h"
+#include "app/window/export_dialog.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,4 +1,4 @@
-#include "app/opening.h"
+#include "app/window/opening.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 
 #include "app/live/live_run.h"
 #include "app/live/player.h"
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 namespace topple::app {
 

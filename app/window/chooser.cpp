@@ -1,4 +1,4 @@
-#include "app/chooser.h"
+#include "app/window/chooser.h"
 
 #include <imgui.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/opening.h"
 #include "app/panels/shell_words.h"
+#include "app/window/opening.h"
 #include "solver/io/scene.h"
 #include "solver/io/scene_document.h"
 

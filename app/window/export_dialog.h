@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/export_job.h"
-#include "app/message.h"
-#include "app/viewer.h"
+#include "app/window/export_job.h"
+#include "app/window/message.h"
+#include "app/window/viewer.h"
 
 namespace topple::app {
 

@@ -1,4 +1,4 @@
-#include "app/status_line.h"
+#include "app/window/status_line.h"
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"

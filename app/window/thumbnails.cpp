@@ -1,4 +1,4 @@
-#include "app/thumbnails.h"
+#include "app/window/thumbnails.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include <optional>
 #include <thread>
 
-#include "app/opening.h"
 #include "app/picture/bridge.h"
 #include "app/support/terms.h"
+#include "app/window/opening.h"
 #include "render/orbit.h"
 #include "solver/io/scene.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/panels/panels.h"
-#include "app/thumbnails.h"
+#include "app/window/thumbnails.h"
 #include "render/font.h"
 #include "render/key_press.h"
 

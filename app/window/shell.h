@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "app/chooser.h"
-#include "app/export_dialog.h"
-#include "app/message.h"
-#include "app/opening.h"
-#include "app/save_scene.h"
-#include "app/session.h"
+#include "app/window/chooser.h"
+#include "app/window/export_dialog.h"
+#include "app/window/message.h"
+#include "app/window/opening.h"
+#include "app/window/save_scene.h"
+#include "app/window/session.h"
 
 namespace topple::app {
 

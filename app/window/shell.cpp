@@ -1,4 +1,4 @@
-#include "app/shell.h"
+#include "app/window/shell.h"
 
 #include <imgui.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/message.h"
+#include "app/window/message.h"
 #include "render/key_press.h"
 #include "solver/io/scene.h"
 

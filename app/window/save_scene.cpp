@@ -1,4 +1,4 @@
-#include "app/save_scene.h"
+#include "app/window/save_scene.h"
 
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-#include "app/message.h"
+#include "app/window/message.h"
 
 #include <imgui.h>
 

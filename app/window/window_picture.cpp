@@ -1,4 +1,4 @@
-#include "app/window_picture.h"
+#include "app/window/window_picture.h"
 
 #include <imgui.h>
 

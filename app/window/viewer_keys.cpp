@@ -5,7 +5,7 @@
 
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 namespace topple::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 #include "render/context.h"
 #include "render/image.h"
 

@@ -1,4 +1,4 @@
-#include "app/export_job.h"
+#include "app/window/export_job.h"
 
 #include <fcntl.h>
 #include <pty.h>
