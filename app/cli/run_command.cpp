@@ -1,4 +1,4 @@
-#include "app/run_command.h"
+#include "app/cli/run_command.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "app/batch/recorded_run.h"
 #include "app/batch/run_profile.h"
 #include "app/batch/summary.h"
-#include "app/modes_command.h"
+#include "app/cli/modes_command.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/interrupt.h"

@@ -1,4 +1,4 @@
-#include "app/manual.h"
+#include "app/cli/manual.h"
 
 #include <fmt/format.h>
 

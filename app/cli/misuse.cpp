@@ -1,10 +1,10 @@
-#include "app/misuse.h"
+#include "app/cli/misuse.h"
 
 #include <CLI/CLI.hpp>
 #include <string_view>
 #include <vector>
 
-#include "app/nearest_name.h"
+#include "app/cli/nearest_name.h"
 #include "app/support/errors.h"
 
 namespace topple::app {

@@ -1,4 +1,4 @@
-#include "app/command_line.h"
+#include "app/cli/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,24 +9,24 @@
 #include <new>
 #include <string_view>
 
-#include "app/compare_command.h"
-#include "app/describe_commands.h"
-#include "app/export_command.h"
-#include "app/misuse.h"
-#include "app/modes_command.h"
-#include "app/option_values.h"
-#include "app/recover_command.h"
-#include "app/render_command.h"
-#include "app/report_command.h"
-#include "app/run_command.h"
+#include "app/cli/compare_command.h"
+#include "app/cli/describe_commands.h"
+#include "app/cli/export_command.h"
+#include "app/cli/misuse.h"
+#include "app/cli/modes_command.h"
+#include "app/cli/option_values.h"
+#include "app/cli/recover_command.h"
+#include "app/cli/render_command.h"
+#include "app/cli/report_command.h"
+#include "app/cli/run_command.h"
+#include "app/cli/study_commands.h"
+#include "app/cli/verify_command.h"
+#include "app/cli/view_command.h"
 #include "app/study/ranks.h"
-#include "app/study_commands.h"
 #include "app/support/errors.h"
 #include "app/support/foreign_recording.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "app/verify_command.h"
-#include "app/view_command.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

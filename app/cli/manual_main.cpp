@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/command_line.h"
-#include "app/manual.h"
+#include "app/cli/command_line.h"
+#include "app/cli/manual.h"
 #include "app/support/files.h"
 
 int main(int argc, char** argv) {

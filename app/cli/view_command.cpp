@@ -1,4 +1,4 @@
-#include "app/view_command.h"
+#include "app/cli/view_command.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,4 +1,4 @@
-#include "app/verify_command.h"
+#include "app/cli/verify_command.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/recover_command.h"
+#include "app/cli/recover_command.h"
 
 #include <fmt/format.h>
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/cli/study_commands.h"
 #include "app/study/study_results.h"
 #include "app/study/sweep.h"
 #include "app/study/told_scene.h"
-#include "app/study_commands.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"

@@ -1,4 +1,4 @@
-#include "app/modes_command.h"
+#include "app/cli/modes_command.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/option_values.h"
+#include "app/cli/option_values.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/cli/study_commands.h"
 #include "app/study/study_results.h"
-#include "app/study_commands.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"

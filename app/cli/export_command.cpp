@@ -1,4 +1,4 @@
-#include "app/export_command.h"
+#include "app/cli/export_command.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/describe_commands.h"
+#include "app/cli/describe_commands.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/render_command.h"
+#include "app/cli/render_command.h"
 #include "app/support/language.h"
 
 namespace topple::app {

@@ -1,4 +1,4 @@
-#include "app/render_command.h"
+#include "app/cli/render_command.h"
 
 #include <fmt/format.h>
 
