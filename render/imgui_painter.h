@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "render/gl.h"
-#include "render/gl_objects.h"
+#include "render/gl/gl.h"
+#include "render/gl/gl_objects.h"
 #include "render/image.h"
 #include "render/scene_painter.h"
 

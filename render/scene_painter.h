@@ -9,8 +9,8 @@
 
 #include "render/camera.h"
 #include "render/colour_map.h"
-#include "render/gl.h"
-#include "render/gl_objects.h"
+#include "render/gl/gl.h"
+#include "render/gl/gl_objects.h"
 #include "render/mesh.h"
 #include "render/scene_frame.h"
 #include "render/shadows.h"

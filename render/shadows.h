@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "render/gl.h"
-#include "render/gl_objects.h"
+#include "render/gl/gl.h"
+#include "render/gl/gl_objects.h"
 
 namespace topple::render {
 

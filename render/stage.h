@@ -6,7 +6,7 @@
 #include "render/camera.h"
 #include "render/canvas.h"
 #include "render/colour_map.h"
-#include "render/gl.h"
+#include "render/gl/gl.h"
 #include "render/image.h"
 #include "render/imgui_painter.h"
 #include "render/mesh.h"

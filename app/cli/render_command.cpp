@@ -25,7 +25,7 @@
 #include "app/support/progress.h"
 #include "app/support/terms.h"
 #include "app/window/window_picture.h"
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"
 #include "solver/io/recording.h"

@@ -8,7 +8,7 @@
 #include "app/picture/picture_settings.h"
 #include "app/support/language.h"
 #include "render/camera.h"
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 #include "render/orbit.h"
 
 namespace topple::app {

@@ -15,7 +15,7 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 #include "render/picture.h"
 #include "solver/study/anchors.h"
 #include "solver/study/measure.h"

@@ -14,7 +14,7 @@
 #include "app/support/log.h"
 #include "app/window/opening.h"
 #include "app/window/shell.h"
-#include "render/window.h"
+#include "render/gl/window.h"
 
 namespace topple::app {
 namespace {

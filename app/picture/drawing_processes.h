@@ -1,4 +1,4 @@
-// Many pictures drawn by several processes: within one, software draws in one thread (render/llvmpipe.h).
+// Many pictures drawn by several processes: within one, software draws in one thread (render/gl/llvmpipe.h).
 #pragma once
 
 #include <cstdint>

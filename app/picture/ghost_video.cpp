@@ -13,7 +13,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 #include "render/picture.h"
 #include "render/video.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/window/message.h"
-#include "render/key_press.h"
+#include "render/gl/key_press.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

@@ -14,7 +14,7 @@
 #include "app/panels/precision_panel.h"
 #include "app/panels/teaching_panel.h"
 #include "render/font.h"
-#include "render/key_press.h"
+#include "render/gl/key_press.h"
 #include "render/orbit.h"
 #include "render/pick.h"
 #include "render/stage.h"

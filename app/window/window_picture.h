@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/window/viewer.h"
-#include "render/context.h"
+#include "render/gl/context.h"
 #include "render/image.h"
 
 struct ImGuiContext;

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 #include "render/picture.h"
 
 namespace topple::render {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "render/gl.h"
+#include "render/gl/gl.h"
 
 namespace topple::render {
 

@@ -1,4 +1,4 @@
-#include "render/gl.h"
+#include "render/gl/gl.h"
 
 #include <stdexcept>
 #include <string>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "render/context.h"
-#include "render/key_press.h"
+#include "render/gl/context.h"
+#include "render/gl/key_press.h"
 
 namespace topple::render {
 

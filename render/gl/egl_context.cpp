@@ -1,4 +1,4 @@
-#include "render/egl_context.h"
+#include "render/gl/egl_context.h"
 
 #include <dlfcn.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/llvmpipe.h"
+#include "render/gl/llvmpipe.h"
 
 namespace topple::render {
 namespace {

@@ -1,7 +1,7 @@
 // An off-screen OpenGL context. What draws knows only its get-proc function.
 #pragma once
 
-#include "render/gl.h"
+#include "render/gl/gl.h"
 
 namespace topple::render {
 

@@ -1,10 +1,10 @@
-#include "render/off_screen.h"
+#include "render/gl/off_screen.h"
 
 #include <stdexcept>
 #include <string>
 
-#include "render/egl_context.h"
-#include "render/osmesa_context.h"
+#include "render/gl/egl_context.h"
+#include "render/gl/osmesa_context.h"
 
 namespace topple::render {
 

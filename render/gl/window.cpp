@@ -1,4 +1,4 @@
-#include "render/window.h"
+#include "render/gl/window.h"
 
 #include <imgui.h>
 #define GLFW_INCLUDE_NONE

@@ -1,4 +1,4 @@
-#include "render/osmesa_context.h"
+#include "render/gl/osmesa_context.h"
 
 #include <dlfcn.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/llvmpipe.h"
+#include "render/gl/llvmpipe.h"
 
 namespace topple::render {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "render/context.h"
+#include "render/gl/context.h"
 
 namespace topple::render {
 
