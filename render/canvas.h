@@ -1,14 +1,14 @@
 // A drawn scene, kept off screen.
 #pragma once
 
-#include "render/camera.h"
-#include "render/colour_map.h"
 #include "render/gl/gl.h"
 #include "render/gl/gl_objects.h"
 #include "render/image.h"
-#include "render/mesh.h"
-#include "render/scene_frame.h"
-#include "render/scene_painter.h"
+#include "render/scene/camera.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/mesh.h"
+#include "render/scene/scene_frame.h"
+#include "render/scene/scene_painter.h"
 
 namespace topple::render {
 

@@ -8,7 +8,7 @@
 
 #include "render/canvas.h"
 #include "render/imgui_painter.h"
-#include "render/scene_painter.h"
+#include "render/scene/scene_painter.h"
 
 namespace topple::render {
 namespace {

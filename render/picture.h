@@ -4,13 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include "render/camera.h"
-#include "render/colour_map.h"
 #include "render/gl/gl.h"
 #include "render/image.h"
-#include "render/mesh.h"
-#include "render/overlay.h"
-#include "render/scene_frame.h"
+#include "render/scene/camera.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/mesh.h"
+#include "render/scene/overlay.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

@@ -3,15 +3,15 @@
 
 #include <optional>
 
-#include "render/camera.h"
 #include "render/canvas.h"
-#include "render/colour_map.h"
 #include "render/gl/gl.h"
 #include "render/image.h"
 #include "render/imgui_painter.h"
-#include "render/mesh.h"
-#include "render/scene_frame.h"
-#include "render/scene_painter.h"
+#include "render/scene/camera.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/mesh.h"
+#include "render/scene/scene_frame.h"
+#include "render/scene/scene_painter.h"
 
 struct ImDrawData;
 struct ImFontAtlas;

@@ -7,9 +7,9 @@
 
 #include "app/picture/picture_settings.h"
 #include "app/support/language.h"
-#include "render/camera.h"
 #include "render/gl/off_screen.h"
-#include "render/orbit.h"
+#include "render/scene/camera.h"
+#include "render/scene/orbit.h"
 
 namespace topple::app {
 

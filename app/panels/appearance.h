@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/support/language.h"
-#include "render/font.h"
+#include "render/scene/font.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

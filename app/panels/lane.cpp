@@ -7,7 +7,7 @@
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "render/ticks.h"
+#include "render/scene/ticks.h"
 
 namespace topple::app {
 

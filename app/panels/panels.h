@@ -9,7 +9,7 @@
 #include "app/panels/appearance.h"
 #include "app/panels/subject.h"
 #include "app/picture/picture_settings.h"
-#include "render/font.h"
+#include "render/scene/font.h"
 #include "render/stage.h"
 
 struct ImDrawList;

@@ -8,7 +8,7 @@
 #include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "render/text_layout.h"
+#include "render/scene/text_layout.h"
 
 namespace topple::app {
 namespace {

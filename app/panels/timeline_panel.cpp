@@ -11,7 +11,7 @@
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
-#include "render/text_layout.h"
+#include "render/scene/text_layout.h"
 #include "solver/io/edit_text.h"
 #include "solver/ladder.h"
 

@@ -1,7 +1,7 @@
 // Anchors as pictures show them.
 #pragma once
 
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 #include "solver/io/observer.h"
 #include "solver/model.h"
 

@@ -5,7 +5,7 @@
 
 #include "app/picture/picture_settings.h"
 #include "app/picture/run_extent.h"
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::app {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "app/picture/beam_quantity.h"
-#include "render/colour_map.h"
+#include "render/scene/colour_map.h"
 
 namespace topple::app {
 

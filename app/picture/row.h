@@ -1,7 +1,7 @@
 // What a recorded row says of one node or element.
 #pragma once
 
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 #include "solver/io/observer.h"
 #include "solver/model.h"
 #include "solver/section_forces.h"

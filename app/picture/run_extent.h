@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/picture/beam_quantity.h"
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 #include "solver/io/observer.h"
 #include "solver/parameters.h"
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "render/ticks.h"
+#include "render/scene/ticks.h"
 
 namespace topple::app {
 namespace {

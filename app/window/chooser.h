@@ -7,8 +7,8 @@
 
 #include "app/panels/panels.h"
 #include "app/window/thumbnails.h"
-#include "render/font.h"
 #include "render/gl/key_press.h"
+#include "render/scene/font.h"
 
 namespace topple::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/panels/panels.h"
-#include "render/font.h"
+#include "render/scene/font.h"
 
 namespace topple::app {
 

@@ -15,7 +15,7 @@
 #include "app/picture/bridge.h"
 #include "app/support/terms.h"
 #include "app/window/opening.h"
-#include "render/orbit.h"
+#include "render/scene/orbit.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

@@ -13,10 +13,10 @@
 #include "app/panels/panels.h"
 #include "app/panels/precision_panel.h"
 #include "app/panels/teaching_panel.h"
-#include "render/font.h"
 #include "render/gl/key_press.h"
-#include "render/orbit.h"
-#include "render/pick.h"
+#include "render/scene/font.h"
+#include "render/scene/orbit.h"
+#include "render/scene/pick.h"
 #include "render/stage.h"
 
 namespace topple::app {

@@ -13,9 +13,9 @@
 #include "app/window/status_line.h"
 #include "app/window/viewer.h"
 #include "render/canvas.h"
-#include "render/legend.h"
-#include "render/overlay.h"
-#include "render/text_layout.h"
+#include "render/scene/legend.h"
+#include "render/scene/overlay.h"
+#include "render/scene/text_layout.h"
 
 namespace topple::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <imgui.h>
 
-#include "render/font.h"
+#include "render/scene/font.h"
 #include "render/stage.h"
 #include "tests/unit/render/synthetic_cabinet.h"
 

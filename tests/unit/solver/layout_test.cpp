@@ -114,7 +114,7 @@ TEST(Layout, reader_finds_includes_however_they_are_written) {
 TEST(Layout, wrong_arrows_are_found) {
   const Include wrong[] = {{"solver/step.cpp", "solver/io/scene.h", true},
                            {"solver/step.cpp", "solver/study/map.h", true},
-                           {"solver/step.cpp", "render/camera.h", true},
+                           {"solver/step.cpp", "render/scene/camera.h", true},
                            {"solver/step.cpp", "app/main.h", true},
                            {"solver/step.cpp", "thread", false},
                            {"solver/step.cpp", "chrono", false},
@@ -129,9 +129,9 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/io/scene.cpp", "GL/gl.h", false},
                            {"solver/study/map.cpp", "render/image.h", true},
                            {"solver/study/map.cpp", "app/support/files.h", true},
-                           {"render/camera.cpp", "solver/types.h", true},
-                           {"render/camera.cpp", "solver/io/scene.h", true},
-                           {"render/camera.cpp", "app/main.h", true},
+                           {"render/scene/camera.cpp", "solver/types.h", true},
+                           {"render/scene/camera.cpp", "solver/io/scene.h", true},
+                           {"render/scene/camera.cpp", "app/main.h", true},
                            {"app/main.cpp", "GLFW/glfw3.h", false}};
   for (const Include& include : wrong)
     EXPECT_NE(objection(include), "") << include.file << " " << include.target;
@@ -149,7 +149,7 @@ TEST(Layout, right_arrows_are_not_objected_to) {
                            {"solver/study/map.cpp", "thread", false},
                            {"app/main.cpp", "solver/study/map.h", true},
                            {"render/gl/gl.cpp", "GL/gl.h", false},
-                           {"app/main.cpp", "render/camera.h", true},
+                           {"app/main.cpp", "render/scene/camera.h", true},
                            {"app/main.cpp", "solver/run.h", true}};
   for (const Include& include : right) EXPECT_EQ(objection(include), "");
 }

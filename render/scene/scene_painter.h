@@ -7,13 +7,13 @@
 
 #include <Eigen/Core>
 
-#include "render/camera.h"
-#include "render/colour_map.h"
 #include "render/gl/gl.h"
 #include "render/gl/gl_objects.h"
-#include "render/mesh.h"
-#include "render/scene_frame.h"
-#include "render/shadows.h"
+#include "render/scene/camera.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/mesh.h"
+#include "render/scene/scene_frame.h"
+#include "render/scene/shadows.h"
 
 namespace topple::render {
 

@@ -1,4 +1,4 @@
-#include "render/scene_painter.h"
+#include "render/scene/scene_painter.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "render/drawable.h"
+#include "render/scene/drawable.h"
 
 namespace topple::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/pick.h"
+#include "render/scene/pick.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "render/mesh.h"
+#include "render/scene/mesh.h"
 
 namespace topple::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/ticks.h"
+#include "render/scene/ticks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
-#include "render/legend.h"
+#include "render/scene/legend.h"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/drawable.h"
-#include "render/overlay_parts.h"
-#include "render/text_layout.h"
-#include "render/ticks.h"
+#include "render/scene/drawable.h"
+#include "render/scene/overlay_parts.h"
+#include "render/scene/text_layout.h"
+#include "render/scene/ticks.h"
 
 namespace topple::render {
 namespace {

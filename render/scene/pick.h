@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "render/camera.h"
-#include "render/scene_frame.h"
+#include "render/scene/camera.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "render/font.h"
+#include "render/scene/font.h"
 
 namespace topple::render {
 

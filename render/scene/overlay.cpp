@@ -1,4 +1,4 @@
-#include "render/overlay.h"
+#include "render/scene/overlay.h"
 
 #include <imgui.h>
 
@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 
-#include "render/drawable.h"
-#include "render/legend.h"
-#include "render/overlay_parts.h"
-#include "render/text_layout.h"
+#include "render/scene/drawable.h"
+#include "render/scene/legend.h"
+#include "render/scene/overlay_parts.h"
+#include "render/scene/text_layout.h"
 
 namespace topple::render {
 namespace {

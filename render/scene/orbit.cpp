@@ -1,10 +1,10 @@
-#include "render/orbit.h"
+#include "render/scene/orbit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "render/drawable.h"
+#include "render/scene/drawable.h"
 
 namespace topple::render {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "render/colour_map.h"
-#include "render/scene_frame.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

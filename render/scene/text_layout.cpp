@@ -1,4 +1,4 @@
-#include "render/text_layout.h"
+#include "render/scene/text_layout.h"
 
 #include <imgui.h>
 

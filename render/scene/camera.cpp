@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "render/scene/camera.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "render/drawable.h"
+#include "render/scene/drawable.h"
 
 namespace topple::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/overlay_parts.h"
+#include "render/scene/overlay_parts.h"
 
 #include <cstdio>
 

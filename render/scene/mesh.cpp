@@ -1,4 +1,4 @@
-#include "render/mesh.h"
+#include "render/scene/mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "render/colour_map.h"
-#include "render/drawable.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/drawable.h"
 
 namespace topple::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/font.h"
+#include "render/scene/font.h"
 
 #include <imgui.h>
 

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "render/colour_map.h"
-#include "render/font.h"
-#include "render/mesh.h"
-#include "render/overlay_box.h"
-#include "render/scene_frame.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/font.h"
+#include "render/scene/mesh.h"
+#include "render/scene/overlay_box.h"
+#include "render/scene/scene_frame.h"
 
 struct ImDrawList;
 

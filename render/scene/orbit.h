@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "render/camera.h"
-#include "render/scene_frame.h"
+#include "render/scene/camera.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

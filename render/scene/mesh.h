@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

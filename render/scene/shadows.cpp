@@ -1,4 +1,4 @@
-#include "render/shadows.h"
+#include "render/scene/shadows.h"
 
 #include <algorithm>
 #include <utility>
