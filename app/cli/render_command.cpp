@@ -26,8 +26,8 @@
 #include "app/support/terms.h"
 #include "app/window/window_picture.h"
 #include "render/gl/off_screen.h"
-#include "render/picture.h"
-#include "render/video.h"
+#include "render/output/picture.h"
+#include "render/output/video.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
 

@@ -16,7 +16,7 @@
 #include "app/support/progress.h"
 #include "app/support/terms.h"
 #include "render/gl/off_screen.h"
-#include "render/picture.h"
+#include "render/output/picture.h"
 #include "solver/study/anchors.h"
 #include "solver/study/measure.h"
 

@@ -9,8 +9,8 @@
 #include "app/panels/appearance.h"
 #include "app/panels/subject.h"
 #include "app/picture/picture_settings.h"
+#include "render/output/stage.h"
 #include "render/scene/font.h"
-#include "render/stage.h"
 
 struct ImDrawList;
 

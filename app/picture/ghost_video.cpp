@@ -14,8 +14,8 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "render/gl/off_screen.h"
-#include "render/picture.h"
-#include "render/video.h"
+#include "render/output/picture.h"
+#include "render/output/video.h"
 
 namespace topple::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/picture/replay.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "solver/io/scene.h"
 
 namespace topple::app {

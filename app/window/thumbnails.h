@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "render/stage.h"
+#include "render/output/stage.h"
 
 namespace topple::app {
 

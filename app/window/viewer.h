@@ -14,10 +14,10 @@
 #include "app/panels/precision_panel.h"
 #include "app/panels/teaching_panel.h"
 #include "render/gl/key_press.h"
+#include "render/output/stage.h"
 #include "render/scene/font.h"
 #include "render/scene/orbit.h"
 #include "render/scene/pick.h"
-#include "render/stage.h"
 
 namespace topple::app {
 

@@ -12,7 +12,7 @@
 #include "app/support/files.h"
 #include "app/window/status_line.h"
 #include "app/window/viewer.h"
-#include "render/canvas.h"
+#include "render/output/canvas.h"
 #include "render/scene/legend.h"
 #include "render/scene/overlay.h"
 #include "render/scene/text_layout.h"

@@ -7,7 +7,7 @@
 
 #include "app/window/viewer.h"
 #include "render/gl/context.h"
-#include "render/image.h"
+#include "render/output/image.h"
 
 struct ImGuiContext;
 

@@ -19,7 +19,7 @@
 #include "app/window/viewer.h"
 #include "live.h"
 #include "mouse.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/scratch.h"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "render/gl/off_screen.h"
-#include "render/picture.h"
+#include "render/output/picture.h"
 
 namespace topple::render {
 

@@ -127,7 +127,7 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/io/scene.cpp", "solver/study/map.h", true},
                            {"solver/io/scene.cpp", "app/main.h", true},
                            {"solver/io/scene.cpp", "GL/gl.h", false},
-                           {"solver/study/map.cpp", "render/image.h", true},
+                           {"solver/study/map.cpp", "render/output/image.h", true},
                            {"solver/study/map.cpp", "app/support/files.h", true},
                            {"render/scene/camera.cpp", "solver/types.h", true},
                            {"render/scene/camera.cpp", "solver/io/scene.h", true},

@@ -5,7 +5,7 @@
 
 #include "render/gl/gl.h"
 #include "render/gl/gl_objects.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "render/scene/scene_painter.h"
 
 struct ImDrawData;

@@ -1,4 +1,4 @@
-#include "render/canvas.h"
+#include "render/output/canvas.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "render/image.h"
+#include "render/output/image.h"
 
 namespace topple::render {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/gl/gl.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "render/scene/camera.h"
 #include "render/scene/colour_map.h"
 #include "render/scene/mesh.h"

@@ -1,4 +1,4 @@
-#include "render/imgui_painter.h"
+#include "render/output/imgui_painter.h"
 
 #include <imgui.h>
 

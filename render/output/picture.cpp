@@ -1,4 +1,4 @@
-#include "render/picture.h"
+#include "render/output/picture.h"
 
 #include <imgui.h>
 
@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/canvas.h"
-#include "render/imgui_painter.h"
+#include "render/output/canvas.h"
+#include "render/output/imgui_painter.h"
 #include "render/scene/scene_painter.h"
 
 namespace topple::render {

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "render/canvas.h"
 #include "render/gl/gl.h"
-#include "render/image.h"
-#include "render/imgui_painter.h"
+#include "render/output/canvas.h"
+#include "render/output/image.h"
+#include "render/output/imgui_painter.h"
 #include "render/scene/camera.h"
 #include "render/scene/colour_map.h"
 #include "render/scene/mesh.h"

@@ -3,7 +3,7 @@
 
 #include "render/gl/gl.h"
 #include "render/gl/gl_objects.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "render/scene/camera.h"
 #include "render/scene/colour_map.h"
 #include "render/scene/mesh.h"
