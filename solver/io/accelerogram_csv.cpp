@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "solver/io/accelerogram_text.h"
-#include "solver/io/units.h"
+#include "solver/io/common/units.h"
 
 namespace topple::io::accelerogram {
 namespace {

@@ -6,7 +6,7 @@
 #include "solver/accelerogram.h"
 #include "solver/elementary.h"
 #include "solver/io/accelerogram_text.h"
-#include "solver/io/units.h"
+#include "solver/io/common/units.h"
 
 namespace topple::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "solver/io/units.h"
+#include "solver/io/common/units.h"
 
 namespace topple::io::accelerogram {
 namespace {

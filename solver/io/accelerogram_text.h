@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "solver/io/accelerogram_content.h"
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 
 namespace topple::io::accelerogram {
 

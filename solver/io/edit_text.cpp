@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 
 namespace topple::io {
 namespace {

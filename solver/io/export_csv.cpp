@@ -8,10 +8,10 @@
 #include <optional>
 #include <system_error>
 
+#include "solver/io/common/staged_file.h"
 #include "solver/io/exported_values.h"
 #include "solver/io/recording_format.h"
 #include "solver/io/scene.h"
-#include "solver/io/staged_file.h"
 
 namespace topple::io {
 namespace {

@@ -16,6 +16,6 @@ target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/export_xdmf.cpp
   ${CMAKE_CURRENT_LIST_DIR}/exported_values.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recover.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/staged_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/common/staged_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rerun.cpp)
 target_link_libraries(topple_io PUBLIC PkgConfig::HDF5)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/history.h"
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 #include "solver/io/observer.h"
 #include "solver/io/scene.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "solver/io/common/errors.h"
 #include "solver/io/edit_text.h"
-#include "solver/io/errors.h"
 #include "solver/io/recording_reader.h"
 
 namespace topple::io {

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "solver/io/common/units.h"
 #include "solver/io/edit_text.h"
-#include "solver/io/units.h"
 
 namespace topple::io {
 namespace {

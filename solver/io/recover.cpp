@@ -1,9 +1,9 @@
 #include "solver/io/recover.h"
 
+#include "solver/io/common/staged_file.h"
 #include "solver/io/recording_format.h"
 #include "solver/io/recording_writer.h"
 #include "solver/io/scene.h"
-#include "solver/io/staged_file.h"
 
 namespace topple::io {
 namespace {

@@ -44,4 +44,4 @@ target_sources(topple_io PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene_save.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_shakes.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/toml_precheck.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)
+  ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

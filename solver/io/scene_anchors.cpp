@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "solver/io/common/units.h"
 #include "solver/io/scene_read.h"
-#include "solver/io/units.h"
 #include "solver/proximity.h"
 
 namespace topple::io {

@@ -6,8 +6,8 @@
 #include "solver/cabinet.h"
 #include "solver/damping.h"
 #include "solver/elastic_basis.h"
+#include "solver/io/common/units.h"
 #include "solver/io/scene_read.h"
-#include "solver/io/units.h"
 #include "solver/proximity.h"
 
 namespace topple::io {

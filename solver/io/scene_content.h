@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 #include "solver/run.h"
 
 namespace topple::io {

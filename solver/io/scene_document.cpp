@@ -17,7 +17,7 @@ static constexpr void toml_assert(bool holds) {
 #define TOML_ASSERT(condition) toml_assert(static_cast<bool>(condition))
 #include <toml++/toml.h>
 
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 #include "solver/io/toml_precheck.h"
 
 namespace topple::io {

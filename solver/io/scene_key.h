@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/units.h"
+#include "solver/io/common/units.h"
 
 namespace topple::io {
 

@@ -1,5 +1,5 @@
 // --set KEY=VALUE: changes of a scene's tree before it is checked.
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 #include "solver/io/scene_document.h"
 
 namespace topple::io {

@@ -5,8 +5,8 @@
 #include "solver/accelerogram.h"
 #include "solver/excitation.h"
 #include "solver/io/accelerogram_file.h"
+#include "solver/io/common/units.h"
 #include "solver/io/scene_read.h"
-#include "solver/io/units.h"
 
 namespace topple::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/io/units.h"
+#include "solver/io/common/units.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,8 +1,8 @@
-#include "solver/io/staged_file.h"
+#include "solver/io/common/staged_file.h"
 
 #include <system_error>
 
-#include "solver/io/errors.h"
+#include "solver/io/common/errors.h"
 
 namespace topple::io {
 
