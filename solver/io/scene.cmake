@@ -22,9 +22,9 @@ topple_embed(
 target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_csv.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_file.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_text.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_csv.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_file.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_text.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/edit_text.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene_anchors.cpp

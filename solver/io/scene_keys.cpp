@@ -1,7 +1,7 @@
 #include "solver/io/scene_keys.h"
 
 #include "solver/cabinet.h"
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene_key_rows.h"
 #include "solver/model.h"
 #include "solver/parameters.h"

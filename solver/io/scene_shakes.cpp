@@ -4,7 +4,7 @@
 
 #include "solver/accelerogram.h"
 #include "solver/excitation.h"
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene_read.h"
 

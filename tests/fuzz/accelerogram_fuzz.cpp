@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "fuzz.h"
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene.h"
 #include "solver/types.h"
 

@@ -1,4 +1,4 @@
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 
 #include <gtest/gtest.h>
 

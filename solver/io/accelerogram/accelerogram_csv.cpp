@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "solver/io/accelerogram_text.h"
+#include "solver/io/accelerogram/accelerogram_text.h"
 #include "solver/io/common/units.h"
 
 namespace topple::io::accelerogram {

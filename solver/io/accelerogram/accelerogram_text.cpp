@@ -1,4 +1,4 @@
-#include "solver/io/accelerogram_text.h"
+#include "solver/io/accelerogram/accelerogram_text.h"
 
 #include <cctype>
 #include <charconv>

@@ -1,11 +1,11 @@
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "solver/accelerogram.h"
 #include "solver/elementary.h"
-#include "solver/io/accelerogram_text.h"
+#include "solver/io/accelerogram/accelerogram_text.h"
 #include "solver/io/common/units.h"
 
 namespace topple::io {

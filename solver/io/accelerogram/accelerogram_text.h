@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/accelerogram_content.h"
+#include "solver/io/accelerogram/accelerogram_content.h"
 #include "solver/io/common/errors.h"
 
 namespace topple::io::accelerogram {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "solver/io/accelerogram_content.h"
+#include "solver/io/accelerogram/accelerogram_content.h"
 
 namespace topple::io {
 
