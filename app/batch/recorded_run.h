@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/run.h"
 #include "solver/study/refinement.h"
 

@@ -27,7 +27,7 @@
 #include "app/support/foreign_recording.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

@@ -21,7 +21,7 @@
 #include "app/support/terms.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
-#include "solver/io/scene_difference.h"
+#include "solver/io/scene/scene_difference.h"
 
 namespace topple::app {
 namespace {

@@ -13,10 +13,10 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "solver/io/edit_text.h"
 #include "solver/io/recording.h"
 #include "solver/io/rerun.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene.h"
 #include "solver/ladder.h"
 
 namespace topple::app {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

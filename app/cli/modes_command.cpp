@@ -7,7 +7,7 @@
 #include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/modes.h"
 
 namespace topple::app {

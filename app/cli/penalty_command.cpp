@@ -10,7 +10,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/laws.h"
 #include "solver/study/penalty_chart.h"
 

@@ -13,7 +13,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/terms.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

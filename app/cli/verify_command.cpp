@@ -19,7 +19,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "solver/io/recording.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

@@ -9,7 +9,7 @@
 
 #include "solver/history.h"
 #include "solver/io/recording.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/io/edit_text.h"
+#include "solver/io/scene/edit_text.h"
 
 namespace topple::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/support/language.h"
 #include "render/scene/font.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

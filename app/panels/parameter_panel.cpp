@@ -9,8 +9,8 @@
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
 #include "app/support/terms.h"
-#include "solver/io/edit_text.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

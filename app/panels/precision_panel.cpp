@@ -10,7 +10,7 @@
 #include "app/panels/precision_words.h"
 #include "app/panels/shell_words.h"
 #include "app/panels/teaching_words.h"
-#include "solver/io/edit_text.h"
+#include "solver/io/scene/edit_text.h"
 
 namespace topple::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "render/scene/text_layout.h"
-#include "solver/io/edit_text.h"
+#include "solver/io/scene/edit_text.h"
 #include "solver/ladder.h"
 
 namespace topple::app {

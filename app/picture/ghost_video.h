@@ -5,7 +5,7 @@
 
 #include "app/picture/replay.h"
 #include "render/output/image.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/report/report_words.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/intensity.h"
 #include "solver/study/spread.h"
 

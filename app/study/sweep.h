@@ -10,7 +10,7 @@
 
 #include "app/study/study_options.h"
 #include "app/support/clock.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/chart.h"
 
 namespace topple::app {

@@ -16,7 +16,7 @@
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
 #include "solver/io/rerun.h"
-#include "solver/io/scene_save.h"
+#include "solver/io/scene/scene_save.h"
 
 namespace topple::app {
 namespace {

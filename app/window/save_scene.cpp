@@ -8,8 +8,8 @@
 
 #include "app/panels/shell_words.h"
 #include "app/support/files.h"
-#include "solver/io/scene_file.h"
-#include "solver/io/scene_save.h"
+#include "solver/io/scene/scene_file.h"
+#include "solver/io/scene/scene_save.h"
 
 namespace topple::app {
 namespace {

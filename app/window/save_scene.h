@@ -6,7 +6,7 @@
 
 #include "app/window/message.h"
 #include "render/gl/key_press.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 

@@ -16,7 +16,7 @@
 #include "app/support/terms.h"
 #include "app/window/opening.h"
 #include "render/scene/orbit.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

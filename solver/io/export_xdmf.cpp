@@ -10,7 +10,7 @@
 #include "solver/io/exported_values.h"
 #include "solver/io/hdf5_handle.h"
 #include "solver/io/recording_format.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "solver/io/hdf5_read_driver.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "solver/io/common/units.h"
-#include "solver/io/edit_text.h"
+#include "solver/io/scene/edit_text.h"
 
 namespace topple::io {
 namespace {

@@ -3,7 +3,7 @@
 #include "solver/io/common/staged_file.h"
 #include "solver/io/recording_format.h"
 #include "solver/io/recording_writer.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "solver/io/edit_text.h"
 #include "solver/io/recording_format.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {

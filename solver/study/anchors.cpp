@@ -1,7 +1,7 @@
 #include "solver/study/anchors.h"
 
-#include "solver/io/scene_document.h"
-#include "solver/io/scene_file.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_file.h"
 
 namespace topple::study {
 namespace {

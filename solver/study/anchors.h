@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::study {
 

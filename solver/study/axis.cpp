@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/elementary.h"
-#include "solver/io/scene_check.h"
-#include "solver/io/scene_document.h"
-#include "solver/io/scene_number.h"
+#include "solver/io/scene/scene_check.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_number.h"
 #include "solver/study/kept_rows.h"
 
 namespace topple::study {

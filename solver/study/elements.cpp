@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/modes.h"
 #include "solver/study/parallel.h"
 #include "solver/study/rows.h"

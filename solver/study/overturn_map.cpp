@@ -5,9 +5,9 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/edit_text.h"
-#include "solver/io/scene_document.h"
-#include "solver/io/scene_file.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_file.h"
 #include "solver/study/measure.h"
 
 namespace topple::study {

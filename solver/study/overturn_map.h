@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/axis.h"
 #include "solver/study/criteria.h"
 #include "solver/study/floor_peak.h"

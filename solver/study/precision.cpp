@@ -8,11 +8,11 @@
 #include "solver/edit.h"
 #include "solver/elastic_basis.h"
 #include "solver/elementary.h"
-#include "solver/io/scene_keys.h"
+#include "solver/io/scene/scene_keys.h"
 #include "solver/step_control.h"
 #include "solver/study/kept_rows.h"
-#include "solver/study/measure.h"
 #include "solver/study/laws.h"
+#include "solver/study/measure.h"
 
 namespace topple::study {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "solver/io/scene_file.h"
+#include "solver/io/scene/scene_file.h"
 #include "solver/ladder.h"
 #include "solver/study/measure.h"
 #include "solver/study/refinement.h"

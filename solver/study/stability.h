@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/axis.h"
 
 namespace topple::study {

@@ -5,7 +5,7 @@
 
 #include "fuzz.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/types.h"
 
 using namespace topple;

@@ -2,7 +2,7 @@
 #include "program.h"
 #include "scenes.h"
 #include "solver/io/recording.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

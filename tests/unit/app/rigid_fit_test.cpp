@@ -5,7 +5,7 @@
 
 #include "app/picture/row.h"
 #include "scenes.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/rotation.h"
 
 namespace topple::app {

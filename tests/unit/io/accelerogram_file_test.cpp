@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "scene_samples.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/types.h"
 
 namespace topple::io {

@@ -16,7 +16,7 @@
 
 #include "solver/io/recording.h"
 #include "solver/io/recording_writer.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io::testing {
 

@@ -112,7 +112,7 @@ TEST(Layout, reader_finds_includes_however_they_are_written) {
 }
 
 TEST(Layout, wrong_arrows_are_found) {
-  const Include wrong[] = {{"solver/step.cpp", "solver/io/scene.h", true},
+  const Include wrong[] = {{"solver/step.cpp", "solver/io/scene/scene.h", true},
                            {"solver/step.cpp", "solver/study/map.h", true},
                            {"solver/step.cpp", "render/scene/camera.h", true},
                            {"solver/step.cpp", "app/main.h", true},
@@ -124,13 +124,13 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/step.cpp", "cstdlib", false},
                            {"solver/step.cpp", "hdf5.h", false},
                            {"solver/step.cpp", "toml++/toml.hpp", false},
-                           {"solver/io/scene.cpp", "solver/study/map.h", true},
-                           {"solver/io/scene.cpp", "app/main.h", true},
-                           {"solver/io/scene.cpp", "GL/gl.h", false},
+                           {"solver/io/scene/scene.cpp", "solver/study/map.h", true},
+                           {"solver/io/scene/scene.cpp", "app/main.h", true},
+                           {"solver/io/scene/scene.cpp", "GL/gl.h", false},
                            {"solver/study/map.cpp", "render/output/image.h", true},
                            {"solver/study/map.cpp", "app/support/files.h", true},
                            {"render/scene/camera.cpp", "solver/types.h", true},
-                           {"render/scene/camera.cpp", "solver/io/scene.h", true},
+                           {"render/scene/camera.cpp", "solver/io/scene/scene.h", true},
                            {"render/scene/camera.cpp", "app/main.h", true},
                            {"app/main.cpp", "GLFW/glfw3.h", false}};
   for (const Include& include : wrong)
@@ -141,10 +141,10 @@ TEST(Layout, right_arrows_are_not_objected_to) {
   const Include right[] = {{"solver/step.cpp", "solver/model.h", true},
                            {"solver/step.cpp", "Eigen/LU", false},
                            {"solver/step.cpp", "vector", false},
-                           {"solver/io/scene.cpp", "solver/run.h", true},
-                           {"solver/io/scene.cpp", "fstream", false},
-                           {"solver/io/scene.cpp", "hdf5.h", false},
-                           {"solver/study/map.cpp", "solver/io/scene.h", true},
+                           {"solver/io/scene/scene.cpp", "solver/run.h", true},
+                           {"solver/io/scene/scene.cpp", "fstream", false},
+                           {"solver/io/scene/scene.cpp", "hdf5.h", false},
+                           {"solver/study/map.cpp", "solver/io/scene/scene.h", true},
                            {"solver/study/map.cpp", "solver/modes.h", true},
                            {"solver/study/map.cpp", "thread", false},
                            {"app/main.cpp", "solver/study/map.h", true},

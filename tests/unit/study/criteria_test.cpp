@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "verification/housner.h"
 
 namespace topple::study {

@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/elements_chart.h"
 #include "solver/study/gnuplot.h"
 #include "solver/study/rows.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/contact_law.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/gnuplot.h"
 #include "solver/study/penalty_chart.h"
 #include "solver/study/rows.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::study {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/study/alone.h"
 #include "solver/study/contact_trials.h"
 #include "solver/study/impact.h"
