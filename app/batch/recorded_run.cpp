@@ -12,7 +12,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 #include "solver/ladder.h"
 #include "solver/study/refinement.h"
 #include "solver/study/team.h"

@@ -10,7 +10,7 @@
 #include "solver/io/export_csv.h"
 #include "solver/io/export_vtk.h"
 #include "solver/io/export_xdmf.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {

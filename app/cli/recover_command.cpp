@@ -7,7 +7,7 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
-#include "solver/io/recover.h"
+#include "solver/io/recording/recover.h"
 
 namespace topple::app {
 namespace {

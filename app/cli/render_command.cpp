@@ -28,8 +28,8 @@
 #include "render/gl/off_screen.h"
 #include "render/output/picture.h"
 #include "render/output/video.h"
-#include "solver/io/recording.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/recording/rerun.h"
 
 namespace topple::app {
 namespace {

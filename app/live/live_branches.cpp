@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "app/live/live_worker.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/rerun.h"
 
 namespace topple::app {
 namespace {

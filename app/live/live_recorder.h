@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/history.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {

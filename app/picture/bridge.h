@@ -7,7 +7,7 @@
 #include "app/picture/picture_settings.h"
 #include "app/picture/run_extent.h"
 #include "render/scene/scene_frame.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {

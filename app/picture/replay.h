@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/picture/bridge.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::app {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/model.h"
 
 namespace topple::app {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/scene/scene_frame.h"
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/model.h"
 #include "solver/section_forces.h"
 

@@ -5,7 +5,7 @@
 
 #include "app/picture/row.h"
 #include "app/picture/thinning.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/picture/beam_quantity.h"
 #include "render/scene/scene_frame.h"
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/parameters.h"
 
 namespace topple::app {

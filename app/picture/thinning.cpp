@@ -1,6 +1,6 @@
 #include "app/picture/thinning.h"
 
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 
 namespace topple::app {
 

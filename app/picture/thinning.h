@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 
 namespace topple::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/run.h"
 
 namespace topple::app {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::app {
 

@@ -15,7 +15,7 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/rerun.h"
 #include "solver/io/scene/scene_save.h"
 
 namespace topple::app {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/panels/shell_words.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::app {
 namespace {

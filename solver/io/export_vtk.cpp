@@ -12,7 +12,7 @@
 
 #include "solver/io/common/staged_file.h"
 #include "solver/io/exported_values.h"
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {

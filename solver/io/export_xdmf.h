@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::io {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/frame_row.h"
+#include "solver/io/recording/frame_row.h"
 #include "solver/model.h"
 
 namespace topple::io {

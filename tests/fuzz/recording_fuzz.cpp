@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fuzz.h"
-#include "solver/io/recording_format.h"
-#include "solver/io/recording_reader.h"
+#include "solver/io/recording/recording_format.h"
+#include "solver/io/recording/recording_reader.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/state.h"
 

@@ -16,7 +16,7 @@
 #include "app/panels/theme.h"
 #include "app/picture/window_words.h"
 #include "shell_fixture.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <random>
 
 #include "app/batch/run_warnings.h"
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_keys.h"
 #include "unit/solver/fixtures.h"

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/recording.h"
-#include "solver/io/recording_writer.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/recording/recording_writer.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io::testing {

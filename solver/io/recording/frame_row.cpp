@@ -1,4 +1,4 @@
-#include "solver/io/frame_row.h"
+#include "solver/io/recording/frame_row.h"
 
 #include <algorithm>
 #include <cmath>

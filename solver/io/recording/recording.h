@@ -9,7 +9,7 @@
 
 #include "solver/history.h"
 #include "solver/io/common/errors.h"
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {

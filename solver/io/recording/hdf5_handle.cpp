@@ -1,4 +1,4 @@
-#include "solver/io/hdf5_handle.h"
+#include "solver/io/recording/hdf5_handle.h"
 
 #include <nmmintrin.h>
 

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "solver/io/common/errors.h"
-#include "solver/io/recording_reader.h"
+#include "solver/io/recording/recording_reader.h"
 #include "solver/io/scene/edit_text.h"
 
 namespace topple::io {

@@ -1,11 +1,11 @@
-#include "solver/io/rerun.h"
+#include "solver/io/recording/rerun.h"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene.h"
 

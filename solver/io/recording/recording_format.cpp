@@ -1,4 +1,4 @@
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 
 namespace topple::io {
 namespace {

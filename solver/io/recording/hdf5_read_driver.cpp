@@ -1,4 +1,4 @@
-#include "solver/io/hdf5_read_driver.h"
+#include "solver/io/recording/hdf5_read_driver.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <new>
 
-#include "solver/io/hdf5_handle.h"
+#include "solver/io/recording/hdf5_handle.h"
 
 namespace topple::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/io/recording_writer.h"
+#include "solver/io/recording/recording_writer.h"
 
 #include <fcntl.h>
 #include <unistd.h>

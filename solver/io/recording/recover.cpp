@@ -1,8 +1,8 @@
-#include "solver/io/recover.h"
+#include "solver/io/recording/recover.h"
 
 #include "solver/io/common/staged_file.h"
-#include "solver/io/recording_format.h"
-#include "solver/io/recording_writer.h"
+#include "solver/io/recording/recording_format.h"
+#include "solver/io/recording/recording_writer.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {

@@ -1,4 +1,4 @@
-#include "solver/io/observer.h"
+#include "solver/io/recording/observer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::io {
 

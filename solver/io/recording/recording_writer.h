@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 
 namespace topple::io {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "solver/io/frame_row.h"
+#include "solver/io/recording/frame_row.h"
 #include "solver/run.h"
 
 namespace topple::io {

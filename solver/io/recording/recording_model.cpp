@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 
 namespace topple::io {
 namespace {

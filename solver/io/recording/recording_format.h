@@ -21,9 +21,9 @@
 #include <span>
 #include <vector>
 
-#include "solver/io/frame_row.h"
-#include "solver/io/hdf5_handle.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/frame_row.h"
+#include "solver/io/recording/hdf5_handle.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::io {
 

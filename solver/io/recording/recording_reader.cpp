@@ -1,4 +1,4 @@
-#include "solver/io/recording_reader.h"
+#include "solver/io/recording/recording_reader.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <thread>
 #include <tuple>
 
-#include "solver/io/hdf5_read_driver.h"
+#include "solver/io/recording/hdf5_read_driver.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {
