@@ -7,9 +7,9 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
-#include "solver/io/export_csv.h"
-#include "solver/io/export_vtk.h"
-#include "solver/io/export_xdmf.h"
+#include "solver/io/export/export_csv.h"
+#include "solver/io/export/export_vtk.h"
+#include "solver/io/export/export_xdmf.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 

@@ -11,10 +11,10 @@ target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/recording/recording_model.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recording_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recording_writer.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/export_csv.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/export_vtk.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/export_xdmf.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/exported_values.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/export/export_csv.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/export/export_vtk.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/export/export_xdmf.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/export/exported_values.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recover.cpp
   ${CMAKE_CURRENT_LIST_DIR}/common/staged_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/rerun.cpp)

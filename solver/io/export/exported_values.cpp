@@ -1,4 +1,4 @@
-#include "solver/io/exported_values.h"
+#include "solver/io/export/exported_values.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "solver/io/export_vtk.h"
+#include "solver/io/export/export_vtk.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "solver/io/common/staged_file.h"
-#include "solver/io/exported_values.h"
+#include "solver/io/export/exported_values.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
 

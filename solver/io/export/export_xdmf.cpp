@@ -1,4 +1,4 @@
-#include "solver/io/export_xdmf.h"
+#include "solver/io/export/export_xdmf.h"
 
 #include <array>
 #include <cerrno>
@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "solver/io/common/staged_file.h"
-#include "solver/io/exported_values.h"
+#include "solver/io/export/exported_values.h"
 #include "solver/io/recording/hdf5_handle.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"

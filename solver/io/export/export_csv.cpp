@@ -1,4 +1,4 @@
-#include "solver/io/export_csv.h"
+#include "solver/io/export/export_csv.h"
 
 #include <cerrno>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "solver/io/common/staged_file.h"
-#include "solver/io/exported_values.h"
+#include "solver/io/export/exported_values.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
 
