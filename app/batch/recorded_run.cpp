@@ -14,8 +14,8 @@
 #include "app/support/terms.h"
 #include "solver/io/recording/recording.h"
 #include "solver/ladder.h"
-#include "solver/study/refinement.h"
-#include "solver/study/team.h"
+#include "solver/study/common/refinement.h"
+#include "solver/study/common/team.h"
 
 namespace topple::app {
 namespace {

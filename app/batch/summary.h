@@ -6,7 +6,7 @@
 
 #include "solver/io/scene/scene.h"
 #include "solver/run.h"
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 namespace topple::app {
 

@@ -9,9 +9,9 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
+#include "solver/study/common/measure.h"
 #include "solver/study/elements.h"
 #include "solver/study/elements_chart.h"
-#include "solver/study/measure.h"
 
 namespace topple::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "solver/study/map_panel.h"
+#include "solver/study/common/map_panel.h"
 #include "solver/study/overturn_chart.h"
 #include "solver/study/overturn_map.h"
 

@@ -11,7 +11,7 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "solver/io/scene/scene.h"
-#include "solver/study/laws.h"
+#include "solver/study/common/laws.h"
 #include "solver/study/penalty_chart.h"
 
 namespace topple::app {

@@ -10,7 +10,7 @@
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/measure.h"
 #include "solver/study/precision_chart.h"
 
 namespace topple::app {

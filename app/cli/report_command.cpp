@@ -17,8 +17,8 @@
 #include "app/support/terms.h"
 #include "render/gl/off_screen.h"
 #include "render/output/picture.h"
-#include "solver/study/anchors.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/anchors.h"
+#include "solver/study/common/measure.h"
 
 namespace topple::app {
 namespace {

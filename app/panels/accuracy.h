@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/support/background.h"
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 namespace topple::app {
 

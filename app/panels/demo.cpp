@@ -4,7 +4,7 @@
 
 #include "app/panels/teaching_words.h"
 #include "solver/accelerogram.h"
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
 
 namespace topple::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/panels/teaching_panel.h"
 #include "app/panels/teaching_words.h"
 #include "solver/accelerogram.h"
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
 #include "solver/study/criteria.h"
 
 namespace topple::app {

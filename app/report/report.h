@@ -8,8 +8,8 @@
 
 #include "app/report/report_words.h"
 #include "solver/io/scene/scene.h"
-#include "solver/study/intensity.h"
-#include "solver/study/spread.h"
+#include "solver/study/common/intensity.h"
+#include "solver/study/common/spread.h"
 
 namespace topple::app {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/report/report_parts.h"
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 namespace topple::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/report/report_parts.h"
-#include "solver/study/laws.h"
+#include "solver/study/common/laws.h"
 
 namespace topple::app {
 namespace {

@@ -6,8 +6,8 @@
 #include "app/study/study_results.h"
 #include "app/support/clock.h"
 #include "solver/io/scene/scene_save.h"
-#include "solver/study/measure.h"
-#include "solver/study/parallel.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
 
 namespace topple::app {
 namespace {

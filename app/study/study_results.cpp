@@ -8,9 +8,9 @@
 #include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/measure.h"
-#include "solver/study/rows.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/rows.h"
 
 namespace topple::app {
 

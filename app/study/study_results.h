@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 
 namespace topple::app {
 

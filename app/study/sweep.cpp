@@ -13,9 +13,9 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
-#include "solver/study/kept_rows.h"
-#include "solver/study/measure.h"
-#include "solver/study/parallel.h"
+#include "solver/study/common/kept_rows.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
 
 namespace topple::app {
 

@@ -11,7 +11,7 @@
 #include "app/study/study_options.h"
 #include "app/support/clock.h"
 #include "solver/io/scene/scene.h"
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 
 namespace topple::app {
 

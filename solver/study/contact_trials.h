@@ -5,7 +5,7 @@
 #include <string>
 
 #include "solver/run.h"
-#include "solver/study/standing.h"
+#include "solver/study/common/standing.h"
 
 namespace topple::study {
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "solver/elementary.h"
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
 
 namespace topple::study {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "solver/run.h"
-#include "solver/study/axis.h"
-#include "solver/study/standing.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/standing.h"
 
 namespace topple::study {
 

@@ -7,8 +7,8 @@
 
 #include "solver/io/scene/scene.h"
 #include "solver/modes.h"
-#include "solver/study/parallel.h"
-#include "solver/study/rows.h"
+#include "solver/study/common/parallel.h"
+#include "solver/study/common/rows.h"
 #include "solver/study/theory.h"
 
 namespace topple::study {

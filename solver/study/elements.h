@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "solver/model.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/measure.h"
 
 namespace topple::study {
 

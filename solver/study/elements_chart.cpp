@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/study/gnuplot.h"
+#include "solver/study/common/gnuplot.h"
 
 namespace topple::study {
 namespace {

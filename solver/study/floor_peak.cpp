@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "solver/excitation.h"
-#include "solver/study/intensity.h"
+#include "solver/study/common/intensity.h"
 
 namespace topple::study {
 

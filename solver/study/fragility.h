@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/study/spread.h"
+#include "solver/study/common/spread.h"
 
 namespace topple::study {
 

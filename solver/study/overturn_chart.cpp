@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "solver/study/gnuplot.h"
-#include "solver/study/map_panel.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/map_panel.h"
 
 namespace topple::study {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 #include "solver/study/overturn_map.h"
 
 namespace topple::study {

@@ -8,7 +8,7 @@
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/measure.h"
 
 namespace topple::study {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "solver/io/scene/scene.h"
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/spread.h"
 #include "solver/study/criteria.h"
 #include "solver/study/floor_peak.h"
 #include "solver/study/fragility.h"
-#include "solver/study/spread.h"
 
 namespace topple::study {
 

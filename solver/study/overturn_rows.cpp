@@ -1,8 +1,8 @@
 // Points of the overturning map as rows and arrays of JSON.
 #include <nlohmann/json.hpp>
 
+#include "solver/study/common/rows.h"
 #include "solver/study/overturn_map.h"
-#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "solver/contact_law.h"
 #include "solver/modes.h"
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/common/laws.h"
+#include "solver/study/common/parallel.h"
 #include "solver/study/contact_trials.h"
 #include "solver/study/impact.h"
-#include "solver/study/laws.h"
-#include "solver/study/parallel.h"
 
 namespace topple::study {
 namespace {

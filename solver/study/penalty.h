@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/run.h"
-#include "solver/study/standing.h"
+#include "solver/study/common/standing.h"
 
 namespace topple::study {
 

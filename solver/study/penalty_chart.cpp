@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "solver/study/gnuplot.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/laws.h"
 #include "solver/study/impact.h"
-#include "solver/study/laws.h"
 
 namespace topple::study {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 #include "solver/study/penalty_advice.h"
 
 namespace topple::study {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "solver/study/laws.h"
+#include "solver/study/common/laws.h"
+#include "solver/study/common/rows.h"
 #include "solver/study/penalty.h"
-#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {

@@ -10,9 +10,9 @@
 #include "solver/elementary.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/step_control.h"
-#include "solver/study/kept_rows.h"
-#include "solver/study/laws.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/kept_rows.h"
+#include "solver/study/common/laws.h"
+#include "solver/study/common/measure.h"
 
 namespace topple::study {
 namespace {

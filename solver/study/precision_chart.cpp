@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/study/gnuplot.h"
-#include "solver/study/laws.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/laws.h"
 
 namespace topple::study {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "solver/study/laws.h"
+#include "solver/study/common/laws.h"
+#include "solver/study/common/rows.h"
 #include "solver/study/precision.h"
-#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {

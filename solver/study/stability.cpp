@@ -9,9 +9,9 @@
 
 #include "solver/io/scene/scene_file.h"
 #include "solver/ladder.h"
-#include "solver/study/measure.h"
-#include "solver/study/refinement.h"
-#include "solver/study/spread.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/refinement.h"
+#include "solver/study/common/spread.h"
 
 namespace topple::study {
 namespace {

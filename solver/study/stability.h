@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/io/scene/scene.h"
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
 
 namespace topple::study {
 

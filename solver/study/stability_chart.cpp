@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/study/gnuplot.h"
-#include "solver/study/map_panel.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/map_panel.h"
 
 namespace topple::study {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 #include "solver/study/stability.h"
 #include "solver/study/stability_limits.h"
 

@@ -8,8 +8,8 @@
 #include "solver/central_difference.h"
 #include "solver/damping.h"
 #include "solver/edit.h"
-#include "solver/study/alone.h"
-#include "solver/study/standing.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/common/standing.h"
 
 namespace topple::study {
 namespace {

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/io/scene/scene.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/rows.h"
 #include "solver/study/elements_chart.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {

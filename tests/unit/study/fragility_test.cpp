@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
 
 namespace topple::study {
 namespace {

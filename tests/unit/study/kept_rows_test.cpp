@@ -1,5 +1,5 @@
 // Rows that outlive a sweep.
-#include "solver/study/kept_rows.h"
+#include "solver/study/common/kept_rows.h"
 
 #include <gtest/gtest.h>
 

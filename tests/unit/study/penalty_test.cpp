@@ -8,9 +8,9 @@
 
 #include "solver/contact_law.h"
 #include "solver/io/scene/scene.h"
-#include "solver/study/gnuplot.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/rows.h"
 #include "solver/study/penalty_chart.h"
-#include "solver/study/rows.h"
 
 namespace topple::study {
 namespace {

@@ -1,5 +1,5 @@
 // Stated errors against those that runs at much finer steps show.
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "solver/study/spread.h"
+#include "solver/study/common/spread.h"
 
 #include <gtest/gtest.h>
 

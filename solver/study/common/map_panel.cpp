@@ -1,4 +1,4 @@
-#include "solver/study/map_panel.h"
+#include "solver/study/common/map_panel.h"
 
 #include <fmt/format.h>
 

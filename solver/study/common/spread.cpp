@@ -1,9 +1,9 @@
-#include "solver/study/spread.h"
+#include "solver/study/common/spread.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "solver/study/parallel.h"
+#include "solver/study/common/parallel.h"
 
 namespace topple::study {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "solver/study/axis.h"
-#include "solver/study/chart.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/chart.h"
 
 namespace topple::study {
 

@@ -1,4 +1,4 @@
-#include "solver/study/team.h"
+#include "solver/study/common/team.h"
 
 #include <atomic>
 #include <chrono>

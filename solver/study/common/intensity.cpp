@@ -1,4 +1,4 @@
-#include "solver/study/intensity.h"
+#include "solver/study/common/intensity.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_number.h"
-#include "solver/study/kept_rows.h"
+#include "solver/study/common/kept_rows.h"
 
 namespace topple::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/study/standing.h"
+#include "solver/study/common/standing.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "solver/contact_law.h"
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
 
 namespace topple::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/study/rows.h"
+#include "solver/study/common/rows.h"
 
 #include <nlohmann/json.hpp>
 

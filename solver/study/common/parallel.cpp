@@ -1,4 +1,4 @@
-#include "solver/study/parallel.h"
+#include "solver/study/common/parallel.h"
 
 #include <algorithm>
 #include <exception>

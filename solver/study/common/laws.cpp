@@ -1,4 +1,4 @@
-#include "solver/study/laws.h"
+#include "solver/study/common/laws.h"
 
 namespace topple::study {
 

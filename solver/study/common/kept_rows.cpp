@@ -1,4 +1,4 @@
-#include "solver/study/kept_rows.h"
+#include "solver/study/common/kept_rows.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,4 +1,4 @@
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 #include <algorithm>
 #include <cmath>

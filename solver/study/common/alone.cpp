@@ -1,4 +1,4 @@
-#include "solver/study/alone.h"
+#include "solver/study/common/alone.h"
 
 #include <algorithm>
 #include <cmath>

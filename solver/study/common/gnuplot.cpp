@@ -1,4 +1,4 @@
-#include "solver/study/gnuplot.h"
+#include "solver/study/common/gnuplot.h"
 
 #include <fcntl.h>
 #include <spawn.h>

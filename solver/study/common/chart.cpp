@@ -1,8 +1,8 @@
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 
 #include <fmt/format.h>
 
-#include "solver/study/gnuplot.h"
+#include "solver/study/common/gnuplot.h"
 
 namespace topple::study {
 

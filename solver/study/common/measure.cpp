@@ -1,4 +1,4 @@
-#include "solver/study/measure.h"
+#include "solver/study/common/measure.h"
 
 #include <sched.h>
 
