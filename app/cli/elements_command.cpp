@@ -10,8 +10,8 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "solver/study/common/measure.h"
-#include "solver/study/elements.h"
-#include "solver/study/elements_chart.h"
+#include "solver/study/elements/elements.h"
+#include "solver/study/elements/elements_chart.h"
 
 namespace topple::app {
 namespace {

@@ -1,5 +1,5 @@
 // The benchmarks of the element comparison: what theory says of each scheme.
-#include "solver/study/elements.h"
+#include "solver/study/elements/elements.h"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -12,7 +12,7 @@
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/gnuplot.h"
 #include "solver/study/common/rows.h"
-#include "solver/study/elements_chart.h"
+#include "solver/study/elements/elements_chart.h"
 
 namespace topple::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/study/elements_chart.h"
+#include "solver/study/elements/elements_chart.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "solver/study/common/chart.h"
-#include "solver/study/elements.h"
+#include "solver/study/elements/elements.h"
 
 namespace topple::study {
 

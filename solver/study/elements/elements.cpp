@@ -1,4 +1,4 @@
-#include "solver/study/elements.h"
+#include "solver/study/elements/elements.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,7 @@
 #include "solver/modes.h"
 #include "solver/study/common/parallel.h"
 #include "solver/study/common/rows.h"
-#include "solver/study/theory.h"
+#include "solver/study/elements/theory.h"
 
 namespace topple::study {
 namespace {
