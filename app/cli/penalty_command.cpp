@@ -12,7 +12,7 @@
 #include "app/support/progress.h"
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/laws.h"
-#include "solver/study/penalty_chart.h"
+#include "solver/study/penalty/penalty_chart.h"
 
 namespace topple::app {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/alone.h"
-#include "solver/study/contact_trials.h"
-#include "solver/study/impact.h"
+#include "solver/study/penalty/contact_trials.h"
+#include "solver/study/penalty/impact.h"
 
 namespace topple::study {
 namespace {

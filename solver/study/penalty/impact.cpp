@@ -1,4 +1,4 @@
-#include "solver/study/impact.h"
+#include "solver/study/penalty/impact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "solver/study/common/chart.h"
-#include "solver/study/penalty_advice.h"
+#include "solver/study/penalty/penalty_advice.h"
 
 namespace topple::study {
 

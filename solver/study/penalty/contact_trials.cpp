@@ -1,4 +1,4 @@
-#include "solver/study/contact_trials.h"
+#include "solver/study/penalty/contact_trials.h"
 
 #include <algorithm>
 #include <cmath>

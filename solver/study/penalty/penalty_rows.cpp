@@ -4,7 +4,7 @@
 
 #include "solver/study/common/laws.h"
 #include "solver/study/common/rows.h"
-#include "solver/study/penalty.h"
+#include "solver/study/penalty/penalty.h"
 
 namespace topple::study {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/parameters.h"
-#include "solver/study/contact_trials.h"
+#include "solver/study/penalty/contact_trials.h"
 
 namespace topple::study {
 

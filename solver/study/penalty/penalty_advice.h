@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/study/penalty.h"
+#include "solver/study/penalty/penalty.h"
 
 namespace topple::study {
 

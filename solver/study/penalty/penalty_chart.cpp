@@ -1,4 +1,4 @@
-#include "solver/study/penalty_chart.h"
+#include "solver/study/penalty/penalty_chart.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "solver/study/common/gnuplot.h"
 #include "solver/study/common/laws.h"
-#include "solver/study/impact.h"
+#include "solver/study/penalty/impact.h"
 
 namespace topple::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/study/penalty.h"
+#include "solver/study/penalty/penalty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "solver/study/common/alone.h"
 #include "solver/study/common/laws.h"
 #include "solver/study/common/parallel.h"
-#include "solver/study/contact_trials.h"
-#include "solver/study/impact.h"
+#include "solver/study/penalty/contact_trials.h"
+#include "solver/study/penalty/impact.h"
 
 namespace topple::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/study/penalty_advice.h"
+#include "solver/study/penalty/penalty_advice.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
