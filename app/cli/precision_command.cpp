@@ -11,7 +11,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "solver/study/common/measure.h"
-#include "solver/study/precision_chart.h"
+#include "solver/study/precision/precision_chart.h"
 
 namespace topple::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/support/background.h"
 #include "solver/edit.h"
 #include "solver/study/overturn_map.h"
-#include "solver/study/precision.h"
+#include "solver/study/precision/precision.h"
 
 namespace topple::app {
 

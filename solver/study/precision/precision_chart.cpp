@@ -1,4 +1,4 @@
-#include "solver/study/precision_chart.h"
+#include "solver/study/precision/precision_chart.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "solver/study/precision.h"
+#include "solver/study/precision/precision.h"
 
 #include <algorithm>
 #include <cmath>

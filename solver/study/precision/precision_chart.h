@@ -4,7 +4,7 @@
 #include <string>
 
 #include "solver/study/common/chart.h"
-#include "solver/study/precision.h"
+#include "solver/study/precision/precision.h"
 
 namespace topple::study {
 

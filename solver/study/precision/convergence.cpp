@@ -1,4 +1,4 @@
-#include "solver/study/convergence.h"
+#include "solver/study/precision/convergence.h"
 
 #include <algorithm>
 #include <cmath>

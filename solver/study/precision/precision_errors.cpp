@@ -6,8 +6,8 @@
 
 #include "solver/overturn.h"
 #include "solver/rotation.h"
-#include "solver/study/convergence.h"
-#include "solver/study/precision.h"
+#include "solver/study/precision/convergence.h"
+#include "solver/study/precision/precision.h"
 
 namespace topple::study {
 namespace {

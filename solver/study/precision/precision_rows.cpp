@@ -5,7 +5,7 @@
 
 #include "solver/study/common/laws.h"
 #include "solver/study/common/rows.h"
-#include "solver/study/precision.h"
+#include "solver/study/precision/precision.h"
 
 namespace topple::study {
 namespace {
