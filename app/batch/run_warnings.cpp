@@ -10,7 +10,7 @@
 #include "solver/accelerogram.h"
 #include "solver/edit.h"
 #include "solver/ladder.h"
-#include "solver/study/stability_limits.h"
+#include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {
 namespace {

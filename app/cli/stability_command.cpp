@@ -11,9 +11,9 @@
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
-#include "solver/study/stability.h"
-#include "solver/study/stability_chart.h"
-#include "solver/study/stability_limits.h"
+#include "solver/study/stability/stability.h"
+#include "solver/study/stability/stability_chart.h"
+#include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "solver/study/common/chart.h"
-#include "solver/study/stability.h"
-#include "solver/study/stability_limits.h"
+#include "solver/study/stability/stability.h"
+#include "solver/study/stability/stability_limits.h"
 
 namespace topple::study {
 

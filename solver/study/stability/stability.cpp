@@ -1,4 +1,4 @@
-#include "solver/study/stability.h"
+#include "solver/study/stability/stability.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "solver/study/stability_limits.h"
+#include "solver/study/stability/stability_limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Points of the stability map as rows and arrays of JSON.
 #include <nlohmann/json.hpp>
 
-#include "solver/study/stability.h"
+#include "solver/study/stability/stability.h"
 
 namespace topple::study {
 namespace {

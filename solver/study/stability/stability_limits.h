@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/study/stability.h"
+#include "solver/study/stability/stability.h"
 
 namespace topple::study {
 

@@ -1,4 +1,4 @@
-#include "solver/study/stability_chart.h"
+#include "solver/study/stability/stability_chart.h"
 
 #include <fmt/format.h>
 
