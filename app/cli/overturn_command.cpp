@@ -12,8 +12,8 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "solver/study/common/map_panel.h"
-#include "solver/study/overturn_chart.h"
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_chart.h"
+#include "solver/study/overturn/overturn_map.h"
 
 namespace topple::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "app/panels/teaching_words.h"
 #include "solver/accelerogram.h"
 #include "solver/study/common/alone.h"
-#include "solver/study/criteria.h"
+#include "solver/study/overturn/criteria.h"
 
 namespace topple::app {
 namespace {

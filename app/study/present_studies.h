@@ -8,7 +8,7 @@
 #include "app/study/sweep.h"
 #include "app/support/background.h"
 #include "solver/edit.h"
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_map.h"
 #include "solver/study/precision/precision.h"
 
 namespace topple::app {

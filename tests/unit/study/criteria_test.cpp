@@ -1,5 +1,5 @@
 // Criteria of overturning against closed forms and an independent integration.
-#include "solver/study/criteria.h"
+#include "solver/study/overturn/criteria.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Lognormal fragility by maximum likelihood.
-#include "solver/study/fragility.h"
+#include "solver/study/overturn/fragility.h"
 
 #include <gtest/gtest.h>
 

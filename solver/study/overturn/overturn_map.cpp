@@ -1,4 +1,4 @@
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_map.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/study/common/rows.h"
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_map.h"
 
 namespace topple::study {
 namespace {

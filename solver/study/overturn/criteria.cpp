@@ -1,4 +1,4 @@
-#include "solver/study/criteria.h"
+#include "solver/study/overturn/criteria.h"
 
 #include <algorithm>
 #include <cmath>

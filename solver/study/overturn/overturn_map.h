@@ -10,9 +10,9 @@
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/axis.h"
 #include "solver/study/common/spread.h"
-#include "solver/study/criteria.h"
-#include "solver/study/floor_peak.h"
-#include "solver/study/fragility.h"
+#include "solver/study/overturn/criteria.h"
+#include "solver/study/overturn/floor_peak.h"
+#include "solver/study/overturn/fragility.h"
 
 namespace topple::study {
 

@@ -1,4 +1,4 @@
-#include "solver/study/overturn_chart.h"
+#include "solver/study/overturn/overturn_chart.h"
 
 #include <fmt/format.h>
 

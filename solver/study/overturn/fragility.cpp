@@ -1,4 +1,4 @@
-#include "solver/study/fragility.h"
+#include "solver/study/overturn/fragility.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "solver/study/floor_peak.h"
+#include "solver/study/overturn/floor_peak.h"
 
 #include <algorithm>
 

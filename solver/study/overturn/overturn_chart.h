@@ -4,7 +4,7 @@
 #include <string>
 
 #include "solver/study/common/chart.h"
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_map.h"
 
 namespace topple::study {
 
