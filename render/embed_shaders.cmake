@@ -1,5 +1,5 @@
 # Writes the shader files of the list SHADERS as one C++ source to OUTPUT.
-set(text "#include \"render/gl_objects.h\"\n\nnamespace topple::render {\n\n")
+set(text "#include \"render/gl/gl_objects.h\"\n\nnamespace topple::render {\n\n")
 string(APPEND text "std::string_view shader_source(std::string_view name) {\n")
 foreach(shader IN LISTS SHADERS)
   get_filename_component(name ${shader} NAME)

@@ -77,8 +77,8 @@ inline Integrator chosen_integrator(int choice) {
   return static_cast<Integrator>(choice > 0 ? choice - 1 : 0);
 }
 
-/// Legal ranges, units and defaults of these stand in solver/io/scene_keys.h, one table for scene files,
-/// sliders and fuzzers.
+/// Legal ranges, units and defaults of these stand in solver/io/scene/scene_keys.h, one table for scene
+/// files, sliders and fuzzers.
 struct Parameters {
   ContactLaw contact;
   ContactLaw contact_before;  ///< until an edit

@@ -4,7 +4,7 @@ file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.to
   ${PROJECT_SOURCE_DIR}/assets/scenes/elements/*.toml
   ${PROJECT_SOURCE_DIR}/assets/scenes/verify/*.toml)
 topple_embed(
-  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_scenes.cpp.in
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/scene/builtin_scenes.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
   BASE ${PROJECT_SOURCE_DIR}/assets/scenes
   FILES ${scene_files})
@@ -14,7 +14,7 @@ set(record_files
   ${PROJECT_SOURCE_DIR}/assets/records/long-period-y.EW
   ${PROJECT_SOURCE_DIR}/assets/records/near-fault.csv)
 topple_embed(
-  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin_records.cpp.in
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/scene/builtin_records.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
   WITH_EXTENSION
   FILES ${record_files})
@@ -22,26 +22,26 @@ topple_embed(
 target_sources(topple_scene PRIVATE
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
   ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_csv.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_file.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram_text.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/edit_text.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_anchors.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_bodies.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_check.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_difference.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_document.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_entry.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_file.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_keys.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_keys_bodies.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_number.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_override.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_read.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_reference.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_rewrite.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_save.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene_shakes.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/toml_precheck.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/units.cpp)
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_csv.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_file.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_text.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/edit_text.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_anchors.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_check.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_difference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_document.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_entry.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_file.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_number.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_override.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_rewrite.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_save.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_shakes.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/toml_precheck.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

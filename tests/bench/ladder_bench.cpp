@@ -7,7 +7,7 @@
 #include <string>
 
 #include "solver/elastic_basis.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/overturn.h"
 #include "unit/solver/fixtures.h"
 

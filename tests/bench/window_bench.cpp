@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-#include "app/shell.h"
+#include "app/window/shell.h"
 #include "unit/render/off_screen.h"
 
 namespace topple::app {

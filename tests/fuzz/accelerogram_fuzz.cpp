@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "fuzz.h"
-#include "solver/io/accelerogram_file.h"
-#include "solver/io/scene.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
+#include "solver/io/scene/scene.h"
 #include "solver/types.h"
 
 using namespace topple;

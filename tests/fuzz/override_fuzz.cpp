@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "fuzz.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 using namespace topple;
 

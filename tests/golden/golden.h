@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "render/image.h"
+#include "render/output/image.h"
 #include "tests/unit/render/read_png.h"
 
 namespace topple::render {

@@ -1,5 +1,5 @@
 // Every panel of the window, as it is drawn off screen.
-#include "app/teaching_words.h"
+#include "app/panels/teaching_words.h"
 #include "tests/golden/golden.h"
 #include "tests/unit/app/shell_fixture.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/processor.h"
 #include "solver/run.h"
 

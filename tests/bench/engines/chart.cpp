@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bench/engines/results.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/measure.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/measure.h"
 
 namespace topple::bench {
 namespace {

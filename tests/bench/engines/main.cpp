@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "bench/engines/results.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/measure.h"
-#include "solver/study/rows.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/rows.h"
 
 namespace {
 

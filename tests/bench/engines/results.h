@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/engines/trial.h"
-#include "solver/study/chart.h"
+#include "solver/study/common/chart.h"
 
 namespace topple::bench {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "bench/engines/block.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/run.h"
 
 namespace topple::bench {

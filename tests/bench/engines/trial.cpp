@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "solver/study/measure.h"
+#include "solver/study/common/measure.h"
 #include "verification/housner.h"
 
 namespace topple::bench {

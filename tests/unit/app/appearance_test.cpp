@@ -1,13 +1,13 @@
 // How the window looks is kept between starts.
-#include "app/appearance.h"
+#include "app/panels/appearance.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
 
-#include "app/phrase_tables.h"
-#include "app/window_words.h"
+#include "app/panels/phrase_tables.h"
+#include "app/picture/window_words.h"
 #include "unit/render/scratch.h"
 
 namespace topple::app {

@@ -1,8 +1,8 @@
 // Files that are no recordings, or no longer.
 #include "program.h"
 #include "scenes.h"
-#include "solver/io/recording.h"
-#include "solver/io/scene.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/bridge.h"
+#include "app/picture/bridge.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/annotations.h"
-#include "app/words.h"
+#include "app/picture/annotations.h"
+#include "app/picture/words.h"
 #include "scenes.h"
 
 namespace topple::app {

@@ -1,10 +1,10 @@
 // Guided demos without a window, and the estimate beside it.
-#include "app/demo.h"
+#include "app/panels/demo.h"
 
 #include <gtest/gtest.h>
 
-#include "app/accuracy.h"
-#include "app/teaching_words.h"
+#include "app/panels/accuracy.h"
+#include "app/panels/teaching_words.h"
 #include "live.h"
 
 namespace topple::app {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "program.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/drawing_processes.h"
+#include "app/picture/drawing_processes.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

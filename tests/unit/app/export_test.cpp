@@ -9,8 +9,8 @@
 #include "program.h"
 #include "scenes.h"
 #include "solver/hinges.h"
-#include "solver/io/hdf5_handle.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/hdf5_handle.h"
+#include "solver/io/recording/recording.h"
 #include "solver/types.h"
 
 namespace topple::app {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "program.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

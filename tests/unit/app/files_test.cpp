@@ -1,6 +1,6 @@
-#include "app/files.h"
+#include "app/support/files.h"
 
-#include "app/commands.h"
+#include "app/support/errors.h"
 #include "program.h"
 
 namespace topple::app {

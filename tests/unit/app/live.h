@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "app/live_run.h"
-#include "app/player.h"
+#include "app/live/live_run.h"
+#include "app/live/player.h"
 #include "scenes.h"
 
 namespace topple::app {

@@ -1,4 +1,4 @@
-#include "app/live_recorder.h"
+#include "app/live/live_recorder.h"
 
 #include "live.h"
 #include "unit/render/scratch.h"

@@ -1,11 +1,11 @@
 // The manual page and shell completion hold what --help holds.
-#include "app/manual.h"
+#include "app/cli/manual.h"
 
 #include <regex>
 #include <set>
 #include <sstream>
 
-#include "app/command_line.h"
+#include "app/cli/command_line.h"
 #include "program.h"
 
 namespace topple::app {

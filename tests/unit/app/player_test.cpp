@@ -1,4 +1,4 @@
-#include "app/player.h"
+#include "app/live/player.h"
 
 #include <atomic>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "live.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/rerun.h"
 #include "unit/render/scratch.h"
 
 namespace topple::app {

@@ -1,8 +1,8 @@
 // Studies that are computed beside the window, and the panels that show them.
-#include "app/present_studies.h"
+#include "app/study/present_studies.h"
 
-#include "app/precision_words.h"
-#include "app/teaching_words.h"
+#include "app/panels/precision_words.h"
+#include "app/panels/teaching_words.h"
 #include "shell_fixture.h"
 
 namespace topple::app {

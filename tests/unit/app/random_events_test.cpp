@@ -13,10 +13,10 @@
 #include <random>
 #include <set>
 
-#include "app/theme.h"
-#include "app/window_words.h"
+#include "app/panels/theme.h"
+#include "app/picture/window_words.h"
 #include "shell_fixture.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace {
 

@@ -12,10 +12,10 @@
 #include <map>
 #include <random>
 
-#include "app/run_warnings.h"
-#include "solver/io/observer.h"
-#include "solver/io/scene.h"
-#include "solver/io/scene_keys.h"
+#include "app/batch/run_warnings.h"
+#include "solver/io/recording/observer.h"
+#include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_keys.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::app {

@@ -6,7 +6,7 @@
 #include "program.h"
 #include "scenes.h"
 #include "small_disk.h"
-#include "solver/io/recording_format.h"
+#include "solver/io/recording/recording_format.h"
 
 namespace topple::app {
 namespace {

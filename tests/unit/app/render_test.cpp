@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "program.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "scenes.h"
 
 namespace topple::app {

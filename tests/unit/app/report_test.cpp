@@ -1,10 +1,10 @@
 // topple report: what the page says, and that it is one file a browser shows.
-#include "app/report.h"
+#include "app/report/report.h"
 
 #include <cmath>
 
-#include "app/summary.h"
-#include "app/svg_chart.h"
+#include "app/batch/summary.h"
+#include "app/report/svg_chart.h"
 #include "program.h"
 #include "scenes.h"
 

@@ -1,11 +1,11 @@
 // Rigid motion and deformation told apart.
-#include "app/rigid_fit.h"
+#include "app/picture/rigid_fit.h"
 
 #include <gtest/gtest.h>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 #include "scenes.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/rotation.h"
 
 namespace topple::app {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/shell.h"
+#include "app/window/shell.h"
 #include "live.h"
 #include "mouse.h"
 #include "unit/render/off_screen.h"

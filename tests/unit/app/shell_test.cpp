@@ -6,7 +6,7 @@
 
 #include "shell_fixture.h"
 #include "small_disk.h"
-#include "solver/io/recording.h"
+#include "solver/io/recording/recording.h"
 
 namespace topple::app {
 namespace {

@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include "app/row.h"
+#include "app/picture/row.h"
 #include "shell_fixture.h"
 
 namespace topple::app {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "app/export_job.h"
+#include "app/window/export_job.h"
 #include "shell_fixture.h"
 
 namespace topple::app {

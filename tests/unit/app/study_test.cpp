@@ -4,8 +4,8 @@
 #include <sstream>
 #include <thread>
 
-#include "app/study_results.h"
-#include "app/sweep.h"
+#include "app/study/study_results.h"
+#include "app/study/sweep.h"
 #include "program.h"
 #include "scenes.h"
 

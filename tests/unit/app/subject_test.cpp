@@ -1,12 +1,12 @@
 // What is to be known of members, bodies and anchors.
-#include "app/subject.h"
+#include "app/panels/subject.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "app/annotations.h"
-#include "app/row.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
 #include "live.h"
 #include "solver/overturn.h"
 

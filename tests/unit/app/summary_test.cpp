@@ -1,4 +1,4 @@
-#include "app/summary.h"
+#include "app/batch/summary.h"
 
 #include <gtest/gtest.h>
 

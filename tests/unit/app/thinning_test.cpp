@@ -1,4 +1,4 @@
-#include "app/thinning.h"
+#include "app/picture/thinning.h"
 
 #include <gtest/gtest.h>
 

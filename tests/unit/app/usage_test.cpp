@@ -1,5 +1,5 @@
 // Calls that are wrong in themselves, and help.
-#include "app/nearest_name.h"
+#include "app/cli/nearest_name.h"
 #include "program.h"
 #include "scenes.h"
 

@@ -1,8 +1,8 @@
 // Recordings that are run again.
 #include "program.h"
 #include "scenes.h"
-#include "solver/io/recording.h"
-#include "solver/io/scene.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::app {
 namespace {

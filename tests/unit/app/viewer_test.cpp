@@ -1,5 +1,5 @@
 // The window's content off screen, with mouse and keyboard fed by hand.
-#include "app/viewer.h"
+#include "app/window/viewer.h"
 
 #include <imgui.h>
 #include <imgui_internal.h>

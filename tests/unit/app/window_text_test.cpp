@@ -11,15 +11,15 @@
 #include <ostream>
 #include <set>
 
-#include "app/precision_words.h"
-#include "app/shell.h"
-#include "app/teaching_words.h"
-#include "app/theme.h"
-#include "app/viewer.h"
-#include "app/window_words.h"
+#include "app/panels/precision_words.h"
+#include "app/panels/teaching_words.h"
+#include "app/panels/theme.h"
+#include "app/picture/window_words.h"
+#include "app/window/shell.h"
+#include "app/window/viewer.h"
 #include "live.h"
 #include "mouse.h"
-#include "render/image.h"
+#include "render/output/image.h"
 #include "unit/render/off_screen.h"
 #include "unit/render/scratch.h"
 

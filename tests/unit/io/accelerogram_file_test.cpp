@@ -1,4 +1,4 @@
-#include "solver/io/accelerogram_file.h"
+#include "solver/io/accelerogram/accelerogram_file.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "scene_samples.h"
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/types.h"
 
 namespace topple::io {

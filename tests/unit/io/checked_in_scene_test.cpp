@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "solver/io/scene.h"
-#include "solver/io/scene_keys.h"
+#include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {
 namespace {

@@ -1,11 +1,11 @@
-#include "solver/io/edit_text.h"
+#include "solver/io/scene/edit_text.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "solver/proximity.h"
 #include "solver/run.h"
 

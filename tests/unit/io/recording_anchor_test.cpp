@@ -2,7 +2,8 @@
 #include <set>
 
 #include "recording_fixture.h"
-#include "solver/io/rerun.h"
+#include "solver/io/export/export_csv.h"
+#include "solver/io/recording/rerun.h"
 
 namespace topple::io::testing {
 namespace {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/recording.h"
-#include "solver/io/recording_writer.h"
-#include "solver/io/scene.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/recording/recording_writer.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io::testing {
 

@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "recording_fixture.h"
-#include "solver/io/export_csv.h"
+#include "solver/io/export/export_csv.h"
 
 namespace topple::io::testing {
 namespace {

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "recording_fixture.h"
+#include "solver/io/export/export_csv.h"
 #include "solver/plasticity.h"
 
 namespace topple::io::testing {

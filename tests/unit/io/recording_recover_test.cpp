@@ -2,8 +2,8 @@
 #include <csignal>
 
 #include "recording_fixture.h"
-#include "solver/io/recover.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/recover.h"
+#include "solver/io/recording/rerun.h"
 
 namespace topple::io::testing {
 namespace {

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "recording_fixture.h"
-#include "solver/io/rerun.h"
+#include "solver/io/recording/rerun.h"
 
 namespace topple::io::testing {
 namespace {

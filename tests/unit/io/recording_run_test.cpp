@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "recording_fixture.h"
+#include "solver/io/export/export_csv.h"
 
 namespace topple::io::testing {
 namespace {

@@ -2,7 +2,7 @@
 #include <thread>
 
 #include "recording_fixture.h"
-#include "solver/io/export_csv.h"
+#include "solver/io/export/export_csv.h"
 
 // HDF5 keeps its tables at exit (see QuietHdf5), which the leak sanitizer, where it is on, need not tell.
 extern "C" const char* __lsan_default_suppressions() {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::io {
 

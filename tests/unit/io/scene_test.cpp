@@ -9,10 +9,10 @@
 #include "scene_samples.h"
 #include "solver/cabinet.h"
 #include "solver/contact_default.h"
-#include "solver/io/scene_check.h"
-#include "solver/io/scene_document.h"
-#include "solver/io/scene_entry.h"
-#include "solver/io/scene_keys.h"
+#include "solver/io/scene/scene_check.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_entry.h"
+#include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/mesh.h"
+#include "render/scene/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/window.h"
+#include "render/gl/window.h"
 
 namespace topple::render {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "render/off_screen.h"
-#include "render/picture.h"
+#include "render/gl/off_screen.h"
+#include "render/output/picture.h"
 
 namespace topple::render {
 

@@ -1,4 +1,4 @@
-#include "render/orbit.h"
+#include "render/scene/orbit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,13 @@
-#include "render/overlay.h"
+#include "render/scene/overlay.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
 
 #include <limits>
 
-#include "render/text_layout.h"
+#include "render/scene/legend.h"
+#include "render/scene/text_layout.h"
+#include "render/scene/ticks.h"
 #include "tests/unit/render/off_screen.h"
 #include "tests/unit/render/synthetic_cabinet.h"
 

@@ -1,4 +1,4 @@
-#include "render/pick.h"
+#include "render/scene/pick.h"
 
 #include <gtest/gtest.h>
 

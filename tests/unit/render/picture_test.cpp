@@ -1,4 +1,4 @@
-#include "render/picture.h"
+#include "render/output/picture.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "render/image.h"
+#include "render/output/image.h"
 
 namespace topple::render {
 

@@ -1,4 +1,4 @@
-#include "render/stage.h"
+#include "render/output/stage.h"
 
 #include <gtest/gtest.h>
 

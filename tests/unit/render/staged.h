@@ -4,8 +4,8 @@
 
 #include <imgui.h>
 
-#include "render/font.h"
-#include "render/stage.h"
+#include "render/output/stage.h"
+#include "render/scene/font.h"
 #include "tests/unit/render/synthetic_cabinet.h"
 
 namespace topple::render {

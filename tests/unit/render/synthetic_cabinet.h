@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "render/scene_frame.h"
+#include "render/scene/scene_frame.h"
 
 namespace topple::render {
 

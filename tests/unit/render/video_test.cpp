@@ -1,4 +1,4 @@
-#include "render/video.h"
+#include "render/output/video.h"
 
 #include <gtest/gtest.h>
 

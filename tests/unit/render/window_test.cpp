@@ -1,5 +1,5 @@
 // A real window; runs under xvfb-run, in a process without an off-screen context.
-#include "render/window.h"
+#include "render/gl/window.h"
 
 #include <gtest/gtest.h>
 

@@ -42,7 +42,7 @@ std::string objection(const Include& include) {
   const std::string arrow = include.file + " includes " + include.target + ": ";
   if (to == "app" && from != "app") return arrow + "only app knows app";
   const bool gl = include.target.find("GL/") != std::string::npos ||
-                  include.target.find("GLFW") != std::string::npos || include.target == "render/gl.h";
+                  include.target.find("GLFW") != std::string::npos || include.target == "render/gl/gl.h";
   if (gl && from != "render") return arrow + "OpenGL stays in render";
   if (from == "render" && starts_with(to, "solver")) return arrow + "render draws plain arrays";
   if (starts_with(from, "solver") && to == "render") return arrow + "the solver is not drawn by itself";
@@ -112,9 +112,9 @@ TEST(Layout, reader_finds_includes_however_they_are_written) {
 }
 
 TEST(Layout, wrong_arrows_are_found) {
-  const Include wrong[] = {{"solver/step.cpp", "solver/io/scene.h", true},
+  const Include wrong[] = {{"solver/step.cpp", "solver/io/scene/scene.h", true},
                            {"solver/step.cpp", "solver/study/map.h", true},
-                           {"solver/step.cpp", "render/camera.h", true},
+                           {"solver/step.cpp", "render/scene/camera.h", true},
                            {"solver/step.cpp", "app/main.h", true},
                            {"solver/step.cpp", "thread", false},
                            {"solver/step.cpp", "chrono", false},
@@ -124,14 +124,14 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/step.cpp", "cstdlib", false},
                            {"solver/step.cpp", "hdf5.h", false},
                            {"solver/step.cpp", "toml++/toml.hpp", false},
-                           {"solver/io/scene.cpp", "solver/study/map.h", true},
-                           {"solver/io/scene.cpp", "app/main.h", true},
-                           {"solver/io/scene.cpp", "GL/gl.h", false},
-                           {"solver/study/map.cpp", "render/image.h", true},
-                           {"solver/study/map.cpp", "app/files.h", true},
-                           {"render/camera.cpp", "solver/types.h", true},
-                           {"render/camera.cpp", "solver/io/scene.h", true},
-                           {"render/camera.cpp", "app/main.h", true},
+                           {"solver/io/scene/scene.cpp", "solver/study/map.h", true},
+                           {"solver/io/scene/scene.cpp", "app/main.h", true},
+                           {"solver/io/scene/scene.cpp", "GL/gl.h", false},
+                           {"solver/study/map.cpp", "render/output/image.h", true},
+                           {"solver/study/map.cpp", "app/support/files.h", true},
+                           {"render/scene/camera.cpp", "solver/types.h", true},
+                           {"render/scene/camera.cpp", "solver/io/scene/scene.h", true},
+                           {"render/scene/camera.cpp", "app/main.h", true},
                            {"app/main.cpp", "GLFW/glfw3.h", false}};
   for (const Include& include : wrong)
     EXPECT_NE(objection(include), "") << include.file << " " << include.target;
@@ -141,15 +141,15 @@ TEST(Layout, right_arrows_are_not_objected_to) {
   const Include right[] = {{"solver/step.cpp", "solver/model.h", true},
                            {"solver/step.cpp", "Eigen/LU", false},
                            {"solver/step.cpp", "vector", false},
-                           {"solver/io/scene.cpp", "solver/run.h", true},
-                           {"solver/io/scene.cpp", "fstream", false},
-                           {"solver/io/scene.cpp", "hdf5.h", false},
-                           {"solver/study/map.cpp", "solver/io/scene.h", true},
+                           {"solver/io/scene/scene.cpp", "solver/run.h", true},
+                           {"solver/io/scene/scene.cpp", "fstream", false},
+                           {"solver/io/scene/scene.cpp", "hdf5.h", false},
+                           {"solver/study/map.cpp", "solver/io/scene/scene.h", true},
                            {"solver/study/map.cpp", "solver/modes.h", true},
                            {"solver/study/map.cpp", "thread", false},
                            {"app/main.cpp", "solver/study/map.h", true},
-                           {"render/gl.cpp", "GL/gl.h", false},
-                           {"app/main.cpp", "render/camera.h", true},
+                           {"render/gl/gl.cpp", "GL/gl.h", false},
+                           {"app/main.cpp", "render/scene/camera.h", true},
                            {"app/main.cpp", "solver/run.h", true}};
   for (const Include& include : right) EXPECT_EQ(objection(include), "");
 }

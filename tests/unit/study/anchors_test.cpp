@@ -1,4 +1,4 @@
-#include "solver/study/anchors.h"
+#include "solver/study/common/anchors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Axes of sweeps and the order of their points.
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Orders of convergence, and fronts of cost and error.
-#include "solver/study/convergence.h"
+#include "solver/study/precision/convergence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Criteria of overturning against closed forms and an independent integration.
-#include "solver/study/criteria.h"
+#include "solver/study/overturn/criteria.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 #include "verification/housner.h"
 
 namespace topple::study {

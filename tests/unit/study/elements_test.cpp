@@ -1,5 +1,5 @@
 // The benchmarks of the element comparison: what theory says of each scheme.
-#include "solver/study/elements.h"
+#include "solver/study/elements/elements.h"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -9,10 +9,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene.h"
-#include "solver/study/elements_chart.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/rows.h"
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/rows.h"
+#include "solver/study/elements/elements_chart.h"
 
 namespace topple::study {
 namespace {

@@ -1,11 +1,11 @@
 // Lognormal fragility by maximum likelihood.
-#include "solver/study/fragility.h"
+#include "solver/study/overturn/fragility.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solver/study/axis.h"
+#include "solver/study/common/axis.h"
 
 namespace topple::study {
 namespace {

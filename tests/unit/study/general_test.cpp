@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "solver/study/gnuplot.h"
-#include "solver/study/measure.h"
-#include "solver/study/parallel.h"
-#include "solver/study/rows.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
+#include "solver/study/common/rows.h"
 
 namespace topple::study {
 namespace {

@@ -1,5 +1,5 @@
 // JMA seismic intensity against the agency's example and motions of which it is known in closed form.
-#include "solver/study/intensity.h"
+#include "solver/study/common/intensity.h"
 
 #include <gtest/gtest.h>
 

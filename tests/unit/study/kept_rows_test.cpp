@@ -1,5 +1,5 @@
 // Rows that outlive a sweep.
-#include "solver/study/kept_rows.h"
+#include "solver/study/common/kept_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::study {
 namespace {

@@ -1,5 +1,5 @@
 // The overturning map: verdicts against theory, rows that do not depend on how they came, what is left open.
-#include "solver/study/overturn_map.h"
+#include "solver/study/overturn/overturn_map.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "solver/study/overturn_chart.h"
+#include "solver/study/overturn/overturn_chart.h"
 #include "study_cases.h"
 #include "verification/housner.h"
 

@@ -1,5 +1,5 @@
 // The penalty study: rows, bounds, the alpha that it recommends, its chart.
-#include "solver/study/penalty.h"
+#include "solver/study/penalty/penalty.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/contact_law.h"
-#include "solver/io/scene.h"
-#include "solver/study/gnuplot.h"
-#include "solver/study/penalty_chart.h"
-#include "solver/study/rows.h"
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/gnuplot.h"
+#include "solver/study/common/rows.h"
+#include "solver/study/penalty/penalty_chart.h"
 
 namespace topple::study {
 namespace {

@@ -1,5 +1,5 @@
 // The precision study: errors that are known, references that confirm each other, what is missing.
-#include "solver/study/precision.h"
+#include "solver/study/precision/precision.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "solver/overturn.h"
-#include "solver/study/precision_chart.h"
+#include "solver/study/precision/precision_chart.h"
 #include "study_cases.h"
 
 namespace topple::study {

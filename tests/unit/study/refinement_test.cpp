@@ -1,11 +1,11 @@
 // Stated errors against those that runs at much finer steps show.
-#include "solver/study/refinement.h"
+#include "solver/study/common/refinement.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::study {
 namespace {

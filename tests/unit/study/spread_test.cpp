@@ -1,10 +1,10 @@
-#include "solver/study/spread.h"
+#include "solver/study/common/spread.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solver/io/scene.h"
+#include "solver/io/scene/scene.h"
 
 namespace topple::study {
 namespace {

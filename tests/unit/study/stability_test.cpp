@@ -1,6 +1,6 @@
 // The stability map: fates of runs, limits of theory against formulas and integration by hand, rows that do
 // not depend on how they came.
-#include "solver/study/stability.h"
+#include "solver/study/stability/stability.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <numbers>
 #include <string>
 
-#include "solver/study/stability_chart.h"
-#include "solver/study/stability_limits.h"
+#include "solver/study/stability/stability_chart.h"
+#include "solver/study/stability/stability_limits.h"
 #include "study_cases.h"
 
 namespace topple::study {

@@ -1,14 +1,14 @@
 // Theory of a rigid body on penalty contacts, and the same through the solver.
-#include "solver/study/standing.h"
+#include "solver/study/common/standing.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "solver/io/scene.h"
-#include "solver/study/alone.h"
-#include "solver/study/contact_trials.h"
-#include "solver/study/impact.h"
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/penalty/contact_trials.h"
+#include "solver/study/penalty/impact.h"
 
 namespace topple::study {
 namespace {

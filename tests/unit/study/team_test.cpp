@@ -1,5 +1,5 @@
 // Threads that share the islands of a step change nothing but the time that it takes.
-#include "solver/study/team.h"
+#include "solver/study/common/team.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "solver/study/theory.h"
+#include "solver/study/elements/theory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,157 @@
+#include "app/batch/recorded_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "app/batch/run_profile.h"
+#include "app/batch/summary.h"
+#include "app/support/clock.h"
+#include "app/support/errors.h"
+#include "app/support/interrupt.h"
+#include "app/support/progress.h"
+#include "app/support/terms.h"
+#include "solver/io/recording/recording.h"
+#include "solver/ladder.h"
+#include "solver/study/common/refinement.h"
+#include "solver/study/common/team.h"
+
+namespace topple::app {
+namespace {
+
+constexpr int k_many_bodies = 32;  // that are not frames: a step of fewer is over before it is shared out
+
+/// Threads that make steps of `setup` faster.
+int paying_jobs(const Setup& setup) {
+  if (is_static(setup)) return 1;
+  int frames = 0, others = 0;
+  for (int b = 0; b < setup.model.furniture_total(); ++b)
+    ++(base_rung(setup.model, setup.parameters, b).rung == Rung::frame ? frames : others);
+  if (frames < 2 && others < k_many_bodies) return 1;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, frames + others);
+}
+
+/// Steps to the end of `run`, a failure or Ctrl+C. `recorder`: null, or what has the first instant already.
+void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Progress& progress) {
+  while (!run.over() && !interrupted()) {
+    if (!run.advance().ok()) break;
+    if (recorder) {
+      const InPhase phase(&run.profile(), Phase::record);
+      recorder->write(observer.observe(run));
+      recorder->flush_if_due();
+    }
+    progress.update(run.time());
+  }
+  if (recorder) {
+    const InPhase phase(&run.profile(), Phase::record);
+    recorder->write(observer.last(run));
+  }
+}
+
+/// The error of a recording that broke off, and how far it can be read.
+io::WriteError with_remains(const io::WriteError& error, const std::string& path, bool loads) {
+  try {
+    const io::Recording left(path);
+    if (left.frame_count() == 0) return error;
+    return io::WriteError(fmt::format("{}; it can be read up to {:.6g}{}", error.what(),
+                                      left.index().back().time, extent_unit(loads)));
+  } catch (const io::InputError&) {
+    return error;
+  }
+}
+
+std::string status_of(const Run& run) {
+  return !run.status().ok()    ? "diverged"
+         : run.stopped_early() ? "stopped"
+         : run.over()          ? "completed"
+                               : "interrupted";
+}
+
+/// "error_estimate" of the summary of `run`; null when Ctrl+C came first.
+nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::optional<study::Team>& team,
+                                bool quiet) {
+  const Setup finer = study::refined(scene.setup);
+  Run second(finer);
+  if (team) second.share(team->share());
+  Progress progress(scene.name + ", " + refinement_in_words(finer), "s simulated", finer.run.duration, quiet);
+  while (second.status().ok() && !second.over() && !interrupted()) {
+    if (!second.advance().ok()) break;
+    progress.update(second.time());
+  }
+  if (!second.status().ok()) return failed_estimate(finer, second.status().message(finer.model));
+  if (!second.over()) return nullptr;
+  return error_estimate(scene.setup, run.outcome(), second.outcome());
+}
+
+void warn_of_open_verdicts(const nlohmann::ordered_json& error, nlohmann::ordered_json& warnings) {
+  if (!error.contains("disagreements")) return;
+  for (const auto& line : error["disagreements"])
+    warnings.push_back("the verdict depends on the step: " + line.get<std::string>() +
+                       "; the share of many runs says more than one (study overturn --ensemble)");
+}
+
+}  // namespace
+
+const char* extent_unit(bool loads) {
+  return loads ? " of the way" : " s";
+}
+
+RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
+  std::optional<io::Recorder> recorder;
+  if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model, scene.files);
+  const auto start = Clock::now();
+  std::optional<study::Team> team;
+  Run run(scene.setup);
+  const bool recorded = recorder && run.status().ok();  // what does not settle has no first instant
+  RecordedRun result;
+  bool begun = false;
+  try {
+    if (run.status().ok()) {
+      io::Observer observer;
+      if (recorded) {
+        recorder->write(observer.observe(run));
+        recorder->flush();
+      }
+      begun = recorded;
+      Progress progress(scene.name, is_static(scene.setup) ? "of the load path" : "s simulated",
+                        scene.setup.run.duration, manner.quiet);
+      const int jobs = manner.profile ? 1 : manner.jobs.value_or(paying_jobs(scene.setup));
+      if (jobs > 1) run.share(team.emplace(jobs).share());
+      if (manner.profile) start_profile(run.profile());
+      step_through(run, observer, recorded ? &*recorder : nullptr, progress);
+    }
+    nlohmann::ordered_json profile;
+    if (manner.profile) profile = profile_summary(run.profile(), run.step());
+    const double wall = seconds_since(start);
+    const std::string status = status_of(run);
+    result.summary = summary(scene, run, status, wall);
+    if (manner.profile) result.summary["profile"] = std::move(profile);
+    bool estimated = true;
+    if (manner.estimate && run.over() && run.status().ok()) {
+      if (recorded) recorder->flush();
+      nlohmann::ordered_json& error = result.summary["error_estimate"];
+      error = estimate(scene, run, team, manner.quiet);
+      estimated = !error.is_null();
+      if (estimated) warn_of_open_verdicts(error, result.summary["warnings"]);
+    }
+    if (recorded) recorder->finish(status, json_text(result.summary));
+    result.recorded = recorded;
+    result.exit_code = status == "diverged" ? k_failed : status == "interrupted" ? k_interrupted : k_done;
+    if (status == "diverged") result.trouble = scene.name + ": " + run.status().message(scene.setup.model);
+    if (!estimated) {
+      result.exit_code = k_interrupted;
+      result.trouble = "interrupted while the error was estimated; the run itself is complete";
+    }
+    if (status == "interrupted")
+      result.trouble = is_static(scene.setup)
+                           ? fmt::format("interrupted at load factor {:.6g}", run.state().load_factor)
+                           : fmt::format("interrupted at {:.6g} s", run.state().time);
+  } catch (const io::WriteError& error) {
+    if (!begun) throw;
+    throw with_remains(error, path, is_static(scene.setup));
+  }
+  return result;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,161 @@
+#include "app/batch/run_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/support/terms.h"
+#include "solver/accelerogram.h"
+#include "solver/edit.h"
+#include "solver/ladder.h"
+#include "solver/study/stability/stability_limits.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_pinched = 0.95;              // 1 - l/L between members
+constexpr double k_same_interval = 1 + 1e-9;    // of a step and a sample interval, both rounded
+constexpr double k_good_balance = 1e-3;         // energy that nothing explains
+constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
+constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
+constexpr double k_elastic_strain = 0.01;       // more than structural metals and wood have
+constexpr double k_most_g = 5;                  // of a shake; records above it are refused
+constexpr double k_numbers_of_interest = 1e-9;  // J, below it shares are rounding
+
+using Warnings = std::vector<std::string>;
+
+void warn_of_depth(const Run& run, Warnings& list) {
+  const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
+  const Model& model = run.setup().model;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].peak_penetration > 1)
+      list.push_back(
+          fmt::format("body \"{}\" sank to {:.2f} contact widths: the centre line of a member passed that of "
+                      "the floor or wall; a larger alpha or width holds it",
+                      model.bodies[b].name, bodies[b].peak_penetration));
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (bodies[b].peak_pinch > k_pinched)
+      list.push_back(
+          fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
+                      "larger alpha keeps them apart",
+                      model.bodies[b].name, 1 - bodies[b].peak_pinch));
+}
+
+void warn_of_shakes(const Run& run, Warnings& list) {
+  const std::vector<Shake>& shakes = run.parameters().shakes;
+  for (std::size_t k = 0; k < shakes.size(); ++k)
+    if (shakes[k].kind != Shake::Kind::record && shakes[k].amplitude > k_most_g * k_standard_gravity)
+      list.push_back(
+          fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
+                      k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
+}
+
+void warn_of_stress(const Run& run, Warnings& list) {
+  const Model& model = run.setup().model;
+  const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const Body& body = model.bodies[b];
+    double stiffest = 0;
+    for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
+      const Material& material = model.materials[model.members[m].material];
+      if (material.yield == 0) stiffest = std::max(stiffest, material.young);
+    }
+    if (stiffest > 0 && bodies[b].peak_stress > k_elastic_strain * stiffest)
+      list.push_back(fmt::format(
+          "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
+          "hinges",
+          body.name, 1e-6 * bodies[b].peak_stress));
+  }
+}
+
+void warn_of_hinges(const Run& run, Warnings& list) {
+  const Model& model = run.setup().model;
+  std::string names;
+  for (const int member : run.outcome().crowded_members())
+    names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", model.bodies[model.members[member].body].name,
+                         model.members[member].name);
+  if (!names.empty())
+    list.push_back("both ends of an element pass yield, which holds one hinge, in " + names +
+                   "; more elements or divisions show it");
+}
+
+// Of fixed steps; adaptive ones follow what happens.
+void warn_of_step(const Run& run, Warnings& list) {
+  const Parameters& p = run.parameters();
+  const Model& model = run.setup().model;
+  const double h = p.time_step;
+  for (const Shake& shake : p.shakes)
+    if (shake.kind == Shake::Kind::record && h > k_same_interval * shake.record->interval)
+      list.push_back(fmt::format(
+          "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
+          "steps is not seen",
+          1e3 * h, 1e3 * shake.record->interval));
+  double bounce = std::numeric_limits<double>::infinity();
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (base_rung(model, p, b).rung == Rung::frame)
+      if (const double period = contact_period(model, b, p.contact, p.gravity); period > 0)
+        bounce = std::min(bounce, period);
+  if (h > bounce / k_resolved_bounce)
+    list.push_back(
+        fmt::format("a bounce on the contacts takes {:.2g} ms, {:.2g} steps: impacts are not "
+                    "resolved; try a time_step below {:.2g} ms, or \"auto\"",
+                    1e3 * bounce, bounce / h, 1e3 * bounce / (2 * k_resolved_bounce)));
+  const double chatter = model.planes.empty() ? 0 : study::step_of_chatter(p.contact, p.gravity.norm());
+  if (chatter > 0 && h > chatter)
+    list.push_back(
+        fmt::format("time_step {:g} ms is longer than 2 slip_speed/(friction g) = {:.3g} ms: "
+                    "friction changes sides from step to step",
+                    1e3 * h, 1e3 * chatter));
+}
+
+void warn_of_law(const Run& run, Warnings& list) {
+  switch (run.parameters().contact.kind) {
+    case ContactLawKind::coulomb:
+    case ContactLawKind::paper:
+      return;
+    case ContactLawKind::printed:
+      break;
+  }
+  if (!run.setup().model.planes.empty())
+    list.push_back(
+        "law = \"printed\" holds bodies back where they part and lets them sink at rest: verdicts "
+        "with it mean nothing; \"coulomb\" and \"paper\" do neither");
+}
+
+void warn_of_energy(const Run& run, Warnings& list) {
+  const EnergyLedger& e = run.state().energy;
+  const bool by_tolerance =
+      run.parameters().adaptive && run.parameters().integrator != Integrator::central_difference;
+  const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
+  if (const double balance = e.balance_error(); balance > k_good_balance)
+    list.push_back(
+        fmt::format("energy balance error {:.1e} is above {:.0e}; {}", balance, k_good_balance, finer));
+  const double share = std::abs(e.numerical) / e.largest;
+  if (e.largest < k_numbers_of_interest || share < k_numerical) return;
+  const Parameters& p = run.parameters();
+  const bool damping_newmark = p.integrator == Integrator::newmark && p.gamma > 0.5;
+  list.push_back(fmt::format("the time integration {} {:.3g} J, {:.0f} % of the largest energy exchanged; {}",
+                             e.numerical > 0 ? "took" : "gave", std::abs(e.numerical), 100 * share,
+                             e.numerical > 0 && damping_newmark
+                                 ? "gamma above 1/2 damps rigid motion too, generalized-alpha does not"
+                                 : finer));
+}
+
+}  // namespace
+
+std::vector<std::string> run_warnings(const Run& run) {
+  Warnings list;
+  warn_of_depth(run, list);
+  warn_of_shakes(run, list);
+  warn_of_stress(run, list);
+  warn_of_hinges(run, list);
+  if (is_static(run.setup())) return list;
+  if (!run.parameters().adaptive) warn_of_step(run, list);
+  warn_of_law(run, list);
+  warn_of_energy(run, list);
+  return list;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,399 @@
+#include "app/batch/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "app/batch/run_warnings.h"
+#include "app/support/terms.h"
+#include "solver/ladder.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double x) {
+  return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
+}
+
+ordered_json number(const std::optional<double>& x) {
+  return x ? number(*x) : ordered_json(nullptr);
+}
+
+ordered_json vector(const Vec3& v) {
+  return {number(v.x()), number(v.y()), number(v.z())};
+}
+
+ordered_json list(const std::vector<double>& values, double unit) {
+  ordered_json out = ordered_json::array();
+  for (const double value : values) out.push_back(number(value / unit));
+  return out;
+}
+
+ordered_json intervals(const std::vector<double>& times) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t k = 1; k < times.size(); ++k) out.push_back(number(times[k] - times[k - 1]));
+  return out;
+}
+
+ordered_json changes(const BodyOutcome& o) {
+  ordered_json out = ordered_json::array();
+  for (const RungChange& change : o.rung_changes)
+    out.push_back(
+        {{"time_s", number(change.time)}, {"model", name(change.rung)}, {"reason", name(change.reason)}});
+  return out;
+}
+
+ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
+  return {{"name", body.name},
+          {"model", name(o.rung.value_or(Rung::frame))},
+          {"model_changes", changes(o)},
+          {"overturned", o.beyond_since.has_value()},
+          {"overturn_time_s", number(o.beyond_since)},
+          {"first_uplift_s", number(o.first_uplift)},
+          {"impacts", o.impacts},
+          {"first_impact_s", number(o.first_impact)},
+          {"peak_tilt_deg", number(o.peak_tilt * k_degrees)},
+          {"rebound_tilt_deg", o.first_impact ? number(o.rebound_tilt * k_degrees) : ordered_json(nullptr)},
+          {"impact_times_s", list(o.impact_times, 1)},
+          {"impact_intervals_s", intervals(o.impact_times)},
+          {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
+          {"final_tilt_deg", number(o.tilt * k_degrees)},
+          {"critical_tilt_deg", number(o.critical * k_degrees)},
+          {"peak_slide_m", number(o.peak_slide)},
+          {"final_slide_m", number(o.slide)},
+          {"final_velocity_m_s", vector(momentum.velocity)},
+          {"final_angular_momentum_kg_m2_s", vector(momentum.angular_momentum)},
+          {"peak_stress_Pa", o.always_rigid ? ordered_json(nullptr) : number(o.peak_stress)},
+          {"peak_yield_ratio", number(o.peak_yield_ratio)},
+          {"hinges", o.hinges},
+          {"fractures", o.fractures},
+          {"peak_penetration_ratio", number(o.peak_penetration)},
+          {"peak_pinch_ratio", number(o.peak_pinch)}};
+}
+
+ordered_json anchors(const Run& run) {
+  ordered_json out = ordered_json::array();
+  const Model& model = run.setup().model;
+  for (std::size_t k = 0; k < model.anchors.size(); ++k) {
+    const AnchorOutcome& o = run.outcome().anchors()[k];
+    ordered_json one = describe_anchor(model, model.anchors[k]);
+    one["peak_force_N"] = number(o.peak_force);
+    one["final_force_N"] = number(o.tension);
+    one["in_place"] = o.hold == AnchorHold::in_place;
+    one["broke"] = o.broke.has_value();
+    one["break_time_s"] = number(o.broke);
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::string integrator_name(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::central_difference:
+      return "central-difference";
+    case Integrator::newmark:
+      return "newmark";
+    case Integrator::generalized_alpha:
+      break;
+  }
+  return "generalized-alpha";
+}
+
+/// The mean of an adaptive run.
+ordered_json time_step(const Run& run) {
+  const Parameters& p = run.parameters();
+  if (is_static(run.setup()) || (p.adaptive && run.state().step == 0)) return nullptr;
+  return number(p.adaptive ? run.state().time / static_cast<double>(run.state().step) : p.time_step);
+}
+
+/// Relative speed, m/s, below which no fixed step is cut because members would pass each other unseen.
+ordered_json safe_closing_speed(const Run& run) {
+  const Model& model = run.setup().model;
+  const Parameters& p = run.parameters();
+  if (is_static(run.setup()) || p.adaptive || model.bodies.size() < 2) return nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e)
+    least = std::min(least, contact_length(model, {e, e}));
+  return number(least / 2 / p.time_step);
+}
+
+ordered_json load_steps(const Run& run) {
+  ordered_json list = ordered_json::array();
+  for (const LoadStep& step : run.load_steps())
+    list.push_back({{"factor", number(step.factor)}, {"converged", step.converged}});
+  return list;
+}
+
+/// Of the balances found: a limit load, where the path goes beyond it.
+ordered_json peak_load_factor(const Run& run) {
+  std::optional<double> peak;
+  for (const LoadStep& step : run.load_steps())
+    if (step.converged) peak = std::max(peak.value_or(step.factor), step.factor);
+  return number(peak);
+}
+
+/// Characters of a UTF-8 text.
+int characters(const std::string& text) {
+  return static_cast<int>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string text(const ordered_json& value, const char* format) {
+  return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
+}
+
+/// The line about `error_estimate`.
+std::string estimate_in_words(const ordered_json& e) {
+  const std::string begin = fmt::format("error ({}): ", e["how"].get<std::string>());
+  if (e.contains("failed"))
+    return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
+  if (!e["disagreements"].empty()) {
+    std::string words;
+    for (const auto& line : e["disagreements"])
+      words += (words.empty() ? "" : "; ") + line.get<std::string>();
+    return begin + "the verdict itself is open: " + words + "\n";
+  }
+  const auto part = [&](const char* name, const char* key, double scale, const char* unit) {
+    return e[key].is_null() ? "" : fmt::format("{} {:.2g} {}, ", name, scale * e[key].get<double>(), unit);
+  };
+  std::string words =
+      part("overturning", "overturn_time_s", 1, "s") + part("peak tilt", "peak_tilt_deg", 1, "deg") +
+      part("slide", "peak_slide_m", 1e3, "mm") + part("peak stress", "peak_stress_Pa", 1e-6, "MPa");
+  words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
+  return begin + words + "\n";
+}
+
+std::string static_head(const ordered_json& s) {
+  std::string out = fmt::format(
+      "{}: {} in {:.2f} s of wall time\nstatic: {} load steps, {} halved, {} iterations\n",
+      s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
+      s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
+  for (const auto& step : s["static"])
+    out += fmt::format("load factor {}: {}\n", text(step["factor"], "{:.6g}"),
+                       step["converged"].get<bool>() ? "converged" : "no equilibrium");
+  return out + "\n";
+}
+
+// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h).
+std::string integrators(const ordered_json& s) {
+  bool frames = false, others = false;
+  const auto look = [&](const ordered_json& model) { (model == "frame" ? frames : others) = true; };
+  for (const auto& b : s["bodies"]) {
+    look(b["model"]);
+    for (const auto& change : b["model_changes"]) look(change["model"]);
+  }
+  const auto named = s["integrator"].get<std::string>();
+  if (!frames) return "central differences";
+  return others && named != "central-difference" ? named + " (frames), central differences" : named;
+}
+
+std::string dynamic_head(const ordered_json& s) {
+  std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
+                                s["status"].get<std::string>(), s["simulated_s"].get<double>());
+  if (!s["realtime_factor"].is_null())
+    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
+                       s["realtime_factor"].get<double>());
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n", integrators(s),
+                     s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
+                     s["steps"].get<long>(), s["rejected_steps"].get<long>(),
+                     s["newton_iterations"].get<long>());
+  out += fmt::format("contact: alpha {:.6g} kgf, q {:.6g}, friction {:.6g}\n",
+                     s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
+                     s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>());
+  return out + energy_in_words(s["energy"]) + "\n";
+}
+
+std::string anchor_line(const ordered_json& a) {
+  const double peak = a["peak_force_N"].get<double>();
+  std::string line = fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
+  if (a["broke"].get<bool>())
+    return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
+  if (!a["strength_N"].is_null())
+    line += fmt::format(", {:.0f} % of its strength", 100 * peak / a["strength_N"].get<double>());
+  return line + (a["in_place"].get<bool>() ? "\n" : ", taken away\n");
+}
+
+}  // namespace
+
+ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
+  return {{"name", anchor.name},
+          {"body", model.bodies[static_cast<std::size_t>(anchor.body)].name},
+          {"type", anchor_type(anchor)},
+          {"strength_N", number(anchor.strength)}};
+}
+
+ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
+  const State& state = run.state();
+  const EnergyLedger& e = state.energy;
+  const Parameters& p = run.parameters();
+  ordered_json out;
+  out["topple"] = TOPPLE_VERSION;
+  out["schema"] = 1;
+  out["scene"] = scene.name;
+  out["status"] = status;
+  if (!run.status().ok()) out["message"] = run.status().message(run.setup().model);
+  out["analysis"] = is_static(run.setup()) ? "static" : "dynamic";
+  out["simulated_s"] = number(state.time);
+  out["wall_s"] = number(wall_s);
+  out["realtime_factor"] =
+      wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);
+  out["integrator"] =
+      is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
+  out["time_step_s"] = time_step(run);
+  out["adaptive"] = p.adaptive && !is_static(run.setup());
+  out["explicit_limit_s"] = number(run.stable_step());
+  out["safe_closing_speed_m_s"] = safe_closing_speed(run);
+  out["contact"] = {{"alpha_N", number(p.contact.alpha)},
+                    {"q", number(p.contact.q)},
+                    {"friction", number(p.contact.friction)},
+                    {"restitution", number(p.contact.restitution)},
+                    {"normal_speed_m_s", number(p.contact.normal_speed)}};
+  out["steps"] = state.step;
+  out["rejected_steps"] = run.rejected_steps();
+  out["newton_iterations"] = run.newton_iterations();
+  out["energy"] = {
+      {"input_J", number(e.input)},
+      {"kinetic_J", number(e.kinetic)},
+      {"strain_J", number(e.strain)},
+      {"gravity_J", number(e.gravity)},
+      {"contact_J", number(e.contact)},
+      {"anchor_J", number(e.anchor)},
+      {"start_J", number(e.start_total)},
+      {"final_J", number(e.kinetic + e.strain + e.contact + e.anchor)},
+      {"dissipated_J", number(e.dissipated())},
+      {"friction_J", number(e.friction)},
+      {"normal_damping_J", number(e.normal_damping)},
+      {"numerical_J", number(e.numerical)},
+      {"plastic_J", number(e.plastic)},
+      {"damping_J", number(e.damping)},
+      {"released_J", number(e.released)},
+      {"model_switch_J", number(e.model_switch)},
+      {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
+  out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
+                  {"final_velocity_m_s", vector(state.floor_velocity)}};
+  out["bodies"] = ordered_json::array();
+  const Model& model = run.setup().model;
+  for (int b = 0; b < model.furniture_total(); ++b)
+    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, b)));
+  out["anchors"] = anchors(run);
+  out["probes"] = ordered_json::array();
+  for (std::size_t k = 0; k < run.probes().size(); ++k) {
+    const ProbeOutcome& probe = run.probes()[k];
+    out["probes"].push_back(
+        {{"name", run.setup().probes[k].name},
+         {"final",
+          {{"displacement_m", vector(probe.displacement)}, {"rotation_rad", vector(probe.rotation)}}},
+         {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
+  }
+  out["static"] = load_steps(run);
+  out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
+  out["warnings"] = run_warnings(run);
+  return out;
+}
+
+std::string refinement_in_words(const Setup& setup) {
+  return setup.parameters.adaptive ? fmt::format("tolerance divided by {:g}", study::k_finer_tolerance)
+                                   : "step halved";
+}
+
+ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcome& finer) {
+  struct Quantity {
+    const char* key;
+    std::optional<double> study::BodyError::*error;
+    double unit;
+  };
+  static constexpr Quantity k_quantities[] = {
+      {"overturn_time_s", &study::BodyError::overturn_error, 1},
+      {"peak_tilt_deg", &study::BodyError::peak_tilt_error, 1 / k_degrees},
+      {"peak_slide_m", &study::BodyError::peak_slide_error, 1},
+      {"peak_stress_Pa", &study::BodyError::peak_stress_error, 1}};
+  const std::vector<study::BodyError> errors = study::errors(setup.model, run, finer);
+  ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array();
+  for (std::size_t b = 0; b < errors.size(); ++b) {
+    const study::BodyError& e = errors[b];
+    ordered_json body{{"name", setup.model.bodies[b].name}, {"same_verdict", e.same_verdict()}};
+    for (const Quantity& q : k_quantities) {
+      const std::optional<double>& error = e.*q.error;
+      body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);
+    }
+    bodies.push_back(std::move(body));
+    if (!e.same_verdict())
+      disagreements.push_back(fmt::format(
+          "{} {}, but {} when refined", setup.model.bodies[b].name,
+          e.overturned ? fmt::format("overturns at {:.4f} s", *e.overturn_time) : "does not overturn",
+          e.overturned ? "not" : fmt::format("at {:.4f} s", *e.overturn_refined)));
+  }
+  ordered_json out;
+  for (const Quantity& q : k_quantities) {
+    std::optional<double> greatest;
+    for (const study::BodyError& e : errors)
+      if (const std::optional<double>& error = e.*q.error)
+        greatest = std::max(greatest.value_or(0), *error / q.unit);
+    out[q.key] = disagreements.empty() ? number(greatest) : ordered_json(nullptr);
+  }
+  out["how"] = refinement_in_words(setup);
+  out["error_of_difference"] = study::k_error_of_difference;
+  out["disagreements"] = std::move(disagreements);
+  out["bodies"] = std::move(bodies);
+  return out;
+}
+
+ordered_json failed_estimate(const Setup& setup, const std::string& message) {
+  return {{"overturn_time_s", nullptr},
+          {"peak_tilt_deg", nullptr},
+          {"how", refinement_in_words(setup)},
+          {"failed", message}};
+}
+
+std::string json_text(const ordered_json& value, int indent) {
+  return value.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string energy_in_words(const ordered_json& e) {
+  const auto plastic = e["plastic_J"].is_null() ? 0 : e["plastic_J"].get<double>();
+  return fmt::format("energy: {} J came in, {} J dissipated{}, balance error {}\n",
+                     text(e["input_J"], "{:.4g}"), text(e["dissipated_J"], "{:.4g}"),
+                     plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
+                     text(e["balance_error"], "{:.1e}"));
+}
+
+std::string summary_table(const ordered_json& s) {
+  std::string out = s["analysis"] == "static" ? static_head(s) : dynamic_head(s);
+  int width = 14;
+  for (const auto& b : s["bodies"]) width = std::max(width, characters(b["name"].get<std::string>()));
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
+                     "uplift", "impacts", "peak tilt", "final tilt", "slide", "peak stress");
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",
+                     "deg", "deg", "mm", "MPa");
+  for (const auto& b : s["bodies"]) {
+    out += fmt::format(
+        "{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", b["name"].get<std::string>(), width,
+        b["overturned"].get<bool>() ? text(b["overturn_time_s"], "{:.4f}") : "no",
+        text(b["first_uplift_s"], "{:.3f}"), b["impacts"].get<int>(), text(b["peak_tilt_deg"], "{:.3f}"),
+        text(b["final_tilt_deg"], "{:.3f}"),
+        b["peak_slide_m"].is_null() ? "-" : fmt::format("{:.2f}", 1e3 * b["peak_slide_m"].get<double>()),
+        b["peak_stress_Pa"].is_null() ? "-"
+                                      : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
+  }
+  for (const auto& b : s["bodies"])
+    for (const auto& change : b["model_changes"])
+      out += fmt::format("{}: {} from {} s ({})\n", b["name"].get<std::string>(),
+                         change["model"].get<std::string>(), text(change["time_s"], "{:.3f}"),
+                         change["reason"].get<std::string>());
+  for (const auto& a : s["anchors"]) out += anchor_line(a);
+  if (s.contains("error_estimate") && !s["error_estimate"].is_null())
+    out += estimate_in_words(s["error_estimate"]);
+  for (const auto& p : s["probes"]) {
+    const auto& d = p["final"]["displacement_m"];
+    out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),
+                       text(d[1], "{:.6g}"), text(d[2], "{:.6g}"));
+  }
+  return out;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,245 @@
+#include "app/cli/compare_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/batch/recorded_run.h"
+#include "app/batch/summary.h"
+#include "app/picture/ghost_video.h"
+#include "app/picture/replay.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/foreign_recording.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/terms.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/recording/rerun.h"
+#include "solver/io/scene/scene_difference.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t k_narrowest = 10, k_widest = 64;  // letters of a column
+
+/// A scene that was run, or a recording.
+struct Side {
+  std::string source;
+  io::Scene scene;
+  ordered_json summary;  ///< null: of a recording whose run was interrupted
+  int exit_code = k_done;
+  std::size_t edits = 0;  ///< while it ran
+  std::unique_ptr<TemporaryFile> temporary;
+  std::unique_ptr<io::Recording> recording;  ///< of a scene only when pictures are wanted
+};
+
+/// Reads a recording, or a scene without running it.
+Side open_side(const std::string& source) {
+  Side side;
+  side.source = source;
+  if (!io::is_recording(source)) {
+    side.scene = io::load_scene(source);
+    return side;
+  }
+  side.recording = std::make_unique<io::Recording>(open_foreign_recording(source));
+  side.scene = io::recorded_scene(*side.recording);
+  io::check_edits(side.recording->history(), side.scene.setup);
+  side.edits = side.recording->history().edits_on_way_to(side.recording->newest_branch()).size();
+  if (!side.recording->summary_json().empty())
+    side.summary = ordered_json::parse(side.recording->summary_json());
+  return side;
+}
+
+void check(const CompareOptions& options, const Side& a, const Side& b) {
+  for (const Side* side : {&a, &b}) {
+    if (side->scene.setup.run.analysis == Analysis::modes)
+      throw BadInput(side->source + ": has run.analysis = \"modes\", which has no motion to compare");
+    if (!options.mp4.empty() && is_static(side->scene.setup))
+      throw BadInput("--mp4: " + side->source + " is static, and the video has a clock");
+    if (side->recording && side->recording->frame_count() == 0)
+      throw BadInput(side->source + ": holds no frames");
+  }
+  if (is_static(a.scene.setup) != is_static(b.scene.setup))
+    throw BadInput("one of " + a.source + " and " + b.source + " is static, the other is not");
+  const std::string sources[] = {a.source, b.source};
+  for (const std::string& source : sources) {
+    if (!options.json.empty() && options.json != "-") require_writable_text("--json", options.json, source);
+    if (!options.mp4.empty()) require_writable_file("--mp4", options.mp4, source);
+  }
+  if (!options.mp4.empty() && same_file(options.json, options.mp4))
+    throw BadInput("--json: " + options.json + " is the video; choose another name");
+}
+
+/// Runs a scene; false when Ctrl+C came.
+bool run_side(Side& side, bool pictures, bool quiet) {
+  if (side.recording) {
+    if (side.summary.is_null())
+      say("warning: " + side.source + ": its run was interrupted, so it has no outcome");
+    return true;
+  }
+  if (pictures) side.temporary = std::make_unique<TemporaryFile>();
+  RecordedRun run = record(side.scene, pictures ? side.temporary->path() : "", {.quiet = quiet});
+  side.summary = std::move(run.summary);
+  side.exit_code = run.exit_code;
+  if (!run.trouble.empty()) say(run.trouble);
+  if (run.recorded) side.recording = std::make_unique<io::Recording>(side.temporary->path());
+  return run.exit_code != k_interrupted;
+}
+
+ordered_json parameters(const Side& a, const Side& b) {
+  ordered_json list = ordered_json::array();
+  const auto text = [](const std::optional<std::string>& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  for (const io::SceneDifference& d : io::differences(a.scene, b.scene))
+    list.push_back({{"key", d.key}, {"a", text(d.a)}, {"b", text(d.b)}});
+  if (a.edits != b.edits || a.edits > 0)
+    list.push_back(
+        {{"key", "edits while it ran"}, {"a", std::to_string(a.edits)}, {"b", std::to_string(b.edits)}});
+  return list;
+}
+
+/// Of a body in a summary; null: it is not there.
+ordered_json outcome(const Side& side, const std::string& name) {
+  if (side.summary.is_null()) return nullptr;
+  for (const ordered_json& body : side.summary["bodies"]) {
+    if (body["name"] != name) continue;
+    ordered_json out;
+    for (const char* key :
+         {"overturned", "overturn_time_s", "peak_tilt_deg", "final_tilt_deg", "peak_slide_m", "final_slide_m",
+          "first_uplift_s", "first_impact_s", "peak_stress_Pa"})
+      out[key] = body[key];
+    return out;
+  }
+  return nullptr;
+}
+
+ordered_json outcomes(const Side& a, const Side& b) {
+  std::vector<std::string> names;
+  for (const Side* side : {&a, &b})
+    for (int body = 0; body < side->scene.setup.model.furniture_total(); ++body)
+      if (const std::string& name = side->scene.setup.model.bodies[static_cast<std::size_t>(body)].name;
+          std::ranges::find(names, name) == names.end())
+        names.push_back(name);
+  ordered_json list = ordered_json::array();
+  for (const std::string& name : names)
+    list.push_back({{"name", name}, {"a", outcome(a, name)}, {"b", outcome(b, name)}});
+  return list;
+}
+
+ordered_json side_json(const Side& side) {
+  return {{"source", side.source},
+          {"scene", side.scene.name},
+          {"title", side.scene.title},
+          {"status", side.summary.is_null() ? ordered_json("interrupted") : side.summary["status"]},
+          {"simulated_s", side.summary.is_null() ? ordered_json(nullptr) : side.summary["simulated_s"]}};
+}
+
+/// A table of three columns.
+class Table {
+ public:
+  void row(const std::string& name, const std::string& a, const std::string& b) {
+    rows_.push_back({name, a, b});
+  }
+  std::string text() const {
+    std::size_t width[3] = {k_narrowest, k_narrowest, 0};
+    for (const auto& row : rows_)
+      for (int c = 0; c < 2; ++c) width[c] = std::max(width[c], std::min(letters(row[c]), k_widest));
+    std::string out;
+    for (const auto& row : rows_) {
+      for (int c = 0; c < 2; ++c)
+        out += row[c] + std::string(std::max(width[c], letters(row[c])) - letters(row[c]) + 2, ' ');
+      out += row[2] + "\n";
+    }
+    return out;
+  }
+
+ private:
+  static std::size_t letters(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  }
+  std::vector<std::array<std::string, 3>> rows_;
+};
+
+std::string text(const ordered_json& body, const char* key, double unit, int decimals) {
+  if (body.is_null() || body[key].is_null()) return "-";
+  return fmt::format("{:.{}f}", body[key].get<double>() / unit, decimals);
+}
+
+void add_outcome(Table& table, const ordered_json& body) {
+  const std::string name = body["name"];
+  const ordered_json &a = body["a"], &b = body["b"];
+  const auto row = [&](const char* what, const auto& value) {
+    table.row(name + ": " + what, value(a), value(b));
+  };
+  row("overturns at, s", [](const ordered_json& o) {
+    return o.is_null()                   ? "-"
+           : o["overturned"].get<bool>() ? text(o, "overturn_time_s", 1, 4)
+                                         : std::string("no");
+  });
+  const auto number = [&](const char* what, const char* key, double unit, int decimals) {
+    row(what, [&](const ordered_json& o) { return text(o, key, unit, decimals); });
+  };
+  number("peak tilt, deg", "peak_tilt_deg", 1, 3);
+  number("peak slide, mm", "peak_slide_m", 1e-3, 2);
+  number("first uplift, s", "first_uplift_s", 1, 3);
+  number("first impact, s", "first_impact_s", 1, 3);
+  number("peak stress, MPa", "peak_stress_Pa", 1e6, 2);
+}
+
+std::string tables(const ordered_json& result) {
+  const std::string a = result["a"]["source"], b = result["b"]["source"];
+  Table parameters, outcomes;
+  parameters.row("parameter", "A: " + a, "B: " + b);
+  const auto value = [](const ordered_json& v) {
+    return v.is_null() ? std::string("-") : v.get<std::string>();
+  };
+  for (const ordered_json& p : result["parameters"]) parameters.row(p["key"], value(p["a"]), value(p["b"]));
+  outcomes.row("outcome", "A: " + a, "B: " + b);
+  outcomes.row("status", result["a"]["status"], result["b"]["status"]);
+  for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
+  return (result["parameters"].empty() ? "no parameter differs\n" : parameters.text()) + "\n" +
+         outcomes.text();
+}
+
+}  // namespace
+
+int compare_command(const CompareOptions& options) {
+  Side a = open_side(options.a), b = open_side(options.b);
+  check(options, a, b);
+  defer_interrupts();
+  const bool pictures = !options.mp4.empty();
+  if (!run_side(a, pictures, options.quiet) || !run_side(b, pictures, options.quiet)) return k_interrupted;
+  int code = std::max(a.exit_code, b.exit_code);
+  const ordered_json result{{"topple", TOPPLE_VERSION},
+                            {"schema", 1},
+                            {"a", side_json(a)},
+                            {"b", side_json(b)},
+                            {"parameters", parameters(a, b)},
+                            {"bodies", outcomes(a, b)}};
+  if (pictures && a.recording && b.recording) {
+    const Replay of_a(*a.recording), of_b(*b.recording);
+    const int drawn =
+        draw_ghost_video(options.mp4, {a.source, a.scene, of_a}, {b.source, b.scene, of_b}, options.quiet);
+    if (drawn != k_done) return drawn;
+  }
+  if (options.json == "-") {
+    fmt::print("{}\n", json_text(result, 2));
+    return code;
+  }
+  fmt::print("{}", tables(result));
+  if (pictures && code == k_done) fmt::print("\nvideo: {}\n", options.mp4);
+  if (!options.json.empty()) write_whole_file(options.json, json_text(result, 2) + "\n");
+  return code;
+}
+
+}  // namespace topple::app

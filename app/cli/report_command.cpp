@@ -1,0 +1,206 @@
+#include "app/cli/report_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/batch/recorded_run.h"
+#include "app/picture/replay.h"
+#include "app/report/report.h"
+#include "app/support/errors.h"
+#include "app/support/files.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
+#include "app/support/progress.h"
+#include "app/support/terms.h"
+#include "render/gl/off_screen.h"
+#include "render/output/picture.h"
+#include "solver/study/common/anchors.h"
+#include "solver/study/common/measure.h"
+
+namespace topple::app {
+namespace {
+
+constexpr int k_trials = 21;
+constexpr double k_spread = 0.05;             // of the input
+constexpr double k_falling = 45;              // degrees, of the picture of a fall
+constexpr int k_width = 960, k_height = 600;  // px
+constexpr std::size_t k_labels = 8;           // more would hide the picture
+constexpr render::Float4 k_plain = {0.30f, 0.42f, 0.55f, 1};
+
+/// Of one body in a row (FrameRow::body), degrees.
+double tilt_of(const io::FrameRow& row, std::size_t body) {
+  return row.body[11 * body + 7] * k_degrees;
+}
+double critical_of(const io::FrameRow& row, std::size_t body) {
+  return row.body[11 * body + 10] * k_degrees;
+}
+
+std::vector<TiltCurve> tilt_curves(const Replay& replay, const nlohmann::ordered_json& bodies) {
+  std::vector<TiltCurve> curves(bodies.size());
+  std::vector<double> most(bodies.size(), -1);
+  for (std::int64_t i = 0; i < replay.frame_count(); ++i) {
+    const io::FrameRow row = replay.frame(i);
+    for (std::size_t b = 0; b < curves.size(); ++b) {
+      const double tilt = tilt_of(row, b);
+      curves[b].time.push_back(row.time);
+      curves[b].tilt.push_back(tilt);
+      if (tilt <= most[b]) continue;
+      most[b] = tilt;
+      if (const double angle = critical_of(row, b); angle > 0) curves[b].critical = angle;
+    }
+  }
+  for (std::size_t b = 0; b < curves.size(); ++b)
+    if (!bodies[b]["overturn_time_s"].is_null())
+      if (const double angle = critical_of(replay.at(bodies[b]["overturn_time_s"]), b); angle > 0)
+        curves[b].critical = angle;
+  return curves;
+}
+
+/// The instants that tell the run, without their pictures.
+std::vector<KeyPicture> key_instants(const Replay& replay, const std::vector<TiltCurve>& curves,
+                                     const nlohmann::ordered_json& bodies) {
+  std::vector<KeyPicture> list;
+  const auto add = [&](KeyPicture::Kind kind, std::size_t body, std::size_t row) {
+    list.push_back(
+        {.kind = kind, .time = curves[body].time[row], .body = body, .tilt = curves[body].tilt[row]});
+  };
+  std::optional<std::size_t> first;
+  std::size_t most = 0, most_row = 0;
+  for (std::size_t b = 0; b < curves.size(); ++b) {
+    if (bodies[b]["overturned"].get<bool>() &&
+        (!first || bodies[b]["overturn_time_s"] < bodies[*first]["overturn_time_s"]))
+      first = b;
+    const auto greatest = std::ranges::max_element(curves[b].tilt);
+    if (*greatest <= curves[most].tilt[most_row]) continue;
+    most = b;
+    most_row = static_cast<std::size_t>(greatest - curves[b].tilt.begin());
+  }
+  const std::size_t last = static_cast<std::size_t>(replay.frame_count()) - 1;
+  add(KeyPicture::Kind::start, 0, 0);
+  if (first) {
+    const TiltCurve& curve = curves[*first];
+    const double since = bodies[*first]["overturn_time_s"];
+    for (std::size_t i = 0; i <= last; ++i)
+      if (curve.time[i] >= since && (curve.tilt[i] >= k_falling || i == last)) {
+        if (i < last) add(KeyPicture::Kind::falling, *first, i);
+        break;
+      }
+  }
+  if (most_row > 0 && most_row < last) add(KeyPicture::Kind::most_tilted, most, most_row);
+  add(KeyPicture::Kind::end, 0, last);
+  std::ranges::stable_sort(list, {}, &KeyPicture::time);
+  return list;
+}
+
+/// Where bodies stand in a picture.
+std::vector<KeyPicture::Label> labels_of(const io::FrameRow& row, const render::Camera& camera,
+                                         std::size_t bodies) {
+  std::vector<KeyPicture::Label> labels;
+  for (std::size_t b = 0; b < bodies && bodies <= k_labels; ++b) {
+    Eigen::Vector4f place(0, 0, 0, 1);
+    for (int k = 0; k < 3; ++k)
+      place[k] =
+          static_cast<float>(row.body[11 * b + static_cast<std::size_t>(k)] + row.floor_displacement[k]);
+    const Eigen::Vector4f clip = camera.projection * camera.view * place;
+    labels.push_back({b, 50 * (1 + clip.x() / clip.w()), 50 * (1 - clip.y() / clip.w())});
+  }
+  return labels;
+}
+
+/// Draws them without words, which the page has in its own language, and in one colour, as without a legend
+/// none says anything.
+void draw(const io::Scene& scene, const Replay& replay, std::vector<KeyPicture>& pictures) {
+  const RunExtent extent = extent_of(replay, scene);
+  const Bridge bridge(scene, extent);
+  const std::unique_ptr<render::Context> context = render::make_off_screen_context(render::Renderer::any);
+  render::Picture picture(context->get_proc(), k_width, k_height);
+  for (KeyPicture& key : pictures) {
+    const io::FrameRow row = replay.at(key.time);
+    render::SceneFrame frame = bridge.frame(row, replay.parameters(scene, row));
+    for (render::Tube& tube : frame.tubes)
+      if (tube.colour[3] == 0) tube.colour = k_plain;
+    const render::Camera camera =
+        render::fit_box(render::sight_axes(render::sight_of(render::NamedView::iso)),
+                        Eigen::Vector3f(frame.bounds_min.data()), Eigen::Vector3f(frame.bounds_max.data()),
+                        {-0.94f, 0.94f, -0.94f, 0.94f}, picture.aspect());
+    const std::vector<std::uint8_t> bytes =
+        render::encode_png(picture.draw(frame, camera, {.map = {}, .overlay = false}));
+    key.labels = labels_of(row, camera, static_cast<std::size_t>(scene.setup.model.furniture_total()));
+    key.png.assign(bytes.begin(), bytes.end());
+  }
+}
+
+std::string command_text(const ReportOptions& options) {
+  std::string text = "topple report " + options.scene;
+  for (const std::string& change : options.overrides) text += " --set '" + change + "'";
+  return text + " --lang " + options.language;
+}
+
+int interrupted_report(const std::string& file) {
+  say("interrupted; " + file + " is not written");
+  return k_interrupted;
+}
+
+}  // namespace
+
+int report_command(const ReportOptions& options) {
+  const io::Scene scene = io::load_scene(options.scene, options.overrides);
+  if (scene.setup.run.analysis != Analysis::dynamic)
+    throw BadInput(options.scene + ": a report needs a scene with run.analysis = \"dynamic\"");
+  if (scene.setup.model.furniture_total() == 0)
+    throw BadInput(options.scene + ": has no furniture to report on");
+  const std::string file = !options.file.empty()
+                               ? options.file
+                               : std::filesystem::path(scene.name).filename().string() + "-report.html";
+  require_writable_text("--output", file, options.scene);
+  require_no_record("--output", file, options.scene, scene);
+  defer_interrupts();
+
+  const TemporaryFile temporary;
+  RecordedRun run = record(scene, temporary.path(), {.quiet = options.quiet, .estimate = true});
+  if (run.exit_code == k_interrupted) return interrupted_report(file);
+  if (run.exit_code != k_done) {
+    say(run.trouble + "; " + file + " is not written");
+    return run.exit_code;
+  }
+  Report report{.scene = &scene,
+                .command = command_text(options),
+                .overrides = options.overrides,
+                .summary = std::move(run.summary),
+                .motion = {},
+                .tilts = {},
+                .pictures = {},
+                .spread = k_spread,
+                .trials = {},
+                .anchors = study::anchor_count(scene),
+                .without_anchors = {}};
+  report.motion = study::floor_motion(scene.setup.parameters.shakes, report.summary["simulated_s"]);
+  const io::Recording recording(temporary.path());
+  const Replay replay(recording);
+  report.tilts = tilt_curves(replay, report.summary["bodies"]);
+  report.pictures = key_instants(replay, report.tilts, report.summary["bodies"]);
+  draw(scene, replay, report.pictures);
+
+  if (!scene.setup.parameters.shakes.empty()) {
+    Progress progress(scene.name + ", input varied", "runs", k_trials, options.quiet);
+    report.trials = study::try_factors(scene.setup, study::even_factors(k_trials, k_spread),
+                                       options.jobs.value_or(study::core_count()), [&](int done) {
+                                         progress.update(done);
+                                         return !interrupted();
+                                       });
+  }
+  if (const auto bare = study::without_anchors(scene)) {
+    RecordedRun without = record(*bare, "", {.quiet = options.quiet});
+    report.without_anchors = std::move(without.summary);
+  }
+  if (interrupted()) return interrupted_report(file);
+  const Language language = options.language == "ja" ? Language::japanese : Language::english;
+  write_whole_file(file, report_page(report, language));
+  fmt::print("report: {}\n", file);
+  return k_done;
+}
+
+}  // namespace topple::app

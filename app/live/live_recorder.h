@@ -1,0 +1,48 @@
+// A recording that a thread of its own writes: whoever posts waits for the disk only when a thousand things
+// do.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "solver/io/recording/recording.h"
+#include "solver/io/scene/scene.h"
+
+namespace topple::app {
+
+class LiveRecorder {
+ public:
+  using Item = std::variant<io::Observation, Branch, LoggedEdit>;
+
+  /// Starts the recording. Throws io::WriteError when it cannot be.
+  LiveRecorder(const std::string& path, const io::Scene& scene);
+  /// A recording that was not finished reads as interrupted.
+  ~LiveRecorder();
+  LiveRecorder(const LiveRecorder&) = delete;
+  LiveRecorder& operator=(const LiveRecorder&) = delete;
+
+  /// From any thread; ignored after finish() or a failure. Waits while a thousand things are to be written.
+  void post(Item item);
+  /// Writes what was posted, status and summary, closes, and returns then. Only the first call counts.
+  void finish(const std::string& status, const std::string& summary_json);
+  /// Why the recording broke off, one line; empty: it did not.
+  std::string failure() const;
+
+ private:
+  void work(const std::string& path, const io::Scene& scene);
+  void write_until_ended(io::Recorder& recorder);
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Item> items_;
+  bool started_ = false, ended_ = false, finished_ = false;
+  std::string status_, summary_, failure_;
+  std::mutex finishing_;
+  std::thread thread_;
+};
+
+}  // namespace topple::app

@@ -1,0 +1,209 @@
+#include "app/live/live_worker.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/batch/summary.h"
+#include "app/picture/thinning.h"
+#include "app/support/clock.h"
+
+namespace topple::app {
+namespace {
+
+constexpr std::chrono::milliseconds k_report_interval{8};  // a picture lasts longer
+constexpr std::chrono::milliseconds k_follow_interval{200};
+constexpr double k_most_lag = 0.1;     // s that a run which cannot keep its pace tries to make up
+constexpr double k_rate_window = 0.5;  // s
+
+}  // namespace
+
+void LiveWorker::work() {
+  try {
+    begin();
+    obey_and_run();
+    finish();
+  } catch (const std::exception& error) {
+    going_ = false;
+    status_.message = error.what();
+    set(LiveStatus::Kind::ended);
+    wait_for_stop();
+    if (recorder_) recorder_->finish(end_status_, "");
+  }
+  closed_.set_value();
+}
+
+void LiveWorker::wait_for_stop() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return stop_.load(); });
+}
+
+void LiveWorker::obey_and_run() {
+  while (!stop_) {
+    std::vector<Command> commands;
+    {
+      std::unique_lock lock(mutex_);
+      const auto called = [this] { return pending_ || stop_; };
+      if (status_.kind == LiveStatus::Kind::replay)
+        changed_.wait_for(lock, k_follow_interval, called);
+      else if (!going_)
+        changed_.wait(lock, called);
+      commands.swap(commands_);
+      pending_ = false;
+    }
+    for (const Command& command : commands)
+      if (!stop_) obey(command);
+    if (stop_) break;
+    if (status_.kind == LiveStatus::Kind::replay) follow();
+    if (going_) run_some();
+  }
+}
+
+void LiveWorker::begin() {
+  if (source_.recording) {
+    status_.kind = LiveStatus::Kind::reading;
+    read_recording();
+    set(LiveStatus::Kind::replay);
+    return;
+  }
+  history_.branches.push_back({});
+  tell([](LiveReport& report) { report.branches.push_back({}); });
+  run_.emplace(setup_);
+  if (!run_->status().ok()) {
+    fail(run_->status());
+    run_.reset();
+    set(status_.kind);
+    return;
+  }
+  if (stop_) return;
+  start_recording();
+  record(observer_.observe(*run_));
+  report_head();
+  set(LiveStatus::Kind::halted);
+}
+
+void LiveWorker::obey(const Command& command) {
+  if (const auto* go = std::get_if<Go>(&command)) {
+    speed_ = go->speed;
+    if (!can_step()) return;
+    going_ = true;
+    pace();
+    rate_wall_ = pace_wall_;
+    rate_time_ = pace_time_;
+    set(LiveStatus::Kind::going);
+  } else if (std::holds_alternative<Halt>(command)) {
+    if (!going_) return;
+    going_ = false;
+    report_head();
+    set(LiveStatus::Kind::halted);
+  } else if (std::holds_alternative<OneStep>(command)) {
+    if (going_ || !can_step()) return;
+    step_once();
+    report_head();
+  } else if (const auto* edit = std::get_if<Edit>(&command)) {
+    if (run_) change(*edit);
+  } else if (const auto* where = std::get_if<Fork>(&command)) {
+    fork(*where);
+    ++status_.forks;
+    set(status_.kind);
+  }
+}
+
+void LiveWorker::change(const Edit& edit) {
+  status_.message.clear();
+  status_.element = -1;
+  const LoggedEdit logged{status_.branch, run_->step(), run_->time(), edit};
+  run_->edit(edit);
+  history_.edits.push_back(logged);
+  if (recorder_) recorder_->post(logged);
+  tell([&logged](LiveReport& report) { report.edits.push_back(logged); });
+  set(status_.kind == LiveStatus::Kind::failed ? LiveStatus::Kind::halted : status_.kind);
+}
+
+void LiveWorker::fail(const StepStatus& status) {
+  going_ = false;
+  status_.message = status.message(setup_.model);
+  status_.element = status.element;
+  status_.kind = LiveStatus::Kind::failed;
+}
+
+// What became of it is told with the next report of the head, not before.
+void LiveWorker::step_once() {
+  const Clock::time_point start = Clock::now();
+  const StepStatus status = advance_(*run_);
+  wall_ += seconds_since(start);
+  if (!status.ok()) {
+    fail(status);
+    return;
+  }
+  record(observer_.observe(*run_));
+  if (!run_->over()) return;
+  record(observer_.last(*run_));
+  going_ = false;
+  status_.kind = LiveStatus::Kind::over;
+}
+
+// Steps until the next report is due, or the run is ahead of its pace.
+void LiveWorker::run_some() {
+  const auto due = [this] {
+    return pace_wall_ +
+           std::chrono::duration_cast<Clock::duration>(Seconds((run_->time() - pace_time_) / speed_));
+  };
+  const Clock::time_point report_at = Clock::now() + k_report_interval;
+  for (Clock::time_point at = Clock::now(); going_ && !pending_ && !stop_ && at < report_at && due() <= at;
+       at = Clock::now())
+    step_once();
+  const Clock::time_point now = Clock::now();
+  if (Seconds(now - due()).count() > k_most_lag) pace();
+  if (const double window = Seconds(now - rate_wall_).count(); window > k_rate_window) {
+    status_.achieved = (run_->time() - rate_time_) / window;
+    rate_wall_ = now;
+    rate_time_ = run_->time();
+  }
+  report_head();
+  if (!going_) return;
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, due(), [this] { return pending_ || stop_; });
+}
+
+void LiveWorker::record(io::Observation observation) {
+  if (observation.checkpoint) {
+    points_.push_back({status_.branch, run_->point()});
+    if (points_.size() * observation.checkpoint->state.size() * sizeof(double) > k_most_point_bytes)
+      thin_older_half(points_);
+  }
+  tell([&observation](LiveReport& report) {
+    if (observation.frame) report.rows.push_back(std::make_shared<const io::FrameRow>(*observation.frame));
+    report.events.insert(report.events.end(), observation.events.begin(), observation.events.end());
+  });
+  if (recorder_ && (observation.frame || observation.checkpoint || !observation.events.empty()))
+    recorder_->post(std::move(observation));
+}
+
+void LiveWorker::report_head() {
+  io::FrameRow row = io::frame_row(*run_);
+  row.branch = status_.branch;
+  auto head = std::make_shared<const io::FrameRow>(std::move(row));
+  tell([&head](LiveReport& report) { report.head = std::move(head); });
+  set(status_.kind);
+}
+
+void LiveWorker::set(LiveStatus::Kind kind) {
+  status_.kind = kind;
+  if (recorder_) status_.record_failure = recorder_->failure();
+  tell([](LiveReport&) {});
+  if (!stop_) wake_();
+}
+
+void LiveWorker::finish() {
+  if (!recorder_ || !run_) return;
+  record(observer_.last(*run_));
+  const std::string status = !run_->status().ok()    ? "diverged"
+                             : run_->stopped_early() ? "stopped"
+                             : run_->over()          ? "completed"
+                                                     : end_status_;
+  recorder_->finish(status, json_text(summary(*source_.scene, *run_, status, wall_)));
+  status_.record_failure = recorder_->failure();
+  tell([](LiveReport&) {});
+}
+
+}  // namespace topple::app

@@ -1,0 +1,139 @@
+// What a person does with a run: play, pause, rewind, branch, edit, undo. The instant looked at, and
+// everything reported so far.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/live/live_run.h"
+#include "app/picture/bridge.h"
+#include "app/picture/thinning.h"
+
+namespace topple::app {
+
+/// Speeds that faster() and slower() go through.
+inline constexpr double k_least_speed = 1. / 64, k_most_speed = 8;
+
+class Player {
+ public:
+  /// `most_bytes` of rows are kept.
+  Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes = k_most_row_bytes);
+
+  /// Takes in what was reported and lets a replay go on by `wall_s`. True when anything changed.
+  bool update(double wall_s);
+
+  // Transport. Where the newest state of the live branch is looked at, playing means stepping; elsewhere what
+  // was recorded is played, up to there.
+  void play();
+  void pause();
+  void toggle() { playing_ ? pause() : play(); }
+  void step(int rows);  ///< one recorded instant back or on; at the head, one step of the run
+  void faster();
+  void slower();
+  /// From the beginning, in a new branch, with the parameters as they are now. A replay goes to its start.
+  void restart();
+  void scrub(double time);  ///< pauses
+  void to_start();
+  void to_end();
+  /// At the end playing begins again, with what there is from the start.
+  void set_loop(bool loop) { loop_ = loop; }
+  bool loop() const { return loop_; }
+  bool playing() const { return playing_; }
+  double speed() const { return speed_; }
+  double time() const { return cursor_; }
+  /// Last instant that there is, and the length of the time axis, s.
+  double end() const;
+  double length() const;
+  bool at_head() const { return following_; }
+  bool replay() const {
+    return status_.kind == LiveStatus::Kind::replay || status_.kind == LiveStatus::Kind::reading;
+  }
+
+  /// A failed step may be tried again at half its length, for which this makes the edit.
+  bool can_halve_step() const;
+  void halve_step_and_retry();
+
+  // Branches.
+  bool can_continue() const { return !following_ && !way_.empty() && !busy(); }
+  void continue_from_here();
+  void show_branch(std::int32_t branch);
+  std::int32_t shown_branch() const { return shown_; }
+  const History& history() const { return history_; }
+
+  // Edits, at the head of the live branch only.
+  bool can_edit() const;
+  /// The next edit is a new thing to undo. Further ones go on with it, as while a slider is dragged, or where
+  /// several keys belong together.
+  void begin_edit() { new_undo_ = true; }
+  /// Throws io::InputError for what a scene would be refused for.
+  void edit(const Edit& edit);
+  /// Those that make the first instant's parameters what they are now; there must be one.
+  std::vector<Edit> edits_since_start() const;
+  bool can_undo() const { return can_edit() && !undo_.empty(); }
+  bool can_redo() const { return can_edit() && !redo_.empty(); }
+  void undo();
+  void redo();
+  /// At the instant looked at, with edits on their way.
+  const Parameters& parameters() const { return parameters_; }
+
+  // What is seen.
+  const io::Scene& scene() const { return *scene_; }
+  const LiveStatus& status() const { return status_; }
+  /// The instant looked at, between two recorded ones while a replay goes on; nothing before the first.
+  std::optional<io::FrameRow> row() const;
+  /// The same time on the way to the branch that was left last.
+  std::optional<io::FrameRow> ghost() const;
+  /// Recorded instants on the way to the branch shown, and what they cover.
+  const std::vector<RowPtr>& way() const { return way_; }
+  /// The same of the branch that was left last; empty: there is none.
+  const std::vector<RowPtr>& ghost_way() const { return ghost_way_; }
+  const RunExtent& extent() const { return extent_; }
+  /// Those on the way to the branch shown.
+  std::vector<io::RecordedEvent> events() const;
+  std::vector<LoggedEdit> edits() const;
+
+ private:
+  struct Undo {
+    std::vector<Edit> back, again;  // an entry a key
+  };
+  bool busy() const;
+  bool nothing_goes_on() const;
+  bool goes_on_at_end() const;
+  bool forking() const { return forks_asked_ > status_.forks; }
+  bool live_shown() const { return !replay() && shown_ == status_.branch; }
+  void set_speed(double speed);
+  void post(const Edit& edit);
+  void take(LiveReport&& report);
+  void keep(RowPtr row);
+  void thin();
+  void rebuild_way();
+  void extend_way(const RowPtr& row);
+  void update_parameters();
+  std::vector<RowPtr> rows_on_way_to(std::int32_t branch) const;
+
+  const std::shared_ptr<const io::Scene> scene_;
+  LiveRun& run_;
+  const std::size_t most_bytes_;
+  LiveStatus status_;
+  History history_;
+  std::map<std::int32_t, std::vector<RowPtr>> rows_;  // by branch
+  std::size_t row_count_ = 0, rows_since_thinned_ = 0;
+  std::vector<io::RecordedEvent> events_;
+  RowPtr head_;
+  std::int32_t shown_ = 0;
+  std::int32_t left_ = -1;  // branch that was left last; -1: none
+  std::vector<RowPtr> way_, ghost_way_;
+  RunExtent extent_;
+  Parameters parameters_;
+  std::vector<Edit> posted_;  // on their way
+  std::vector<Undo> undo_, redo_;
+  bool playing_ = false, loop_ = false, following_ = true;
+  bool new_undo_ = true;
+  bool play_when_there_ = false;  // asked for on the way to a fork
+  std::int64_t forks_asked_ = 0;
+  double speed_ = 1, cursor_ = 0;
+};
+
+}  // namespace topple::app

@@ -1,0 +1,61 @@
+#include "app/panels/accuracy.h"
+
+#include "app/panels/teaching_words.h"
+#include "app/support/terms.h"
+
+namespace topple::app {
+namespace {
+
+// Of all the work, the run at the scene's own steps: the other one makes twice as many.
+constexpr double k_first_share = 1. / 3;
+
+void work(const Setup& setup, Accuracy& desk) {
+  AccuracyResult found;
+  const auto outcome_of = [&](const Setup& of, double from, double share) {
+    Run run(of);
+    while (!desk.stopped() && run.status().ok() && !run.over()) {
+      if (!run.advance().ok()) break;
+      desk.tell(from + share * run.time() / of.run.duration);
+    }
+    if (!run.status().ok()) found.failure = run.status().message(of.model);
+    return run.outcome();
+  };
+  try {
+    const Outcome outcome = outcome_of(setup, 0, k_first_share);
+    found.bodies = outcome.bodies();
+    if (found.failure.empty() && !desk.stopped()) {
+      const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
+      if (found.failure.empty() && !desk.stopped()) found.errors = study::errors(setup.model, outcome, finer);
+    }
+  } catch (const std::exception& error) {
+    found.failure = error.what();
+  }
+  if (!desk.stopped()) desk.show(std::move(found));
+}
+
+}  // namespace
+
+std::unique_ptr<Accuracy> estimate_accuracy(const Setup& setup) {
+  return std::make_unique<Accuracy>([setup](Accuracy& desk) { work(setup, desk); });
+}
+
+std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyResult& result) {
+  using namespace window_words;
+  if (!result.failure.empty()) return {say(k_estimate_failed, result.failure)};
+  std::vector<std::string> lines;
+  for (std::size_t b = 0; b < result.errors.size(); ++b) {
+    const study::BodyError& error = result.errors[b];
+    const std::string& name = model.bodies[b].name;
+    if (!error.same_verdict())
+      lines.push_back(say(k_unsure, name));
+    else if (error.overturned)
+      lines.push_back(
+          say(k_sure_fall, name, error.overturn_time.value_or(0), error.overturn_error.value_or(0)));
+    else
+      lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * k_degrees,
+                          error.peak_tilt_error.value_or(0) * k_degrees));
+  }
+  return lines;
+}
+
+}  // namespace topple::app

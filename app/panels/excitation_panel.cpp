@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panels/lane.h"
+#include "app/panels/log_chart.h"
+#include "app/panels/teaching_panel.h"
+#include "app/panels/teaching_words.h"
+#include "solver/accelerogram.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/overturn/criteria.h"
+
+namespace topple::app {
+namespace {
+
+using namespace window_words;
+
+constexpr LogAxis k_frequencies{0.1, 10}, k_amplitudes{10, 3000};  // Hz, gal
+constexpr std::size_t k_path = 400;                                // places kept
+constexpr double k_new_place = 0.002;                              // relative: less is the same place
+
+/// Greatest velocity that a record of acceleration leads to from rest, by the trapezoidal rule, m/s.
+double peak_velocity(const Accelerogram& record) {
+  Vec3 velocity = Vec3::Zero(), before = acceleration(record, 0);
+  double most = 0;
+  const int steps = static_cast<int>(std::lround(record.duration / record.interval));
+  for (int k = 1; k <= steps; ++k) {
+    const Vec3 now = acceleration(record, k * record.interval);
+    velocity += record.interval / 2 * (before + now);
+    before = now;
+    most = std::max(most, velocity.norm());
+  }
+  return most;
+}
+
+/// Of a sine that swings as long in one direction.
+double cycles_of(Shake::Shape shape) {
+  switch (shape) {
+    case Shake::Shape::full_sine:
+      return 1;
+    case Shake::Shape::half_sine:
+    case Shake::Shape::rectangle:
+      break;
+  }
+  return 0.5;
+}
+
+ShakePlace place_of(const Shake& shake) {
+  const double level = shake.direction.head<2>().norm();
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+    case Shake::Kind::sweep:
+      return {shake.frequency, level * shake.amplitude};
+    case Shake::Kind::pulse:
+      return {cycles_of(shake.shape) / shake.duration, level * shake.amplitude};
+    case Shake::Kind::record:
+      break;
+  }
+  const double velocity = peak_velocity(*shake.record);
+  return {velocity > 0 ? shake.record->peak / (2 * k_pi * velocity) : k_frequencies.high,
+          std::abs(shake.scale) * shake.record->peak};
+}
+
+/// What the criteria say of one body.
+struct Limits {
+  double west;      ///< m/s^2
+  double ishiyama;  ///< m/s
+
+  const Phrase& verdict(const ShakePlace& at) const {
+    if (at.amplitude < west) return k_stays;
+    return at.amplitude < 2 * k_pi * at.frequency * ishiyama ? k_rocks : k_may_overturn;
+  }
+};
+
+std::optional<Limits> limits_of(const Player& player, int body) {
+  const Model& model = player.scene().setup.model;
+  const Parameters& parameters = player.parameters();
+  if (!study::why_not_standing(model, body).empty()) return std::nullopt;
+  std::optional<Limits> least;
+  for (const double sense : {1., -1.}) {
+    const Vec3 direction = sense * parameters.shakes.front().direction;
+    const auto standing = study::standing_towards(model, parameters, body, direction);
+    if (!standing) continue;
+    const double west = study::west_acceleration(*standing);
+    if (!least || west < least->west) least = Limits{west, study::ishiyama_velocity(*standing)};
+  }
+  return least;
+}
+
+/// A word in the middle of a region between two heights at a frequency, if it has room.
+void draw_region(ImDrawList& list, const LogChart& chart, double frequency, double low, double high,
+                 const Phrase& words) {
+  const std::string text = say(words);
+  const float line = ImGui::GetTextLineHeight(), width = text_width(text);
+  const ImVec2 lower = chart.at(frequency, std::max(low, chart.y.low)),
+               upper = chart.at(frequency, std::min(high, chart.y.high));
+  if (lower.y - upper.y < 1.2f * line) return;
+  const float x = std::clamp(lower.x - width / 2, chart.left + 4, chart.right - width - 4);
+  add_text(list, x, (lower.y + upper.y) / 2 - line / 2, theme().text, text);
+}
+
+void draw_criteria_chart(const Limits& limits, const TeachingState& state) {
+  const float height = std::min(0.72f * ImGui::GetContentRegionAvail().x, 18 * ImGui::GetTextLineHeight());
+  const LogChart chart = chart_at_cursor(k_frequencies, k_amplitudes, height, say(k_amplitude_axis));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  draw_log_grid(list, chart);
+  list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);
+  const double west = limits.west / k_gal;
+  const auto velocity_line = [&](double frequency) { return 2 * k_pi * frequency * limits.ishiyama / k_gal; };
+  const std::vector<LogCurve> curves{
+      {say(k_west), theme().positive, 0, {chart.at(chart.x.low, west), chart.at(chart.x.high, west)}},
+      {say(k_ishiyama),
+       theme().line,
+       0.45f * ImGui::GetTextLineHeight(),
+       {chart.at(chart.x.low, velocity_line(chart.x.low)),
+        chart.at(chart.x.high, velocity_line(chart.x.high))}}};
+  for (const LogCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
+  draw_region(list, chart, 1, chart.y.low, west, k_stays);
+  draw_region(list, chart, 4.5, west, velocity_line(4.5), k_rocks);
+  draw_region(list, chart, 0.25, std::max(west, velocity_line(0.25)), chart.y.high, k_may_overturn);
+  std::vector<ImVec2> path;
+  for (const ShakePlace& place : state.path)
+    path.push_back(chart.clamped(place.frequency, place.amplitude / k_gal));
+  list.AddPolyline(path.data(), static_cast<int>(path.size()), theme().ghost, 0, 2);
+  add_present(list, path.back());
+  list.PopClipRect();
+  ChartKey key(list, chart, say(k_frequency_axis));
+  key.lines(curves);
+  key.end();
+}
+
+void note_place(const ShakePlace& place, std::vector<ShakePlace>& path) {
+  const auto same = [](double a, double b) { return std::abs(a - b) <= k_new_place * std::abs(b); };
+  if (!path.empty() && same(place.frequency, path.back().frequency) &&
+      same(place.amplitude, path.back().amplitude))
+    return;
+  path.push_back(place);
+  if (path.size() > k_path) path.erase(path.begin());
+}
+
+void draw_criteria(const Player& player, TeachingState& state) {
+  const Model& model = player.scene().setup.model;
+  const auto& shakes = player.parameters().shakes;
+  const auto furniture = model.furniture_total();
+  if (!state.body || !limits_of(player, *state.body)) {
+    state.body.reset();
+    for (int b = 0; b < furniture && !state.body; ++b)
+      if (limits_of(player, b)) state.body = b;
+  }
+  if (!state.body) {
+    ImGui::TextWrapped("%s", say(k_no_standing_body).c_str());
+    return;
+  }
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(say(k_body).c_str());
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##standing", model.bodies[static_cast<std::size_t>(*state.body)].name.c_str())) {
+    for (int b = 0; b < furniture; ++b)
+      if (limits_of(player, b) &&
+          ImGui::Selectable(model.bodies[static_cast<std::size_t>(b)].name.c_str(), b == *state.body))
+        state.body = b;
+    ImGui::EndCombo();
+  }
+  const Limits limits = *limits_of(player, *state.body);
+  draw_criteria_chart(limits, state);
+  const ShakePlace now = state.path.back();
+  const bool record = shakes.front().kind == Shake::Kind::record;
+  ImGui::TextWrapped("%s", say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal,
+                               say(limits.verdict(now)))
+                               .c_str());
+  ImGui::TextWrapped("%s", say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
+                               100 * now.amplitude / (2 * k_pi * now.frequency))
+                               .c_str());
+}
+
+}  // namespace
+
+void draw_excitation(Player& player, TeachingState& state, std::string& refused) {
+  const auto& shakes = player.parameters().shakes;
+  if (shakes.empty()) {
+    ImGui::TextWrapped("%s", say(k_no_floor_shake).c_str());
+    return;
+  }
+  const Shake& shake = shakes.front();
+  if (shake.kind != Shake::Kind::record || state.path.empty() || state.record != shake.record ||
+      state.scale != shake.scale)
+    note_place(place_of(shake), state.path);
+  state.record = shake.record;
+  state.scale = shake.scale;
+  if (!draw_map(player, state.map, refused)) draw_criteria(player, state);
+  draw_map_controls(player, state.map);
+}
+
+}  // namespace topple::app

@@ -1,0 +1,80 @@
+#include "app/panels/lane.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/picture/window_words.h"
+#include "app/support/terms.h"
+#include "render/scene/ticks.h"
+
+namespace topple::app {
+
+void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
+               ImU32 colour, float thickness) {
+  std::vector<ImVec2> points;
+  const auto draw = [&] {
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+    points.clear();
+  };
+  list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);
+  for (std::size_t i = 0; i < rows.size();) {
+    if (std::isnan(value(i))) {
+      draw();
+      ++i;
+      continue;
+    }
+    const float column = std::floor(lane.x(rows[i]->time));
+    double least = 1e300, greatest = -1e300;
+    std::size_t next = i;
+    for (; next < rows.size() && std::floor(lane.x(rows[next]->time)) == column; ++next) {
+      const double v = value(next);
+      if (std::isnan(v)) break;
+      least = std::min(least, v);
+      greatest = std::max(greatest, v);
+    }
+    const bool rises = value(next - 1) >= value(i);
+    points.emplace_back(lane.x(rows[i]->time), lane.y(rises ? least : greatest));
+    if (least != greatest)
+      points.emplace_back(lane.x(rows[next - 1]->time), lane.y(rises ? greatest : least));
+    i = next;
+  }
+  draw();
+  list.PopClipRect();
+}
+
+void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text) {
+  list.AddText({std::round(x), std::round(y)}, colour, text.c_str());
+}
+
+float text_width(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float label_left) {
+  const bool loads = is_static(setup), steps = loads && setup.run.statics.control;
+  const double scale = steps ? setup.run.statics.load_steps : 1;
+  const float apart = 6 * ImGui::GetTextLineHeight();
+  const render::Ticks ticks = render::nice_ticks(
+      0, scale * lane.length, std::max(2, static_cast<int>((lane.right - lane.left) / apart)));
+  const float label_top =
+      lane.bottom + 0.57f * ImGui::GetTextLineHeight() + 3;  // below marks of the timeline
+  float written = lane.left;                                 // as far as labels reach
+  for (double t : ticks.values) {
+    t += 0.;  // makes 0 of -0
+    if (steps && t != std::round(t)) continue;
+    const float x = lane.x(t / scale);
+    list.AddLine({x, lane.bottom}, {x, lane.bottom + 4}, theme().axis);
+    const std::string label = fmt::format("{:.{}f}{}", t, steps ? 0 : ticks.decimals, loads ? "" : " s");
+    const float at = std::min(x + 3, lane.right - text_width(label));
+    if (at < written) continue;
+    add_text(list, at, label_top, theme().text, label);
+    written = at + text_width(label) + 4;
+  }
+  if (loads)
+    add_text(list, label_left, label_top, theme().text,
+             say(steps ? window_words::k_load_step : window_words::k_load_factor));
+}
+
+}  // namespace topple::app

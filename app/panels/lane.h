@@ -1,0 +1,40 @@
+// Charts over time, as timeline and plots draw them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <imgui.h>
+
+#include "app/live/player.h"
+#include "app/panels/theme.h"
+
+namespace topple::app {
+
+/// Time, or the way through the loads, to the right; one quantity upwards.
+struct Lane {
+  float left, right, top, bottom;
+  double length;     ///< s; statics: of the whole way
+  double low, high;  ///< of the quantity
+  float x(double t) const { return left + static_cast<float>(t / length) * (right - left); }
+  float y(double value) const {
+    return bottom - static_cast<float>((value - low) / (high - low)) * (bottom - top);
+  }
+};
+
+/// Of the row of that number.
+using ValueAt = std::function<double(std::size_t)>;
+
+/// No more than the least and greatest value of each pixel column; open where there is no number.
+void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
+               ImU32 colour, float thickness);
+
+void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text);
+float text_width(const std::string& text);
+
+/// Ticks and times below a lane; of a static run load factors, or where displacements are controlled load
+/// steps, with their name at `label_left`.
+void add_axis(ImDrawList& list, const Lane& lane, const Setup& setup, float label_left);
+
+}  // namespace topple::app

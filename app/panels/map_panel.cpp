@@ -1,0 +1,269 @@
+#include "app/panels/map_panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/panels/lane.h"
+#include "app/panels/log_chart.h"
+#include "app/panels/teaching_words.h"
+#include "solver/io/scene/edit_text.h"
+
+namespace topple::app {
+namespace {
+
+using namespace window_words;
+using study::Axis;
+using study::Verdict;
+
+constexpr Verdict k_verdicts[] = {Verdict::all, Verdict::some, Verdict::rocks, Verdict::stands,
+                                  Verdict::failed};
+
+const Phrase& words_of(Verdict verdict) {
+  static constexpr const Phrase* k_words[] = {&k_not_computed,  &k_run_failed, &k_all_overturn,
+                                              &k_some_overturn, &k_rocks,      &k_stands_still};
+  return *k_words[static_cast<int>(verdict)];
+}
+
+std::string title_of(const Axis& axis) {
+  return say(axis.name == "frequency"  ? k_frequency_axis
+             : axis.name == "duration" ? k_duration_axis
+                                       : k_amplitude_axis);
+}
+
+Edit edit_of(const Axis& axis, const Parameters& now) {
+  Edit edit = *io::parse_edit_key(axis.key);
+  edit.value = edited_value(now, edit.key, edit.shake);
+  return edit;
+}
+
+double value_now(const Axis& axis, const Parameters& now) {
+  return edit_of(axis, now).value.x() / axis.si;
+}
+
+LogAxis range_of(const Axis& axis) {
+  const std::vector<double> edges = axis.edges();
+  return {edges.front(), edges.back()};
+}
+
+/// Where the axis has a value; -1: beyond its ends.
+int place_on(const Axis& axis, double value) {
+  const std::vector<double> edges = axis.edges();
+  const auto after = std::ranges::upper_bound(edges, value);
+  return after == edges.end() ? -1 : static_cast<int>(after - edges.begin()) - 1;
+}
+
+const study::OverturnPoint& point(const OverturnFound& found, int i, int j) {
+  return found.map.points[static_cast<std::size_t>(j * found.plan->x.count() + i)];
+}
+
+/// Shakes from now on as at this point; one thing to undo.
+void load(Player& player, const study::OverturnPlan& plan, int i, int j, std::string& refused) {
+  player.begin_edit();
+  try {
+    for (const auto& [axis, k] : {std::pair(&plan.x, i), std::pair(&plan.y, j)}) {
+      Edit edit = edit_of(*axis, player.parameters());
+      edit.value.x() = axis->in_si(k);
+      player.edit(edit);
+    }
+    refused.clear();
+  } catch (const io::InputError& error) {
+    refused = error.what();
+  }
+}
+
+/// What tells verdicts apart without colours.
+void add_mark(ImDrawList& list, ImVec2 at, float size, Verdict verdict) {
+  const ImU32 ink = theme().verdict[static_cast<int>(verdict)].mark;
+  const float r = 0.28f * size;
+  const float thin = std::max(1.f, 0.12f * size);
+  if (verdict == Verdict::rocks) list.AddCircleFilled(at, 0.6f * r, ink, 10);
+  if (verdict == Verdict::some)
+    list.AddTriangleFilled({at.x - r, at.y + 0.8f * r}, {at.x + r, at.y + 0.8f * r}, {at.x, at.y - r}, ink);
+  if (verdict == Verdict::failed) {
+    list.AddLine({at.x, at.y - r}, {at.x, at.y + r}, ink, thin);
+    list.AddLine({at.x - r, at.y}, {at.x + r, at.y}, ink, thin);
+  }
+  if (verdict == Verdict::all) {
+    list.AddLine({at.x - r, at.y - r}, {at.x + r, at.y + r}, ink, thin);
+    list.AddLine({at.x - r, at.y + r}, {at.x + r, at.y - r}, ink, thin);
+  }
+}
+
+void draw_cells(ImDrawList& list, const LogChart& chart, const OverturnFound& found) {
+  const std::vector<double> x = found.plan->x.edges(), y = found.plan->y.edges();
+  for (std::size_t j = 0; j + 1 < y.size(); ++j)
+    for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+      const Verdict verdict = point(found, static_cast<int>(i), static_cast<int>(j)).verdict;
+      if (verdict == Verdict::not_computed) continue;
+      const ImVec2 low = chart.at(x[i], y[j]), high = chart.at(x[i + 1], y[j + 1]);
+      list.AddRectFilled({low.x, high.y}, {high.x, low.y}, theme().verdict[static_cast<int>(verdict)].fill);
+      add_mark(list, {(low.x + high.x) / 2, (low.y + high.y) / 2}, std::min(high.x - low.x, low.y - high.y),
+               verdict);
+    }
+}
+
+std::vector<LogCurve> curves_of(const LogChart& chart, const study::Criteria& criteria) {
+  const float dash = 0.45f * ImGui::GetTextLineHeight();
+  std::vector<LogCurve> curves;
+  for (const study::Criterion& criterion : criteria.list) {
+    LogCurve curve{say(k_one_pulse), theme().text, 0.35f * dash, {}};
+    if (criterion.name == "west") curve = {say(k_west), theme().positive, 0, {}};
+    if (criterion.name == "ishiyama") curve = {say(k_ishiyama), theme().line, dash, {}};
+    if (criterion.name == "one-sine") curve.name = say(k_one_cycle);
+    for (std::size_t n = 0; n < criterion.x.size(); ++n)
+      curve.points.push_back(chart.at(criterion.x[n], criterion.y[n]));
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+/// x, y: as they are told.
+std::string cell_in_words(const OverturnFound& found, int i, int j, double x, double y) {
+  const study::OverturnPoint& at = point(found, i, j);
+  std::string verdict = say(words_of(at.verdict));
+  if (const auto time = at.time(0.5)) verdict += say(k_map_first_at, *time);
+  if (at.verdict == Verdict::failed) verdict += say(k_colon) + at.status;
+  return say(k_map_cell, x, found.plan->x.unit, y, found.plan->y.unit, verdict);
+}
+
+/// The cell below the mouse: told, and loaded by a click.
+void handle_mouse(Player& player, const LogChart& chart, const OverturnFound& found, std::string& refused) {
+  if (!ImGui::IsWindowHovered() ||
+      !ImGui::IsMouseHoveringRect({chart.left, chart.top}, {chart.right, chart.bottom}))
+    return;
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  const auto value = [](const LogAxis& axis, float part) {
+    return axis.low * std::pow(axis.high / axis.low, static_cast<double>(part));
+  };
+  const int i = place_on(found.plan->x, value(chart.x, (at.x - chart.left) / (chart.right - chart.left)));
+  const int j = place_on(found.plan->y, value(chart.y, (chart.bottom - at.y) / (chart.bottom - chart.top)));
+  if (i < 0 || j < 0) return;
+  const float gap = 4 * ImGui::GetTextLineHeight();
+  ImGui::SetNextWindowPos({chart.left - gap, at.y}, ImGuiCond_Always, {1, 0.5f});  // beside the cells
+  ImGui::SetTooltip("%s\n%s",
+                    cell_in_words(found, i, j, found.plan->x.values[static_cast<std::size_t>(i)],
+                                  found.plan->y.values[static_cast<std::size_t>(j)])
+                        .c_str(),
+                    say(player.can_edit() ? k_map_click : k_map_no_click).c_str());
+  if (ImGui::IsMouseClicked(0) && player.can_edit()) load(player, *found.plan, i, j, refused);
+}
+
+/// The way for the keyboard: to the cells beside that of the present shake.
+void draw_steps(Player& player, const OverturnFound& found, std::string& refused) {
+  const study::OverturnPlan& plan = *found.plan;
+  const auto nearest = [&](const Axis& axis) {
+    const double now = std::clamp(value_now(axis, player.parameters()), axis.edges().front(),
+                                  std::nextafter(axis.edges().back(), 0));
+    return place_on(axis, now);
+  };
+  const int i = nearest(plan.x), j = nearest(plan.y);
+  const auto step = [&](const char* name, ImGuiDir direction, int to_i, int to_j) {
+    const bool there = to_i >= 0 && to_i < plan.x.count() && to_j >= 0 && to_j < plan.y.count();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!there || !player.can_edit());
+    if (ImGui::ArrowButton(name, direction)) load(player, plan, to_i, to_j, refused);
+    ImGui::EndDisabled();
+  };
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(title_of(plan.x).c_str());
+  step("##lower", ImGuiDir_Left, i - 1, j);
+  step("##higher", ImGuiDir_Right, i + 1, j);
+  const std::string title = title_of(plan.y);
+  const float frame = ImGui::GetFrameHeight(), gap = ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < text_width(title) + 2 * (frame + gap)) ImGui::NewLine();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(title.c_str());
+  step("##weaker", ImGuiDir_Down, i, j - 1);
+  step("##stronger", ImGuiDir_Up, i, j + 1);
+}
+
+bool can_have_map(const Player& player) {
+  const Parameters& now = player.parameters();
+  const Setup& setup = player.scene().setup;
+  return !player.way().empty() && setup.run.analysis == Analysis::dynamic &&
+         setup.model.furniture_total() > 0 &&
+         (now.shakes[0].kind == Shake::Kind::sine || now.shakes[0].kind == Shake::Kind::pulse);
+}
+
+}  // namespace
+
+bool draw_map(Player& player, MapState& state, std::string& refused) {
+  const auto found = state.search ? state.search->result() : nullptr;
+  if (!found || !found->plan) return false;
+  const study::OverturnPlan& plan = *found->plan;
+  const float line = ImGui::GetTextLineHeight();
+  const float height = std::min(0.9f * ImGui::GetContentRegionAvail().x, 26 * line);
+  const LogChart chart = chart_at_cursor(range_of(plan.x), range_of(plan.y), height, title_of(plan.y));
+  state.cells = {chart.left, chart.top, chart.right - chart.left, chart.bottom - chart.top};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  draw_log_grid(list, chart);
+  list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);
+  draw_cells(list, chart, *found);
+  const std::vector<LogCurve> curves = curves_of(chart, found->map.criteria);
+  for (const LogCurve& curve : curves) add_line(list, curve.points, curve.colour, curve.dash);
+  const double x = value_now(plan.x, player.parameters()), y = value_now(plan.y, player.parameters());
+  add_present(list, chart.clamped(x, y));
+  list.PopClipRect();
+  handle_mouse(player, chart, *found, refused);
+  ChartKey key(list, chart, title_of(plan.x));
+  key.begin_line();
+  for (const Verdict verdict : k_verdicts) {
+    if (std::ranges::none_of(found->map.points, [=](const auto& p) { return p.verdict == verdict; }))
+      continue;
+    const ImVec2 at = key.entry(say(words_of(verdict)));
+    const float half = 0.5f * line;
+    list.AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half},
+                       theme().verdict[static_cast<int>(verdict)].fill);
+    list.AddRect({at.x - half, at.y - half}, {at.x + half, at.y + half}, theme().axis);
+    add_mark(list, at, line, verdict);
+  }
+  if (!curves.empty()) key.lines(curves);
+  add_present(list, key.entry(say(k_present)));
+  key.end();
+  ImGui::TextWrapped(
+      "%s", (curves.empty() ? say(k_map_no_lines) : say(k_map_lines, found->map.criteria.bodies)).c_str());
+  const int i = place_on(plan.x, x), j = place_on(plan.y, y);
+  ImGui::TextWrapped(
+      "%s",
+      (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j, x, y))).c_str());
+  draw_steps(player, *found, refused);
+  const auto of_axis = [&](Edit::Key of, int index) {
+    const std::string name = io::edit_key({of, index});
+    return name == plan.x.key || name == plan.y.key;
+  };
+  if (parameters_differ(player.scene().setup.model, player.parameters(), state.of, of_axis))
+    ImGui::TextWrapped("%s", say(k_map_stale).c_str());
+  return true;
+}
+
+void draw_map_controls(const Player& player, MapState& state) {
+  const auto found = state.search ? state.search->result() : nullptr;
+  if (state.search && !state.search->over()) {
+    const auto progress = static_cast<float>(state.search->progress());
+    if (found) ImGui::TextUnformatted(say(k_map_progress, found->map.run, found->map.of).c_str());
+    ImGui::ProgressBar(progress, {-1, 0.5f * ImGui::GetTextLineHeight()}, "");
+    if (ImGui::Button((say(k_cancel) + "##cancel-map").c_str())) state.search->stop();
+    return;
+  }
+  if (found && !found->failure.empty()) ImGui::TextWrapped("%s", say(k_map_failed, found->failure).c_str());
+  const bool can = can_have_map(player);
+  ImGui::BeginDisabled(!can);
+  const bool asked = ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(),
+                                   {found ? 0.f : -1.f, 0});
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());
+  if (found) {
+    ImGui::SameLine();
+    if (ImGui::Button((say(k_map_close) + "##close-map").c_str())) state = {};
+  }
+  if (asked) {
+    state.of = player.parameters();
+    state.search = search_overturning(player.scene(), state.of);
+  }
+}
+
+}  // namespace topple::app

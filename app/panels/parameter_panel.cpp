@@ -1,0 +1,310 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "app/panels/panels.h"
+#include "app/panels/precision_words.h"
+#include "app/support/terms.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene.h"
+
+namespace topple::app {
+namespace {
+
+using namespace window_words;
+
+/// How a parameter is shown. The slider covers what is usual, `low` to `high` in `unit` or, for a relative
+/// one, as factors of the scene's value; typing (Ctrl+click) reaches all that is legal.
+struct Slider {
+  Edit::Key key;
+  Phrase label, about;  ///< about: of {0}, what the scene reference says
+  const char* unit;
+  const char* format;
+  double low, high;
+  bool relative = false, logarithmic = false;
+  int component = 0;  ///< of Edit::value
+};
+
+constexpr Slider k_sliders[] = {
+    {Edit::Key::frequency, k_frequency, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true},
+    {Edit::Key::amplitude, k_amplitude, k_amplitude_about, "gal", "%.0f gal", 0, 1000},
+    {Edit::Key::direction, k_direction, k_direction_about, "", "%.0f°", -180, 180},
+    {Edit::Key::duration, k_duration, k_duration_about, "s", "%.3g s", 0.05, 60, false, true},
+    {Edit::Key::scale, k_scale, k_scale_about, "", "× %.2f", 0, 3},
+    {Edit::Key::alpha, k_alpha, k_alpha_about, "kgf", "%.4g kgf", 1. / 50, 50, true, true},
+    {Edit::Key::q, k_q, k_q_about, "", "%.2f", 0.5, 4},
+    {Edit::Key::friction, k_friction, k_friction_about, "", "%.2f", 0, 1.5},
+    {Edit::Key::friction_static, k_friction_static, k_friction_static_about, "", "%.2f", 0, 1.5},
+    {Edit::Key::restitution, k_restitution, k_restitution_about, "", "%.2f", 0, 1},
+    {Edit::Key::damping, k_damping, k_damping_about, "", "%.3f", 0, 0.2},
+    {Edit::Key::time_step, k_time_step, k_time_step_about, "ms", "%.3g ms", 0.05, 20, false, true},
+};
+// Of a sweep, whose frequency has two values.
+constexpr Slider k_sweep[] = {
+    {Edit::Key::frequency, k_sweep_from, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true},
+    {Edit::Key::frequency, k_sweep_to, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true, 1},
+};
+
+constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
+
+double azimuth(const Vec3& direction) {
+  return std::atan2(direction.y(), direction.x()) * k_degrees;
+}
+
+/// Of the same slope, turned to `degrees` about the vertical.
+Vec3 turned(const Vec3& direction, double degrees) {
+  const double across = std::max(std::hypot(direction.x(), direction.y()), 1e-6), a = degrees / k_degrees;
+  return {across * std::cos(a), across * std::sin(a), direction.z()};
+}
+
+/// One parameter: its label, what sets it, and the way back to the scene's value.
+class Row {
+ public:
+  Row(Player& player, Edit::Key key, int index, std::string& refused)
+      : player_(player),
+        key_(io::key_of(key)),
+        edit_{key, index, edited_value(player.parameters(), key, index)},
+        scene_value_(edited_value(player.scene().setup.parameters, key, index)),
+        refused_(refused) {}
+
+  void slider(const Slider& look) {
+    begin(say(look.label));
+    const double unit = io::unit_value(look.unit, key_.dimension);
+    const auto shown = [&](const Vec3& value) {
+      return look.key == Edit::Key::direction ? azimuth(value) : value[look.component] / unit;
+    };
+    const auto from_shown = [&](double number) {
+      if (look.key == Edit::Key::direction) return turned(edit_.value, number);
+      Vec3 value = edit_.value;
+      value[look.component] = number * unit;
+      return value;
+    };
+    ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
+    float number = static_cast<float>(shown(edit_.value));
+    const auto [low, high] = range(look, number, shown(scene_value_), unit);
+    const ImGuiSliderFlags flags = look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
+    const bool changed =
+        ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, look.format, flags);
+    if (ImGui::IsItemActivated()) player_.begin_edit();
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+      ImGui::SetTooltip("%s", about(look, shown(scene_value_)).c_str());
+    // While somebody types, what stands there so far is no value yet.
+    ImGuiStorage& typed = *ImGui::GetStateStorage();
+    const ImGuiID item = ImGui::GetID("typed");
+    if (changed && ImGui::GetIO().WantTextInput)
+      typed.SetFloat(item, number);
+    else if (changed)
+      post(from_shown(number));
+    if (ImGui::IsItemDeactivated()) {
+      const float last = typed.GetFloat(item, k_nothing);
+      typed.SetFloat(item, k_nothing);
+      if (last != k_nothing) post(from_shown(last));
+    }
+    end();
+  }
+
+  /// One of the choices of the key that `legal` has.
+  template <class F>
+  void choice(const std::string& label, const Phrase& tip, F&& legal) {
+    begin(label);
+    ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
+    const int now = static_cast<int>(edit_.value.x());
+    const auto word = [&](int k) { return std::string(key_.choices[static_cast<std::size_t>(k)]); };
+    const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
+    const bool narrow = ImGui::CalcTextSize(word(now).c_str()).x + ImGui::GetStyle().FramePadding.x > room;
+    if (ImGui::BeginCombo("##value", word(now).c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
+      for (int k = 0; k < static_cast<int>(key_.choices.size()); ++k)
+        if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
+      ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), say(tip, key_.about)).c_str());
+    }
+    end();
+  }
+
+  void tick(const std::string& label, const std::string& tooltip) {
+    bool on = edit_.value.x() != 0;
+    ImGui::PushID(label.c_str());
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    if (ImGui::Checkbox(label.c_str(), &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), tooltip).c_str());
+    end(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
+        ImGui::GetStyle().ItemSpacing.x);
+  }
+
+  void button(const Phrase& label, double value, const Phrase& tooltip) {
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    if (ImGui::Button(say(label).c_str())) post_anew(Vec3(value, 0, 0));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(tooltip).c_str());
+    ImGui::PopID();
+  }
+
+ private:
+  void begin(const std::string& label) {
+    ImGui::PushID(label.c_str());
+    ImGui::PushID(io::edit_key(edit_).c_str());
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label.c_str());
+    ImGui::SameLine(6.2f * ImGui::GetFontSize());
+  }
+  // What slider() covers: the usual within the legal, and the value itself.
+  std::pair<float, float> range(const Slider& look, float number, double in_scene, double unit) const {
+    const double scale = look.relative ? in_scene : 1;
+    double low = look.low * scale, high = look.high * scale;
+    if (look.key != Edit::Key::direction) {
+      low = std::max(low, key_.least / unit);
+      high = std::min(high, key_.most / unit);
+    }
+    return {std::min(static_cast<float>(low), number), std::max(static_cast<float>(high), number)};
+  }
+  std::string about(const Slider& look, double in_scene) const {
+    const std::string name = io::edit_key(edit_);
+    if (look.key == Edit::Key::direction) return say(k_key_about, name, say(look.about));
+    return say(k_slider_about, name, say(look.about, key_.about), io::range_text(key_), in_scene, look.unit);
+  }
+  void end(float at = 0) {
+    ImGui::SameLine(at);
+    ImGui::BeginDisabled(edit_.value == scene_value_);
+    if (ImGui::Button("×", {1.4f * ImGui::GetFrameHeight(), 0})) post_anew(scene_value_);
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_back_to_scene).c_str());
+    ImGui::PopID();
+    ImGui::PopID();
+  }
+  void post_anew(const Vec3& value) {
+    player_.begin_edit();
+    post(value);
+  }
+  void post(const Vec3& value) {
+    const Edit edit{edit_.key, edit_.shake, value};
+    try {
+      player_.edit(edit);
+      refused_.clear();
+    } catch (const io::InputError& error) {
+      refused_ = error.what();
+    }
+  }
+
+  Player& player_;
+  const io::Key& key_;
+  const Edit edit_;
+  const Vec3 scene_value_;
+  std::string& refused_;
+};
+
+void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
+  const Setup& setup = player.scene().setup;
+  Row row(player, key, index, refused);
+  switch (key) {
+    case Edit::Key::on:
+      return row.tick(say(k_on), say(k_on_about));
+    case Edit::Key::type:
+      row.choice(say(k_type), k_type_about,
+                 [](int k) { return static_cast<Shake::Kind>(k) != Shake::Kind::record; });
+      return row.button(k_shake_once, static_cast<double>(Shake::Kind::pulse), k_shake_once_about);
+    case Edit::Key::law:
+      return row.choice(say(k_law), k_law_about, [](int) { return true; });
+    case Edit::Key::integrator:
+      return row.choice(say(k_integrator), k_integrator_about, [](int k) { return k > 0; });
+    case Edit::Key::want:
+      return row.tick(say(k_stresses_wanted), say(k_stresses_wanted_about));
+    case Edit::Key::model:
+      ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
+      return row.choice(say(k_model), k_model_about,
+                        [&](int k) { return can_be(setup.model, index, static_cast<BodyModel>(k)); });
+    case Edit::Key::anchor: {
+      const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];
+      return row.tick(anchor.name,
+                      say(k_anchor_about, setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
+    }
+    case Edit::Key::frequency:
+      if (player.parameters().shakes[static_cast<std::size_t>(index)].kind == Shake::Kind::sweep) {
+        for (const Slider& look : k_sweep) Row(player, key, index, refused).slider(look);
+        return;
+      }
+      [[fallthrough]];
+    default:
+      row.slider(*std::find_if(std::begin(k_sliders), std::end(k_sliders),
+                               [key](const Slider& look) { return look.key == key; }));
+  }
+}
+
+enum class Group { floor, contact, bodies, anchors, integration };
+
+Group group_of(Edit::Key key) {
+  if (key <= Edit::Key::scale) return Group::floor;
+  if (key <= Edit::Key::restitution) return Group::contact;
+  if (key <= Edit::Key::damping) return Group::bodies;
+  return key == Edit::Key::anchor ? Group::anchors : Group::integration;
+}
+
+/// False: what stands below it is folded away.
+bool draw_heading(Group group, int index, const Parameters& parameters) {
+  constexpr std::size_t k_few = 2;  // bodies, whose rows need no folding
+  switch (group) {
+    case Group::floor:
+      ImGui::TextDisabled(
+          "%s", (parameters.shakes.size() == 1 ? say(k_floor) : say(k_floor_shake, index + 1)).c_str());
+      return true;
+    case Group::bodies:
+      return ImGui::CollapsingHeader((say(k_bodies) + "##bodies").c_str(),
+                                     parameters.models.size() <= k_few ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    default:
+      ImGui::TextDisabled("%s", say(group == Group::contact   ? k_contact
+                                    : group == Group::anchors ? k_anchors_heading
+                                                              : k_integration)
+                                    .c_str());
+      return true;
+  }
+}
+
+/// Statics have no time.
+bool is_dynamic(Edit::Key key) {
+  return key == Edit::Key::law || key == Edit::Key::friction_static || key == Edit::Key::restitution ||
+         group_of(key) == Group::bodies || group_of(key) == Group::integration;
+}
+
+/// Else contact parameters change nothing.
+bool can_touch(const Model& model) {
+  return !model.planes.empty() || model.bodies.size() > 1;
+}
+
+bool draw_precision_button() {
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6.2f * ImGui::GetFontSize());
+  const bool pressed = ImGui::Button((say(k_precision) + "##precision").c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_precision_about).c_str());
+  return pressed;
+}
+
+}  // namespace
+
+bool draw_parameters(Player& player, std::string& refused) {
+  const Parameters& parameters = player.parameters();
+  const Setup& setup = player.scene().setup;
+  ImGui::BeginDisabled(!player.can_edit());
+  std::optional<std::pair<Group, int>> heading;
+  bool open = true, precision = false;
+  for (const auto& [key, index] : editable(setup.model, parameters)) {
+    if (is_static(setup) && is_dynamic(key)) continue;
+    const Group group = group_of(key);
+    if (group == Group::contact && !can_touch(setup.model)) continue;
+    const std::pair<Group, int> of{group, group == Group::floor ? index : 0};
+    if (heading != of) open = draw_heading(group, index, parameters);
+    heading = of;
+    if (open) draw_row(player, key, index, refused);
+    if (key == Edit::Key::time_step) precision = draw_precision_button();
+  }
+  ImGui::EndDisabled();
+  if (!heading)
+    ImGui::TextWrapped("%s", say(k_no_parameters).c_str());
+  else if (!player.can_edit() && !player.way().empty())
+    ImGui::TextWrapped("%s", say(k_past_values).c_str());
+  return precision;
+}
+
+}  // namespace topple::app

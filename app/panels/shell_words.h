@@ -1,0 +1,105 @@
+// What the window says around a scene: choosing, opening, saving, exporting.
+#pragma once
+
+#include "app/picture/window_words.h"
+
+namespace topple::app::window_words {
+
+inline constexpr Phrase k_scenes{"Scenes…", "シーン…"};
+inline constexpr Phrase k_scenes_about{"Another scene or recording (Ctrl+O)",
+                                       "別のシーンや記録を開く (Ctrl+O)"};
+inline constexpr Phrase k_save{"Save…", "保存…"};
+inline constexpr Phrase k_save_about{"The scene as it is now, as a file (Ctrl+S)",
+                                     "現在のシーンをファイルに保存 (Ctrl+S)"};
+inline constexpr Phrase k_export{"Export…", "書き出し…"};
+inline constexpr Phrase k_export_about{"Picture, video or tables (Ctrl+E)",
+                                       "画像・動画・表の書き出し (Ctrl+E)"};
+inline constexpr Phrase k_loop_about{"At the end, begin again (L)", "最後まで来たら最初から繰り返す (L)"};
+inline constexpr Phrase k_achieved{"runs at {0}", "実際 {0}"};
+inline constexpr Phrase k_achieved_about{"Simulated seconds per second, reached",
+                                         "実際の速さ（実時間に対する比）"};
+
+inline constexpr Phrase k_choose{"Choose a scene", "シーンを選ぶ"};
+inline constexpr Phrase k_choose_about{"or drop a scene, a recording or an accelerogram on the window",
+                                       "シーン・記録・加速度波形のファイルをウィンドウに落としても開けます"};
+inline constexpr Phrase k_filter{"type to filter", "文字を入力して絞り込む"};
+inline constexpr Phrase k_recent{"Recent files", "最近のファイル"};
+inline constexpr Phrase k_no_recent{"Scenes and recordings that you open stand here.",
+                                    "開いたシーンと記録がここに並びます。"};
+inline constexpr Phrase k_missing{"is not there any more", "見つかりません"};
+inline constexpr Phrase k_built_in{"Built-in scenes", "組み込みのシーン"};
+inline constexpr Phrase k_nothing_found{"Nothing is called \"{0}\".",
+                                        "「{0}」に当てはまるものはありません。"};
+inline constexpr Phrase k_choose_keys{"arrows: choose   Enter: open   Esc: back",
+                                      "矢印: 選択   Enter: 開く   Esc: 戻る"};
+inline constexpr Phrase k_opening{"opening {0} …", "{0} を開いています…"};
+
+inline constexpr Phrase k_not_opened{"This cannot be opened", "開けません"};
+inline constexpr Phrase k_kept_open{"What was open stays as it was.", "開いていたものはそのままです。"};
+inline constexpr Phrase k_record_needs_scene{
+    "{0}: is neither a scene nor a recording; an accelerogram is dropped on an open scene, whose first shake "
+    "it becomes",
+    "{0}: "
+    "シーンでも記録でもありません。加速度波形は、開いているシーンの上に落とすと、その最初の加振になります"};
+inline constexpr Phrase k_not_recorded{"This run is not recorded", "この計算は記録されません"};
+inline constexpr Phrase k_no_state_folder{
+    "No folder for recordings can be written to: $XDG_STATE_HOME/topple or ~/.local/state/topple. Name a "
+    "file with -o.",
+    "記録用のフォルダに書き込めません: $XDG_STATE_HOME/topple または ~/.local/state/topple。-o "
+    "でファイルを指定してください。"};
+inline constexpr Phrase k_record_broke_off{"The recording broke off", "記録が途切れました"};
+inline constexpr Phrase k_record_kept{
+    "The run goes on, but is no longer recorded. What was recorded until then can be opened.",
+    "計算は続きますが、これ以降は記録されません。それまでの記録は開けます。"};
+inline constexpr Phrase k_diverged{"A step failed", "計算が収束しませんでした"};
+inline constexpr Phrase k_diverged_about{
+    "The run stands at the last good state; where it failed is highlighted. Change a parameter and go on.",
+    "直前の正しい状態で止まっています。失敗した要素は強調表示されています。パラメータを変えて続けられます。"};
+inline constexpr Phrase k_program_failed{"The run ended by an error of the program",
+                                         "プログラムの誤りで計算が終わりました"};
+inline constexpr Phrase k_halve{"Halve the step and retry", "時間刻みを半分にして再試行"};
+inline constexpr Phrase k_close{"Close", "閉じる"};
+inline constexpr Phrase k_copy{"Copy", "コピー"};
+inline constexpr Phrase k_cancel{"Cancel", "中止"};
+
+inline constexpr Phrase k_save_scene{"Save scene as", "シーンを名前を付けて保存"};
+inline constexpr Phrase k_save_scene_about{
+    "The scene with all parameters as they are at this instant. It starts from the beginning.",
+    "この時点のパラメータをすべて含むシーンです。最初から始まります。"};
+inline constexpr Phrase k_file{"File", "ファイル"};
+inline constexpr Phrase k_exists{"{0} exists already.", "{0} はすでにあります。"};
+inline constexpr Phrase k_replace{"Replace it", "置き換える"};
+inline constexpr Phrase k_save_now{"Save", "保存"};
+inline constexpr Phrase k_written{"Written: {0}", "書き出しました: {0}"};
+inline constexpr Phrase k_given_up{"Written: {0}. No scene can also state: {1}",
+                                   "書き出しました: {0}。シーンに書けない値: {1}"};
+inline constexpr Phrase k_not_written{"Not written: {0}", "書き出せません: {0}"};
+
+inline constexpr Phrase k_export_title{"Export", "書き出し"};
+inline constexpr Phrase k_picture{"Picture", "画像"};
+inline constexpr Phrase k_video{"Video", "動画"};
+inline constexpr Phrase k_tables{"Tables (CSV)", "表 (CSV)"};
+inline constexpr Phrase k_size{"Size", "大きさ"};
+inline constexpr Phrase k_from{"From", "開始"};
+inline constexpr Phrase k_to{"To", "終了"};
+inline constexpr Phrase k_rate{"Pictures a second", "毎秒の枚数"};
+inline constexpr Phrase k_folder{"Folder", "フォルダ"};
+inline constexpr Phrase k_export_now{"Export", "書き出す"};
+inline constexpr Phrase k_picture_about{"The view as it is seen now, with its title, legend and time.",
+                                        "現在の視点の画像。題名・凡例・時刻が入ります。"};
+inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
+                                      "現在の視点の動画。時間の範囲を選べます。"};
+inline constexpr Phrase k_tables_about{
+    "Bodies, nodes, elements, floor and energy over time, in a new folder.",
+    "物体・節点・要素・床・エネルギーの時刻歴を新しいフォルダに書きます。"};
+inline constexpr Phrase k_export_recorded{"Only what is recorded can be exported, and this run is not.",
+                                          "書き出せるのは記録だけです。この計算は記録されていません。"};
+inline constexpr Phrase k_export_too_early{"There is no instant yet that could be exported.",
+                                           "書き出せる時刻がまだありません。"};
+inline constexpr Phrase k_export_newest{"Only the newest branch is exported; another one is shown.",
+                                        "書き出せるのは最新の枝だけです。別の枝が表示されています。"};
+inline constexpr Phrase k_exporting{"Exporting {0}", "{0} を書き出しています"};
+inline constexpr Phrase k_already_there{"{0} exists already; choose another name",
+                                        "{0} はすでにあります。別の名前にしてください"};
+
+}  // namespace topple::app::window_words

@@ -1,0 +1,258 @@
+#include "app/panels/subject.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/picture/anchor_picture.h"
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
+#include "app/picture/window_words.h"
+#include "app/support/terms.h"
+#include "solver/overturn.h"
+#include "solver/rotation.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// The value of greatest magnitude at the ends of a member's elements: between them it is linear, or less.
+template <typename At>
+double greatest(const Instant& now, std::size_t index, At at) {
+  const Member& member = now.model.members[index];
+  double most = 0;
+  for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
+    for (const double xi : {-1., 1.}) {
+      const double value = at(static_cast<std::size_t>(e), forces_at(now.model, now.row, e, xi));
+      if (std::abs(value) > std::abs(most)) most = value;
+    }
+  return most;
+}
+
+template <BeamQuantity quantity>
+double beam_value(const Instant& now, std::size_t index) {
+  return greatest(now, index,
+                  [&](std::size_t e, const SectionForces& forces) {
+                    return value_of(quantity, now.model, e, forces);
+                  }) /
+         name_of(quantity).per_unit;
+}
+
+double yield_ratio(const Instant& now, std::size_t index) {
+  const Element& element = now.model.elements[now.model.members[index].first_element];
+  return std::isfinite(element.capacity[0]) ? beam_value<BeamQuantity::yield_ratio>(now, index) : k_nothing;
+}
+
+template <std::size_t component>
+double force_value(const Instant& now, std::size_t index) {
+  return greatest(now, index,
+                  [](std::size_t, const SectionForces& forces) { return component_of(forces, component); });
+}
+
+const double* body_numbers(const Instant& now, std::size_t index) {
+  return &now.row.body[11 * index];
+}
+
+Quat body_turn(const io::FrameRow& row, std::size_t index) {
+  const double* const q = &row.body[11 * index + 3];
+  return Quat(q[0], q[1], q[2], q[3]);
+}
+
+double tilt_value(const Instant& now, std::size_t index) {
+  return body_numbers(now, index)[7] * k_degrees;
+}
+
+double slide_value(const Instant& now, std::size_t index) {
+  return 1e3 * body_numbers(now, index)[8];
+}
+
+/// From the turn between the neighbours.
+double angular_velocity(const Instant& now, std::size_t index) {
+  const io::FrameRow& from = now.before ? *now.before : now.row;
+  const io::FrameRow& to = now.after ? *now.after : now.row;
+  if (!(to.time > from.time)) return k_nothing;
+  return log_quaternion(body_turn(to, index) * body_turn(from, index).conjugate()).norm() /
+         (to.time - from.time);
+}
+
+double kinetic_value(const Instant& now, std::size_t index) {
+  return io::kinetic_energy(now.model, now.gravity, now.row, static_cast<int>(index));
+}
+
+OverturnBarrier barrier(const Instant& now, std::size_t index) {
+  return overturn_barrier(now.model, static_cast<int>(index),
+                          {Vec3(body_numbers(now, index)), body_turn(now.row, index)}, now.gravity.norm());
+}
+
+double margin_value(const Instant& now, std::size_t index) {
+  const double left = barrier(now, index).left;
+  return std::isfinite(left) ? left : k_nothing;
+}
+
+double margin_share(const Instant& now, std::size_t index) {
+  const OverturnBarrier b = barrier(now, index);
+  return std::isfinite(b.whole) && b.whole > 0 ? 100 * b.left / b.whole : k_nothing;
+}
+
+double displacement_value(const Instant& now, std::size_t index) {
+  const Body& body = now.model.bodies[index];
+  const RigidFit fit = rigid_fit(now.model, now.row);
+  double most = 0;
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    most = std::max(most, displacement(now.model, now.row, fit, i).norm());
+  return most / name_of(BeamQuantity::displacement).per_unit;
+}
+
+template <std::size_t number>
+double anchor_value(const Instant& now, std::size_t index) {
+  return now.row.anchor[4 * index + number];
+}
+
+double stretch_value(const Instant& now, std::size_t index) {
+  const float* const values = &now.row.anchor[4 * index];
+  if (values[3] == io::k_anchor_away || values[3] == io::k_anchor_broken) return k_nothing;
+  const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) - now.model.anchors[index].to;
+  return 1e3 * (span.norm() - values[2]);
+}
+
+constexpr SubjectValue k_member_values[] = {
+    {window_words::k_short_stress, "MPa", beam_value<BeamQuantity::stress>},
+    {window_words::k_yield_ratio, "", yield_ratio},
+    {window_words::k_normal_force, "N", force_value<0>},
+    {window_words::k_shear_y, "N", force_value<1>},
+    {window_words::k_shear_z, "N", force_value<2>},
+    {window_words::k_torque, "N m", force_value<3>},
+    {window_words::k_moment_y, "N m", force_value<4>},
+    {window_words::k_moment_z, "N m", force_value<5>}};
+constexpr SubjectValue k_body_values[] = {{window_words::k_tilt, "°", tilt_value},
+                                          {window_words::k_slide, "mm", slide_value},
+                                          {window_words::k_angular_velocity, "rad/s", angular_velocity},
+                                          {window_words::k_kinetic, "J", kinetic_value},
+                                          {window_words::k_left_to_overturn, "J", margin_value},
+                                          {window_words::k_share_left, "%", margin_share},
+                                          {window_words::k_elastic_displacement, "mm", displacement_value}};
+constexpr SubjectValue k_anchor_values[] = {{window_words::k_force, "N", anchor_value<0>},
+                                            {window_words::k_stretch, "mm", stretch_value},
+                                            {window_words::k_energy, "J", anchor_value<1>}};
+
+template <typename Named>
+std::string names_of(const std::vector<Named>& all, std::size_t first, std::size_t count) {
+  constexpr std::size_t k_most = 30;
+  std::string names;
+  for (std::size_t i = first; i < first + std::min(count, k_most); ++i)
+    names += (names.empty() ? "" : ", ") + all[i].name;
+  return names + (count > k_most ? ", …" : "");
+}
+
+}  // namespace
+
+std::string name_of(const Model& model, const Subject& subject) {
+  switch (subject.kind) {
+    case Subject::Kind::member: {
+      const Member& member = model.members[subject.index];
+      return model.bodies[member.body].name + "/" + member.name;
+    }
+    case Subject::Kind::body:
+      return model.bodies[subject.index].name;
+    case Subject::Kind::anchor:
+      return model.anchors[subject.index].name;
+  }
+  return "";
+}
+
+std::size_t body_of(const Model& model, const Subject& subject) {
+  if (subject.kind == Subject::Kind::member)
+    return static_cast<std::size_t>(model.members[subject.index].body);
+  if (subject.kind == Subject::Kind::anchor)
+    return static_cast<std::size_t>(model.anchors[subject.index].body);
+  return subject.index;
+}
+
+void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame) {
+  const auto index = static_cast<std::int64_t>(subject.index);
+  if (subject.kind == Subject::Kind::body)
+    frame.highlighted_body = index;
+  else if (subject.kind == Subject::Kind::member)
+    frame.highlighted_member = index;
+  else
+    frame.highlighted_member = index + static_cast<std::int64_t>(model.members.size());
+}
+
+Subject subject_named(const Model& model, const std::string& name) {
+  const std::size_t slash = name.find('/');
+  const std::string body_name = name.substr(0, slash);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.name != body_name) continue;
+    if (slash == std::string::npos) return {Subject::Kind::body, b};
+    const auto first = static_cast<std::size_t>(body.first_member);
+    const auto count = static_cast<std::size_t>(body.member_count);
+    for (std::size_t m = first; m < first + count; ++m)
+      if (model.members[m].name == name.substr(slash + 1)) return {Subject::Kind::member, m};
+    throw io::InputError(fmt::format("{}: {} has no such member; it has {}", name, body_name,
+                                     names_of(model.members, first, count)));
+  }
+  throw io::InputError(fmt::format("{}: there is no body of that name; there are {}", name,
+                                   names_of(model.bodies, 0, model.bodies.size())));
+}
+
+Instant instant_of(const Player& player, const io::FrameRow& row) {
+  Instant now{player.scene().setup.model, player.scene().setup.parameters.gravity, row};
+  const std::vector<RowPtr>& way = player.way();
+  const auto earlier = [](const RowPtr& r, double time) { return r->time < time; };
+  const auto at = std::lower_bound(way.begin(), way.end(), row.time, earlier);
+  if (at != way.begin()) now.before = (at - 1)->get();
+  const auto next = at != way.end() && (*at)->time == row.time ? at + 1 : at;
+  if (next != way.end()) now.after = next->get();
+  return now;
+}
+
+std::span<const SubjectValue> values_of(Subject::Kind kind) {
+  if (kind == Subject::Kind::member) return k_member_values;
+  if (kind == Subject::Kind::body) return k_body_values;
+  return k_anchor_values;
+}
+
+std::string value_text(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value + 0.) : "-";
+}
+
+bool is_approximate(const Model& model, const io::FrameRow& row, std::size_t index) {
+  const Member& member = model.members[index];
+  const std::size_t planes = model.planes.size();
+  for (int e = member.first_element; e + 1 < member.first_element + member.element_count; e += 2)
+    for (std::size_t c = 0; c < model.contact_points.size() * planes; ++c)
+      if (model.contact_points[c / planes].node == model.elements[e].node[1] &&
+          (row.contact_force[3 * c] != 0 || row.contact_force[3 * c + 1] != 0 ||
+           row.contact_force[3 * c + 2] != 0))
+        return true;
+  return false;
+}
+
+const std::vector<float>& Histories::of(const Player& player, const Subject& subject, std::size_t value) {
+  History& history = histories_[{subject, value}];
+  const std::vector<RowPtr>& way = player.way();
+  std::vector<float>& samples = history.samples;
+  if (samples.size() > way.size() || samples.empty() || way.front() != history.first ||
+      way[samples.size() - 1] != history.last)
+    samples.clear();
+  if (samples.size() == way.size()) return samples;
+  if (!samples.empty()) samples.pop_back();  // it has a neighbour now
+  const SubjectValue& asked = values_of(subject.kind)[value];
+  for (std::size_t i = samples.size(); i < way.size(); ++i) {
+    const Instant instant{player.scene().setup.model, player.scene().setup.parameters.gravity, *way[i],
+                          i > 0 ? way[i - 1].get() : nullptr,
+                          i + 1 < way.size() ? way[i + 1].get() : nullptr};
+    samples.push_back(static_cast<float>(asked.at(instant, subject.index)));
+  }
+  if (!way.empty()) {
+    history.first = way.front();
+    history.last = way.back();
+  }
+  return samples;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,77 @@
+// Members, bodies and anchors that are looked at closely, and what is to be known of them.
+#pragma once
+
+#include <compare>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/live/player.h"
+#include "app/support/language.h"
+
+namespace topple::app {
+
+struct Subject {
+  enum class Kind { member, body, anchor };
+  Kind kind;
+  std::size_t index;  ///< into Model::members, bodies or anchors
+  auto operator<=>(const Subject&) const = default;
+};
+
+/// "free/post-1", "free", "strap".
+std::string name_of(const Model& model, const Subject& subject);
+/// The body that it is, belongs to, or holds.
+std::size_t body_of(const Model& model, const Subject& subject);
+
+/// Has it outlined.
+void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame);
+
+/// From BODY or BODY/MEMBER. Throws io::InputError that says what there is.
+Subject subject_named(const Model& model, const std::string& name);
+
+/// An instant with its neighbours; null: there is none.
+struct Instant {
+  const Model& model;
+  const Vec3& gravity;  ///< m/s^2
+  const io::FrameRow& row;
+  const io::FrameRow* before = nullptr;
+  const io::FrameRow* after = nullptr;
+};
+/// That of `row` among the recorded instants.
+Instant instant_of(const Player& player, const io::FrameRow& row);
+
+/// One number of a subject, in `unit`; not a number where it means nothing. Of a member the greatest along
+/// it, with its sign.
+struct SubjectValue {
+  Phrase name;
+  const char* unit;
+  double (*at)(const Instant& instant, std::size_t index);
+};
+std::span<const SubjectValue> values_of(Subject::Kind kind);
+
+/// Of the values of a member: its stress, its yield ratio, and N, the first of the components.
+inline constexpr std::size_t k_stress_value = 0, k_yield_value = 1, k_first_component_value = 2;
+
+/// "0.013", "12.3", "1.23e+06", or a dash for what is not a number.
+std::string value_text(double value);
+
+/// Contacts press on nodes in the middle of pairs of the member's elements, whose own bending they then give
+/// only roughly.
+bool is_approximate(const Model& model, const io::FrameRow& row, std::size_t member);
+
+/// Values at all instants on the way to the branch shown, kept up as the run goes on.
+class Histories {
+ public:
+  /// One for each row of Player::way().
+  const std::vector<float>& of(const Player& player, const Subject& subject, std::size_t value);
+
+ private:
+  struct History {
+    std::vector<float> samples;
+    RowPtr first, last;  // rows of the first and the last sample
+  };
+  std::map<std::pair<Subject, std::size_t>, History> histories_;
+};
+
+}  // namespace topple::app

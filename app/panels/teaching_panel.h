@@ -1,0 +1,38 @@
+// What the window teaches: criteria of overturning beside the present shake, guided demos, how far to trust a
+// run.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/panels/accuracy.h"
+#include "app/panels/demo.h"
+#include "app/panels/map_panel.h"
+
+namespace topple::app {
+
+/// A shake on the diagram. Of a record the frequency at which a sine has its peak acceleration and velocity.
+struct ShakePlace {
+  double frequency, amplitude;  ///< Hz, m/s^2
+};
+
+struct TeachingState {
+  std::optional<int> body;                     ///< that the criteria are for
+  std::vector<ShakePlace> path;                ///< where the shake has been, the present place last
+  std::shared_ptr<const Accelerogram> record;  ///< of the present place
+  double scale = 1;                            ///< likewise
+  std::optional<DemoGuide> guide;
+  std::optional<std::size_t> wanted;  ///< of demos(): it was asked for in the last frame
+  std::unique_ptr<Accuracy> accuracy;
+  MapState map;
+};
+
+/// Amplitude over frequency with the present shake: criteria of overturning, or the map.
+void draw_excitation(Player& player, TeachingState& state, std::string& refused);
+
+/// All of the panel.
+void draw_teaching(Player& player, TeachingState& state, std::string& refused);
+
+}  // namespace topple::app

@@ -1,0 +1,148 @@
+// Texts of what the window teaches.
+#pragma once
+
+#include "app/panels/shell_words.h"
+
+namespace topple::app::window_words {
+
+// amplitude over frequency
+inline constexpr Phrase k_body{"body", "家具"};
+inline constexpr Phrase k_no_standing_body{
+    "No body here stands freely on the floor, so the criteria say nothing.",
+    "床に自立する家具がないため、判定基準は適用できません。"};
+inline constexpr Phrase k_no_floor_shake{"The floor does not shake here.", "このシーンでは床は揺れません。"};
+inline constexpr Phrase k_frequency_axis{"frequency, Hz", "周波数 [Hz]"};
+inline constexpr Phrase k_amplitude_axis{"amplitude, gal", "加速度振幅 [gal]"};
+inline constexpr Phrase k_west{"West", "West"};
+inline constexpr Phrase k_ishiyama{"Ishiyama", "石山"};
+inline constexpr Phrase k_stays{"stays", "動かない"};
+inline constexpr Phrase k_rocks{"rocks", "ロッキング"};
+inline constexpr Phrase k_may_overturn{"may overturn", "転倒の恐れ"};
+inline constexpr Phrase k_verdict{"{0:.3g} Hz, {1:.4g} gal: {2}.", "{0:.3g} Hz、{1:.4g} gal：{2}。"};
+inline constexpr Phrase k_verdict_record{
+    "Record, peak {1:.4g} gal; peak acceleration over peak velocity as of {0:.3g} Hz: {2}.",
+    "加速度記録、最大 {1:.4g} gal。最大加速度と最大速度の比から {0:.3g} Hz 相当：{2}。"};
+inline constexpr Phrase k_limits{
+    "West: it lifts above {0:.4g} gal. Ishiyama: below a floor velocity of {1:.3g} cm/s it does not "
+    "overturn; here "
+    "{2:.3g} cm/s.",
+    "West の式：{0:.4g} gal を超えると浮き上がる。石山の式：床の速度が {1:.3g} cm/s 未満なら転倒しない（現在 "
+    "{2:.3g} cm/s）。"};
+inline constexpr Phrase k_long_period{"long period, small acceleration", "長周期・小さい加速度"};
+inline constexpr Phrase k_short_period{"short period, large acceleration", "短周期・大きい加速度"};
+inline constexpr Phrase k_preset_about{"{0:g} Hz, {1:g} gal, from now on", "現時刻から {0:g} Hz、{1:g} gal"};
+inline constexpr Phrase k_sine_only{"Only where the floor can shake as a sine, at the newest instant",
+                                    "正弦波で加振できるシーンの、最新の時刻でのみ使えます"};
+
+// overturning map
+inline constexpr Phrase k_overturning_map{"Overturning map", "転倒マップ"};
+inline constexpr Phrase k_map_again{"Compute again", "再計算"};
+inline constexpr Phrase k_map_close{"Close the map", "マップを閉じる"};
+inline constexpr Phrase k_map_about{
+    "Computes the scene as it is now from its start, beside the window,\nat 24 by 24 frequencies (of a "
+    "pulse: durations) and amplitudes",
+    "現在の設定のシーンを、周波数（パルスでは継続時間）と\n加速度振幅を24×24通りに変えて最初から計算する"};
+inline constexpr Phrase k_map_needs{"Only where furniture is shaken first by a sine or a pulse",
+                                    "最初の加振が正弦波またはパルスで、家具があるシーンでのみ使えます"};
+inline constexpr Phrase k_map_progress{"Map: {0} of {1} runs", "マップ：{0}/{1} 件を計算"};
+inline constexpr Phrase k_map_failed{"No map: {0}", "マップを作成できません：{0}"};
+inline constexpr Phrase k_map_stale{"Other parameters have changed since; compute it again.",
+                                    "ほかのパラメーターが変更されました。再計算してください。"};
+inline constexpr Phrase k_map_cell{"{0:.3g} {1}, {2:.4g} {3}: {4}", "{0:.3g} {1}、{2:.4g} {3}：{4}"};
+inline constexpr Phrase k_map_first_at{", the first at {0:.2f} s", "（最初は {0:.2f} s）"};
+inline constexpr Phrase k_map_here{"Now {0}.", "現在 {0}。"};
+inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",
+                                      "現在の加振はマップの範囲外です。"};
+inline constexpr Phrase k_map_click{"A click shakes like this from now on; R runs it from the start.",
+                                    "クリックすると現時刻からこの加振に変更。R で最初から計算します。"};
+inline constexpr Phrase k_map_no_click{"Only the newest instant can be shaken otherwise: End, or C.",
+                                       "加振を変更できるのは最新の時刻だけです（End または C）。"};
+inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床に自立する {0}"};
+inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines.",
+                                       "判定基準を適用できないため、線はありません。"};
+inline constexpr Phrase k_present{"now", "現在"};
+inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
+inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};
+inline constexpr Phrase k_one_pulse{"this pulse, exact", "このパルス（厳密解）"};
+inline constexpr Phrase k_all_overturn{"all overturn", "すべて転倒"};
+inline constexpr Phrase k_some_overturn{"some overturn", "一部が転倒"};
+inline constexpr Phrase k_stands_still{"does not lift", "浮き上がらない"};
+inline constexpr Phrase k_run_failed{"run failed", "計算失敗"};
+inline constexpr Phrase k_not_computed{"not computed", "未計算"};
+
+// guided demos
+inline constexpr Phrase k_demo_opens{"Opens {0} for it; the run that is open has been recorded.",
+                                     "デモ用に {0} を開きます。現在の計算は記録済みです。"};
+inline constexpr Phrase k_demos{"Guided demos", "解説付きデモ"};
+inline constexpr Phrase k_demo_gentle{"long and gentle", "ゆっくり大きな揺れ"};
+inline constexpr Phrase k_demo_violent{"short and violent", "速く激しい揺れ"};
+inline constexpr Phrase k_next{"Next", "次へ"};
+inline constexpr Phrase k_previous{"Previous", "前へ"};
+inline constexpr Phrase k_quit_demo{"Quit", "終了"};
+inline constexpr Phrase k_demo_step{"{0}, step {1} of {2}", "{0}（{1}/{2}）"};
+inline constexpr Phrase k_gentle_start{
+    "The floor will swing slowly and far: 0.5 Hz at 190 gal. Such shaking comes from long-period earthquakes "
+    "in the "
+    "upper floors of tall buildings.",
+    "床が 0.5 Hz、190 gal でゆっくり大きく揺れます。長周期地震動による高層階の揺れに相当します。"};
+inline constexpr Phrase k_gentle_uplift{
+    "An edge of the base has left the floor: the acceleration has passed g b/h. From here on the body turns "
+    "about "
+    "its other edge.",
+    "底面の一端が浮き上がりました。加速度が g b/h を超えたためです。ここから反対側の縁を中心に回転します。"};
+inline constexpr Phrase k_gentle_critical{
+    "The centre of gravity now stands over the edge. The floor still pushes the same way, because half a "
+    "period "
+    "takes a whole second, so nothing brings the body back.",
+    "重心が縁の真上を越えました。半周期が1秒と長く床は同じ向きに加速し続けるため、家具は元に戻れません。"};
+inline constexpr Phrase k_gentle_end{
+    "It falls, at an acceleration that hardly lifted it. What counts is not how hard the floor is shaken but "
+    "for "
+    "how long it pushes one way.",
+    "浮き上がる程度の加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける時間です。"};
+inline constexpr Phrase k_violent_start{
+    "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor moves by "
+    "only a "
+    "few centimetres.",
+    "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の移動は数センチにすぎません。"};
+inline constexpr Phrase k_violent_uplift{
+    "The body lifts at once, since 700 gal is far above g b/h. Yet the floor will turn round in a quarter of "
+    "a "
+    "second.",
+    "700 gal は g b/h を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
+inline constexpr Phrase k_violent_impact{
+    "It strikes the floor on its other side and loses energy. Each blow takes away some of what the floor "
+    "has put "
+    "in.",
+    "反対側の縁が床に衝突し、エネルギーを失います。衝突のたびに床から受けたエネルギーの一部が失われます。"};
+inline constexpr Phrase k_violent_end{
+    "This is how it stands now. Compare the peak tilt with the slow shaking: the line of the velocity "
+    "criterion "
+    "rises with the frequency.",
+    "現在の状態です。ゆっくりした揺れの最大傾斜と比べてください。速度の判定基準の線は周波数とともに上がります"
+    "。"};
+inline constexpr Phrase k_did_not_come{
+    "The run ended before this came about. The scene, or the parameters as they are now, differ from those "
+    "the demo "
+    "is about.",
+    "この現象が起きる前に計算が終わりました。シーンまたはパラメーターがデモの想定と異なります。"};
+
+// accuracy
+inline constexpr Phrase k_how_accurate{"How accurate is this?", "この計算の精度は？"};
+inline constexpr Phrase k_how_accurate_about{
+    "Computes the scene as it is now twice, at its steps and at half of them, beside the window",
+    "現在の設定のシーンを、通常の刻みと半分の刻みで2回計算して比べる"};
+inline constexpr Phrase k_estimating{"Computing: {0:.0f} %", "計算中：{0:.0f} %"};
+inline constexpr Phrase k_estimate_failed{"No estimate: {0}", "精度を評価できません：{0}"};
+inline constexpr Phrase k_sure_fall{"{0}: overturns at {1:.3f} s, ± {2:.3f} s.",
+                                    "{0}：{1:.3f} s に転倒（誤差 ±{2:.3f} s）。"};
+inline constexpr Phrase k_sure_stay{"{0}: does not overturn; peak tilt {1:.2f}°, ± {2:.2f}°.",
+                                    "{0}：転倒しない。最大傾斜 {1:.2f}°（誤差 ±{2:.2f}°）。"};
+inline constexpr Phrase k_unsure{
+    "{0}: a finer computation gives another verdict, so whether it overturns stays open.",
+    "{0}：刻みを細かくすると判定が変わるため、転倒するかどうかは決められません。"};
+inline constexpr Phrase k_estimate_note{
+    "Errors of the time stepping alone, for the run from the start with the parameters as they were.",
+    "開始時から現在のパラメーターで計算した場合の、時間積分による誤差のみを示します。"};
+
+}  // namespace topple::app::window_words

@@ -1,0 +1,338 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "app/panels/lane.h"
+#include "app/panels/panels.h"
+#include "app/picture/body_colour.h"
+#include "app/picture/window_words.h"
+#include "app/picture/words.h"
+#include "app/support/terms.h"
+#include "render/scene/text_layout.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/ladder.h"
+
+namespace topple::app {
+namespace {
+
+using namespace window_words;
+
+constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
+constexpr double k_least_gal = 10, k_least_tilt = 1;
+constexpr double k_headroom = 1.08;  // of the lane of the floor, over its greatest acceleration
+
+constexpr std::size_t k_told = 5;  // bodies with a colour of their own
+
+/// Those that tilt most over the run, of the share that they can, in their own order; all of a few.
+std::vector<std::size_t> told_bodies(const Player& player) {
+  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+  std::vector<std::pair<double, std::size_t>> shares;
+  for (std::size_t b = 0; b < furniture; ++b) {
+    double most = 0;
+    for (const RowPtr& row : player.way()) {
+      const double critical = row->body[11 * b + 10];
+      most = std::max(most, row->body[11 * b + 7] / (critical > 0 ? critical : 1));
+    }
+    shares.emplace_back(-most, b);
+  }
+  std::ranges::sort(shares);
+  if (shares.size() > k_told) shares.resize(k_told);
+  std::vector<std::size_t> told;
+  told.reserve(shares.size());
+  for (const auto& [share, b] : shares) told.push_back(b);
+  std::ranges::sort(told);
+  return told;
+}
+
+ImU32 line_colour(const std::vector<std::size_t>& told, std::size_t body) {
+  const auto at = std::ranges::find(told, body);
+  if (at == told.end()) return theme().other;
+  // Where all are told of, in the colours that their paths have in the scene.
+  const auto& [red, green, blue] =
+      body_colour(told.back() < told.size() ? body : static_cast<std::size_t>(at - told.begin()));
+  return IM_COL32(red, green, blue, 255);
+}
+
+using Value = std::function<double(const io::FrameRow&)>;
+
+void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const Value& value,
+               ImU32 colour, float thickness) {
+  add_curve(
+      list, lane, rows, [&](std::size_t i) { return value(*rows[i]); }, colour, thickness);
+}
+
+double peak(const std::vector<RowPtr>& rows, const Value& value) {
+  double most = 0;
+  for (const RowPtr& row : rows) most = std::max(most, std::abs(value(*row)));
+  return most;
+}
+
+void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
+  const auto component = [](int k) {
+    return [k](const io::FrameRow& row) { return row.floor_acceleration[k] / k_gal; };
+  };
+  double most = k_least_gal;
+  for (int k = 0; k < 3; ++k) most = std::max(most, peak(rows, component(k)));
+  lane.high = k_headroom * most;
+  lane.low = -lane.high;
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
+  std::string moving;
+  for (int k = 0; k < 3; ++k) {
+    if (!rows.empty() && peak(rows, component(k)) == 0) continue;
+    add_curve(list, lane, rows, component(k), theme().floor[k], 1.3f);
+    moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
+  }
+  const float line = ImGui::GetTextLineHeight();
+  add_text(list, label_left, lane.top, theme().text, say(k_floor_lane));
+  if (!moving.empty()) add_text(list, label_left, lane.top + line, theme().text, moving);
+  const std::string top = fmt::format("{:.0f}", most);
+  add_text(list, lane.left - text_width(top) - 6, lane.top - 2, theme().text, top);
+}
+
+void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
+  const auto factor = [](const io::FrameRow& row) { return row.load_factor; };
+  double least = 0, greatest = 0;
+  for (const RowPtr& row : rows) {
+    least = std::min(least, row->load_factor);
+    greatest = std::max(greatest, row->load_factor);
+  }
+  lane.low = 1.08 * least;
+  lane.high = greatest > least ? 1.08 * greatest : 1;
+  list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
+  add_curve(list, lane, rows, factor, theme().floor[0], 1.3f);
+  add_text(list, label_left, lane.top, theme().text, say(k_load_factor));
+  add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
+}
+
+void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
+  const std::vector<RowPtr>& rows = player.way();
+  const auto& bodies = player.scene().setup.model.bodies;
+  const auto tilt = [](std::size_t b) {
+    return [b](const io::FrameRow& row) { return row.body[11 * b + 7] * k_degrees; };
+  };
+  double critical = 0, most = k_least_tilt;
+  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+  for (std::size_t b = 0; b < furniture; ++b) {
+    if (!rows.empty()) critical = std::max(critical, rows.back()->body[11 * b + 10] * k_degrees);
+    most = std::max(most, 1.1 * peak(rows, tilt(b)));
+  }
+  lane.low = 0;
+  lane.high = critical > 0 ? k_tilt_room * critical : most;
+  list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
+  if (critical > 0) {
+    const int dashes = static_cast<int>(std::ceil((lane.right - lane.left) / 9));
+    for (int k = 0; k < dashes; ++k) {
+      const float x = lane.left + 9 * static_cast<float>(k);
+      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
+    }
+    add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
+             fmt::format("{:.1f}°", critical));
+  }
+  const std::vector<std::size_t> told = told_bodies(player);
+  const auto is_told = [&](std::size_t b) { return std::ranges::find(told, b) != told.end(); };
+  for (const bool one_of_those : {false, true})  // those told of lie on top
+    for (std::size_t b = 0; b < furniture; ++b) {
+      if (is_told(b) != one_of_those) continue;
+      add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
+      add_curve(list, lane, rows, tilt(b), one_of_those ? line_colour(told, b) : theme().other, 1.6f);
+    }
+  const float line = ImGui::GetTextLineHeight(), room = lane.left - label_left - 4;
+  float y = lane.top - 2;
+  add_text(list, label_left, y, theme().text, say(k_tilt_lane));
+  const auto fits = static_cast<std::size_t>(std::max((lane.bottom - y) / line - 1, 0.f));
+  const bool all = told.size() == furniture && told.size() <= fits;
+  const std::size_t shown = all ? told.size() : std::min(told.size(), fits - std::min<std::size_t>(fits, 1));
+  const ImFont& font = *ImGui::GetFont();
+  for (std::size_t i = 0; i < shown; ++i) {
+    y += line;
+    list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
+                       line_colour(told, told[i]));
+    add_text(list, label_left + 14, y, theme().text,
+             render::shortened(font, bodies[told[i]].name, room - 14));
+  }
+  if (!all && fits > 0) add_text(list, label_left, y + line, theme().text, say(k_more, furniture - shown));
+}
+
+/// When, of a step that has a row in a static run.
+std::string when(const Player& player, std::int64_t step, double time) {
+  if (!is_static(player.scene().setup)) return fmt::format("{:.3f} s", time);
+  const auto at = std::find_if(player.way().begin(), player.way().end(),
+                               [step](const RowPtr& row) { return row->step == step; });
+  return at == player.way().end() ? say(k_load_step_number, step)
+                                  : instant_in_words(player.scene().setup, **at);
+}
+
+std::string event_text(const Player& player, const io::RecordedEvent& event) {
+  if (event.event.kind == Event::Kind::anchor) {
+    const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
+    return say(k_anchor_breaks, when(player, event.step, event.time), anchor.name,
+               std::abs(event.event.value));
+  }
+  const Phrase& what = event.event.kind == Event::Kind::uplift     ? k_lifts
+                       : event.event.kind == Event::Kind::impact   ? k_strikes
+                       : event.event.kind == Event::Kind::hinge    ? k_hinges
+                       : event.event.kind == Event::Kind::fracture ? k_breaks
+                                                                   : k_passes;
+  const std::string words =
+      event.event.kind == Event::Kind::model
+          ? say(k_computed_as, say(k_rungs[static_cast<std::size_t>(event.event.value)]),
+                say(k_rung_reasons[static_cast<std::size_t>(event.event.reason)]))
+          : say(what);
+  const Model& model = player.scene().setup.model;
+  return say(k_event, when(player, event.step, event.time),
+             model.bodies[static_cast<std::size_t>(event.event.body)].name, words);
+}
+
+std::string edit_text(const Player& player, const LoggedEdit& edit) {
+  const io::Key& key = io::key_of(edit.edit.key);
+  const Vec3& v = edit.edit.value;
+  const std::string value =
+      edit.edit.key == Edit::Key::direction ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
+      : key.type == io::KeyType::boolean
+          ? std::string(v.x() != 0 ? "true" : "false")
+          : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
+  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
+}
+
+struct Mark {
+  Event::Kind kind;
+  const Phrase& words;
+};
+constexpr Mark k_marks[] = {{Event::Kind::uplift, k_mark_lifts},    {Event::Kind::impact, k_mark_strikes},
+                            {Event::Kind::hinge, k_mark_hinge},     {Event::Kind::fracture, k_mark_breaks},
+                            {Event::Kind::overturn, k_mark_passes}, {Event::Kind::model, k_mark_model}};
+
+void add_mark(ImDrawList& list, Event::Kind kind, ImVec2 p, float size, ImU32 colour) {
+  switch (kind) {
+    case Event::Kind::uplift:
+      list.AddTriangleFilled({p.x - size, p.y + size}, {p.x, p.y - size}, {p.x + size, p.y + size}, colour);
+      break;
+    case Event::Kind::impact:
+      list.AddLine({p.x, p.y - size}, {p.x, p.y + size}, colour, 2);
+      break;
+    case Event::Kind::hinge:
+      list.AddCircle(p, size, colour, 12, 1.5f);
+      break;
+    case Event::Kind::fracture:
+    case Event::Kind::anchor:
+      list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour, 1.5f);
+      list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, colour, 1.5f);
+      break;
+    case Event::Kind::model:
+      list.AddRect({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+      break;
+    case Event::Kind::overturn:
+      list.AddRectFilled({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+  }
+}
+
+void add_edit_mark(ImDrawList& list, ImVec2 p, float size) {
+  list.AddNgonFilled(p, size, theme().edit, 4);
+}
+
+/// What the marks of the run mean, in a row from `x` on, as far as there is room.
+void add_mark_key(ImDrawList& list, const Player& player, float x, float y, float right) {
+  const float line = ImGui::GetTextLineHeight(), size = 0.28f * line;
+  const std::vector<io::RecordedEvent> events = player.events();
+  const auto add = [&](const Phrase& words, const auto& draw) {
+    const std::string text = say(words);
+    const float width = line + text_width(text) + 0.8f * line;
+    if (x + width > right) return;
+    draw(ImVec2(x + line / 2, y + line / 2));
+    add_text(list, x + line, y, theme().text, text);
+    x += width;
+  };
+  for (const Mark& mark : k_marks) {
+    const bool there = std::ranges::any_of(events, [&](const io::RecordedEvent& event) {
+      const Event::Kind kind = event.event.kind;
+      return kind == mark.kind || (kind == Event::Kind::anchor && mark.kind == Event::Kind::fracture);
+    });
+    if (there) add(mark.words, [&](ImVec2 p) { add_mark(list, mark.kind, p, size, theme().text); });
+  }
+  if (!player.edits().empty()) add(k_mark_edit, [&](ImVec2 p) { add_edit_mark(list, p, size); });
+}
+
+/// Marks along the bottom of the tilt lane; the one under the mouse says what it is.
+void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
+  const float size = 0.28f * ImGui::GetTextLineHeight();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  std::string hovered;
+  const auto mark = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
+    const float x = lane.x(time);
+    if (x < lane.left || x > lane.right) return;
+    shape(ImVec2(x, y));
+    if (std::abs(mouse.x - x) < size && std::abs(mouse.y - y) < 2 * size) hovered = text();
+  };
+  const float y = lane.bottom + size + 2;
+  const std::vector<std::size_t> told = told_bodies(player);
+  for (const io::RecordedEvent& event : player.events()) {
+    const ImU32 colour = line_colour(told, static_cast<std::size_t>(event.event.body));
+    mark(
+        event.time, y, [&] { return event_text(player, event); },
+        [&](ImVec2 p) { add_mark(list, event.event.kind, p, size, colour); });
+  }
+  for (const LoggedEdit& edit : player.edits())
+    mark(
+        edit.time, lane.top, [&] { return edit_text(player, edit); },
+        [&](ImVec2 p) { add_edit_mark(list, p, size); });
+  if (player.way().empty()) return;
+  for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
+    for (const Branch& branch : player.history().branches) {
+      if (branch.id != stretch.branch || branch.parent < 0 || branch.fork_step == 0) continue;
+      const auto at = std::find_if(player.way().begin(), player.way().end(),
+                                   [&](const RowPtr& row) { return row->branch == branch.id; });
+      if (at == player.way().end()) continue;
+      const float x = lane.x((*at)->time);
+      list.AddLine({x, lane.top}, {x, lane.bottom}, theme().axis);
+    }
+  if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
+}
+
+}  // namespace
+
+void draw_timeline(Player& player, const Box& box) {
+  begin_panel("timeline", box);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float line = ImGui::GetTextLineHeight();
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  const float label_left = box.left + padding;
+  Lane lane{box.left + 7.5f * line,
+            box.left + box.width - 1.2f * padding,
+            box.top + 8,
+            box.top + box.height - 2.77f * line - 6,
+            player.length(),
+            0,
+            1};
+  const float height = lane.bottom - lane.top;
+  Lane upper = lane, lower = lane;
+  upper.bottom = lane.top + 0.4f * height;
+  lower.top = lane.top + 0.46f * height;
+  if (is_static(player.scene().setup))
+    add_load_factor(list, upper, player.way(), label_left);
+  else
+    add_acceleration(list, upper, player.way(), label_left);
+  add_tilts(list, lower, player, label_left);
+  add_axis(list, lower, player.scene().setup, label_left);
+
+  const float x = lane.x(player.time());
+  list.AddLine({x, lane.top}, {x, lane.bottom}, theme().cursor, 1.5f);
+  list.AddTriangleFilled({x - 5, lane.top - 5}, {x + 5, lane.top - 5}, {x, lane.top + 3}, theme().cursor);
+  ImGui::SetCursorScreenPos({lane.left, lane.top});
+  ImGui::InvisibleButton("scrub", {lane.right - lane.left, height + line});
+  if (ImGui::IsItemActive())
+    player.scrub((ImGui::GetIO().MousePos.x - lane.left) / (lane.right - lane.left) * player.length());
+  if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) {
+    list.AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), ImGui::GetColorU32(ImGuiCol_NavHighlight),
+                 3, 0, 2);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_LeftArrow))) player.step(-1);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_RightArrow))) player.step(1);
+  }
+  add_marks(list, lower, player);
+  add_mark_key(list, player, lane.left, box.top + box.height - 1.15f * line, lane.right);
+  ImGui::End();
+}
+
+}  // namespace topple::app

@@ -1,0 +1,48 @@
+// From what a run holds to what a picture needs: the one translation, for live frames and for recordings.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "app/picture/picture_settings.h"
+#include "app/picture/run_extent.h"
+#include "render/scene/scene_frame.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/scene/scene.h"
+
+namespace topple::app {
+
+/// The row at `time` between two neighbours: positions and numbers linear, rotations by the shorter arc.
+io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
+
+/// Translates rows of one scene.
+class Bridge {
+ public:
+  Bridge(const io::Scene& scene, const RunExtent& extent);
+  /// `parameters`: those that held at the row. Of a row that is not finite only the floor and words that say
+  /// so.
+  render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters,
+                           const PictureSettings& settings = {}) const;
+  /// The bodies of another row as a ghost in `out`.
+  void add_ghost(const io::FrameRow& row, const PictureSettings& settings, render::SceneFrame& out) const;
+  /// Where the colours of a row end, in the quantity's unit.
+  double colour_maximum(const io::FrameRow& row, const PictureSettings& settings) const;
+
+ private:
+  using ColourAt = std::function<float(std::size_t element, double t)>;
+  ColourAt colours(const io::FrameRow& row, const RigidFit& fit, BeamQuantity quantity) const;
+  void add_tubes(const io::FrameRow& row, const ColourAt& colour, std::vector<render::Station>& stations,
+                 std::vector<render::Tube>& tubes) const;
+  float closing(const Member& member, int node) const;
+  render::Legend legend(const io::FrameRow& row, const PictureSettings& settings) const;
+  void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
+  void add_captions(const io::FrameRow& row, const Parameters& parameters, const PictureSettings& settings,
+                    render::SceneFrame& out) const;
+
+  const io::Scene& scene_;
+  const RunExtent& extent_;
+  std::vector<render::Profile> profiles_;  ///< one per section
+  std::vector<bool> joint_;  ///< per node: ends of several members, whose sections are drawn through it
+};
+
+}  // namespace topple::app

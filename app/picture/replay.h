@@ -1,0 +1,34 @@
+// A recording as something that plays: its newest branch, by time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "app/picture/bridge.h"
+#include "solver/io/recording/recording.h"
+
+namespace topple::app {
+
+/// What a recording shows of its newest branch, by time. The recording must outlive it.
+class Replay {
+ public:
+  explicit Replay(const io::Recording& recording);
+  std::int64_t frame_count() const { return static_cast<std::int64_t>(frames_.size()); }
+  double first() const { return times_.front(); }  ///< s; a static run: its part of the way
+  double last() const { return times_.back(); }
+  io::FrameRow frame(std::int64_t number) const { return recording_.frame(frames_[number]); }
+  /// Those that held at a row.
+  Parameters parameters(const io::Scene& scene, const io::FrameRow& row) const;
+  /// Between two rows, or the first or last one.
+  io::FrameRow at(double time) const;
+
+ private:
+  const io::Recording& recording_;
+  std::vector<std::int64_t> frames_;
+  std::vector<double> times_;
+};
+
+/// Of all rows, or of those before Ctrl+C.
+RunExtent extent_of(const Replay& replay, const io::Scene& scene);
+
+}  // namespace topple::app

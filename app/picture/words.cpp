@@ -1,0 +1,166 @@
+#include "app/picture/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "app/picture/window_words.h"
+#include "app/support/terms.h"
+#include "solver/accelerogram.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_upright = 0.1;      // degrees: less is standing
+constexpr double k_lying = 60;         // degrees
+constexpr double k_slid_least = 1e-3;  // m
+constexpr std::size_t k_few_anchors = 4;
+
+constexpr std::size_t k_few_bodies = 5;
+
+using namespace window_words;
+
+enum class Stance { fallen, toppling, rocking, standing };
+
+Stance stance(const io::FrameRow& row, std::size_t body) {
+  const double tilt = row.body[11 * body + 7] * k_degrees, critical = row.body[11 * body + 10] * k_degrees;
+  return tilt > k_lying     ? Stance::fallen
+         : tilt > critical  ? Stance::toppling
+         : tilt > k_upright ? Stance::rocking
+                            : Stance::standing;
+}
+
+/// Of the angle at which it would topple; of a body without one, of that at which it lies.
+double share_of_critical(const io::FrameRow& row, std::size_t body) {
+  const double critical = row.body[11 * body + 10];
+  return row.body[11 * body + 7] / (critical > 0 ? critical : k_lying / k_degrees);
+}
+
+std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t> others) {
+  static constexpr std::pair<Stance, const Phrase&> k_stances[] = {{Stance::fallen, k_count_fallen},
+                                                                   {Stance::toppling, k_count_toppling},
+                                                                   {Stance::rocking, k_count_rocking},
+                                                                   {Stance::standing, k_count_standing}};
+  std::string counts;
+  std::size_t standing = 0;
+  for (const auto& [of, words] : k_stances) {
+    const auto count = static_cast<std::size_t>(
+        std::ranges::count_if(others, [&, of = of](std::size_t body) { return stance(row, body) == of; }));
+    if (of == Stance::standing) standing = count;
+    if (count > 0) counts += (counts.empty() ? "" : say(k_comma)) + say(words, count);
+  }
+  if (standing < others.size()) return say(k_others, others.size(), counts);
+  return standing == 1 ? say(k_other_stands) : say(k_others_stand, standing);
+}
+
+}  // namespace
+
+std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body) {
+  const double* const values = &row.body[11 * body];
+  const double tilt = values[7] * k_degrees, slide = values[8], critical = values[10] * k_degrees;
+  std::string line = model.bodies[body].name + say(k_colon);
+  if (critical == 0) return line + say(k_tilted, tilt);
+  switch (stance(row, body)) {
+    case Stance::fallen:
+      line += say(k_fallen, tilt);
+      break;
+    case Stance::toppling:
+      line += say(k_toppling, tilt, critical);
+      break;
+    case Stance::rocking:
+      line += say(k_rocking, tilt, critical);
+      break;
+    case Stance::standing:
+      line += say(k_standing);
+  }
+  if (slide > k_slid_least) line += say(k_slid, 1e3 * slide);
+  return line;
+}
+
+std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row) {
+  std::vector<std::size_t> bodies(static_cast<std::size_t>(model.furniture_total()));
+  std::iota(bodies.begin(), bodies.end(), 0);
+  std::size_t told = bodies.size();
+  if (bodies.size() > k_few_bodies) {
+    std::ranges::stable_sort(bodies, std::ranges::greater{},
+                             [&](std::size_t body) { return share_of_critical(row, body); });
+    const auto still =
+        std::ranges::find_if(bodies, [&](std::size_t body) { return stance(row, body) == Stance::standing; });
+    told = std::min(k_few_bodies, static_cast<std::size_t>(still - bodies.begin()));
+  }
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, row, bodies[i]));
+  if (told < bodies.size()) lines.push_back(others_in_words(row, std::span(bodies).subspan(told)));
+  return lines;
+}
+
+std::string anchor_type_in_words(const Anchor& anchor) {
+  static constexpr const Phrase* k_types[] = {&k_strap, &k_bracket, &k_pole};
+  return say(*k_types[static_cast<std::size_t>(anchor.type)]);
+}
+
+namespace {
+
+const Phrase& anchor_state(float state) {
+  if (state == io::k_anchor_away) return k_away;
+  if (state == io::k_anchor_slack) return k_slack;
+  return state == io::k_anchor_holds ? k_holds : k_broken_anchor;
+}
+
+}  // namespace
+
+std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
+  const Anchor& anchor = model.anchors[k];
+  const float* const values = &row.anchor[4 * k];
+  const bool named_by_type = anchor.name == anchor_type(anchor);
+  const std::string line =
+      anchor_type_in_words(anchor) + (named_by_type ? "" : " " + anchor.name) + say(k_colon);
+  if (values[3] != io::k_anchor_holds) return line + say(anchor_state(values[3]));
+  const double force = std::abs(values[0]);
+  return line + say(values[0] > 0 ? k_pulls : k_pushes, force) +
+         (std::isfinite(anchor.strength) ? say(k_of_strength, 100 * force / anchor.strength) : "");
+}
+
+std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row) {
+  std::vector<std::string> lines;
+  if (model.anchors.size() <= k_few_anchors) {
+    for (std::size_t k = 0; k < model.anchors.size(); ++k) lines.push_back(anchor_in_words(model, row, k));
+    return lines;
+  }
+  std::string counts;
+  for (const float state : {io::k_anchor_holds, io::k_anchor_slack, io::k_anchor_broken, io::k_anchor_away}) {
+    int count = 0;
+    for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[4 * k + 3] == state;
+    if (count > 0)
+      counts += fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(anchor_state(state)));
+  }
+  lines.push_back(say(k_anchors, counts));
+  return lines;
+}
+
+std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
+  return is_static(setup) ? say(k_load_instant, row.step, setup.run.statics.load_steps, row.load_factor)
+                          : fmt::format("t = {:.2f} s", row.time);
+}
+
+std::string shake_in_words(const Parameters& parameters) {
+  if (parameters.shakes.empty()) return "";
+  const Shake& shake = parameters.shakes.front();
+  const double gal = shake.amplitude / k_gal;
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+      return say(k_floor_sine, shake.frequency, gal);
+    case Shake::Kind::sweep:
+      return say(k_floor_sweep, shake.frequency, shake.last_frequency, gal);
+    case Shake::Kind::pulse:
+      return say(k_floor_pulse, shake.duration, gal);
+    case Shake::Kind::record:
+      return say(k_floor_record, shake.record->duration, std::abs(shake.scale) * shake.record->peak / k_gal);
+  }
+  return "";
+}
+
+}  // namespace topple::app

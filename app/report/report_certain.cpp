@@ -1,0 +1,96 @@
+// Section of the report page: how certain the outcome is.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/report/report_parts.h"
+#include "solver/study/common/refinement.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string probability(ReportPage& page) {
+  const Report& report = page.report();
+  const auto failed = std::ranges::count_if(report.trials, [](const study::Trial& t) { return !t.finished; });
+  const int runs = static_cast<int>(report.trials.size()) - static_cast<int>(failed);
+  std::string out = "<h3>" + page.say(words::k_probability, short_shown(100 * report.spread)) + "</h3>\n";
+  out += page.paragraph(page.say(words::k_probability_text, report.trials.size(), shown(1 - report.spread, 2),
+                                 shown(1 + report.spread, 2)));
+  if (failed > 0) out += page.paragraph(page.say(words::k_runs_failed, failed, report.trials.size()));
+  if (runs == 0) return out;
+  std::vector<std::vector<std::string>> rows;
+  DotChart chart;
+  chart.x_label = page.text(words::k_factor);
+  chart.x_from = 1 - report.spread, chart.x_to = 1 + report.spread;
+  for (std::size_t b = 0; b < page.bodies().size(); ++b) {
+    DotChart::Row row{.name = page.name(b), .x = {}, .filled = {}};
+    int hits = 0;
+    for (const study::Trial& trial : report.trials) {
+      if (!trial.finished) continue;
+      hits += trial.overturned[b];
+      row.x.push_back(trial.factor);
+      row.filled.push_back(trial.overturned[b]);
+    }
+    const study::Interval interval = study::wilson(hits, runs);
+    rows.push_back(
+        {escaped(page.name(b)), page.say(words::k_runs, hits, runs), shown(100. * hits / runs, 0) + " %",
+         fmt::format("{}\u2013{} %", shown(100 * interval.low, 0), shown(100 * interval.high, 0))});
+    chart.rows.push_back(std::move(row));
+  }
+  out += page.table({page.say(words::k_body), page.say(words::k_overturned_in), page.say(words::k_share),
+                     page.say(words::k_interval)},
+                    rows);
+  out += page.figure(svg_dots(chart), page.say(words::k_dots, page.next_figure()));
+  return out + page.paragraph(page.say(words::k_interval_note), "note");
+}
+
+std::string disagreements(const ReportPage& page, const ordered_json& estimate) {
+  std::string out;
+  for (const ordered_json& e : estimate["bodies"]) {
+    if (e["same_verdict"].get<bool>()) continue;
+    const std::string name = e["name"].get<std::string>();
+    const auto body =
+        std::ranges::find_if(page.bodies(), [&](const ordered_json& b) { return b["name"] == name; });
+    if (!out.empty()) out += "; ";
+    out += (*body)["overturned"].get<bool>()
+               ? page.text(words::k_open_falls, name, shown((*body)["overturn_time_s"].get<double>(), 3))
+               : page.text(words::k_open_stays, name);
+  }
+  return out;
+}
+
+std::string error(const ReportPage& page) {
+  const ordered_json& estimate = page.report().summary["error_estimate"];
+  const Parameters& p = page.report().scene->setup.parameters;
+  std::string out = "<h3>" + page.say(words::k_error) + "</h3>\n";
+  const std::string how =
+      p.adaptive ? page.text(words::k_tightened, short_shown(p.tolerance / study::k_finer_tolerance))
+                 : page.text(words::k_halved, short_shown(1e3 * p.time_step / study::k_finer_step));
+  out += page.paragraph(
+      page.say(words::k_error_text, how, page.falling_section(), short_shown(study::k_error_of_difference)));
+  if (estimate.contains("failed"))
+    out += page.paragraph(page.say(words::k_error_failed, estimate["failed"].get<std::string>()));
+  else if (!estimate["disagreements"].empty())
+    out += page.paragraph(page.say(words::k_error_open, disagreements(page, estimate)), "notice");
+  if (const ordered_json& balance = page.report().summary["energy"]["balance_error"]; !balance.is_null())
+    out += page.paragraph(page.say(words::k_balance, short_shown(100 * balance.get<double>(), 2)));
+  const ordered_json& warnings = page.report().summary["warnings"];
+  if (warnings.empty()) return out;
+  out += page.paragraph(page.say(words::k_warnings)) + "<ul lang=\"en\">\n";
+  for (const ordered_json& warning : warnings)
+    out += "<li>" + escaped(warning.get<std::string>()) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+}  // namespace
+
+std::string certain_section(ReportPage& page) {
+  return page.section(
+      words::k_certain,
+      (page.report().trials.empty() ? page.paragraph(page.say(words::k_no_probability)) : probability(page)) +
+          error(page));
+}
+
+}  // namespace topple::app

@@ -1,0 +1,125 @@
+// Section of the report page: how the floor shakes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/report_parts.h"
+#include "solver/accelerogram.h"
+#include "solver/excitation.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_still = 1e-6;  // m/s^2: a component below it is none
+constexpr const char* k_axes[] = {"x", "y", "z"};
+
+std::string direction(const Vec3& d) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(std::abs(d[k]) - 1) < 1e-9) return (d[k] < 0 ? "\u2212" : "") + std::string(k_axes[k]);
+  return fmt::format("({}, {}, {})", short_shown(d.x(), 3), short_shown(d.y(), 3), short_shown(d.z(), 3));
+}
+
+const Phrase& shape_name(Shake::Shape shape) {
+  switch (shape) {
+    case Shake::Shape::half_sine:
+      return words::k_half_sine;
+    case Shake::Shape::full_sine:
+      return words::k_full_sine;
+    case Shake::Shape::rectangle:
+      break;
+  }
+  return words::k_rectangle;
+}
+
+std::string in_words(const ReportPage& page, const Shake& shake) {
+  const std::string gal = short_shown(shake.amplitude / k_gal), along = direction(shake.direction);
+  const std::string start = short_shown(shake.start);
+  switch (shake.kind) {
+    case Shake::Kind::sine:
+      return page.text(words::k_sine, short_shown(shake.frequency), gal, along, start,
+                       shake.cycles > 0 ? page.text(words::k_cycles, short_shown(shake.cycles))
+                                        : page.text(words::k_endless));
+    case Shake::Kind::sweep:
+      return page.text(words::k_sweep, short_shown(shake.frequency), short_shown(shake.last_frequency), gal,
+                       along, start, short_shown(shake.duration));
+    case Shake::Kind::pulse:
+      return page.text(words::k_pulse, page.text(shape_name(shake.shape)), gal, along, start,
+                       short_shown(shake.duration));
+    case Shake::Kind::record:
+      return page.text(words::k_record, short_shown(shake.record->duration), shake.record->components.size(),
+                       short_shown(std::abs(shake.scale) * shake.record->peak / k_gal),
+                       short_shown(shake.scale), start);
+  }
+  return "";
+}
+
+double peak_along(const study::Motion& motion, int axis) {
+  double largest = 0;
+  for (const Vec3& a : motion.samples) largest = std::max(largest, std::abs(a[axis]));
+  return largest;
+}
+
+/// One chart for each component that moves, all with the same scale.
+std::string charts(const ReportPage& page) {
+  const study::Motion& motion = page.report().motion;
+  const double most =
+      1.1 * std::max({peak_along(motion, 0), peak_along(motion, 1), peak_along(motion, 2)}) / k_gal;
+  std::string out;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (peak_along(motion, axis) < k_still) continue;
+    LineChart chart;
+    chart.x_label = page.text(words::k_time);
+    chart.y_label = page.text(words::k_gal_along, k_axes[axis]);
+    chart.x_to = static_cast<double>(motion.samples.size() - 1) * motion.interval;
+    chart.y_from = -most, chart.y_to = most;
+    chart.height = 170;
+    ChartCurve curve;
+    for (std::size_t i = 0; i < motion.samples.size(); ++i) {
+      curve.x.push_back(static_cast<double>(i) * motion.interval);
+      curve.y.push_back(motion.samples[i][axis] / k_gal);
+    }
+    chart.curves.push_back(std::move(curve));
+    out += svg_chart(chart);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string floor_section(ReportPage& page) {
+  const Report& report = page.report();
+  const std::vector<Shake>& shakes = report.scene->setup.parameters.shakes;
+  if (shakes.empty()) return page.section(words::k_floor, page.paragraph(page.say(words::k_no_shake)));
+  std::string out = "<ul>\n";
+  for (const Shake& shake : shakes) out += "<li>" + escaped(in_words(page, shake)) + "</li>\n";
+  out += "</ul>\n";
+  if (std::ranges::any_of(shakes, [](const Shake& s) {
+        return s.kind == Shake::Kind::sine && s.initial_velocity == Shake::Start::jump;
+      }))
+    out += page.paragraph(page.say(words::k_jump), "note");
+  out += page.figure(charts(page), page.say(words::k_floor_chart, page.next_figure()));
+
+  const double a = study::intensity_acceleration(report.motion), intensity = study::instrumental_intensity(a);
+  const auto gal = [](double si) { return short_shown(si / k_gal) + " gal"; };
+  std::vector<std::vector<std::string>> rows;
+  const auto moves = [&](int axis) { return peak_along(report.motion, axis) >= k_still; };
+  for (int axis = 0; axis < 3; ++axis)
+    if (moves(axis) && moves(0) + moves(1) + moves(2) > 1)
+      rows.push_back({page.say(words::k_peak_along, k_axes[axis]), gal(peak_along(report.motion, axis))});
+  rows.push_back(
+      {page.say(rows.empty() ? words::k_peak_floor : words::k_peak_vector), gal(study::peak(report.motion))});
+  rows.push_back({page.say(words::k_a_value), short_shown(a) + " gal"});
+  rows.push_back({page.say(words::k_i_value), shown(intensity, 1)});
+  rows.push_back(
+      {page.say(words::k_degree),
+       page.say(words::k_degrees_of_intensity[static_cast<std::size_t>(study::intensity_scale(intensity))])});
+  out += page.table({}, rows, false);
+  out += page.paragraph(
+      page.say(words::k_intensity_note,
+               short_shown(static_cast<double>(report.motion.samples.size() - 1) * report.motion.interval)),
+      "note");
+  return page.section(words::k_floor, out);
+}
+
+}  // namespace topple::app

@@ -1,0 +1,120 @@
+// Sections of the report page: what the model assumes, and the settings.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/report/report_parts.h"
+#include "solver/study/common/laws.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t k_listed_bodies = 12;
+
+/// Five significant digits without an exponent.
+std::string plain(double value) {
+  return value < 1e5 ? short_shown(value, 5) : shown(value, 0);
+}
+
+std::string model_in_words(const ReportPage& page, const std::string& model) {
+  return page.say(model == "rigid" ? words::k_rigid : model == "elastic" ? words::k_elastic : words::k_frame);
+}
+
+/// All models that a body was computed as.
+std::string models(const ReportPage& page, const ordered_json& body) {
+  std::set<std::string> seen;
+  for (const ordered_json& change : body["model_changes"]) seen.insert(change["model"]);
+  if (seen.empty()) seen.insert(body["model"]);
+  std::string out;
+  for (const std::string& model : seen) out += (out.empty() ? "" : "; ") + model_in_words(page, model);
+  return out;
+}
+
+std::string integrator(const ReportPage& page) {
+  const Parameters& p = page.report().scene->setup.parameters;
+  std::string name = page.report().summary["integrator"];
+  switch (p.integrator) {
+    case Integrator::generalized_alpha:
+      return fmt::format("{}, ρ∞ = {}", name, short_shown(p.spectral_radius));
+    case Integrator::newmark:
+      return fmt::format("{}, β = {}, γ = {}", name, short_shown(p.beta), short_shown(p.gamma));
+    case Integrator::central_difference:
+      break;
+  }
+  return name;
+}
+
+std::string step(const ReportPage& page) {
+  const ordered_json& s = page.report().summary;
+  const Parameters& p = page.report().scene->setup.parameters;
+  const std::string mean =
+      s["time_step_s"].is_null() ? "\u2013" : short_shown(1e3 * s["time_step_s"].get<double>());
+  return (p.adaptive ? page.say(words::k_adaptive, short_shown(p.tolerance), mean) : mean + " ms") + "; " +
+         page.say(words::k_steps, s["steps"].get<long>(), s["rejected_steps"].get<long>());
+}
+
+}  // namespace
+
+std::string assumptions_section(ReportPage& page) {
+  const Setup& setup = page.report().scene->setup;
+  const Model& model = setup.model;
+  const auto some = [&](auto what) { return std::ranges::any_of(model.materials, what); };
+  std::vector<std::string> list{page.say(words::k_as_given), page.say(words::k_contents)};
+  if (!model.planes.empty()) list.push_back(page.say(words::k_rigid_floor));
+  if (model.furniture_total() < static_cast<int>(model.bodies.size()))
+    list.push_back(page.say(words::k_beam_floor));
+  list.push_back(page.say(words::k_friction, short_shown(setup.parameters.contact.friction)));
+  if (some([](const Material& m) { return m.yield > 0; }))
+    list.push_back(
+        page.say(words::k_frames_plastic, some([](const Material& m) { return m.fracture_strain > 0; })
+                                              ? page.text(words::k_frames_break)
+                                              : std::string()));
+  else
+    list.push_back(page.say(words::k_frames_elastic));
+  if (page.report().anchors == 0) list.push_back(page.say(words::k_no_anchors));
+  list.push_back(page.say(words::k_ends, short_shown(page.report().summary["simulated_s"].get<double>())));
+  list.push_back(page.say(words::k_not_validated));
+  std::string out = "<ul>\n";
+  for (const std::string& item : list) out += "<li>" + item + "</li>\n";
+  return page.section(words::k_assumptions, out + "</ul>\n");
+}
+
+std::string settings_section(ReportPage& page) {
+  const Report& report = page.report();
+  const Setup& setup = report.scene->setup;
+  const Parameters& p = setup.parameters;
+  const std::string simulated = short_shown(report.summary["simulated_s"].get<double>());
+  std::vector<std::vector<std::string>> rows{
+      {page.say(words::k_version), std::string("topple ") + TOPPLE_VERSION},
+      {page.say(words::k_simulated),
+       report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
+      {page.say(words::k_integrator), integrator(page)},
+      {page.say(words::k_step), step(page)},
+      {page.say(words::k_contact), study::law_name(p.contact.kind)},
+      {page.say(words::k_alpha),
+       fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
+      {page.say(words::k_q), short_shown(p.contact.q)},
+      {page.say(words::k_mu), short_shown(p.contact.friction)}};
+  if (p.contact.kind == ContactLawKind::coulomb) {
+    rows.push_back({page.say(words::k_restitution), short_shown(p.contact.restitution)});
+    rows.push_back({page.say(words::k_normal_speed), short_shown(p.contact.normal_speed) + " m/s"});
+  }
+  rows.push_back({page.say(words::k_gravity),
+                  fmt::format("({}, {}, {}) m/s²", short_shown(p.gravity.x(), 6),
+                              short_shown(p.gravity.y(), 6), short_shown(p.gravity.z(), 6))});
+  for (std::size_t b = 0; b < std::min(page.bodies().size(), k_listed_bodies); ++b)
+    rows.push_back({page.say(words::k_bodies, page.name(b)),
+                    short_shown(setup.model.bodies[b].mass) + " kg; " + models(page, page.bodies()[b])});
+  if (page.bodies().size() > k_listed_bodies)
+    rows.push_back({page.say(words::k_more_bodies, page.bodies().size() - k_listed_bodies), ""});
+  std::string changes;
+  for (const std::string& change : report.overrides)
+    changes += (changes.empty() ? "" : "<br>") + escaped(change);
+  if (!changes.empty()) rows.push_back({page.say(words::k_overrides), changes});
+  return page.section(words::k_settings, page.table({}, rows, false));
+}
+
+}  // namespace topple::app

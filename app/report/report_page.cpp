@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/report_parts.h"
+#include "solver/accelerogram.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t k_short = 15;       // rows of a table that stays on one sheet
+constexpr std::size_t k_narrow = 4;       // columns that need no full width
+constexpr std::size_t k_named_falls = 3;  // in the sentence at the top
+
+constexpr const char* k_style = R"css(
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 24px 28px 40px; max-width: 900px; background: #fff; color: #1c1f23;
+  font: 14px/1.5 "Noto Sans", "Helvetica Neue", Arial, "Liberation Sans", "DejaVu Sans", sans-serif; }
+html:lang(ja) body { line-break: strict; font-family: "Hiragino Sans", "Yu Gothic", Meiryo, "Noto Sans CJK JP", "IPAexGothic",
+  "VL PGothic", sans-serif; }
+header { border-bottom: 3px solid #12355b; padding-bottom: 10px; }
+header p { margin: 0; color: #444; }
+h1 { font-size: 23px; line-height: 1.25; margin: 2px 0 6px; }
+h2 { font-size: 17px; margin: 26px 0 8px; padding-bottom: 3px; border-bottom: 1px solid #b8c0c8; break-after: avoid; }
+h3 { font-size: 14px; margin: 16px 0 4px; break-after: avoid; }
+p { margin: 6px 0; }
+ul { margin: 6px 0; padding-left: 20px; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(140px, 1fr)); gap: 10px; margin: 12px 0; }
+.figures div { border: 1px solid #9aa5b1; border-top: 3px solid #12355b; padding: 8px 10px; break-inside: avoid; }
+.figures b { display: block; font-size: 21px; line-height: 1.2; }
+.figures span { display: block; font-size: 12px; color: #333; }
+.notice { border: 1.5px solid #1c1f23; padding: 7px 11px; margin: 12px 0; }
+.verdict { font-size: 16px; }
+.note { font-size: 12px; color: #444; }
+figure { margin: 10px 0 14px; break-inside: avoid; }
+figcaption { font-size: 12px; color: #333; }
+svg.chart { display: block; width: 100%; height: auto; font-family: inherit; }
+.halo { paint-order: stroke; stroke: #fff; stroke-width: 4px; }
+.keys { display: flex; flex-wrap: wrap; gap: 2px 18px; padding-left: 62px; font-size: 12px; }
+.keys svg { width: 46px; height: 16px; vertical-align: middle; margin-right: 5px; }
+.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 10px; }
+figure:has(> .pictures) { break-inside: auto; }
+.pictures figure { margin: 0; }
+.picture { position: relative; }
+.picture img { width: 100%; display: block; border: 1px solid #b8c0c8; }
+.picture span { position: absolute; transform: translate(-50%, -50%); font-size: 11px; line-height: 1.2; padding: 1px 5px;
+  background: rgba(255, 255, 255, 0.86); border: 1px solid #555; }
+.wide { overflow-x: auto; }
+.short { break-inside: avoid; }
+.short table.narrow { width: auto; min-width: 60%; }
+table { border-collapse: collapse; width: 100%; margin: 8px 0; font-size: 13px; break-inside: auto; }
+th, td { text-align: left; padding: 4px 8px; border-bottom: 1px solid #d5dae0; vertical-align: top; }
+thead th { border-bottom: 1.5px solid #1c1f23; font-weight: 600; vertical-align: bottom; }
+tr { break-inside: avoid; }
+.numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
+.numbers td, .numbers th:first-child { white-space: nowrap; }
+.verdict-cell { display: inline-block; min-width: 6.2em; text-align: left; }
+.settings th { width: 42%; font-weight: 400; }
+.settings td { overflow-wrap: anywhere; }
+footer { margin-top: 26px; padding-top: 6px; border-top: 1px solid #b8c0c8; font-size: 12px; color: #444; overflow-wrap: anywhere; }
+@page { size: A4; margin: 14mm 14mm 16mm; }
+@media print { body { padding: 0; max-width: none; font-size: 9.5pt; } .wide { overflow: visible; } table { font-size: 8.5pt; }
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+)css";
+
+std::string tile(const std::string& figure, const std::string& label) {
+  return "<div><b>" + figure + "</b><span>" + label + "</span></div>\n";
+}
+
+std::vector<std::size_t> fallen(const ReportPage& page) {
+  std::vector<std::size_t> found;
+  for (std::size_t b = 0; b < page.bodies().size(); ++b)
+    if (page.bodies()[b]["overturned"].get<bool>()) found.push_back(b);
+  std::ranges::stable_sort(found, {},
+                           [&](std::size_t b) { return page.bodies()[b]["overturn_time_s"].get<double>(); });
+  return found;
+}
+
+std::size_t most_tilted(const ReportPage& page) {
+  std::size_t most = 0;
+  for (std::size_t b = 1; b < page.bodies().size(); ++b)
+    if (page.bodies()[b]["peak_tilt_deg"] > page.bodies()[most]["peak_tilt_deg"]) most = b;
+  return most;
+}
+
+std::string fall_time(const ReportPage& page, std::size_t body) {
+  return shown(page.bodies()[body]["overturn_time_s"].get<double>(), 2);
+}
+
+std::string verdict(const ReportPage& page) {
+  const std::vector<std::size_t> falls = fallen(page);
+  const std::size_t count = page.bodies().size();
+  std::string out;
+  if (falls.empty()) {
+    const std::size_t most = most_tilted(page);
+    const std::string tilt = shown(page.bodies()[most]["peak_tilt_deg"].get<double>(), 2);
+    const std::optional<double>& critical = page.report().tilts[most].critical;
+    return critical ? page.say(words::k_nothing_falls, page.name(most), tilt, shown(*critical, 2))
+                    : page.say(words::k_nothing_falls_far, page.name(most), tilt);
+  }
+  if (falls.size() > k_named_falls)
+    return page.say(words::k_many_fall, falls.size(), count, page.name(falls[0]), fall_time(page, falls[0]));
+  for (const std::size_t b : falls) out += page.say(words::k_falls, page.name(b), fall_time(page, b)) + " ";
+  if (falls.size() < count) out += page.say(words::k_others_stay, count - falls.size(), count);
+  return out;
+}
+
+/// Whether some body overturns in some of the runs about the input only.
+bool sensitive(const ReportPage& page) {
+  for (std::size_t b = 0; b < page.bodies().size(); ++b) {
+    const auto seen = [&](bool fell) {
+      return std::ranges::any_of(
+          page.report().trials, [&](const study::Trial& t) { return t.finished && t.overturned[b] == fell; });
+    };
+    if (seen(true) && seen(false)) return true;
+  }
+  return false;
+}
+
+bool verdict_is_open(const ReportPage& page) {
+  const ordered_json& e = page.report().summary["error_estimate"];
+  return e.contains("disagreements") && !e["disagreements"].empty();
+}
+
+std::string result(const ReportPage& page) {
+  const Report& report = page.report();
+  const std::vector<std::size_t> falls = fallen(page);
+  std::string out = page.paragraph(verdict(page), "verdict");
+  if (verdict_is_open(page)) out += page.paragraph(page.say(words::k_open, page.certain_section()), "notice");
+  if (sensitive(page)) out += page.paragraph(page.say(words::k_sensitive, page.certain_section()), "notice");
+  out += "<div class=\"figures\">\n";
+  if (!page.bodies().empty())
+    out +=
+        tile(page.say(words::k_of, falls.size(), page.bodies().size()), page.say(words::k_figure_overturned));
+  if (!falls.empty())
+    out += tile(fall_time(page, falls[0]) + " s",
+                page.say(words::k_first_fall) + ": " + escaped(page.name(falls[0])));
+  else if (!page.bodies().empty())
+    out += tile(shown(page.bodies()[most_tilted(page)]["peak_tilt_deg"].get<double>(), 2) + "°",
+                page.say(words::k_greatest_tilt) + ": " + escaped(page.name(most_tilted(page))));
+  if (!report.scene->setup.parameters.shakes.empty()) {
+    out += tile(short_shown(study::peak(report.motion) / k_gal) + " gal", page.say(words::k_peak_floor));
+    const double intensity = study::instrumental_intensity(study::intensity_acceleration(report.motion));
+    const Phrase& degree =
+        words::k_degrees_of_intensity[static_cast<std::size_t>(study::intensity_scale(intensity))];
+    out += tile(page.say(words::k_degree_figure, page.text(degree)),
+                page.say(words::k_instrumental, shown(intensity, 1)));
+  }
+  return out + "</div>\n" + page.paragraph(page.say(words::k_not_validated), "notice");
+}
+
+}  // namespace
+
+std::string ReportPage::section(const Phrase& title, const std::string& content) {
+  return fmt::format("<section>\n<h2>{}. {}</h2>\n{}</section>\n", next_section(), say(title), content);
+}
+
+std::string ReportPage::paragraph(const std::string& html, const char* kind) const {
+  return (*kind ? fmt::format("<p class=\"{}\">", kind) : "<p>") + html + "</p>\n";
+}
+
+std::string ReportPage::figure(const std::string& html, const std::string& caption) const {
+  return "<figure>\n" + html + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
+}
+
+std::string ReportPage::table(const std::vector<std::string>& head,
+                              const std::vector<std::vector<std::string>>& rows, bool numbers) const {
+  const bool narrow = head.size() <= k_narrow && numbers;
+  std::string out =
+      fmt::format("<div class=\"wide{}\"><table class=\"{}{}\">\n", rows.size() <= k_short ? " short" : "",
+                  numbers ? "numbers" : "settings", narrow ? " narrow" : "");
+  if (!head.empty()) {
+    out += "<thead><tr>";
+    for (const std::string& cell : head) out += "<th scope=\"col\">" + cell + "</th>";
+    out += "</tr></thead>\n";
+  }
+  out += "<tbody>\n";
+  for (const auto& row : rows) {
+    out += "<tr>";
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out += c == 0 ? "<th scope=\"row\">" + row[c] + "</th>" : "<td>" + row[c] + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string shown(double value, int decimals) {
+  std::string digits = fmt::format("{:.{}f}", value, decimals);
+  if (digits[0] == '-')
+    digits = (digits.find_first_not_of("-0.") == std::string::npos ? "" : "\u2212") + digits.substr(1);
+  return digits;
+}
+
+std::string short_shown(double value, int digits) {
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  return text[0] == '-' ? "\u2212" + text.substr(1) : text;
+}
+
+std::string with_error(const ordered_json& value, const ordered_json& error, double unit, int most) {
+  if (value.is_null()) return "\u2013";
+  const double x = value.get<double>() / unit;
+  if (error.is_null()) return shown(x, most);
+  const double e = error.get<double>() / unit;
+  const int decimals = e > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(e))), 0, most) : most;
+  const double last = std::pow(10, -decimals);
+  return shown(x, decimals) + " ± " + shown(std::max(std::ceil(e / last), 1.) * last, decimals);
+}
+
+std::string report_page(const Report& report, Language language) {
+  ReportPage page(report, language);
+  const std::string title = escaped(report.scene->title.empty() ? report.scene->name : report.scene->title);
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"generator\" "
+      "content=\"topple {}\">\n<link rel=\"icon\" href=\"data:,\">\n<title>{}: "
+      "{}</title>\n<style>{}</style>\n</head>\n<body>\n",
+      page.language_code(), TOPPLE_VERSION, page.say(words::k_report), title, k_style);
+  out += fmt::format(
+      "<header>\n<p>{}</p>\n<h1>{}</h1>\n<p>{}</p>\n</header>\n<main>\n<section>\n<h2>{}</h2>\n{}</"
+      "section>\n",
+      page.say(words::k_report), title, page.say(words::k_origin, report.scene->name, TOPPLE_VERSION),
+      page.say(words::k_result), result(page));
+  out += floor_section(page);
+  out += falling_section(page);
+  if (report.without_anchors) out += anchors_section(page);
+  out += certain_section(page);
+  out += assumptions_section(page);
+  out += settings_section(page);
+  return out + fmt::format("</main>\n<footer>{}</footer>\n</body>\n</html>\n",
+                           page.say(words::k_repeat, report.command));
+}
+
+}  // namespace topple::app

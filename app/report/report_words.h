@@ -1,0 +1,263 @@
+// Every sentence of the report page, in its languages: one table.
+#pragma once
+
+#include "app/support/language.h"
+
+namespace topple::app {
+
+namespace words {
+
+inline constexpr Phrase k_report{"Report on the tipping of furniture", "家具の転倒に関する解析報告書"};
+inline constexpr Phrase k_origin{"scene {0} · topple {1}", "シーン {0} · topple {1}"};
+
+// what it comes to
+inline constexpr Phrase k_result{"Result", "結果の要約"};
+inline constexpr Phrase k_falls{"“{0}” overturns {1} s after the start of the run.",
+                                "「{0}」が計算開始から{1}秒後に転倒する。"};
+inline constexpr Phrase k_many_fall{
+    "{0} of {1} bodies overturn; the first is “{2}”, {3} s after the start of the run.",
+    "{1}体のうち{0}体が転倒する。最初は「{2}」で、計算開始から{3}秒後。"};
+inline constexpr Phrase k_nothing_falls{
+    "Nothing overturns. “{0}” tilts most, by {1}° of the {2}° at which it would.",
+    "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（転倒限界角 {2}°）。"};
+inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts most, by {1}°.",
+                                            "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°。"};
+inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};
+inline constexpr Phrase k_sensitive{
+    "The outcome turns on small differences in the shaking: read the probabilities in section {0}, not the "
+    "single run.",
+    "この結果は揺れのわずかな違いで変わる。1回の計算結果ではなく、第{0}節の確率で判断すること。"};
+inline constexpr Phrase k_open{
+    "A finer computation gives another verdict (section {0}); the single run decides nothing.",
+    "計算の刻みを細かくすると判定が変わる（第{0}節）。1回の計算結果だけでは判断できない。"};
+inline constexpr Phrase k_not_validated{
+    "Not validated against experiment. The program is checked against theory and published numbers "
+    "(topple verify); no shaking-table test stands behind this page.",
+    "実験による妥当性確認は行っていない。プログラムは理論解および公表値と照合している（topple "
+    "verify）が、この報告書の結果を裏付ける振動台実験はない。"};
+inline constexpr Phrase k_figure_overturned{"bodies overturned", "転倒する家具"};
+inline constexpr Phrase k_of{"{0} of {1}", "{0}/{1}体"};
+inline constexpr Phrase k_first_fall{"first overturning", "最初の転倒"};
+inline constexpr Phrase k_greatest_tilt{"greatest tilt", "最大傾斜角"};
+inline constexpr Phrase k_peak_floor{"peak floor acceleration", "床の最大加速度"};
+inline constexpr Phrase k_degree_figure{"JMA {0}", "震度{0}相当"};
+inline constexpr Phrase k_instrumental{"intensity of the floor motion, instrumental {0}",
+                                       "床の揺れの計測震度相当値 {0}"};
+
+// the floor
+inline constexpr Phrase k_floor{"How the floor shakes", "床の揺れ"};
+inline constexpr Phrase k_no_shake{"The floor does not shake. The bodies move from how they are let go.",
+                                   "床は揺れない。家具は初期状態から動き始める。"};
+inline constexpr Phrase k_sine{"Sine of {0} Hz, {1} gal, along {2}, from {3} s, {4}",
+                               "正弦波 {0} Hz、{1} gal、方向 {2}、{3}秒から、{4}"};
+inline constexpr Phrase k_cycles{"{0} cycles", "{0}波"};
+inline constexpr Phrase k_endless{"until the end of the run", "計算終了まで"};
+inline constexpr Phrase k_sweep{"Sweep from {0} to {1} Hz, {2} gal, along {3}, from {4} s for {5} s",
+                                "スイープ波 {0}～{1} Hz、{2} gal、方向 {3}、{4}秒から{5}秒間"};
+inline constexpr Phrase k_pulse{"{0} pulse, {1} gal, along {2}, from {3} s for {4} s",
+                                "{0}パルス、{1} gal、方向 {2}、{3}秒から{4}秒間"};
+inline constexpr Phrase k_half_sine{"Half-sine", "半正弦波"};
+inline constexpr Phrase k_full_sine{"Full-sine", "1周期正弦波"};
+inline constexpr Phrase k_rectangle{"Rectangular", "矩形"};
+inline constexpr Phrase k_record{"Record of {0} s, components: {1}, peak {2} gal (scale {3}), from {4} s",
+                                 "加速度記録 {0}秒、{1}成分、最大 {2} gal（倍率 {3}）、{4}秒から"};
+inline constexpr Phrase k_jump{
+    "The floor starts with a jump of velocity, which the chart and the intensity do not contain.",
+    "床は初速度（速度の跳び）をもって動き始める。図と計測震度相当値にはこの跳びを含まない。"};
+inline constexpr Phrase k_floor_chart{
+    "Figure {0}: acceleration of the floor. x: depth of a cabinet at yaw 0; z: up.",
+    "図{0}：床の加速度。xは向き0°のキャビネットの奥行方向、zは鉛直上向き。"};
+inline constexpr Phrase k_time{"time, s", "時間 [s]"};
+inline constexpr Phrase k_gal_along{"{0}, gal", "{0} [gal]"};
+inline constexpr Phrase k_peak_along{"peak acceleration along {0}", "{0}方向の最大加速度"};
+inline constexpr Phrase k_peak_vector{"peak acceleration, components together", "最大加速度（成分合成）"};
+inline constexpr Phrase k_a_value{"a: filtered acceleration reached for 0.3 s in all",
+                                  "a：フィルター後の合成加速度が合計0.3秒以上となる値"};
+inline constexpr Phrase k_i_value{"instrumental intensity I = 2 log₁₀ a + 0.94",
+                                  "計測震度相当値 I = 2 log₁₀ a + 0.94"};
+inline constexpr Phrase k_degree{"degree of the JMA scale", "気象庁震度階級（相当）"};
+inline constexpr Phrase k_intensity_note{
+    "Intensity by the procedure of the Japan Meteorological Agency (three components filtered in the "
+    "frequency "
+    "domain, added as vectors; two decimals rounded, then cut to one), from the floor motion of the scene "
+    "between 0 and {0} "
+    "s. The agency states intensities of the ground; this one is of the floor that the furniture stands on.",
+    "気象庁の計測震度算出方法（"
+    "3成分を周波数領域でフィルター処理し、ベクトル合成。小数第3位を四捨五入し、小数第2位を切り捨て）を"
+    "、シーンの床の動き（0～{0}秒）"
+    "に適用した値。気象庁の震度は地表などの観測値であり、ここでは家具が立つ床の揺れに対する相当値を示す。"};
+
+// what falls
+inline constexpr Phrase k_falling{"What falls, and when", "何が、いつ転倒するか"};
+inline constexpr Phrase k_body{"body", "家具"};
+inline constexpr Phrase k_verdict{"verdict", "判定"};
+inline constexpr Phrase k_overturns{"● overturns", "● 転倒"};
+inline constexpr Phrase k_stays{"○ stays", "○ 転倒せず"};
+inline constexpr Phrase k_overturn_time{"overturns at, s", "転倒時刻 [s]"};
+inline constexpr Phrase k_uplift{"first uplift, s", "最初の浮上り [s]"};
+inline constexpr Phrase k_impacts{"impacts", "衝突回数"};
+inline constexpr Phrase k_tilt{"peak tilt, °", "最大傾斜角 [°]"};
+inline constexpr Phrase k_critical{"critical angle, °", "転倒限界角 [°]"};
+inline constexpr Phrase k_slide{"peak slide, mm", "最大すべり [mm]"};
+inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
+inline constexpr Phrase k_table_note{
+    "Overturns: the tilt passes the critical angle (centre of gravity above the edge of the base) for good "
+    "before the run ends. "
+    "Slide: horizontal travel of the middle of the base relative to the floor. Uplift: one side of the base "
+    "carries less than "
+    "{0} % of the weight. ±: stated numerical error, section {1}.",
+    "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。すべり："
+    "床に対する底面中心の水平移動量。"
+    "浮上り：底面の一辺が支える力が重量の{0} %を下回ること。±は推定数値誤差（第{1}節）。"};
+inline constexpr Phrase k_stress_note{
+    "Stresses are elastic: the scene's material does not yield, so that impacts reach values at which real "
+    "steel would flow.",
+    "応力は弾性計算による値である。シーンの材料は降伏しないため、衝突時には実際の鋼材なら降伏する値になること"
+    "がある。"};
+inline constexpr Phrase k_tilt_chart{"Figure {0}: tilt of the bodies.{1} Diamond: overturned from here on.",
+                                     "図{0}：家具の傾斜角。{1}◇：この時刻以降、転倒。"};
+inline constexpr Phrase k_tilt_chart_standing{"Figure {0}: tilt of the bodies.{1}",
+                                              "図{0}：家具の傾斜角。{1}"};
+inline constexpr Phrase k_most_tilted_only{" The {0} that tilt most.", "最大傾斜角の大きい{0}体。"};
+inline constexpr Phrase k_tilt_axis{"tilt, °", "傾斜角 [°]"};
+inline constexpr Phrase k_critical_level{"critical angle {0}°", "転倒限界角 {0}°"};
+inline constexpr Phrase k_pictures{
+    "Figure {0}: key instants. Floor grid: 1 m bold, 0.1 m fine. Deformations to scale.",
+    "図{0}：主な時点の状態。床の格子は太線1 m、細線0.1 m。変形は実寸。"};
+inline constexpr Phrase k_at_start{"Start, {0} s", "開始 {0}秒"};
+inline constexpr Phrase k_at_fall{"{0} s: “{1}” is falling, tilt {2}°", "{0}秒：「{1}」が転倒中、傾斜角{2}°"};
+inline constexpr Phrase k_at_most{"{0} s: “{1}” tilts most, {2}°", "{0}秒：「{1}」の傾斜角が最大、{2}°"};
+inline constexpr Phrase k_at_end{"End, {0} s", "終了 {0}秒"};
+
+// anchors
+inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有無による違い"};
+inline constexpr Phrase k_anchors_text{
+    "The scene holds its furniture with {0} anchor(s). The same run with all of them removed:",
+    "シーンには固定具が{0}個ある。すべて取り外した場合との比較を示す。"};
+inline constexpr Phrase k_with{"with anchors", "固定あり"};
+inline constexpr Phrase k_without{"without anchors", "固定なし"};
+inline constexpr Phrase k_without_failed{"The run without anchors failed: {0}",
+                                         "固定なしの計算は失敗した：{0}"};
+
+// how certain
+inline constexpr Phrase k_certain{"How certain this is", "結果の確かさ"};
+inline constexpr Phrase k_probability{"Probability of overturning for shaking within ±{0} %",
+                                      "入力±{0} %の範囲での転倒確率"};
+inline constexpr Phrase k_probability_text{
+    "The run was repeated {0} times with the floor motion multiplied by evenly spaced factors from {1} to "
+    "{2}. After several "
+    "impacts a rocking body may follow one path or another on the slightest difference; the share of runs in "
+    "which it "
+    "overturns is then what can be relied on.",
+    "床の揺れに{1}から{2}までの等間隔の倍率を掛け、計算を{0}"
+    "回繰り返した。衝突を何度か経たロッキングはわずかな違いで挙動が分かれるため、"
+    "1回の軌跡ではなく、転倒した計算の割合が信頼できる指標となる。"};
+inline constexpr Phrase k_runs_failed{"{0} of {1} runs failed and are left out.",
+                                      "{1}回のうち{0}回は計算が失敗したため除外した。"};
+inline constexpr Phrase k_overturned_in{"overturned in", "転倒した計算"};
+inline constexpr Phrase k_runs{"{0} of {1} runs", "{1}回中{0}回"};
+inline constexpr Phrase k_share{"share", "割合"};
+inline constexpr Phrase k_interval{"95 % interval (Wilson)", "95 %信頼区間（Wilson法）"};
+inline constexpr Phrase k_interval_note{
+    "Wilson's score interval for a proportion. It takes the runs as random draws, which evenly spaced "
+    "factors are "
+    "not strictly: read it as the order of the uncertainty.",
+    "Wilsonのスコア区間。各計算を無作為抽出とみなしており、等間隔の倍率では厳密には成り立たない。不確かさの目"
+    "安として読むこと。"};
+inline constexpr Phrase k_dots{"Figure {0}: each run. Filled: overturns; open: stays.",
+                               "図{0}：各計算の結果。●：転倒、○：転倒せず。"};
+inline constexpr Phrase k_factor{"factor on the floor motion", "床の揺れの倍率"};
+inline constexpr Phrase k_no_probability{
+    "The floor does not shake, so there is no input to vary; no probability is given.",
+    "床が揺れないため、変化させる入力がなく、確率は求めない。"};
+inline constexpr Phrase k_error{"Numerical error", "数値誤差"};
+inline constexpr Phrase k_halved{"half the step ({0} ms)", "半分の時間刻み（{0} ms）"};
+inline constexpr Phrase k_tightened{"a tenth of the tolerance ({0})", "10分の1の許容誤差（{0}）"};
+inline constexpr Phrase k_error_text{
+    "The run was repeated with {0}. The stated error, ± in section {1}, is {2} times the difference between "
+    "the two: "
+    "the error of a method of first order, to which contacts that open and close bring any. It is an "
+    "estimate of the time "
+    "stepping alone, not of the model.",
+    "計算を{0}で繰り返した。第{1}節の±は両者の差の{2}倍である（"
+    "接触の開閉があると、どの解法も1次精度となるため）。"
+    "これは時間積分の誤差の推定であり、モデル化の誤差を含まない。"};
+inline constexpr Phrase k_error_open{
+    "The two runs part in the verdict, so no number can be given for it: {0}.",
+    "両者で判定が異なるため、誤差を数値で示すことはできない：{0}。"};
+inline constexpr Phrase k_open_falls{"“{0}” overturns at {1} s, but stays standing in the finer run",
+                                     "「{0}」は{1}秒で転倒するが、細かい計算では転倒しない"};
+inline constexpr Phrase k_open_stays{"“{0}” stays standing, but overturns in the finer run",
+                                     "「{0}」は転倒しないが、細かい計算では転倒する"};
+inline constexpr Phrase k_error_failed{"The finer run failed ({0}); the error is not known.",
+                                       "細かい計算が失敗したため（{0}）、誤差は不明である。"};
+inline constexpr Phrase k_balance{"Energy that nothing explains: {0} % of the largest energy exchanged.",
+                                  "説明のつかないエネルギー：交換された最大エネルギーの{0} %。"};
+inline constexpr Phrase k_warnings{"The program warns:", "プログラムの警告（英語）："};
+
+// assumptions
+inline constexpr Phrase k_assumptions{"What the model assumes", "モデルの仮定"};
+inline constexpr Phrase k_as_given{
+    "Sizes, masses, centres of gravity and materials are those of the scene file, taken as given; nothing of "
+    "them is measured or "
+    "checked here.",
+    "寸法・質量・重心・材料はシーンファイルの値をそのまま用いた。実測や確認は行っていない。"};
+inline constexpr Phrase k_contents{
+    "Contents do not move; doors and drawers stay shut; feet, casters, carpets and mats are not modelled.",
+    "収納物は動かず、扉・引き出しは閉じたままとする。脚、キャスター、カーペット、マットは考慮しない。"};
+inline constexpr Phrase k_rigid_floor{
+    "Floor and walls are rigid planes that move together; the furniture does not act back on the building.",
+    "床と壁は一体に動く剛な平面とし、家具から建物への影響は考慮しない。"};
+inline constexpr Phrase k_beam_floor{
+    "Floor or walls of beams bend; their ends move with the building, on which the furniture does not act "
+    "back.",
+    "梁でモデル化した床・壁は変形する。その端部は建物とともに動き、家具から建物への影響は考慮しない。"};
+inline constexpr Phrase k_friction{
+    "Contact is a stiff spring against penetration with one coefficient of friction, {0}, for all surfaces "
+    "and at all "
+    "speeds.",
+    "接触は貫入に抵抗するばねで表し、摩擦係数はすべての面・すべての速度で一定（{0}）とする。"};
+inline constexpr Phrase k_frames_elastic{"The material does not yield or break.",
+                                         "材料は降伏も破断もしない。"};
+inline constexpr Phrase k_frames_plastic{
+    "Members yield as perfectly plastic hinges at their ends of elements{0}.",
+    "部材は要素端の完全塑性ヒンジとして降伏する{0}。"};
+inline constexpr Phrase k_frames_break{" and may break", "（破断を含む）"};
+inline constexpr Phrase k_no_anchors{"No anchor, strap or pole holds the furniture: the scene has none.",
+                                     "固定具（ベルト、金具、突っ張り棒など）はない。"};
+inline constexpr Phrase k_ends{
+    "What would happen after {0} s is not seen. People and objects that the scene does not name are absent.",
+    "{0}秒より後に起こることは計算していない。シーンにない人や物は存在しない。"};
+
+// settings
+inline constexpr Phrase k_settings{"Settings of the computation", "計算条件"};
+inline constexpr Phrase k_simulated{"simulated time", "計算した時間"};
+inline constexpr Phrase k_stopped{"{0} s (stopped by the scene's condition)",
+                                  "{0} s（シーンの条件により終了）"};
+inline constexpr Phrase k_integrator{"time integration", "時間積分法"};
+inline constexpr Phrase k_step{"time step", "時間刻み"};
+inline constexpr Phrase k_steps{"{0} steps, {1} rejected", "{0}ステップ、棄却{1}"};
+inline constexpr Phrase k_adaptive{"adaptive, tolerance {0}, mean {1} ms", "可変、許容誤差 {0}、平均 {1} ms"};
+inline constexpr Phrase k_contact{"contact law", "接触則"};
+inline constexpr Phrase k_alpha{"penalty coefficient α", "ペナルティ係数 α"};
+inline constexpr Phrase k_q{"penalty index q", "ペナルティ指数 q"};
+inline constexpr Phrase k_mu{"friction coefficient μ", "摩擦係数 μ"};
+inline constexpr Phrase k_restitution{"restitution", "反発係数"};
+inline constexpr Phrase k_normal_speed{"normal speed of the contact law", "接触則の法線速度"};
+inline constexpr Phrase k_gravity{"gravity", "重力加速度"};
+inline constexpr Phrase k_bodies{"{0}: mass, computed as", "{0}：質量、計算モデル"};
+inline constexpr Phrase k_more_bodies{"{0} further bodies", "ほか{0}体"};
+inline constexpr Phrase k_rigid{"rigid body", "剛体"};
+inline constexpr Phrase k_elastic{"rigid motion with elastic modes", "剛体運動+弾性モード"};
+inline constexpr Phrase k_frame{"frame of beam elements (ASI-Gauss family)", "はり要素骨組（ASI-Gauss系）"};
+inline constexpr Phrase k_overrides{"changed from the scene file", "シーンファイルからの変更"};
+inline constexpr Phrase k_version{"program", "プログラム"};
+inline constexpr Phrase k_repeat{"Made by {0}", "作成コマンド：{0}"};
+
+// degrees of the JMA scale
+inline constexpr Phrase k_degrees_of_intensity[] = {
+    {"0", "0"},         {"1", "1"},         {"2", "2"},         {"3", "3"},         {"4", "4"},
+    {"5-lower", "5弱"}, {"5-upper", "5強"}, {"6-lower", "6弱"}, {"6-upper", "6強"}, {"7", "7"}};
+
+}  // namespace words
+}  // namespace topple::app

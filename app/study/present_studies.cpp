@@ -1,0 +1,124 @@
+#include "app/study/present_studies.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/study/study_results.h"
+#include "app/support/clock.h"
+#include "solver/io/scene/scene_save.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
+
+namespace topple::app {
+namespace {
+
+using StudyRows = std::vector<std::string>;
+
+constexpr double k_between = 0.3;  // s, from one result shown to the next
+
+io::Scene changed_scene(const io::Scene& scene, const Parameters& now) {
+  io::Scene changed = io::parse_scene(io::edited_scene(scene, now).text, scene.name, {}, io::files_of(scene));
+  changed.name = scene.name;
+  return changed;
+}
+
+/// Works through the cases in this order; `gather` makes of the rows what is shown.
+template <class Found>
+void work_through(Background<Found>& desk, const std::vector<int>& order, int jobs, const MakeWork& make,
+                  const std::function<bool()>& give_up,
+                  const std::function<Found(const StudyRows&)>& gather) {
+  std::vector<CaseWork> works;
+  works.reserve(static_cast<std::size_t>(jobs));
+  for (int worker = 0; worker < jobs; ++worker) works.push_back(make());
+  StudyRows rows(order.size());
+  std::mutex keeping;
+  desk.show(gather(rows));
+  Clock::time_point shown = Clock::now();
+  study::for_each_case(
+      static_cast<int>(order.size()), jobs,
+      [&](int n, int worker) {
+        const int k = order[static_cast<std::size_t>(n)];
+        std::string row = works[static_cast<std::size_t>(worker)](k, give_up);
+        const std::lock_guard lock(keeping);
+        rows[static_cast<std::size_t>(k)] = std::move(row);
+      },
+      [&](int done) {
+        desk.tell(static_cast<double>(done) / static_cast<double>(order.size()));
+        if (seconds_since(shown) > k_between) {
+          const std::lock_guard lock(keeping);
+          desk.show(gather(rows));
+          shown = Clock::now();
+        }
+        return !give_up();
+      });
+  desk.show(gather(rows));
+}
+
+template <class Found>
+std::unique_ptr<Background<Found>> search(const std::function<void(Background<Found>&)>& work) {
+  return std::make_unique<Background<Found>>([work](Background<Found>& desk) {
+    try {
+      work(desk);
+    } catch (const std::exception& error) {
+      desk.show({.failure = error.what()});
+    }
+  });
+}
+
+}  // namespace
+
+MakeWork work_on(const study::OverturnPlan& plan) {
+  return [&plan] {
+    return [runner = study::OverturnRunner(plan)](int k, const std::function<bool()>& give_up) mutable {
+      return runner.run(k, give_up);
+    };
+  };
+}
+
+std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now) {
+  return search<OverturnFound>([scene, now](OverturnSearch& desk) {
+    const auto plan = std::make_shared<const study::OverturnPlan>(
+        study::plan_overturn(changed_scene(scene, now), "", "", 1, 0));
+    const int jobs = std::max(1, study::core_count() - 1);  // one is for what the window shows
+    work_through<OverturnFound>(
+        desk, case_order(*plan), jobs, work_on(*plan), [&] { return desk.stopped(); },
+        [&](const StudyRows& rows) {
+          return OverturnFound{.failure = "", .plan = plan, .map = gather(*plan, rows)};
+        });
+  });
+}
+
+std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const Parameters& now) {
+  return search<PrecisionFound>([scene, now](PrecisionSearch& desk) {
+    const auto start = Clock::now();
+    study::PrecisionPlan own = study::plan_precision(changed_scene(scene, now));
+    own.laws.resize(1);
+    std::erase_if(own.list, [](const auto& one) { return one.law != 0; });
+    const auto plan = std::make_shared<const study::PrecisionPlan>(std::move(own));
+    std::vector<Parameters> parameters;
+    parameters.reserve(static_cast<std::size_t>(plan->cases()));
+    for (int k = 0; k < plan->cases(); ++k) parameters.push_back(plan->setup_of(k).parameters);
+    work_through<PrecisionFound>(
+        desk, case_order(*plan), 1,
+        [&] {
+          return
+              [&](int k, const std::function<bool()>& give_up) { return study::run_case(*plan, k, give_up); };
+        },
+        [&] { return desk.stopped() || seconds_since(start) > k_quick; },
+        [&](const StudyRows& rows) {
+          return PrecisionFound{
+              .failure = "", .plan = plan, .parameters = parameters, .study = gather(*plan, rows)};
+        });
+  });
+}
+
+bool parameters_differ(const Model& model, const Parameters& a, const Parameters& b,
+                       const std::function<bool(Edit::Key key, int index)>& of_study) {
+  const auto keys = editable(model, a);
+  return keys != editable(model, b) || std::ranges::any_of(keys, [&](const auto& entry) {
+           const auto& [key, index] = entry;
+           return edited_value(a, key, index) != edited_value(b, key, index) && !of_study(key, index);
+         });
+}
+
+}  // namespace topple::app

@@ -1,0 +1,47 @@
+// Studies of the scene with the parameters as they are now, computed beside the window.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/study/sweep.h"
+#include "app/support/background.h"
+#include "solver/edit.h"
+#include "solver/study/overturn/overturn_map.h"
+#include "solver/study/precision/precision.h"
+
+namespace topple::app {
+
+/// What is known so far. `failure`: why there is nothing to know; empty: there is.
+struct OverturnFound {
+  std::string failure;
+  std::shared_ptr<const study::OverturnPlan> plan = {};
+  study::OverturnMap map = {};
+};
+using OverturnSearch = Background<OverturnFound>;
+
+/// Over the usual axes of `topple study overturn`: frequency (of a pulse: duration) and amplitude of the
+/// first shake, coarse points first.
+std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now);
+
+/// The work of `topple study overturn`.
+MakeWork work_on(const study::OverturnPlan& plan);
+
+/// Like OverturnFound.
+struct PrecisionFound {
+  std::string failure;
+  std::shared_ptr<const study::PrecisionPlan> plan = {};
+  std::vector<Parameters> parameters = {};  ///< of each case
+  study::PrecisionStudy study = {};
+};
+using PrecisionSearch = Background<PrecisionFound>;
+
+/// With the scene's own contact alone, cheap settings first, for as long as `topple study precision --quick`.
+std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const Parameters& now);
+
+/// Whether parameters of a model differ in a value that can be edited, but for those that `of_study` names.
+bool parameters_differ(const Model& model, const Parameters& a, const Parameters& b,
+                       const std::function<bool(Edit::Key key, int index)>& of_study);
+
+}  // namespace topple::app

@@ -1,0 +1,96 @@
+// Sweeps of studies: their cases on threads and, under mpirun, on other ranks; rows kept while they come.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/study/study_options.h"
+#include "app/support/clock.h"
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/chart.h"
+
+namespace topple::app {
+
+class Ranks;
+
+/// Works out one case: its row, JSON in one line; empty when give_up() came true. One worker's calls do not
+/// overlap.
+using CaseWork = std::function<std::string(int k, const std::function<bool()>& give_up)>;
+/// Makes what one worker has for itself.
+using MakeWork = std::function<CaseWork()>;
+
+/// The workers of a sweep: threads of this process, and under mpirun those of the other ranks, to which rank
+/// 0 hands out cases. They need nothing but the same command line: rank 0 tells them the rest.
+class Crew {
+ public:
+  /// `jobs`: threads of this process; absent: one per core that it may run on. Under mpirun joins the other
+  /// ranks; throws BadInput where it cannot.
+  explicit Crew(std::optional<int> jobs);
+  /// Rank 0 lets the others go.
+  ~Crew();
+
+  bool leads() const;
+  int ranks() const;
+  int jobs() const { return jobs_; }
+  /// Rank 0, once: what the others listen for. Returns the number of workers.
+  int gather_workers(const std::vector<std::string>& told);
+  /// The others: none when rank 0 has no work.
+  std::optional<std::vector<std::string>> listen();
+  /// The others: works until rank 0 says that it was all. With `quick` runs are given up when its time is
+  /// over.
+  void serve(const MakeWork& make, bool quick);
+  /// Rank 0: the work of one of the workers, those of this process first.
+  CaseWork work_of(int worker, const MakeWork& make);
+
+ private:
+  struct Remote {
+    int rank, tag;
+  };
+  int jobs_;
+  std::unique_ptr<Ranks> ranks_;  ///< null: alone
+  std::vector<Remote> remote_;
+  bool told_ = false;
+};
+
+struct SweepPlan {
+  std::string kind;                 ///< of study
+  std::string stem;                 ///< of its results; rows are kept in STEM.rows while it goes on
+  nlohmann::ordered_json settings;  ///< that rows depend on, besides the version
+  std::vector<int> order;           ///< of all cases, as they are begun
+  std::vector<std::string> told;    ///< to other ranks
+  MakeWork make;
+  Clock::time_point start = Clock::now();  ///< of the study, from which the time of --quick counts
+};
+
+struct SweepEnd {
+  std::vector<std::string> rows;  ///< per case; empty: it was not run
+  int run = 0, kept = 0;          ///< cases that have a row, those of them from before included
+  std::string file;               ///< where rows are kept; gone once all are there and written
+  bool complete() const { return run == static_cast<int>(rows.size()); }
+  /// "12 of 40 runs", and how many of them are from before.
+  std::string runs_in_words(const std::string& of = "") const;
+  /// What --quick did to it; `what` it leaves out first.
+  std::string left_in_words(bool quick, const char* what) const;
+};
+
+/// Runs the cases that have no row yet until all have one, the time of --quick is over or Ctrl+C comes, which
+/// must be deferred (interrupt.h): then none, and it is said where to go on. Runs that are under way then are
+/// given up: one may take minutes. Throws std::runtime_error when a row cannot be kept.
+std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
+
+/// The results of a sweep: write_study(), and rows are kept no longer once all are there.
+void write_sweep(const SweepEnd& end, const std::string& stem, const nlohmann::ordered_json& document,
+                 const std::function<std::string(study::ChartFormat)>& script);
+
+/// The first entries of the JSON of a sweep: what it is of and how it was made. `settings` in addition to
+/// those of every sweep.
+nlohmann::ordered_json sweep_json(const std::string& kind, const std::string& title, const io::Scene& scene,
+                                  const Crew& crew, const StudyOptions& options,
+                                  const nlohmann::ordered_json& units,
+                                  const nlohmann::ordered_json& settings);
+
+}  // namespace topple::app

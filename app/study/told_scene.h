@@ -1,0 +1,15 @@
+// A scene as rank 0 tells it to the others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/io/scene/scene.h"
+
+namespace topple::app {
+
+/// Name, text, then name and bytes of each file.
+std::vector<std::string> told(const io::Scene& scene);
+io::Scene scene_from(const std::vector<std::string>& told);
+
+}  // namespace topple::app

@@ -1,0 +1,250 @@
+#include "app/window/export_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "app/panels/shell_words.h"
+#include "app/picture/row.h"
+#include "app/support/files.h"
+#include "app/support/terms.h"
+
+namespace topple::app {
+namespace {
+
+namespace fs = std::filesystem;
+namespace ww = window_words;
+
+constexpr int k_least_side = 64, k_most_side = 8192;  // px, as of topple render
+constexpr int k_most_rate = 240;
+constexpr std::chrono::milliseconds k_recorded{200};  // more than a recording lags behind its run
+
+/// The options of `topple render` that draw as the viewer does.
+std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
+  const PictureSettings& s = viewer.settings();
+  const Model& model = player.scene().setup.model;
+  const render::Orbit& orbit = viewer.orbit();
+  const std::optional<std::size_t> body = viewer.followed();
+  Eigen::Vector3f target = orbit.target;  // at the first instant, of a camera that follows
+  if (const auto row = player.row(); body && row)
+    target -= centre_of(*row, *body) - centre_of(*player.way().front(), *body);
+  std::vector<std::string> words{
+      "--camera",
+      fmt::format("{},{},{},{},{},{}{}", orbit.sight.azimuth * k_degrees, orbit.sight.elevation * k_degrees,
+                  orbit.distance, target.x(), target.y(), target.z(),
+                  body ? ",follow:" + model.bodies[*body].name : ""),
+      "--colour",
+      name_of(s.colour).option,
+      "--map",
+      s.map == render::ColourMap::cividis ? "cividis" : "viridis",
+      "--range",
+      s.range == RangePolicy::run       ? "run"
+      : s.range == RangePolicy::instant ? "instant"
+                                        : fmt::format("{}", s.maximum),
+      "--exaggerate",
+      fmt::format("{}", s.exaggeration)};
+  if (s.contact_forces) words.push_back("--forces");
+  if (!s.panels) words.push_back("--no-panels");
+  if (s.trails != Trails::none) {
+    words.push_back("--trails");
+    words.push_back(s.trails == Trails::run ? "run" : "second");
+  }
+  const auto& picked = viewer.inspection().picked;
+  if (picked && picked->kind != Subject::Kind::anchor) {
+    words.push_back("--inspect");
+    words.push_back(name_of(model, *picked));
+  }
+  return words;
+}
+
+void quiet_text(const std::string& text) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void label(const Phrase& phrase) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(say(phrase).c_str());
+  ImGui::SameLine(10 * ImGui::GetFontSize());
+}
+
+}  // namespace
+
+void ExportDialog::open(const Player& player) {
+  open_ = true;
+  refused_.clear();
+  from = player.way().empty() ? 0 : player.way().front()->time;
+  to = player.way().empty() ? 0 : player.way().back()->time;
+  suggest_path(player);
+}
+
+void ExportDialog::suggest_path(const Player& player) {
+  const char* const endings[] = {".png", ".mp4", ""};
+  std::error_code ignored;
+  fs::path free;
+  int number = 1;
+  do
+    free = fs::current_path(ignored) /
+           fmt::format("{}-{}{}", player.scene().name, number++, endings[static_cast<int>(what)]);
+  while (fs::exists(free, ignored));
+  const std::string text = free.string();
+  path[text.copy(path, sizeof path - 1)] = '\0';
+}
+
+void ExportDialog::start(const Player& player, const Viewer& viewer, const std::string& recording) {
+  refused_.clear();
+  const std::string result = path;
+  try {
+    if (player.way().empty()) throw std::runtime_error(say(ww::k_export_too_early));
+    if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
+    if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
+    std::error_code ignored;
+    if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));
+    require_writable_file("export", result, recording);
+    const auto due = std::chrono::steady_clock::now() + k_recorded;
+    std::vector<std::string> words;
+    if (what == What::tables) {
+      const std::string partial = result + fmt::format(".part-{}", getpid());
+      request_ = {{"export", recording, "--csv", partial}, result, partial, due};
+      return;
+    }
+    const bool video = what == What::video;
+    words = {"render", recording, video ? "--mp4" : "--still",
+             result,   "--size",  fmt::format("{}x{}", size[0], size[1])};
+    const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
+    if (video)
+      add({"--from", fmt::format("{}", from), "--to", fmt::format("{}", to), "--fps",
+           fmt::format("{}", rate)});
+    else
+      add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
+    for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
+    request_ = {words, result, "", due};
+  } catch (const std::runtime_error& error) {
+    refused_ = error.what();
+  }
+}
+
+void ExportDialog::begin_job() {
+  const Request request = *std::exchange(request_, std::nullopt);
+  try {
+    job_.emplace(program_, request.words, request.result, request.partial);
+  } catch (const std::runtime_error& error) {
+    refused_ = error.what();
+  }
+}
+
+bool ExportDialog::update() {
+  if (request_ && std::chrono::steady_clock::now() >= request_->due) begin_job();
+  if (!job_ || !job_->update()) return false;
+  if (job_->done()) {
+    if (job_->failure().empty()) {
+      news_ = say(ww::k_written, job_->result());
+      open_ = false;
+    } else if (!job_->cancelled()) {
+      refused_ = job_->failure();
+      if (!open_) news_ = say(ww::k_not_written, refused_);
+    }
+    job_.reset();
+  }
+  return true;
+}
+
+std::string ExportDialog::take_news() {
+  return std::exchange(news_, {});
+}
+
+void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
+                        const Box& window, const render::OverlayFonts& fonts) {
+  begin_panel_over("export", window, 660, 0.46f, say(ww::k_export_title), fonts);
+  ImGui::BeginDisabled(busy());
+  draw_choices(player);
+  ImGui::EndDisabled();
+  if (job_) draw_job();
+  if (!refused_.empty()) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(say(ww::k_not_written, refused_).c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::Dummy({0, 4});
+  if (button_at_right(say(ww::k_export_now), 1, !busy())) start(player, viewer, recording);
+  if (button_at_right(say(job_ ? ww::k_cancel : ww::k_close), 0)) job_ ? job_->cancel() : close();
+  end_panel_over();
+}
+
+void ExportDialog::draw_choices(const Player& player) {
+  const std::pair<const Phrase*, const Phrase*> kinds[] = {{&ww::k_picture, &ww::k_picture_about},
+                                                           {&ww::k_video, &ww::k_video_about},
+                                                           {&ww::k_tables, &ww::k_tables_about}};
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+    if (ImGui::RadioButton(say(*kinds[i].first).c_str(), static_cast<int>(what) == i)) {
+      what = static_cast<What>(i);
+      suggest_path(player);
+    }
+  }
+  quiet_text(say(*kinds[static_cast<int>(what)].second));
+  ImGui::Dummy({0, 2});
+  label(what == What::tables ? ww::k_folder : ww::k_file);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::InputText("##path", path, sizeof path)) refused_.clear();
+  const float number = 7 * ImGui::GetFontSize();
+  if (what != What::tables) {
+    label(ww::k_size);
+    ImGui::SetNextItemWidth(2 * number);
+    ImGui::InputInt2("px##size", size);
+    for (int& side : size) side = std::clamp(side, k_least_side, k_most_side);
+    for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
+      ImGui::SameLine();
+      if (ImGui::SmallButton(fmt::format("{}×{}", width, height).c_str())) size[0] = width, size[1] = height;
+    }
+  }
+  if (what != What::video) return;
+  for (int& side : size) side += side % 2;  // as H.264 has it
+  const double first = player.way().empty() ? 0 : player.way().front()->time, last = player.end();
+  const char* const unit = is_static(player.scene().setup) ? "" : "s";
+  label(ww::k_from);
+  ImGui::SetNextItemWidth(number);
+  ImGui::InputDouble(fmt::format("{}##from", unit).c_str(), &from, 0, 0, "%.2f");
+  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+  ImGui::TextUnformatted(say(ww::k_to).c_str());
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(number);
+  ImGui::InputDouble(fmt::format("{}##to", unit).c_str(), &to, 0, 0, "%.2f");
+  from = std::clamp(std::isfinite(from) ? from : first, first, last);
+  to = std::clamp(std::isfinite(to) ? to : last, from, last);
+  label(ww::k_rate);
+  ImGui::SetNextItemWidth(number);
+  ImGui::InputInt("##rate", &rate, 0);
+  rate = std::clamp(rate, 1, k_most_rate);
+}
+
+void ExportDialog::draw_job() {
+  ImGui::Dummy({0, 2});
+  // Tables are not counted while they are written.
+  const float part = what == What::tables && job_->progress().empty() ? 0 : static_cast<float>(job_->part());
+  ImGui::ProgressBar(part, {-1, 0}, job_->progress().empty() ? "…" : job_->progress().c_str());
+}
+
+void ExportDialog::draw_progress(const Box& scene, const render::OverlayFonts& fonts) {
+  if (!job_ || open_) return;
+  const float unit = fonts.small->FontSize / 14;
+  ImGui::SetNextWindowPos({scene.left + 14 * unit, scene.top + scene.height - 14 * unit}, ImGuiCond_Always,
+                          {0, 1});
+  ImGui::SetNextWindowSize({330 * unit, 0});
+  ImGui::Begin("exporting", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::TextUnformatted(say(ww::k_exporting, fs::path(job_->result()).filename().string()).c_str());
+  draw_job();
+  if (ImGui::SmallButton(say(ww::k_cancel).c_str())) job_->cancel();
+  ImGui::End();
+}
+
+}  // namespace topple::app

@@ -1,0 +1,45 @@
+// What is open in the window: a run or a recording, and how it is looked at.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "app/live/live_run.h"
+#include "app/live/player.h"
+#include "app/window/viewer.h"
+
+namespace topple::app {
+
+class Session {
+ public:
+  /// `opened`: the file that it came from; empty: none. `wake` as of LiveRun.
+  Session(LiveSource source, std::string opened, render::Stage& stage, float scale,
+          const PictureSettings& settings, const Appearance& appearance, Viewer::Keep keep,
+          std::function<void()> wake)
+      : scene_(source.scene),
+        replayed_(source.recording ? std::move(opened) : std::string()),
+        run_(std::make_unique<LiveRun>(std::move(source), std::move(wake))),
+        player_(scene_, *run_),
+        viewer_(player_, stage, scale, render::NamedView::iso, settings, appearance, std::move(keep)) {}
+
+  Player& player() { return player_; }
+  Viewer& viewer() { return viewer_; }
+  const io::Scene& scene() const { return *scene_; }
+  /// The file that holds what is shown; empty: none.
+  std::string recording() const {
+    const std::string& written = player_.status().recording;
+    return written.empty() ? replayed_ : written;
+  }
+  /// Ends the session: only the run is left, to be closed.
+  static std::unique_ptr<LiveRun> leave(std::unique_ptr<Session> session) { return std::move(session->run_); }
+
+ private:
+  const std::shared_ptr<const io::Scene> scene_;
+  const std::string replayed_;
+  std::unique_ptr<LiveRun> run_;
+  Player player_;
+  Viewer viewer_;
+};
+
+}  // namespace topple::app

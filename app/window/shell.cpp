@@ -1,0 +1,289 @@
+#include "app/window/shell.h"
+
+#include <imgui.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/panels/shell_words.h"
+#include "solver/io/recording/recording.h"
+
+namespace topple::app {
+namespace {
+
+namespace fs = std::filesystem;
+namespace ww = window_words;
+
+constexpr int k_frames_of_news =
+    4;  // a panel knows its height after it was drawn, and its picture comes later
+
+Box whole_window() {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return {0, 0, size.x, size.y};
+}
+
+}  // namespace
+
+Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program,
+             const Appearance& appearance, Viewer::Keep keep)
+    : stage_(stage),
+      scale_(scale),
+      wake_(std::move(wake)),
+      program_(std::move(program)),
+      appearance_(appearance),
+      dressed_(appearance),
+      keep_(std::move(keep)),
+      own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
+      chooser_(stage, wake_),
+      export_(program_) {}
+
+Shell::~Shell() {
+  close("interrupted");
+}
+
+std::vector<LiveStatus> Shell::close(const std::string& status) {
+  std::vector<LiveStatus> all;
+  if (session_) {
+    std::unique_ptr<LiveRun> run = Session::leave(std::move(session_));
+    const LiveStatus last = run->close(status);
+    for (std::future<LiveStatus>& one : closing_) all.push_back(one.get());
+    all.push_back(last);
+  } else {
+    for (std::future<LiveStatus>& one : closing_) all.push_back(one.get());
+  }
+  closing_.clear();
+  return all;
+}
+
+void Shell::show(LiveSource source, const std::string& path) {
+  const bool unrecorded = source.output.empty();
+  PictureSettings settings;
+  bool loop = false;
+  if (session_) {
+    settings = session_->viewer().settings();
+    settings.range = settings.range == RangePolicy::fixed ? RangePolicy::run : settings.range;
+    loop = session_->player().loop();
+    appearance_ = session_->viewer().appearance();
+    closing_.push_back(std::async(
+        std::launch::async, [run = Session::leave(std::move(session_))] { return run->close("stopped"); }));
+  }
+  dressed_.reset();
+  session_ =
+      std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
+  session_->player().set_loop(loop);
+  told_failure_.clear();
+  told_trouble_.clear();
+  message_.reset();
+  chooser_.close();
+  save_.close();
+  if (!path.empty()) remember_recent(path);
+  if (unrecorded) message_ = {say(ww::k_not_recorded), say(ww::k_no_state_folder), ""};
+}
+
+void Shell::open_in_background(const std::string& what, const std::string& path,
+                               std::function<LiveSource()> read) {
+  opening_path_ = path;
+  opening_.emplace(what, std::move(read), wake_);
+}
+
+void Shell::open(const std::string& source) {
+  std::error_code ignored;
+  const bool file = fs::exists(source, ignored);
+  open_in_background(
+      file ? fs::path(source).filename().string() : source, file ? source : "", [source, program = program_] {
+        return open_source({.source = source, .overrides = {}, .recording = {}, .language = {}}, program);
+      });
+}
+
+void Shell::drop(const std::vector<std::string>& paths) {
+  if (paths.empty()) return;
+  const std::string& first = paths.front();
+  std::error_code ignored;
+  const bool scene = fs::path(first).extension() == ".toml" || fs::is_directory(first, ignored);
+  if (scene || io::is_recording(first)) {
+    open(first);
+  } else if (!session_) {
+    message_ = {say(ww::k_not_opened), say(ww::k_record_needs_scene, first), ""};
+  } else {
+    // The copy is of the scene as it is read, so that it still holds when something else is opened meanwhile.
+    const auto present = std::make_shared<const io::Scene>(session_->scene());
+    open_in_background(fs::path(first).filename().string(), "",
+                       [present, paths] { return open_records(*present, paths); });
+  }
+}
+
+bool Shell::finish_opening() {
+  if (!opening_ || !opening_->done()) return false;
+  Opening done = std::move(*opening_);
+  opening_.reset();
+  try {
+    show(done.take(), opening_path_);
+  } catch (const std::exception& error) {
+    message_ = {say(ww::k_not_opened), error.what(), session_ ? say(ww::k_kept_open) : ""};
+  }
+  return true;
+}
+
+bool Shell::update(double wall_s) {
+  const bool told_before = message_.has_value();
+  bool news = finish_opening();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != dressed_) {
+    own_fonts_ = set_up_interface(stage_, scale_, fits, nullptr);
+    dressed_ = fits;
+    news = true;
+  }
+  if (chooser_.is_open()) news = chooser_.update() || news;
+  news = export_.update() || news;
+  if (const std::string words = export_.take_news(); !words.empty() && session_)
+    session_->viewer().tell(words);
+  std::erase_if(closing_, [&](std::future<LiveStatus>& one) {
+    if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    if (const LiveStatus status = one.get(); !status.record_failure.empty())
+      message_ = {say(ww::k_record_broke_off), status.record_failure, ""};
+    return true;
+  });
+  const bool seen = session_ && session_->viewer().update(wall_s);
+  if (session_) watch_trouble();
+  if (demo_) start_demo();
+  if (news || message_.has_value() != told_before) frames_due_ = k_frames_of_news;
+  if (frames_due_ > 0) --frames_due_;
+  return news || seen || opening_ || frames_due_ > 0;
+}
+
+// In its own scene, which is opened once unless it is there and can be shaken.
+void Shell::start_demo() {
+  if (opening_ || !session_) return;
+  Player& player = session_->player();
+  const bool there = session_->scene().name == k_demo_scene && !player.replay();
+  if (there) player.to_end();
+  if (there && can_shake_as_sine(player)) {
+    session_->viewer().guide(demo_->which);
+    demo_.reset();
+  } else if (!std::exchange(demo_->opened, true)) {
+    open(k_demo_scene);
+  } else if (!there) {
+    demo_.reset();  // something else was opened meanwhile
+  }
+}
+
+// Each trouble is told once.
+void Shell::watch_trouble() {
+  const LiveStatus& status = session_->player().status();
+  if (status.record_failure != std::exchange(told_failure_, status.record_failure) && !told_failure_.empty())
+    message_ = {say(ww::k_record_broke_off), told_failure_, say(ww::k_record_kept)};
+  const bool failed = status.kind == LiveStatus::Kind::failed, ended = status.kind == LiveStatus::Kind::ended;
+  const std::string trouble = failed || ended ? status.message : "";
+  if (trouble == std::exchange(told_trouble_, trouble) || trouble.empty()) return;
+  message_ = {say(failed ? ww::k_diverged : ww::k_program_failed), trouble,
+              failed ? say(ww::k_diverged_about) : "", session_->player().can_halve_step()};
+}
+
+bool Shell::covered() const {
+  return message_ || save_.is_open() || export_.is_open() || chooser_.is_open() || opening_;
+}
+
+void Shell::ask(ShellRequest request) {
+  if (request == ShellRequest::scenes) chooser_.open();
+  if (!session_) return;
+  if (request == ShellRequest::save) save_.open(session_->scene());
+  if (request == ShellRequest::export_view) export_.open(session_->player());
+}
+
+void Shell::press(const render::KeyPress& press) {
+  if (press.control && press.key == 'Q') {
+    wants_to_close_ = true;
+  } else if (message_) {
+    if (press.key == render::key::escape || press.key == render::key::enter) message_.reset();
+  } else if (save_.is_open()) {
+    press.key == render::key::escape ? save_.close() : save_.press(press);
+  } else if (export_.is_open()) {
+    if (press.key == render::key::escape) export_.close();
+  } else if (chooser_.is_open()) {
+    if (press.key != render::key::escape)
+      chooser_.press(press);
+    else if (session_)
+      chooser_.close();
+  } else if (press.control && press.key == 'O') {
+    ask(ShellRequest::scenes);
+  } else if (press.control && press.key == 'S') {
+    ask(ShellRequest::save);
+  } else if (press.control && press.key == 'E') {
+    ask(ShellRequest::export_view);
+  } else if (session_) {
+    session_->viewer().press(press);
+  }
+}
+
+const render::OverlayFonts& Shell::fonts() const {
+  return session_ ? session_->viewer().fonts() : own_fonts_;
+}
+
+void Shell::build() {
+  if (!session_) {
+    build_over();
+    ImGui::Render();
+    return;
+  }
+  if (covered() || export_.busy())
+    session_->viewer().build([this] { build_over(); });
+  else
+    session_->viewer().build();
+  if (covered()) return;
+  ask(session_->viewer().asked());
+  if (const auto& wanted = session_->viewer().teaching().wanted) demo_ = {*wanted, false};
+}
+
+void Shell::build_over() {
+  const Box window = whole_window();
+  if (session_) export_.draw_progress(session_->viewer().scene_box(), fonts());
+  if (chooser_.is_open()) {
+    chooser_.draw(window, fonts());
+    if (const auto choice = chooser_.take_choice()) open(*choice);
+  } else if (save_.is_open()) {
+    const std::string told = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
+    if (!told.empty()) session_->viewer().tell(told);
+  } else if (export_.is_open()) {
+    export_.draw(session_->player(), session_->viewer(), session_->recording(), window, fonts());
+  }
+  if (message_) answer_message();
+  if (opening_) draw_opening(window);
+}
+
+void Shell::answer_message() {
+  const Answer answer = draw_message(*message_, whole_window(), fonts());
+  if (answer == Answer::none) return;
+  if (answer == Answer::halve_step) session_->player().halve_step_and_retry();
+  message_.reset();
+}
+
+void Shell::draw_opening(const Box& window) {
+  const float unit = fonts().small->FontSize / 14;
+  ImGui::SetNextWindowPos({window.width / 2, window.height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {22 * unit, 14 * unit});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+  ImGui::Begin("opening", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
+  ImGui::PopStyleVar(2);
+  ImGui::TextUnformatted(say(ww::k_opening, opening_->what()).c_str());
+  ImGui::End();
+}
+
+render::Surface Shell::surface() const {
+  if (session_) return session_->viewer().surface();
+  const ImGuiIO& io = ImGui::GetIO();
+  return {.width = static_cast<int>(std::lround(io.DisplaySize.x * io.DisplayFramebufferScale.x)),
+          .height = static_cast<int>(std::lround(io.DisplaySize.y * io.DisplayFramebufferScale.y))};
+}
+
+void Shell::report_frame_time(double ms) {
+  if (session_) session_->viewer().report_frame_time(ms);
+}
+
+std::string Shell::title() const {
+  return session_ ? "topple: " + session_->scene().name : "topple";
+}
+
+}  // namespace topple::app

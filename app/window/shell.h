@@ -1,0 +1,100 @@
+// The desktop app but for its window: what is open, and choosing, opening, saving and exporting around it.
+// Tests drive it off screen.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/window/chooser.h"
+#include "app/window/export_dialog.h"
+#include "app/window/message.h"
+#include "app/window/opening.h"
+#include "app/window/save_scene.h"
+#include "app/window/session.h"
+
+namespace topple::app {
+
+class Shell {
+ public:
+  /// `scale` as of Viewer. `wake` makes a waiting window look; any thread calls it. `program` draws exports
+  /// and reads recordings first. The others as of Viewer.
+  Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program = "/proc/self/exe",
+        const Appearance& appearance = {}, Viewer::Keep keep = {});
+  ~Shell();
+  Shell(const Shell&) = delete;
+  Shell& operator=(const Shell&) = delete;
+
+  /// Shows what was opened in place of what is open, whose recording is closed. `path`: the file; empty:
+  /// none.
+  void show(LiveSource source, const std::string& path);
+  /// The same of a built-in scene or a file, read in the background; what is open stays until it is read.
+  void open(const std::string& source);
+  /// Files were dropped on the window: a scene or recording is opened, accelerograms shake a copy of the
+  /// scene that is open.
+  void drop(const std::vector<std::string>& paths);
+  void choose_scene() { chooser_.open(); }
+
+  /// As of Viewer.
+  bool update(double wall_s);
+  void press(const render::KeyPress& press);
+  void build();
+  render::Surface surface() const;
+  void report_frame_time(double ms);
+  bool wants_to_close() const { return wants_to_close_; }
+
+  /// "topple: paper-a".
+  std::string title() const;
+  bool playing() const { return session_ && session_->player().playing(); }
+  /// Closes everything as LiveRun::close does; the last in the list is what was open.
+  std::vector<LiveStatus> close(const std::string& status);
+
+  Session* session() { return session_.get(); }
+  Chooser& chooser() { return chooser_; }
+  SaveDialog& save_dialog() { return save_; }
+  ExportDialog& export_dialog() { return export_; }
+  const std::optional<Message>& message() const { return message_; }
+  bool opening() const { return opening_.has_value(); }
+
+ private:
+  bool covered() const;
+  const render::OverlayFonts& fonts() const;
+  void open_in_background(const std::string& what, const std::string& path, std::function<LiveSource()> read);
+  bool finish_opening();
+  void ask(ShellRequest request);
+  void watch_trouble();
+  void build_over();
+  void draw_opening(const Box& window);
+  void answer_message();
+  void start_demo();
+
+  render::Stage& stage_;
+  const float scale_;
+  const std::function<void()> wake_;
+  const std::string program_;
+  Appearance appearance_;
+  std::optional<Appearance> dressed_;  ///< as own_fonts_ are; none: a session's have replaced them
+  const Viewer::Keep keep_;
+  render::OverlayFonts own_fonts_;  ///< of a window without a session
+  Chooser chooser_;
+  SaveDialog save_;
+  ExportDialog export_;
+  std::optional<Message> message_;
+  std::optional<Opening> opening_;
+  std::string opening_path_;
+  std::unique_ptr<Session> session_;
+  std::vector<std::future<LiveStatus>> closing_;
+  std::string told_failure_, told_trouble_;  ///< what a message was shown for
+  struct WantedDemo {
+    std::size_t which;  ///< of demos()
+    bool opened;        ///< its scene
+  };
+  std::optional<WantedDemo> demo_;  ///< begins when its scene is there
+  int frames_due_ = 0;
+  bool wants_to_close_ = false;
+};
+
+}  // namespace topple::app

@@ -1,0 +1,43 @@
+#include "app/window/status_line.h"
+
+#include "app/picture/window_words.h"
+#include "app/support/terms.h"
+
+namespace topple::app {
+
+using namespace window_words;
+
+std::string status_in_words(const Player& player) {
+  const LiveStatus& status = player.status();
+  const bool loads = is_static(player.scene().setup);
+  switch (status.kind) {
+    case LiveStatus::Kind::starting:
+      return say(k_settling);
+    case LiveStatus::Kind::reading:
+      return say(k_reading);
+    case LiveStatus::Kind::ended:
+      return say(k_ended, status.message);
+    case LiveStatus::Kind::returning:
+      return say(k_returning);
+    case LiveStatus::Kind::failed:
+      if (player.at_head()) return say(k_stopped, status.message);
+      break;
+    case LiveStatus::Kind::over:
+      if (player.at_head())
+        return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end);
+      break;
+    default:
+      break;
+  }
+  if (player.way().empty()) return status.message.empty() ? say(k_no_instants) : status.message;
+  if (player.at_head())
+    return !player.playing() ? say(k_paused)
+           : loads           ? say(k_running_loads)
+                             : say(k_running, player.speed(), status.achieved);
+  std::string words = say(player.replay() ? k_recording : k_looking_back);
+  if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
+  if (!status.message.empty()) return say(k_says, words, status.message);
+  return say(player.replay() ? k_can_branch : k_can_branch_or_return, words);
+}
+
+}  // namespace topple::app

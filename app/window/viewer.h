@@ -1,0 +1,166 @@
+// The window's content: the scene in the middle, the panels around it, mouse and keyboard. It knows neither
+// the window nor where its pictures go, so that tests drive it off screen.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/live/player.h"
+#include "app/panels/appearance.h"
+#include "app/panels/panels.h"
+#include "app/panels/precision_panel.h"
+#include "app/panels/teaching_panel.h"
+#include "render/gl/key_press.h"
+#include "render/output/stage.h"
+#include "render/scene/font.h"
+#include "render/scene/orbit.h"
+#include "render/scene/pick.h"
+
+namespace topple::app {
+
+class Viewer {
+ public:
+  /// What the side panel shows.
+  enum class Tab { parameters, picture, inspect, teach };
+
+  /// Keeps how the window looks for the next start. May throw std::runtime_error.
+  using Keep = std::function<void(const Appearance&)>;
+
+  /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
+  /// and panels, 1 for 720 lines, times that of `appearance`. `keep` is called when a person changes that.
+  /// Throws std::runtime_error without the font.
+  Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso,
+         const PictureSettings& settings = {}, const Appearance& appearance = {}, Keep keep = {});
+
+  /// Looks closely at it; nothing: at none.
+  void inspect(const std::optional<Subject>& subject);
+
+  void show(Tab tab) { tab_ = tab; }
+
+  /// From the instant that was drawn last on the camera goes along with this body; nothing: it stays.
+  void follow(const std::optional<std::size_t>& body);
+  /// The body that the camera goes along with.
+  std::optional<std::size_t> followed() const {
+    return follows_ ? std::optional(follows_->body) : std::nullopt;
+  }
+
+  /// Begins a guided demo; the floor must be one that can_shake_as_sine.
+  void guide(std::size_t demo);
+
+  /// Takes in what is new. True when there is something to draw that was not drawn before.
+  bool update(double wall_s);
+  /// Does what the key is for.
+  void press(const render::KeyPress& press);
+  /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
+  /// when it changed. `over` builds what lies over it all and takes the keyboard.
+  void build(const std::function<void()>& over = {});
+  /// What is done with keyboard and mouse: the lines of F1's table. key 0: a line only; nothing shown:
+  /// another key of the line above.
+  struct KeyAction {
+    Phrase shown, does;
+    int key = 0;
+    bool control = false, shift = false;
+    void (*act)(Viewer&) = nullptr;
+  };
+  static std::span<const KeyAction> key_actions();
+
+  /// Where things lie, for Stage::present.
+  render::Surface surface() const;
+
+  /// What the last frame's buttons asked for.
+  ShellRequest asked() const { return asked_; }
+  /// Regions in Dear ImGui's coordinates.
+  const Box& scene_box() const { return scene_; }
+  const Box& timeline_box() const { return timeline_; }
+  const TeachingState& teaching() const { return teaching_; }
+  const PrecisionState& precision() const { return precision_; }
+  const Appearance& appearance() const { return appearance_; }
+  const render::OverlayFonts& fonts() const { return fonts_; }
+  const render::Orbit& orbit() const { return orbit_; }
+  const Inspection& inspection() const { return inspection_; }
+  const PictureSettings& settings() const { return settings_; }
+  /// In the status line until the next click.
+  void tell(const std::string& words) { told_ = words; }
+  /// How long a frame took, ms, for the status line.
+  void report_frame_time(double ms);
+
+ private:
+  Appearance fitting() const;
+  void dress();
+  void wear(const Appearance& appearance);
+  void resize(int direction);
+  void let_go();
+  void focus_next_panel();
+  void next_colour();
+  void turn(bool& on);
+  void toggle_following();
+  void go_along();
+  void lay_out();
+  void handle_characters();
+  void handle_mouse();
+  void pick(const std::optional<render::Pick>& found);
+  void look(render::NamedView view);
+  void move_camera(double wall_s);
+  void draw_scene();
+  void draw_words(const io::FrameRow& row);
+  void draw_side_panel(const std::optional<io::FrameRow>& row);
+  void draw_tabs();
+  void draw_plots_strip();
+  void write_plots(PlotRequest request);
+  render::Image picture_of_plots();
+  std::string pace() const;
+  void write_status();
+  void draw_status();
+  void draw_key_table();
+  float aspect() const { return scene_.width / scene_.height; }
+
+  Player& player_;
+  render::Stage& stage_;
+  const float desktop_scale_;
+  float scale_ = 1;
+  Appearance appearance_, dressed_;  // as asked for, and as shown, where there is room
+  const Keep keep_;
+  render::OverlayFonts fonts_;
+  Bridge bridge_;
+  Box scene_, plots_, timeline_, transport_, side_, status_;
+  PictureSettings settings_;
+  render::SceneFrame frame_;
+  std::optional<io::FrameRow> row_;
+  render::Orbit orbit_, from_, to_;
+  double flight_ = 1;                    // of the camera from one place to the other, 0..1
+  bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
+  bool words_due_ = false;               // they were written for another camera or instant
+  bool computes_ = false;                // beside the window
+  /// What the camera goes along with, and where that was when it last did.
+  struct Followed {
+    std::size_t body;
+    Eigen::Vector3f centre;
+  };
+  std::optional<Followed> follows_;
+  float words_top_ = 0, words_bottom_ = 0, words_right_ = 0;  // px of the scene that words cover
+  float words_left_ = 0;                                      // the same instead of words_top_
+  render::NamedView view_;
+  Inspection inspection_;
+  Histories histories_;
+  TeachingState teaching_;
+  PrecisionState precision_;
+  Tab tab_ = Tab::parameters;
+  int failed_element_ = -1;  // marked; -1: none
+  bool scene_changed_ = true, camera_changed_ = true;
+  bool drawn_still_ = false;  // the scene kept is one of best quality
+  double quiet_ = 0;          // s since the scene last changed
+  bool dragging_ = false, dragged_ = false;
+  float transport_height_ = 0;  // as last drawn
+  std::vector<std::string> status_lines_;
+  bool to_next_panel_ = false;
+  ShellRequest asked_ = ShellRequest::none;
+  bool keys_shown_ = false, ghost_shown_ = true;
+  std::string refused_;
+  std::string told_;  // what was written, or why it was not
+  double frame_ms_ = 0;
+};
+
+}  // namespace topple::app

@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "app/panels/shell_words.h"
+#include "app/panels/theme.h"
+#include "app/picture/words.h"
+#include "app/support/files.h"
+#include "app/window/status_line.h"
+#include "app/window/viewer.h"
+#include "render/output/canvas.h"
+#include "render/scene/legend.h"
+#include "render/scene/overlay.h"
+#include "render/scene/text_layout.h"
+
+namespace topple::app {
+namespace {
+
+using namespace window_words;
+
+constexpr int k_most_status_lines = 3;
+constexpr float k_most_legend = 0.3f;    // of the width
+constexpr float k_room_for_title = 16;   // lines
+constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
+constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
+
+}  // namespace
+
+void Viewer::draw_words(const io::FrameRow& row) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float right = scene_.left + scene_.width, bottom = scene_.top + scene_.height;
+  list.PushClipRect({scene_.left, scene_.top}, {right, bottom});
+  const float margin = 14 * scale_, legend = std::min(190 * scale_, k_most_legend * scene_.width);
+  const float room = scene_.width - legend - 2 * margin, pad = 0.5f * margin;
+  std::vector<std::pair<ImFont*, std::string>> lines;
+  float width = 0, height = 0;
+  const bool low = scene_.height < k_room_for_title * fonts_.small->FontSize;
+  const auto add = [&](ImFont* font, const std::string& text) {
+    for (const std::string& line : render::wrapped(*font, text, room, low ? 1 : 2)) {
+      if (scene_.top + margin + height + 1.3f * font->FontSize > bottom) return;
+      lines.emplace_back(font, line);
+      width = std::max(width, render::text_width(*font, line));
+      height += std::round(1.3f * font->FontSize);
+    }
+  };
+  if (!low) add(fonts_.text, player_.scene().title);
+  add(fonts_.small,
+      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
+  const Model& model = player_.scene().setup.model;
+  for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
+  for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
+  float x = scene_.left + margin, y = scene_.top + margin;
+  list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
+  const float more = k_words_to_come * fonts_.small->FontSize;
+  words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
+  words_left_ = margin + width + pad;
+  for (const auto& [font, line] : lines) {
+    list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
+                 line.c_str());
+    y += std::round(1.3f * font->FontSize);
+  }
+  // The scene may lie behind the legend, which is not drawn where it has no room.
+  list.ChannelsSplit(2);
+  list.ChannelsSetCurrent(1);
+  const float inner = right - legend, outer = inner - margin;
+  render::LeftOut left_out;
+  const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
+                                            render::colour_map_for(frame_.legend, settings_.map),
+                                            {"", inner, scene_.top + margin, right - margin, bottom - margin},
+                                            frame_.dark, left_out)
+                         .has_value();
+  std::optional<render::OverlayBox> flat;
+  if (!drawn)
+    flat = render::draw_flat_legend_in(
+        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
+        {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
+  words_bottom_ = flat ? bottom - flat->top + pad : 0;
+  words_right_ = drawn ? right - inner : 0;
+  list.ChannelsSetCurrent(0);
+  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
+  if (drawn) {
+    list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
+    list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
+  }
+  if (flat) list.AddRectFilled({scene_.left, flat->top - pad}, {right, bottom}, veil);
+  list.ChannelsMerge();
+  render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
+                      {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom);
+  list.PopClipRect();
+}
+
+void Viewer::draw_tabs() {
+  static constexpr std::pair<Phrase, Tab> k_tabs[] = {{k_parameters, Tab::parameters},
+                                                      {k_picture_tab, Tab::picture},
+                                                      {k_inspect, Tab::inspect},
+                                                      {k_teach, Tab::teach}};
+  constexpr auto k_count = static_cast<float>(std::size(k_tabs));
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const auto natural = [&](const Phrase& name) {
+    return ImGui::CalcTextSize(say(name).c_str()).x + 2 * style.FramePadding.x;
+  };
+  float room = ImGui::GetContentRegionAvail().x - (k_count - 1) * style.ItemSpacing.x;
+  for (const auto& [name, tab] : k_tabs) room -= natural(name);
+  for (const auto& [name, tab] : k_tabs) {
+    const bool chosen = tab == tab_;
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, style.Colors[ImGuiCol_ButtonActive]);
+    if (ImGui::Button(say(name).c_str(), {natural(name) + std::max(room, 0.f) / k_count, 0})) tab_ = tab;
+    if (chosen) ImGui::PopStyleColor();
+    const std::size_t next = static_cast<std::size_t>(tab) + 1;
+    if (next == std::size(k_tabs)) break;
+    ImGui::SameLine();
+    if (natural(k_tabs[next].first) > ImGui::GetContentRegionAvail().x) ImGui::NewLine();
+  }
+  ImGui::Separator();
+}
+
+void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
+  begin_panel("side", side_);
+  draw_tabs();
+  ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
+  if (tab_ == Tab::parameters) {
+    if (draw_parameters(player_, refused_)) precision_.open = true;
+  } else if (tab_ == Tab::picture) {
+    if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
+      scene_changed_ = true;
+    if (!player_.ghost_way().empty() && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
+      scene_changed_ = true;
+    ImGui::Separator();
+    static constexpr std::pair<Phrase, render::NamedView> views[] = {{k_front, render::NamedView::front},
+                                                                     {k_side, render::NamedView::side},
+                                                                     {k_top, render::NamedView::top},
+                                                                     {k_iso, render::NamedView::iso}};
+    const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) /
+                        static_cast<float>(std::size(views));
+    for (const auto& [name, view] : views) {
+      if (ImGui::Button(say(name).c_str(), {width, 0})) look(view);
+      if (view != render::NamedView::iso) ImGui::SameLine();
+    }
+    ImGui::Separator();
+    Appearance appearance = appearance_;
+    if (draw_appearance(appearance)) wear(appearance);
+  } else if (tab_ == Tab::teach) {
+    draw_teaching(player_, teaching_, refused_);
+  } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
+    scene_changed_ = true;
+  }
+  ImGui::EndChild();
+  ImGui::End();
+}
+
+void Viewer::draw_plots_strip() {
+  const PlotRequest request = draw_plots(player_, histories_, inspection_, plots_);
+  if (request != PlotRequest::none) write_plots(request);
+}
+
+void Viewer::write_plots(PlotRequest request) {
+  // Beside the recording; of what is not recorded, in the working folder.
+  const std::string& recording = player_.status().recording;
+  const std::filesystem::path folder = std::filesystem::path(recording).parent_path();
+  const std::string stem =
+      recording.empty() ? player_.scene().name : std::filesystem::path(recording).stem().string();
+  const char* const ending = request == PlotRequest::csv ? "csv" : "png";
+  std::filesystem::path path;
+  std::error_code ignored;
+  int number = 1;
+  do path = folder / fmt::format("{}-plots-{}.{}", stem, number++, ending);
+  while (std::filesystem::exists(path, ignored));
+  try {
+    if (request == PlotRequest::csv)
+      write_whole_file(path.string(), plots_csv(player_, histories_, inspection_));
+    else
+      render::write_png(path, picture_of_plots());
+    told_ = say(k_written, std::filesystem::absolute(path, ignored).string());
+  } catch (const std::runtime_error& error) {
+    told_ = say(k_not_written, error.what());
+  }
+}
+
+render::Image Viewer::picture_of_plots() {
+  constexpr float k_width = 1280;
+  const float line = fonts_.small->FontSize, height = std::ceil(line * (plots_height(inspection_) + 3.5f));
+  ImGuiContext* const window = ImGui::GetCurrentContext();
+  ImGuiContext* const sheet = ImGui::CreateContext(ImGui::GetIO().Fonts);
+  ImGui::SetCurrentContext(sheet);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = io.LogFilename = nullptr;
+  io.FontDefault = fonts_.small;
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+  io.DisplaySize = {std::ceil(k_width * scale_), height};
+  io.DeltaTime = 1.f / 60;
+  ImGui::NewFrame();
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const bool dark = std::exchange(window_is_dark(), false);  // it is written on white
+  list.AddText({10, std::round(0.5f * line)}, theme().text, player_.scene().title.c_str());
+  draw_plot_lanes(list, player_, histories_, inspection_, {0, 2 * line, io.DisplaySize.x, height});
+  window_is_dark() = dark;
+  ImGui::Render();
+  render::Image image =
+      stage_.sheet(static_cast<int>(io.DisplaySize.x), static_cast<int>(height), *ImGui::GetDrawData());
+  ImGui::DestroyContext(sheet);
+  ImGui::SetCurrentContext(window);
+  return image;
+}
+
+void Viewer::write_status() {
+  const LiveStatus& status = player_.status();
+  std::string words = status_in_words(player_);
+  if (!told_.empty()) words = told_;
+  if (!refused_.empty()) words = say(k_refused, refused_);
+  if (!status.record_failure.empty()) words += say(k_no_longer_recorded, status.record_failure);
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
+  float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
+  if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
+  status_lines_ = render::wrapped(*fonts_.small, words, room, k_most_status_lines);
+  if (status_lines_.empty()) status_lines_.emplace_back();
+}
+
+std::string Viewer::pace() const {
+  return (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
+}
+
+void Viewer::draw_status() {
+  begin_panel("status", status_);
+  if (player_.can_halve_step()) {
+    if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) player_.halve_step_and_retry();
+    ImGui::SameLine();
+  }
+  ImGui::BeginGroup();
+  for (const std::string& line : status_lines_) ImGui::TextUnformatted(line.c_str());
+  ImGui::EndGroup();
+  const std::string right = pace();
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
+  ImGui::TextDisabled("%s", right.c_str());
+  ImGui::End();
+}
+
+}  // namespace topple::app

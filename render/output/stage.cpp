@@ -1,0 +1,99 @@
+#include "render/output/stage.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace topple::render {
+namespace {
+
+constexpr int k_samples = 4;
+constexpr int k_greatest_side = 8192;
+
+bool draws_with_the_processor(const Gl& gl) {
+  const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
+  const std::string_view renderer = text == nullptr ? "" : text;
+  return std::ranges::any_of(std::array{"llvmpipe", "softpipe", "swrast", "Software Rasterizer"},
+                             [&](const char* name) { return renderer.find(name) != renderer.npos; });
+}
+
+/// The canvas with this size and number of samples.
+Canvas& fitting(std::optional<Canvas>& canvas, const Gl& gl, int width, int height, int samples) {
+  if (std::min(width, height) < 1 || std::max(width, height) > k_greatest_side) {
+    throw std::runtime_error("region of " + std::to_string(width) + " x " + std::to_string(height) +
+                             " px: sides must be 1 to " + std::to_string(k_greatest_side));
+  }
+  if (!canvas || canvas->target().width != width || canvas->target().height != height ||
+      canvas->samples() != samples) {
+    canvas.emplace(gl, width, height, samples);
+  }
+  return *canvas;
+}
+
+}  // namespace
+
+Stage::Stage(GetProc get_proc)
+    : gl_(load_gl(get_proc)), software_(draws_with_the_processor(gl_)), scene_(gl_), interface_(gl_) {
+  check_gl(gl_, "the set-up of a stage");
+}
+
+void Stage::draw_scene(const SceneFrame& frame, const Camera& camera, ColourMap map, int width, int height,
+                       Quality quality) {
+  if (!software_) quality = Quality::still;
+  left_out_ = {};
+  Canvas& canvas = fitting(canvas_, gl_, width, height, quality == Quality::still ? k_samples : 0);
+  canvas.draw(scene_, frame, camera, map, quality, left_out_);
+  check_gl(gl_, "drawing the scene");
+}
+
+void Stage::present(const Surface& surface, const ImDrawData& interface_lists) {
+  present(surface, interface_lists, 0);
+}
+
+Image Stage::shot(const Surface& surface, const ImDrawData& interface_lists) {
+  const Canvas& canvas = fitting(shot_, gl_, surface.width, surface.height, 0);
+  present(surface, interface_lists, canvas.target().framebuffer);
+  return canvas.read();
+}
+
+Image Stage::portrait(const SceneFrame& frame, const Camera& camera, ColourMap map, int width, int height) {
+  Canvas& canvas = fitting(shot_, gl_, width, height, k_samples);
+  LeftOut ignored;
+  canvas.draw(scene_, frame, camera, map, Quality::still, ignored);
+  check_gl(gl_, "drawing a portrait");
+  return canvas.read();
+}
+
+Image Stage::sheet(int width, int height, const ImDrawData& interface_lists) {
+  const Canvas& canvas = fitting(shot_, gl_, width, height, 0);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, canvas.target().framebuffer);
+  gl_.ClearColor(1, 1, 1, 1);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+  interface_.draw(interface_lists, canvas.target());
+  check_gl(gl_, "drawing a sheet");
+  return canvas.read();
+}
+
+void Stage::present(const Surface& surface, const ImDrawData& interface_lists, GLuint framebuffer) {
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  const auto [red, green, blue] = surface.background;
+  gl_.ClearColor(red, green, blue, 1);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+  if (canvas_) {
+    const auto [picture, width, height] = canvas_->target();
+    const int left = surface.scene_left;
+    const int top = surface.height - surface.scene_top;  // upwards, as OpenGL counts
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture);
+    gl_.BlitFramebuffer(0, 0, width, height, left, top - height, left + width, top, GL_COLOR_BUFFER_BIT,
+                        GL_NEAREST);
+  }
+  interface_.draw(interface_lists, {framebuffer, surface.width, surface.height});
+  check_gl(gl_, "presenting");
+}
+
+}  // namespace topple::render

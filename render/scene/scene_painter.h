@@ -1,0 +1,71 @@
+// Draws the bodies, floor, walls, panels and arrows of a SceneFrame into a framebuffer.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "render/gl/gl.h"
+#include "render/gl/gl_objects.h"
+#include "render/scene/camera.h"
+#include "render/scene/colour_map.h"
+#include "render/scene/mesh.h"
+#include "render/scene/scene_frame.h"
+#include "render/scene/shadows.h"
+
+namespace topple::render {
+
+/// What is drawn to.
+struct Target {
+  GLuint framebuffer = 0;  ///< with a depth buffer; 0 is a window's own
+  int width = 0;           ///< pixels
+  int height = 0;
+};
+
+/// interactive: shadows from fewer and coarser samples, for a software rasteriser that has to keep up
+/// with a person; still: as good as it gets.
+enum class Quality { interactive, still };
+
+/// Holds shaders, buffers and shadow maps for one context. Any call needs that context current.
+class ScenePainter {
+ public:
+  /// `gl` must outlive the painter. Throws std::runtime_error when the context cannot do it.
+  explicit ScenePainter(const Gl& gl);
+
+  /// Fills the whole target. Counts what cannot be drawn in `left_out`.
+  void draw(const SceneFrame& frame, const Camera& camera, ColourMap map, Quality quality,
+            const Target& target, LeftOut& left_out);
+
+ private:
+  /// Programs and shadow maps of one quality.
+  struct Look {
+    Look(const Gl& gl, std::string_view constants, const ShadowSize& size);
+    Program ground, solid;
+    Shadows shadows;
+  };
+
+  Look& look(Quality quality);
+  void upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
+  void draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
+                    LeftOut& left_out);
+  void draw(const IndexRange& part);
+  void draw_ghosts(const Camera& camera);
+  void draw_panels(const Camera& camera);
+  void draw_flat(const IndexRange& part);
+  void use_lit(const Program& program, const Look& look, const Camera& camera);
+  void bind(GLuint unit, const GlObject& texture);
+
+  const Gl& gl_;
+  Program backdrop_, panel_, ghost_, outline_;
+  std::array<std::unique_ptr<Look>, 2> looks_;  // made when first drawn with
+  GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
+  std::array<GlObject, 3> colour_maps_;
+  IndexRange solids_, ghosts_, shells_, trails_, bands_, arrows_;
+  GLsizei panel_vertex_count_ = 0;
+  Eigen::Vector3f low_, high_;  // box around bounds and everything solid
+  Eigen::Matrix4f view_projection_;
+};
+
+}  // namespace topple::render

@@ -1,0 +1,151 @@
+#include "render/scene/shadows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace topple::render {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Matrix4f;
+using Eigen::Vector3f;
+
+/// Margin of the contact map around the bodies, m: as far as their contact shade reaches.
+constexpr float k_contact_margin = 0.2f;
+
+// From the left of the named views and above, so that shadows fall away from the viewer.
+const Vector3f k_to_key = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
+
+constexpr GLuint k_key_unit = 1;
+constexpr GLuint k_contact_unit = 2;
+
+/// Orthographic matrix with the rows x, y, z as axes; the box low..high in these becomes -1..1.
+Matrix4f box_matrix(const Matrix3f& rows, const Vector3f& low, const Vector3f& high) {
+  Matrix4f m = Matrix4f::Identity();
+  for (int i = 0; i < 3; ++i) {
+    const float scale = 2 / (high[i] - low[i]);
+    m.block<1, 3>(i, 0) = scale * rows.row(i);
+    m(i, 3) = -scale * (high[i] + low[i]) / 2;
+  }
+  return m;
+}
+
+/// The box low..high seen along the axes of `rows`.
+std::pair<Vector3f, Vector3f> turned_box(const Matrix3f& rows, const Vector3f& low, const Vector3f& high) {
+  const Vector3f middle = rows * ((low + high) / 2);
+  const Vector3f half = rows.cwiseAbs() * ((high - low) / 2);
+  return {middle - half, middle + half};
+}
+
+void bind_to(const Gl& gl, GLuint unit, const GlObject& texture) {
+  gl.ActiveTexture(GL_TEXTURE0 + unit);
+  gl.BindTexture(GL_TEXTURE_2D, texture.id());
+}
+
+}  // namespace
+
+Shadows::Shadows(const Gl& gl, const ShadowSize& size)
+    : gl_(gl),
+      size_(size),
+      key_program_(gl, "shadow.vert", {"shadow.frag"}),
+      contact_program_(gl, "shadow.vert", {"contact.frag"}),
+      key_map_(make_texture(gl, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT}, size.key,
+                            size.key, nullptr)),
+      key_target_(make_framebuffer(gl)),
+      contact_target_(make_framebuffer(gl)) {
+  gl.BindTexture(GL_TEXTURE_2D, key_map_.id());
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const float lit[] = {1, 1, 1, 1};
+  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
+  contact_map_ =
+      make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, size.contact, size.contact, nullptr);
+
+  gl.BindFramebuffer(GL_FRAMEBUFFER, key_target_.id());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, key_map_.id(), 0);
+  const GLenum none = GL_NONE;
+  gl.DrawBuffers(1, &none);
+  check_framebuffer(gl, "shadow map");
+  gl.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, contact_map_.id(), 0);
+  check_framebuffer(gl, "contact map");
+}
+
+void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& floor,
+                   const std::function<void()>& draw_solids) {
+  set_up_key(low, high);
+  draw_solids();
+  set_up_contact(low, high, floor);
+  draw_solids();
+  gl_.BlendEquation(GL_FUNC_ADD);
+  gl_.Disable(GL_BLEND);
+  gl_.Disable(GL_DEPTH_CLAMP);
+  bind_to(gl_, k_contact_unit, contact_map_);
+  gl_.GenerateMipmap(GL_TEXTURE_2D);
+}
+
+void Shadows::set_up_key(const Vector3f& low, const Vector3f& high) {
+  Matrix3f rows;
+  rows.row(2) = -k_to_key;  // depth grows away from the light
+  rows.row(0) = Vector3f::UnitZ().cross(k_to_key).normalized();
+  rows.row(1) = Vector3f(rows.row(0)).cross(Vector3f(rows.row(2)));
+  const Vector3f margin = Vector3f::Constant(0.02f);
+  const auto [from, to] = turned_box(rows, low - margin, high + margin);
+  key_matrix_ = box_matrix(rows, from, to);
+
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, key_target_.id());
+  gl_.Viewport(0, 0, size_.key, size_.key);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthFunc(GL_LESS);
+  gl_.Enable(GL_POLYGON_OFFSET_FILL);
+  gl_.PolygonOffset(1.5f, 4.0f);
+  key_program_.use();
+  key_program_.set("u_view_projection", key_matrix_);
+}
+
+void Shadows::set_up_contact(const Vector3f& low, const Vector3f& high, const FloorPlane& floor) {
+  gl_.Disable(GL_POLYGON_OFFSET_FILL);
+  Matrix3f rows;
+  rows << floor.along.transpose(), floor.across.transpose(), floor.normal.transpose();
+  const auto [from, to] = turned_box(rows, low, high);
+  contact_width_ = std::max(to.x() - from.x(), to.y() - from.y()) + 2 * k_contact_margin;
+  const Vector3f middle = (from + to) / 2;
+  const Vector3f half = Vector3f::Constant(contact_width_ / 2);
+  contact_matrix_ = box_matrix(rows, middle - half, middle + half);
+
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
+  gl_.Viewport(0, 0, size_.contact, size_.contact);
+  gl_.ClearColor(0, 0, 0, 0);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.Disable(GL_CULL_FACE);  // the undersides, which nothing else shows, are the nearest
+  gl_.Enable(GL_DEPTH_CLAMP);
+  gl_.Enable(GL_BLEND);
+  gl_.BlendEquation(GL_MAX);  // the lowest point above each place counts
+  contact_program_.use();
+  contact_program_.set("u_view_projection", contact_matrix_);
+  contact_program_.set("u_up", floor.normal);
+  contact_program_.set("u_floor", floor.point);
+}
+
+void Shadows::bind() const {
+  bind_to(gl_, k_key_unit, key_map_);
+  bind_to(gl_, k_contact_unit, contact_map_);
+}
+
+void Shadows::set(const Program& program) const {
+  program.set("u_to_key", k_to_key);
+  program.set("u_shadow", static_cast<int>(k_key_unit));
+  program.set("u_shadow_matrix", key_matrix_);
+  program.set("u_contact", static_cast<int>(k_contact_unit));
+  program.set("u_contact_matrix", contact_matrix_);
+  program.set("u_contact_size", contact_width_);
+}
+
+}  // namespace topple::render

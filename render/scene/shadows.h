@@ -1,0 +1,54 @@
+// What the key light does not reach, and what stands near the floor, as maps for the shaders.
+#pragma once
+
+#include <functional>
+
+#include <Eigen/Core>
+
+#include "render/gl/gl.h"
+#include "render/gl/gl_objects.h"
+
+namespace topple::render {
+
+/// The floor on which bodies throw contact shadows.
+struct FloorPlane {
+  Eigen::Vector3f point{0, 0, 0};  ///< m
+  Eigen::Vector3f along{1, 0, 0};  ///< unit, with `across` and `normal` a right-handed frame
+  Eigen::Vector3f across{0, 1, 0};
+  Eigen::Vector3f normal{0, 0, 1};
+};
+
+/// Texels along the sides of the maps.
+struct ShadowSize {
+  int key;
+  int contact;
+};
+
+/// The maps and what shaders need to read them. `gl` must outlive them.
+class Shadows {
+ public:
+  Shadows(const Gl& gl, const ShadowSize& size);
+
+  /// Draws both maps of what `draw_solids` draws, which lies in the box low..high.
+  void draw(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor,
+            const std::function<void()>& draw_solids);
+
+  /// Binds the maps to their texture units.
+  void bind() const;
+  /// Sets the uniforms of light.glsl and ground.frag that concern the maps; the program is in use.
+  void set(const Program& program) const;
+
+ private:
+  void set_up_key(const Eigen::Vector3f& low, const Eigen::Vector3f& high);
+  void set_up_contact(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor);
+
+  const Gl& gl_;
+  ShadowSize size_;
+  Program key_program_, contact_program_;
+  GlObject key_map_, contact_map_, key_target_, contact_target_;
+  Eigen::Matrix4f key_matrix_ = Eigen::Matrix4f::Identity();
+  Eigen::Matrix4f contact_matrix_ = Eigen::Matrix4f::Identity();
+  float contact_width_ = 1;  // m, side of the square that is mapped
+};
+
+}  // namespace topple::render

@@ -1,0 +1,96 @@
+#include "render/scene/text_layout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace topple::render {
+namespace {
+
+constexpr const char* k_ellipsis = "\xe2\x80\xa6";
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return line;
+}
+
+void drop_last_letter(std::string& text) {
+  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
+  if (!text.empty()) text.pop_back();
+}
+
+/// Whether the letter there is one of Chinese or Japanese, which are written without spaces: three bytes from
+/// U+3000 on.
+bool is_ideographic(std::string_view text, std::size_t at) {
+  return static_cast<unsigned char>(text[at]) >= 0xe3 && static_cast<unsigned char>(text[at]) < 0xf0;
+}
+
+/// No line begins with these.
+bool ends_a_phrase(std::string_view text, std::size_t at) {
+  static constexpr std::string_view k_ends[] = {"、", "。", "）", "」", "：", "ー",
+                                                "ッ", "ャ", "ュ", "ョ", "ィ"};
+  return std::ranges::any_of(k_ends, [&](std::string_view end) { return text.substr(at).starts_with(end); });
+}
+
+/// Where a line may end next after `at`: at a space, or beside a letter that needs none.
+std::size_t next_break(std::string_view text, std::size_t at) {
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    if (text[i] == ' ') return i;
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) == 0x80) continue;
+    std::size_t before = i - 1;
+    while (before > 0 && (static_cast<unsigned char>(text[before]) & 0xc0) == 0x80) --before;
+    if ((is_ideographic(text, i) || is_ideographic(text, before)) && !ends_a_phrase(text, i)) return i;
+  }
+  return std::string_view::npos;
+}
+
+}  // namespace
+
+float text_width(const ImFont& font, std::string_view text) {
+  return font
+      .CalcTextSizeA(font.FontSize, std::numeric_limits<float>::max(), 0, text.data(),
+                     text.data() + text.size())
+      .x;
+}
+
+std::string shortened(const ImFont& font, std::string_view text, float width) {
+  std::string line = one_line(text);
+  if (text_width(font, line) <= width) return line;
+  const float room = width - text_width(font, k_ellipsis);
+  while (!line.empty() && text_width(font, line) > room) drop_last_letter(line);
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return room > 0 ? line + k_ellipsis : std::string();
+}
+
+std::vector<std::string> wrapped(const ImFont& font, std::string_view text, float width, int most) {
+  std::vector<std::string> lines;
+  const std::string all = one_line(text);
+  std::size_t start = 0;
+  while (start < all.size() && static_cast<int>(lines.size()) < most) {
+    const std::string_view rest = std::string_view(all).substr(start);
+    if (static_cast<int>(lines.size()) + 1 == most || text_width(font, rest) <= width) {
+      lines.push_back(shortened(font, rest, width));
+      break;
+    }
+    std::size_t fits = 0;  // length of the longest beginning that ends where a line may and fits
+    for (std::size_t end = next_break(rest, 0); end != std::string_view::npos; end = next_break(rest, end)) {
+      if (text_width(font, rest.substr(0, end)) > width) break;
+      fits = end;
+    }
+    if (fits == 0) {  // one word is wider than the line
+      const std::size_t space = rest.find(' ');
+      fits = std::min(space, rest.size());
+      lines.push_back(shortened(font, rest.substr(0, fits), width));
+    } else {
+      lines.emplace_back(rest.substr(0, fits));
+    }
+    start += fits;
+    while (start < all.size() && all[start] == ' ') ++start;
+  }
+  return lines;
+}
+
+}  // namespace topple::render

@@ -1,0 +1,94 @@
+// What readers of accelerograms share: lines with numbers, how texts and numbers are read and judged.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "solver/io/accelerogram/accelerogram_content.h"
+#include "solver/io/common/errors.h"
+
+namespace topple::io::accelerogram {
+
+/// The text from line to line.
+class Lines {
+ public:
+  Lines(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  bool next() {
+    if (begin_ >= text_.size()) return false;
+    const auto end = std::min(text_.find('\n', begin_), text_.size());
+    line_ = text_.substr(begin_, end - begin_);
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    begin_ = end + 1;
+    ++number_;
+    return true;
+  }
+  std::string_view line() const { return line_; }
+  int number() const { return number_; }
+  std::size_t bytes_left() const { return text_.size() - std::min(begin_, text_.size()); }
+
+  /// Throws InputError "NAME:LINE: MESSAGE".
+  [[noreturn]] void fail(const std::string& message) const { fail_at(number_, message); }
+  [[noreturn]] void fail_at(int number, const std::string& message) const {
+    throw InputError(name_ + ":" + std::to_string(number) + ": " + message);
+  }
+
+ private:
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t begin_ = 0;
+  std::string_view line_;
+  int number_ = 0;
+};
+
+/// Without blanks at both ends.
+std::string_view trimmed(std::string_view text);
+std::string upper(std::string_view text);
+/// In quotes, no longer than a message bears.
+std::string shown(std::string_view text);
+/// A whole number, of more than 15 digits as a power of ten.
+std::string count_text(double count);
+
+/// Nothing when it is no number.
+std::optional<double> number_in(std::string_view text);
+/// The number at the begin of `text`, taken off it.
+std::optional<double> take_number(std::string_view& text);
+/// Fails, with `what` before what was found.
+double finite_number(std::string_view text, const Lines& lines, const std::string& what);
+
+// They fail, with `key` before what was found.
+void check_count(const Lines& lines, const std::string& key, double count);
+void check_interval(const Lines& lines, int line, const std::string& key, double interval);
+/// Above k_highest_peak the unit is taken to be wrong.
+void check_peak(const Lines& lines, int line, double size, std::string_view unit);
+
+inline constexpr const char* k_known_units = "known: g, gal, m/s^2, cm/s^2";
+
+/// The symbol of a unit as files spell it; empty when it is none that is known.
+std::string_view acceleration_unit(std::string_view text);
+/// The symbol that counts of what the file states (empty: nothing) and the scene says.
+std::string_view chosen_unit(const Lines& lines, std::string_view stated, const AccelerogramNotes& notes);
+
+/// The largest of numbers as they stand in the file.
+struct Largest {
+  double size = 0;
+  int line = 0;
+  void meet(double value, int number) {
+    if (std::abs(value) > size) {
+      size = std::abs(value);
+      line = number;
+    }
+  }
+};
+
+void to_si(std::vector<double>& values, double factor);
+
+/// Whether the text is CSV.
+bool is_csv(std::string_view text, const std::string& name, const AccelerogramNotes& notes);
+AccelerogramFile read_csv(std::string_view text, const std::string& name, const AccelerogramNotes& notes);
+
+}  // namespace topple::io::accelerogram

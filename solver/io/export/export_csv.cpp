@@ -1,0 +1,174 @@
+#include "solver/io/export/export_csv.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "solver/io/common/staged_file.h"
+#include "solver/io/export/exported_values.h"
+#include "solver/io/recording/recording_format.h"
+#include "solver/io/scene/scene.h"
+
+namespace topple::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A table that appears under its name when it is complete.
+class CsvFile {
+ public:
+  CsvFile(const fs::path& path, const char* header) : staged_(path) {
+    file_.reset(std::fopen(staged_.part().c_str(), "wb"));
+    if (!file_) fail();
+    buffer_ = header;
+    buffer_ += '\n';
+  }
+
+  template <typename Number>
+  CsvFile& number(Number value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    return field({digits, static_cast<std::size_t>(end - digits)});
+  }
+  template <typename Number>
+  CsvFile& numbers(const Number* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) number(values[i]);
+    return *this;
+  }
+  /// A name; in quotes where RFC 4180 asks for them.
+  CsvFile& text(const std::string& value) {
+    if (value.find_first_of(",\"\r\n") == std::string::npos) return field(value);
+    std::string quoted = "\"";
+    for (const char c : value) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field(quoted + '"');
+  }
+  CsvFile& none() { return field({}); }
+  void end_row() {
+    buffer_ += '\n';
+    at_row_start_ = true;
+    constexpr std::size_t enough = 1 << 16;
+    if (buffer_.size() >= enough) write();
+  }
+  /// Puts everything on disk, under the temporary name still.
+  void close() {
+    write();
+    if (std::fclose(file_.release()) != 0) fail();
+  }
+  void publish() { staged_.publish(); }
+
+ private:
+  CsvFile& field(std::string_view value) {
+    if (!at_row_start_) buffer_ += ',';
+    at_row_start_ = false;
+    buffer_ += value;
+    return *this;
+  }
+  void write() {
+    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) != buffer_.size()) fail();
+    buffer_.clear();
+  }
+  [[noreturn]] void fail() const {
+    throw WriteError(staged_.path().string() + ": " + std::generic_category().message(errno));
+  }
+
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  StagedFile staged_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string buffer_;
+  bool at_row_start_ = true;
+};
+
+void bodies_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b) {
+    const double* values = row.body.data() + 11 * b;
+    csv.number(row.time).text(model.bodies[b].name).numbers(values, 7);
+    csv.number(values[7] * 180 / k_pi).numbers(values + 8, 2).end_row();
+  }
+}
+
+void nodes_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (const Body& body : model.bodies) {
+    for (int k = 0; k < body.node_count; ++k) {
+      const auto n = static_cast<std::size_t>(body.first_node + k);
+      csv.number(row.time).text(body.name).number(k);
+      csv.numbers(row.position.data() + 3 * n, 3).numbers(row.rotation.data() + 4 * n, 4).end_row();
+    }
+  }
+}
+
+void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Member& member = model.members[static_cast<std::size_t>(model.elements[e].member)];
+    const float* f = row.section_force.data() + 6 * e;
+    const ElementLoading loading = element_loading(model, row, e);
+    csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
+    csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(loading.stress);
+    std::isfinite(model.elements[e].capacity[0]) ? csv.number(loading.yield_ratio) : csv.none();
+    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
+  }
+}
+
+void energy_row(CsvFile& csv, const FrameRow& row) {
+  csv.number(row.time).numbers(row.energy.data(), row.energy.size()).end_row();
+}
+
+void anchors_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (std::size_t k = 0; k < model.anchors.size(); ++k) {
+    const float* values = row.anchor.data() + 4 * k;
+    csv.number(row.time).text(model.anchors[k].name).numbers(values, 3);
+    csv.text(anchor_word(values[3])).end_row();
+  }
+}
+
+void floor_row(CsvFile& csv, const FrameRow& row) {
+  csv.number(row.time).numbers(row.floor_acceleration, 3).numbers(row.floor_displacement, 3).end_row();
+}
+
+}  // namespace
+
+void write_csv(const Recording& recording, const Model& model, const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw WriteError(folder + ": " + error.message());
+  const fs::path base(folder);
+  CsvFile bodies(base / "bodies.csv", "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J");
+  CsvFile nodes(base / "nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
+  CsvFile elements(base / "elements.csv",
+                   "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
+  CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
+  const std::string energies =
+      "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
+      "plastic_J,damping_J,model_switch_J,balance_error";
+  CsvFile energy(base / "energy.csv",
+                 (model.anchors.empty() ? energies : energies + ",anchor_J,released_J").c_str());
+  std::optional<CsvFile> anchors;
+  if (!model.anchors.empty())
+    anchors.emplace(base / "anchors.csv", "time_s,anchor,tension_N,energy_J,natural_length_m,state");
+  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
+    const FrameRow row = recording.frame(i);
+    expect_same_model(model, row);
+    bodies_rows(bodies, model, row);
+    nodes_rows(nodes, model, row);
+    elements_rows(elements, model, row);
+    floor_row(floor, row);
+    energy_row(energy, row);
+    if (anchors) anchors_rows(*anchors, model, row);
+  }
+  std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &floor, &energy};
+  if (anchors) files.push_back(&*anchors);
+  for (CsvFile* file : files) file->close();
+  for (CsvFile* file : files) file->publish();
+}
+
+void export_csv(const Recording& recording, const std::string& folder) {
+  const Scene scene = recorded_scene(recording);
+  write_csv(recording, scene.setup.model, folder);
+}
+
+}  // namespace topple::io

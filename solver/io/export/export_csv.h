@@ -1,0 +1,20 @@
+// The tables of interface 4 from a recording and the model it was made with.
+#pragma once
+
+#include <string>
+
+#include "solver/io/recording/recording.h"
+
+namespace topple::io {
+
+/// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
+/// run), and anchors.csv where there are any, into `folder` (created when missing), of the way to the newest
+/// branch. Each file appears whole or not at all. Throws WriteError, InputError.
+void export_csv(const Recording& recording, const std::string& folder);
+
+/// export_csv with the model given. `node` and `element` count from 0 within the body and within the member;
+/// numbers are the shortest that read back the same. Throws WriteError, InputError when the model is not that
+/// of the rows.
+void write_csv(const Recording& recording, const Model& model, const std::string& folder);
+
+}  // namespace topple::io

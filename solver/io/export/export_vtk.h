@@ -1,0 +1,16 @@
+// A recording for ParaView and whatever else reads VTK: a file a frame.
+#pragma once
+
+#include <string>
+
+#include "solver/io/recording/recording.h"
+
+namespace topple::io {
+
+/// Writes the way to the newest branch into an existing folder: frame-000000.vtp and so on (VTK's XML with
+/// raw binary data), and frames.pvd, which gives each its time. Lines are the elements between nodes, where
+/// the nodes are; fields are those of each_field() (exported_values.h), and on elements the numbers of body
+/// and member. They all appear whole or not at all. Throws WriteError, InputError.
+void export_vtk(const Recording& recording, const std::string& folder);
+
+}  // namespace topple::io

@@ -1,0 +1,49 @@
+#include "solver/io/export/exported_values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "solver/plasticity.h"
+#include "solver/rotation.h"
+#include "solver/section_forces.h"
+
+namespace topple::io {
+
+ElementLoading element_loading(const Model& model, const FrameRow& row, std::size_t e) {
+  const Element& element = model.elements[e];
+  const Member& member = model.members[static_cast<std::size_t>(element.member)];
+  const float* f = row.section_force.data() + 6 * e;
+  const SectionForces forces{.normal = {f[0], f[1], f[2]}, .moment = {f[3], f[4], f[5]}};
+  double greatest = -1;
+  for (const double end : {-1., 1.})
+    greatest =
+        std::max(greatest, yield_function(element, forces_along(forces, element.length, row.s[e], end)));
+  return {.stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces),
+          .yield_ratio = static_cast<float>(std::sqrt(greatest + 1))};
+}
+
+NodeMotion::NodeMotion(const Model& model, const FrameRow& row) {
+  for (std::size_t n = 0; n < model.node_position.size(); ++n) {
+    const float *x = row.position.data() + 3 * n, *q = row.rotation.data() + 4 * n;
+    const Vec3 moved = Vec3(x[0], x[1], x[2]) - model.node_position[n];
+    const Vec3 turned = log_quaternion(Quat(q[0], q[1], q[2], q[3]).normalized());
+    displacement.insert(displacement.end(), {moved.x(), moved.y(), moved.z()});
+    rotation.insert(rotation.end(), {turned.x(), turned.y(), turned.z()});
+  }
+}
+
+ElementPlaces::ElementPlaces(const Model& model) {
+  for (const Element& element : model.elements) {
+    nodes.insert(nodes.end(), {element.node[0], element.node[1]});
+    member.push_back(element.member);
+    body.push_back(model.members[static_cast<std::size_t>(element.member)].body);
+  }
+}
+
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+}  // namespace topple::io

@@ -1,0 +1,66 @@
+// What exports compute from the rows of a recording.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "solver/io/recording/frame_row.h"
+#include "solver/model.h"
+
+namespace topple::io {
+
+struct ElementLoading {
+  double stress;      ///< Pa, equivalent_stress() at the stress point
+  float yield_ratio;  ///< sqrt(f + 1) (plasticity.h), greatest of the element's ends; 0 where it cannot yield
+};
+ElementLoading element_loading(const Model& model, const FrameRow& row, std::size_t element);
+
+/// Of every node, three numbers each: what it moved, m, and its rotation vector, rad.
+struct NodeMotion {
+  std::vector<double> displacement, rotation;
+  NodeMotion(const Model& model, const FrameRow& row);
+};
+
+/// By element: the two nodes of each, its member and its body.
+struct ElementPlaces {
+  std::vector<std::int32_t> nodes, member, body;
+  explicit ElementPlaces(const Model& model);
+};
+
+enum class FieldPlace { nodes, elements };
+
+/// Calls field(name, place, values, columns) for each field of a frame as ParaView gets it; `columns` numbers
+/// belong to each node or element. On nodes, from the reference pose: displacement_m, rotation_rad (rotation
+/// vector). On elements: N_N, Vy_N, Vz_N, T_Nm, My_Nm, Mz_Nm and stress_Pa at the stress point, yield_ratio,
+/// s, hinge (FrameRow::hinge).
+template <class Field>
+void each_field(const Model& model, const FrameRow& row, Field field) {
+  const NodeMotion motion(model, row);
+  field("displacement_m", FieldPlace::nodes, motion.displacement, 3);
+  field("rotation_rad", FieldPlace::nodes, motion.rotation, 3);
+  constexpr std::array k_forces = {"N_N", "Vy_N", "Vz_N", "T_Nm", "My_Nm", "Mz_Nm"};
+  const std::size_t elements = model.elements.size();
+  for (std::size_t k = 0; k < k_forces.size(); ++k) {
+    std::vector<float> values(elements);
+    for (std::size_t e = 0; e < elements; ++e) values[e] = row.section_force[6 * e + k];
+    field(k_forces[k], FieldPlace::elements, values, 1);
+  }
+  std::vector<double> stress;
+  std::vector<float> yield_ratio;
+  for (std::size_t e = 0; e < elements; ++e) {
+    const ElementLoading loading = element_loading(model, row, e);
+    stress.push_back(loading.stress);
+    yield_ratio.push_back(loading.yield_ratio);
+  }
+  field("stress_Pa", FieldPlace::elements, stress, 1);
+  field("yield_ratio", FieldPlace::elements, yield_ratio, 1);
+  field("s", FieldPlace::elements, row.s, 1);
+  field("hinge", FieldPlace::elements, row.hinge, 1);
+}
+
+/// The shortest text that reads back as the same number.
+std::string shortest(double value);
+
+}  // namespace topple::io

@@ -1,0 +1,61 @@
+// One recorded instant.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "solver/model.h"
+
+namespace topple::io {
+
+inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
+
+/// Of FrameRow::anchor. slack: in place, without force.
+inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
+/// "away", "slack", "holds", "broken".
+const char* anchor_word(float state);
+
+/// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies, a anchors,
+/// t elements that other bodies' members can touch: e, or 0 of a single body.
+struct FrameRow {
+  std::int32_t branch = 0;
+  std::int64_t step = 0;
+  double time = 0;                    ///< s
+  std::vector<float> position;        ///< n x 3, m, floor's frame
+  std::vector<float> rotation;        ///< n x 4, w x y z
+  std::vector<float> section_force;   ///< e x 6: N, Vy, Vz, T, My, Mz at the stress point, N and N m
+  std::vector<float> s;               ///< e, integration point
+  std::vector<std::uint8_t> hinge;    ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken,
+                                      ///< 4 in the middle; 5, 6: none now, flowed at the first, second end
+  std::vector<float> contact_depth;   ///< c, 1 - l/L; 0: open
+  std::vector<float> contact_force;   ///< c x 3, N
+  std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,
+                                      ///< N, and where it acts, 0..1 from the first node to the second
+  std::vector<double> energy;         ///< input, kinetic, strain, gravity, contact, friction, normal damping,
+                                      ///< numerical, plastic, damping, model switch, balance error; with
+                                      ///< anchors also anchor, released; J, balance error -
+  std::vector<double> body;        ///< b x 11: centre x y z (m), quaternion w x y z, tilt (rad), slide (m),
+                                   ///< energy (J), critical angle (rad, 0: none)
+  std::vector<std::uint8_t> rung;  ///< b: 0 rigid, 1 elastic, 2 frame
+  double floor_acceleration[3] = {};  ///< m/s^2
+  double floor_displacement[3] = {};  ///< m, high-passed
+  double load_factor = 0;             ///< of static runs
+  std::vector<float> anchor;  ///< a x 4: tension (N, negative: pushes), energy (J), natural length (m),
+                              ///< state (k_anchor_away, ...)
+};
+
+/// No NaN, no infinity in it.
+bool is_finite(const FrameRow& row);
+
+/// Sizes that all rows of one recording share.
+struct RowShape {
+  std::size_t nodes = 0, elements = 0, contacts = 0, touched = 0, bodies = 0, anchors = 0;
+};
+/// Of a model's rows.
+RowShape row_shape(const Model& model);
+
+/// A row of zeros with arrays of the right sizes.
+FrameRow blank_row(const RowShape& shape);
+
+}  // namespace topple::io

@@ -1,0 +1,245 @@
+#include "solver/io/recording/observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/excitation.h"
+#include "solver/plasticity.h"
+
+namespace topple::io {
+namespace {
+
+constexpr double k_checkpoint_rate = 1;  // Hz, of simulated time
+
+/// Whether k / rate has been reached for the next k. Steps that do not divide 1 / rate do not drift.
+bool due(double& next, double time, double rate) {
+  constexpr double slack = 1e-6;  // of an interval: time is a sum of rounded steps
+  const double passed = std::floor(time * rate + slack);
+  if (passed < next) return false;
+  next = passed + 1;
+  return true;
+}
+
+/// Kinetic, strain and gravity energy of a body, the last relative to the reference pose, J.
+double body_energy(const Run& run, const Body& body) {
+  const Model& model = run.setup().model;
+  const State& state = run.state();
+  double energy = 0;
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    // Angular velocity is in material axes, which are the world axes of the reference pose: so is the
+    // inertia.
+    const Vec3& w = state.angular_velocity[k];
+    energy += 0.5 * model.node_mass[k] * state.velocity[k].squaredNorm() +
+              0.5 * w.dot(model.node_inertia[k] * w) -
+              model.node_mass[k] * run.parameters().gravity.dot(state.position[k] - model.node_position[k]);
+  }
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const Element& element = model.elements[static_cast<std::size_t>(e)];
+    const SectionForces& f = run.sections()[static_cast<std::size_t>(e)];
+    energy += element.length / 2 *
+              (f.normal.dot(f.normal.cwiseQuotient(element.normal_stiffness)) +
+               f.moment.dot(f.moment.cwiseQuotient(element.bending_stiffness)));
+  }
+  return energy;
+}
+
+void fill_nodes(const State& state, FrameRow& row) {
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const Vec3& x = state.position[i];
+    const Quat& q = state.rotation[i];
+    const double rotation[4] = {q.w(), q.x(), q.y(), q.z()};
+    for (int k = 0; k < 3; ++k) row.position[3 * i + k] = static_cast<float>(x[k]);
+    for (int k = 0; k < 4; ++k) row.rotation[4 * i + k] = static_cast<float>(rotation[k]);
+  }
+}
+
+// The offset that a hinge left tells at which end: gamma = a kappa (plasticity.h), a > 0 at the second.
+std::uint8_t hinge_code(const ElementState& state) {
+  const Vec3 &gamma = state.offset.gamma, &kappa = state.offset.kappa;
+  if (state.hinge != Hinge::none) return static_cast<std::uint8_t>(state.hinge);
+  if (gamma.isZero(0) && kappa.isZero(0)) return 0;
+  return gamma.z() * kappa.y() - gamma.y() * kappa.z() > 0 ? k_flowed_second : k_flowed_first;
+}
+
+void fill_elements(const Run& run, FrameRow& row) {
+  const Model& model = run.setup().model;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    const Hinge hinge = run.state().elements[e].hinge;
+    const double place = hinge_place(element, hinge);
+    row.s[e] = static_cast<float>(-place);
+    row.hinge[e] = hinge_code(run.state().elements[e]);
+    const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, place);
+    const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
+                              forces.moment[0], forces.moment[1], forces.moment[2]};
+    for (int k = 0; k < 6; ++k) row.section_force[6 * e + k] = static_cast<float>(values[k]);
+  }
+}
+
+void fill_contacts(const Run& run, FrameRow& row) {
+  const std::size_t planes = run.setup().model.planes.size();
+  for (const ContactForce& contact : run.contacts()) {
+    const std::size_t c =
+        static_cast<std::size_t>(contact.point) * planes + static_cast<std::size_t>(contact.plane);
+    row.contact_depth[c] = static_cast<float>(contact.depth);
+    for (int k = 0; k < 3; ++k) row.contact_force[3 * c + k] = static_cast<float>(contact.force[k]);
+  }
+}
+
+void fill_member_contacts(const Run& run, FrameRow& row) {
+  struct Resultant {
+    Vec3 force = Vec3::Zero();
+    double size = 0, moment = 0;  // sums of |force| and of |force| times place
+  };
+  std::vector<Resultant> all(row.member_contact.size() / 4);
+  const auto add = [&](int element, const Vec3& force, double place) {
+    Resultant& on = all[static_cast<std::size_t>(element)];
+    on.force += force;
+    on.size += force.norm();
+    on.moment += force.norm() * place;
+  };
+  for (const MemberForce& contact : run.member_contacts()) {
+    add(contact.elements.a, contact.force, contact.s);
+    add(contact.elements.b, -contact.force, contact.t);
+  }
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    if (!(all[e].size > 0)) continue;
+    for (int k = 0; k < 3; ++k) row.member_contact[4 * e + k] = static_cast<float>(all[e].force[k]);
+    row.member_contact[4 * e + 3] = static_cast<float>(all[e].moment / all[e].size);
+  }
+}
+
+void fill_bodies(const Run& run, FrameRow& row) {
+  const Model& model = run.setup().model;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const int index = static_cast<int>(b);
+    const BodyPose pose = body_pose(model, run.state(), index);
+    const double critical = critical_angle(model, index, pose);
+    const double values[11] = {pose.centre.x(),
+                               pose.centre.y(),
+                               pose.centre.z(),
+                               pose.rotation.w(),
+                               pose.rotation.x(),
+                               pose.rotation.y(),
+                               pose.rotation.z(),
+                               tilt(pose),
+                               slide(model, index, pose),
+                               body_energy(run, model.bodies[b]),
+                               std::isfinite(critical) ? critical : 0};
+    std::copy_n(values, 11, row.body.data() + 11 * b);
+    row.rung[b] = static_cast<std::uint8_t>(run.state().bodies[b].rung);
+  }
+}
+
+void fill_anchors(const Run& run, FrameRow& row) {
+  const State& state = run.state();
+  const std::vector<AnchorForce> forces = anchor_forces(run.setup().model, state);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const AnchorState& anchor = state.anchors[k];
+    const float look = anchor.hold == AnchorHold::away     ? k_anchor_away
+                       : anchor.hold == AnchorHold::broken ? k_anchor_broken
+                       : forces[k].tension == 0            ? k_anchor_slack
+                                                           : k_anchor_holds;
+    const double values[3] = {forces[k].tension, forces[k].energy, anchor.length};
+    for (int i = 0; i < 3; ++i) row.anchor[4 * k + i] = static_cast<float>(values[i]);
+    row.anchor[4 * k + 3] = look;
+  }
+  if (forces.empty()) return;
+  row.energy[12] = state.energy.anchor;
+  row.energy[13] = state.energy.released;
+}
+
+}  // namespace
+
+bool is_finite(const Checkpoint& checkpoint) {
+  return std::isfinite(checkpoint.time) &&
+         std::ranges::all_of(checkpoint.state, [](double x) { return std::isfinite(x); });
+}
+
+double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {
+  const Body& body = model.bodies[static_cast<std::size_t>(index)];
+  double energy = row.body[11 * static_cast<std::size_t>(index) + 9];
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vec3 x(row.position[3 * k], row.position[3 * k + 1], row.position[3 * k + 2]);
+    energy += model.node_mass[k] * gravity.dot(x - model.node_position[k]);
+  }
+  for (int i = body.first_element; i < body.first_element + body.element_count; ++i) {
+    const auto e = static_cast<std::size_t>(i);
+    const Element& element = model.elements[e];
+    const float* f = &row.section_force[6 * e];
+    energy -= section_energy(element, forces_along({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}}, element.length,
+                                                   row.s[e], -element.s));
+  }
+  return std::max(energy, 0.);
+}
+
+FrameRow frame_row(const Run& run) {
+  const State& state = run.state();
+  FrameRow row = blank_row(row_shape(run.setup().model));
+  row.step = state.step;
+  row.time = state.time;
+  fill_nodes(state, row);
+  fill_elements(run, row);
+  fill_contacts(run, row);
+  fill_member_contacts(run, row);
+  fill_bodies(run, row);
+  const EnergyLedger& e = state.energy;
+  const double energies[] = {e.input,   e.kinetic,  e.strain,         e.gravity,
+                             e.contact, e.friction, e.normal_damping, e.numerical,
+                             e.plastic, e.damping,  e.model_switch,   e.balance_error()};
+  std::copy(std::begin(energies), std::end(energies), row.energy.begin());
+  fill_anchors(run, row);
+  row.load_factor = state.load_factor;
+  const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
+  for (int k = 0; k < 3; ++k) {
+    row.floor_acceleration[k] = acceleration[k];
+    row.floor_displacement[k] = state.floor_displacement[k];
+  }
+  return row;
+}
+
+void Observer::add_frame(const Run& run, Observation& out) {
+  out.frame = frame_row(run);
+  out.frame->branch = branch_;
+  last_frame_ = run.step();
+}
+
+void Observer::add_checkpoint(const Run& run, Observation& out) {
+  const State& state = run.state();
+  out.checkpoint = {
+      .branch = branch_, .step = state.step, .time = state.time, .hash = hash(state), .state = pack(state)};
+  last_checkpoint_ = state.step;
+}
+
+void Observer::add_events(const Run& run, Observation& out) {
+  const std::vector<Event>& events = run.events();
+  if (!begun_ && branch_ != 0) events_seen_ = events.size();
+  begun_ = true;
+  for (; events_seen_ < events.size(); ++events_seen_) {
+    const Event& event = events[events_seen_];
+    out.events.push_back({.branch = branch_, .step = event.step, .time = event.time, .event = event});
+  }
+}
+
+Observation Observer::observe(const Run& run) {
+  const double time = run.time();
+  Observation out;
+  add_events(run, out);
+  if (due(next_checkpoint_, time, k_checkpoint_rate)) add_checkpoint(run, out);
+  const bool load_step = run.setup().run.analysis == Analysis::statics;
+  if (due(next_frame_, time, run.setup().run.output_rate) || load_step) add_frame(run, out);
+  return out;
+}
+
+Observation Observer::last(const Run& run) {
+  const std::int64_t step = run.step();
+  Observation out;
+  add_events(run, out);
+  if (last_checkpoint_ != step) add_checkpoint(run, out);
+  if (last_frame_ != step) add_frame(run, out);
+  return out;
+}
+
+}  // namespace topple::io

@@ -1,0 +1,202 @@
+#include "solver/io/recording/rerun.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "solver/io/recording/recording_format.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene.h"
+
+namespace topple::io {
+namespace {
+
+State state_of(const Model& model, const Checkpoint& checkpoint) {
+  try {
+    return unpack(model, checkpoint.state);
+  } catch (const std::invalid_argument&) {
+    throw InputError(k_another_model);
+  }
+}
+
+/// The newest checkpoint that led to the fork of `branch`, or that of its parent at the fork itself.
+std::optional<Checkpoint> checkpoint_before(const Recording& recording, const Branch& branch) {
+  std::optional<Checkpoint> newest;
+  const std::vector<Instant>& all = recording.checkpoint_index();
+  for (const Stretch& stretch : recording.history().way_to(branch.parent))
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (all[i].branch == stretch.branch && all[i].step <= std::min(stretch.last_step, branch.fork_step))
+        newest = recording.checkpoint(static_cast<std::int64_t>(i));
+  return newest;
+}
+
+/// The branch where it begins. Nothing when that cannot be reached.
+std::optional<topple::Run> start(const Recording& recording, const Setup& setup, const Branch& branch) {
+  const History& history = recording.history();
+  if (branch.parent < 0) {
+    topple::Run run(setup);
+    if (!run.status().ok()) return std::nullopt;
+    for (const LoggedEdit& logged : history.edits_on_way_to(branch.id))
+      if (logged.step <= run.step()) run.edit(logged.edit);
+    return run;
+  }
+  const std::optional<Checkpoint> checkpoint = checkpoint_before(recording, branch);
+  if (!checkpoint) return std::nullopt;
+  State state = state_of(setup.model, *checkpoint);
+  Parameters parameters = parameters_at(setup, history, branch.id, state.step);
+  topple::Run run(setup, std::move(state), std::move(parameters));
+  if (!repeat(run, history, branch.id, branch.fork_step)) return std::nullopt;
+  return run;
+}
+
+}  // namespace
+
+void check_edits(const History& history, const Setup& setup) {
+  for (const Branch& branch : history.branches) {
+    Parameters parameters =
+        branch.parent < 0 ? setup.parameters : parameters_at(setup, history, branch.parent, branch.fork_step);
+    for (const LoggedEdit& logged : history.edits) {
+      if (logged.branch != branch.id) continue;
+      try {
+        check_edit(logged.edit, parameters, setup.model);
+      } catch (const InputError& error) {
+        throw InputError(std::string("the recording has an edit that its scene has no place for: ") +
+                         error.what());
+      }
+      apply(logged.edit, setup.model, logged.time, parameters);
+    }
+  }
+}
+
+namespace {
+
+int element_at(const Model& model, int node) {
+  for (std::size_t e = 0; e < model.elements.size(); ++e)
+    if (model.elements[e].node[0] == node || model.elements[e].node[1] == node) return static_cast<int>(e);
+  return -1;
+}
+
+/// The element that item `item` of a field of a row is about, -1: none.
+int element_of(const Model& model, std::string_view field, std::size_t item) {
+  if (field == "position" || field == "rotation") return element_at(model, static_cast<int>(item));
+  if (field == "section_force" || field == "s" || field == "hinge" || field == "member_contact")
+    return static_cast<int>(item);
+  if (field == "contact_depth" || field == "contact_force")
+    return element_at(model, model.contact_points[item / model.planes.size()].node);
+  if (field == "body" || field == "rung") return model.bodies[item].first_element;
+  if (field == "anchor") return element_at(model, model.anchors[item].node);
+  return -1;
+}
+
+/// `edited`: at this step, after the row was taken.
+std::optional<Difference> difference(const Model& model, const FrameRow& recorded, const FrameRow& again,
+                                     bool edited) {
+  const auto fields = frame_fields(row_shape(model));
+  const auto left = field_bytes(recorded), right = field_bytes(again);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string_view field = fields[i].name;
+    if (edited && field == "floor_acceleration") continue;
+    const auto byte = std::mismatch(left[i].begin(), left[i].end(), right[i].begin()).first;
+    if (byte == left[i].end()) continue;
+    const std::size_t items = fields[i].dims.empty() ? 1 : fields[i].dims[0];
+    const std::size_t item = static_cast<std::size_t>(byte - left[i].begin()) / (left[i].size() / items);
+    return Difference{
+        {recorded.branch, recorded.step, recorded.time}, std::string(field), element_of(model, field, item)};
+  }
+  return std::nullopt;
+}
+
+Difference difference(const Model& model, const Instant& at, const State& recorded, const State& again) {
+  Difference out{at, "state"};
+  const auto same = [](const auto& a, const auto& b) { return a == b; };
+  for (int i = 0; i < model.node_total() && out.element < 0; ++i)
+    if (!same(recorded.position[i], again.position[i]) || !same(recorded.velocity[i], again.velocity[i]) ||
+        !same(recorded.rotation[i].coeffs(), again.rotation[i].coeffs()) ||
+        !same(recorded.angular_velocity[i], again.angular_velocity[i]))
+      out.element = element_at(model, i);
+  return out;
+}
+
+/// Steps a branch again; nothing when all is the same.
+class Comparison {
+ public:
+  Comparison(const Recording& recording, const Setup& setup, const Branch& branch)
+      : recording_(recording), model_(setup.model), branch_(branch), run_(start(recording, setup, branch)) {}
+
+  /// Up to the checkpoint; false after the first difference.
+  bool reach(std::int64_t checkpoint) {
+    const Checkpoint recorded = recording_.checkpoint(checkpoint);
+    if (!compare_frames(recorded.step) || !go_to(recorded)) return false;
+    const State state = state_of(model_, recorded);
+    if (hash(state) != recorded.hash)
+      difference_ = {instant_of(recorded), "hash of the stored state"};
+    else if (hash(run_->state()) != recorded.hash)
+      difference_ = topple::io::difference(model_, instant_of(recorded), state, run_->state());
+    return !difference_;
+  }
+  /// Those that no checkpoint follows.
+  bool finish() { return compare_frames(std::numeric_limits<std::int64_t>::max()); }
+  const std::optional<Difference>& found() const { return difference_; }
+
+ private:
+  template <typename Row>
+  static Instant instant_of(const Row& row) {
+    return {row.branch, row.step, row.time};
+  }
+  template <typename Row>
+  bool go_to(const Row& row) {
+    if (!run_ || !repeat(*run_, recording_.history(), branch_.id, row.step))
+      difference_ = {instant_of(row), "the run does not get there"};
+    return !difference_;
+  }
+  bool compare_frames(std::int64_t last_step) {
+    const std::vector<Instant>& all = recording_.index();
+    for (; next_frame_ < all.size() && !difference_; ++next_frame_) {
+      const Instant& at = all[next_frame_];
+      if (at.branch != branch_.id) continue;
+      if (at.step > last_step) return true;
+      if (branch_.parent >= 0 && at.step == branch_.fork_step) continue;
+      const FrameRow recorded = recording_.frame(static_cast<std::int64_t>(next_frame_));
+      if (!go_to(recorded)) return false;
+      const std::vector<LoggedEdit>& edits = recording_.history().edits;
+      const bool edited = std::any_of(edits.begin(), edits.end(), [&](const LoggedEdit& e) {
+        return e.branch == at.branch && e.step == at.step;
+      });
+      difference_ = topple::io::difference(model_, recorded, frame_row(*run_), edited);
+    }
+    return !difference_;
+  }
+
+  const Recording& recording_;
+  const Model& model_;
+  const Branch& branch_;
+  std::optional<topple::Run> run_;
+  std::optional<Difference> difference_;
+  std::size_t next_frame_ = 0;
+};
+
+}  // namespace
+
+Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>& seen) {
+  const Setup setup = recorded_scene(recording).setup;
+  const History& history = recording.history();
+  check_edits(history, setup);
+  if (recording.frame_count() > 0) expect_same_model(setup.model, recording.frame(0));
+  const std::vector<Instant>& all = recording.checkpoint_index();
+  Rerun result;
+  std::int64_t passed = 0;
+  for (const Branch& branch : history.branches) {
+    Comparison comparison(recording, setup, branch);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].branch != branch.id) continue;
+      if (!comparison.found() && comparison.reach(static_cast<std::int64_t>(i))) ++result.checkpoints;
+      seen(++passed);
+    }
+    if (!comparison.found()) comparison.finish();
+    if (comparison.found()) result.differences.push_back(*comparison.found());
+  }
+  return result;
+}
+
+}  // namespace topple::io

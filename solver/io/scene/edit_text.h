@@ -1,0 +1,33 @@
+// Edits of a running simulation in the words of a scene: their names, and what they may set.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "solver/edit.h"
+#include "solver/io/scene/scene_keys.h"
+
+namespace topple::io {
+
+/// "shake.1.amplitude", "contact.alpha", "anchor.1.on", "run.time_step": the path in the scene; shakes and
+/// anchors count from 1. "body.1.model", "body.1.damping": of a cabinet, a frame or a copy of one, in the
+/// order of Model::bodies.
+std::string edit_key(const Edit& edit);
+
+/// Inverse of edit_key, its value zero. Nothing when no edit is called so.
+std::optional<Edit> parse_edit_key(std::string_view text);
+
+/// The row of the table of keys: range, unit and default.
+const Key& key_of(Edit::Key key);
+
+/// Refuses a value that is not finite, out of range, no choice or no direction. Throws InputError with one
+/// line
+/// ("contact.friction: 2.4 is outside 0..1.5").
+void check_edit_value(const Edit& edit);
+
+/// Refuses also what a run with these parameters has no place for, such as a shake that does not exist. An
+/// edit that passes can be applied.
+void check_edit(const Edit& edit, const Parameters& parameters, const Model& model);
+
+}  // namespace topple::io

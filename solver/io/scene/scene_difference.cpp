@@ -1,0 +1,156 @@
+#include "solver/io/scene/scene_difference.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_keys.h"
+
+namespace topple::io {
+namespace {
+
+constexpr std::size_t k_longest = 60;  // letters of a value that is shown
+
+std::string every_digit(double x) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, x).ptr};
+}
+
+/// A value as it is compared and as it is shown.
+struct Value {
+  std::string exact, shown;
+};
+
+Value quantity(const Key* key, double si) {
+  return {every_digit(si), key ? value_text(*key, si) : short_number(si)};
+}
+
+bool has_quantities(const Key* key) {
+  return key && (key->type == KeyType::number || key->type == KeyType::numbers ||
+                 key->type == KeyType::vectors || key->type == KeyType::history);
+}
+
+Value value_of(const Node& node, const Key* key) {
+  if (node.is_number()) return quantity(has_quantities(key) ? key : nullptr, node.real);
+  if (node.kind == Node::Kind::boolean)
+    return {node.boolean ? "true" : "false", node.boolean ? "true" : "false"};
+  if (node.kind == Node::Kind::text) {
+    if (has_quantities(key))
+      if (const Quantity read = parse_quantity(node.text, key->dimension); read.si)
+        return quantity(key, *read.si);
+    return {'"' + node.text + '"', node.text};
+  }
+  if (node.kind == Node::Kind::date) return {shown(node), shown(node)};
+  Value out{"[", "["};
+  for (const Item& item : node.items) {
+    const Value part = value_of(item.value, key);
+    const std::string name = item.key.empty() ? "" : item.key + " = ";
+    out.exact += name + part.exact + ", ";
+    out.shown += (out.shown.size() > 1 ? ", " : "") + name + part.shown;
+  }
+  return {out.exact + "]", out.shown + "]"};
+}
+
+/// What an absent key means, where that is a value.
+std::optional<Value> fallback(const Key* key) {
+  if (!key || key->fallback.empty()) return std::nullopt;
+  const double first = key->fallback.front();
+  switch (key->type) {
+    case KeyType::number:
+    case KeyType::integer:
+      return quantity(key, first);
+    case KeyType::boolean:
+      return Value{first != 0 ? "true" : "false", first != 0 ? "true" : "false"};
+    case KeyType::choice: {
+      const std::string word(key->choices[static_cast<std::size_t>(first)]);
+      return Value{'"' + word + '"', word};
+    }
+    case KeyType::numbers: {
+      Value out{"[", default_text(*key)};
+      for (const double x : key->fallback) out.exact += every_digit(x) + ", ";
+      return Value{out.exact + "]", out.shown};
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+std::string cut(const std::string& text) {
+  std::size_t bytes = k_longest;
+  if (text.size() <= bytes) return text;
+  while ((static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;  // no letter is split
+  return text.substr(0, bytes) + "…";
+}
+
+class Comparison {
+ public:
+  std::vector<SceneDifference> found;
+
+  void tables(const Node* a, const Node* b, const std::string& path, const std::string& table) {
+    for (const Node* side : {a, b}) {
+      if (!side) continue;
+      for (const Item& item : side->items) {
+        if (side == b && a && a->find(item.key)) continue;
+        const Node* const of_a = a ? a->find(item.key) : nullptr;
+        const Node* const of_b = b ? b->find(item.key) : nullptr;
+        const std::string key = path.empty() ? item.key : path + "." + item.key;
+        item_of(of_a, of_b, key, table, item.key);
+      }
+    }
+  }
+
+ private:
+  static bool is_table(const Node* node) { return node && node->kind == Node::Kind::table; }
+  static bool is_entries(const Node* node) {
+    return node && node->kind == Node::Kind::list && !node->items.empty() &&
+           node->items.front().value.kind == Node::Kind::table;
+  }
+
+  void item_of(const Node* a, const Node* b, const std::string& path, const std::string& table,
+               const std::string& name) {
+    const std::string inner = table.empty() ? name : table + "." + name;
+    if (is_entries(a) || is_entries(b)) return entries(a, b, path, inner);
+    if ((is_table(a) || !a) && (is_table(b) || !b)) return tables(a, b, path, inner);
+    const Key* const key = find_key(table, name);
+    const auto value = [&](const Node* node) {
+      return node ? std::optional(value_of(*node, key)) : fallback(key);
+    };
+    const std::optional<Value> left = value(a), right = value(b);
+    if (left && right && left->exact == right->exact) return;
+    const auto text = [](const std::optional<Value>& v) {
+      return v ? std::optional(cut(v->shown)) : std::nullopt;
+    };
+    found.push_back({path, text(left), text(right)});
+  }
+
+  static const Node* entry(const Node* list, const std::string& label) {
+    for (std::size_t i = 0; list && i < list->items.size(); ++i)
+      if (entry_label(*list, i) == label) return &list->items[i].value;
+    return nullptr;
+  }
+
+  void entries(const Node* a, const Node* b, const std::string& path, const std::string& table) {
+    for (const Node* side : {a, b})
+      for (std::size_t i = 0; side && i < side->items.size(); ++i) {
+        const std::string label = entry_label(*side, i);
+        const Node *const of_a = entry(a, label), *const of_b = entry(b, label);
+        if (side == b && of_a) continue;
+        if (of_a && of_b)
+          tables(of_a, of_b, path + "." + label, table);
+        else
+          found.push_back({path + "." + label, of_a ? std::optional<std::string>("present") : std::nullopt,
+                           of_b ? std::optional<std::string>("present") : std::nullopt});
+      }
+  }
+};
+
+}  // namespace
+
+std::vector<SceneDifference> differences(const Scene& a, const Scene& b) {
+  const Node left = parse_toml(a.text, a.name), right = parse_toml(b.text, b.name);
+  Comparison comparison;
+  comparison.tables(&left, &right, "", "");
+  return std::move(comparison.found);
+}
+
+}  // namespace topple::io

@@ -1,0 +1,155 @@
+#include "solver/cabinet.h"
+#include "solver/io/scene/scene_key_rows.h"
+#include "solver/parameters.h"
+
+namespace topple::io {
+namespace {
+
+using T = KeyType;
+using D = Dimension;
+
+constexpr double k_far = 1e3;   // m
+constexpr double k_fast = 1e3;  // m/s and rad/s
+constexpr double k_large = 10;  // m
+constexpr double k_degree = k_pi / 180;
+
+void add_model(Rows& rows, BodyModel absent) {
+  rows.word("model", {"auto", "rigid", "elastic", "frame"},
+            "what the body is computed as; auto: the least that answers `run.want`, frame with an integrator "
+            "that "
+            "is named. A body is a frame while another is within 50 mm")
+      .absent(absent)
+      .only_in({"dynamic"});
+}
+
+void add_damping(Rows& rows) {
+  rows.number("damping", 0, 1,
+              "ratio to critical at the first elastic mode, proportional to stiffness (damping.h)")
+      .absent(0)
+      .only_in({"dynamic"});
+}
+
+void add_copies(Rows& rows) {
+  rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
+      .absent_means("one, where it is");
+}
+
+void add_cabinet(std::vector<Key>& keys) {
+  Rows rows(keys, "cabinet");
+  const CabinetSpec cabinet{};
+  rows.plain("name", T::text, "name of the body; copies add -2, -3, ...").absent_means("cabinet-1, ...");
+  rows.numbers("size", 3, D::length, "mm", 0.01, k_large,
+               "depth, width and height between the centre lines of its edges")
+      .absent(cabinet.size);
+  rows.number("mass", D::mass, "kg", 1e-3, 1e5, "mass; densities are adjusted to it").absent(cabinet.mass);
+  rows.number("cg_height", D::length, "mm", 1e-3, k_large, "centre of gravity above the bottom centre lines")
+      .absent_means("half of the height");
+  rows.numbers("inertia", 3, D::inertia, "kg m^2", 1e-9, 1e7,
+               "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
+      .or_word({"panels", "solid"})
+      .absent(cabinet.inertia);
+  rows.numbers("at", 3, D::length, "m", -k_far, k_far,
+               "centre of the footprint in its pose, and the height that it stands on")
+      .at_least(2)
+      .absent(std::vector{0., 0.});
+  rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical")
+      .absent(cabinet.yaw);
+  rows.word("pose", {"upright", "on-back", "on-front", "on-side"}, "how it stands or lies")
+      .absent(cabinet.pose);
+  rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
+              "about the bottom edge on the +x side before yaw; negative: on the -x side")
+      .absent(cabinet.tilt);
+  rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
+      .absent(cabinet.velocity)
+      .only_in({"dynamic"});
+  rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
+      .absent(cabinet.angular_velocity)
+      .only_in({"dynamic"});
+  rows.plain("section", T::text, "a [[section]]").required();
+  rows.plain("material", T::text, "a [[material]]").required();
+  rows.integer("shelves", 0, 20, "shelves").absent(cabinet.shelves);
+  rows.word("bracing", {"panels", "none"}, "panels: diagonals as stiff as thin sheets")
+      .absent(cabinet.bracing);
+  rows.number("panel_thickness", D::length, "mm", 1e-5, 0.1, "of the sheets that the diagonals replace")
+      .absent(cabinet.panel_thickness)
+      .only("bracing", {"panels"});
+  rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
+  add_damping(rows);
+  add_copies(rows);
+  add_model(rows, BodyModel::automatic);
+}
+
+void add_frame(std::vector<Key>& keys) {
+  Rows rows(keys, "frame");
+  const FrameSpec frame{};
+  rows.plain("name", T::text, "name of the body; copies add -2, -3, ...").absent_means("frame-1, ...");
+  rows.vectors("nodes", D::length, "m", -k_far, k_far, "places, numbered from 0").required();
+  rows.plain("members", T::tables, "straight members between nodes").required();
+  rows.plain("supports", T::tables, "fixed directions").absent_means("free");
+  rows.plain("loads", T::tables, "dead loads on nodes").absent_means("none");
+  rows.plain("masses", T::tables, "masses on nodes").absent_means("none");
+  rows.number("mass", D::mass, "kg", 1e-6, 1e7, "mass; densities are adjusted to it")
+      .absent_means("from the densities");
+  add_copies(rows);
+  rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
+              "about the +x side of its lowest nodes, along y; negative: the -x side")
+      .absent(frame.tilt)
+      .only_in({"dynamic"});
+  rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
+      .absent(frame.velocity)
+      .only_in({"dynamic"});
+  rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
+      .absent(frame.angular_velocity)
+      .only_in({"dynamic"});
+  add_damping(rows);
+  add_model(rows, BodyModel::frame);
+}
+
+void add_frame_members(std::vector<Key>& keys) {
+  Rows rows(keys, "frame.members");
+  const FrameMember member{};
+  rows.integers("nodes", 2, 0, 1e6, "its ends").required();
+  rows.plain("section", T::text, "a [[section]]").required();
+  rows.plain("material", T::text, "a [[material]]").required();
+  rows.integer("elements", 2, 1000, "even").absent(member.elements);
+  rows.numbers("up", 3, -1e6, 1e6, "its part normal to the member is local z")
+      .absent_means("z; x for a vertical member");
+}
+
+void add_frame_supports(std::vector<Key>& keys) {
+  Rows rows(keys, "frame.supports");
+  rows.integer("node", 0, 1e6, "node").required();
+  rows.plain("fix", T::text, "letters of xyzXYZ: lower case translations, upper case rotations").required();
+}
+
+void add_frame_loads(std::vector<Key>& keys) {
+  Rows rows(keys, "frame.loads");
+  rows.integer("node", 0, 1e6, "node").required();
+  rows.numbers("force", 3, D::force, "N", -1e9, 1e9, "force").absent(Vec3::Zero());
+  rows.numbers("moment", 3, D::moment, "N m", -1e9, 1e9, "moment").absent(Vec3::Zero());
+  rows.history("history", -1e6, 1e6,
+               "[time, factor], times increasing, linear in between; static: over the load factor")
+      .absent_means("1 at all times; static: the load factor");
+}
+
+void add_frame_masses(std::vector<Key>& keys) {
+  Rows rows(keys, "frame.masses");
+  rows.integer("node", 0, 1e6, "node").required();
+  rows.number("mass", D::mass, "kg", 0, 1e7, "added to the node").required();
+  rows.numbers("inertia", 3, D::inertia, "kg m^2", 0, 1e7,
+               "[Ixx, Iyy, Izz] about the node along the axes of the world, at the start; added to the node")
+      .absent(Vec3(Vec3::Zero()));
+}
+
+}  // namespace
+
+void add_body_keys(std::vector<Key>& keys) {
+  add_cabinet(keys);
+  add_frame(keys);
+  add_frame_members(keys);
+  add_frame_supports(keys);
+  add_frame_loads(keys);
+  add_frame_masses(keys);
+}
+
+}  // namespace topple::io

@@ -1,0 +1,22 @@
+// One number of a scene by its dotted key.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_keys.h"
+
+namespace topple::io {
+
+/// Where a dotted key leads.
+struct SceneNumber {
+  const Key* key;               ///< not null
+  int entry;                    ///< index in the outermost array on the way; -1: there is none
+  std::optional<double> value;  ///< SI, of the scene or its default; absent: it has none
+};
+
+/// `path`: as of --set. Throws InputError when the scene has no such place, or no number can stand there.
+SceneNumber number_in(const Scene& scene, const std::string& path);
+
+}  // namespace topple::io

@@ -1,0 +1,50 @@
+// From a checked scene to a Setup, part by part. All throw InputError.
+#pragma once
+
+#include "solver/io/scene/scene_content.h"
+#include "solver/io/scene/scene_entry.h"
+#include "solver/run.h"
+
+namespace topple::io {
+
+/// [run]: settings, gravity, integrator.
+void read_run(const Entry& root, Setup& setup);
+
+/// [[shake]]; the files that they name become part of the scene.
+void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene);
+
+/// [contact].
+void read_contact(const Entry& root, Setup& setup);
+
+/// A [floor] or [[wall]] made of members.
+bool is_beams(const Entry& entry);
+
+/// Planes: [floor] first, then each [[wall]].
+void read_planes(const Entry& root, Setup& setup);
+
+/// [[material]] and [[section]]; sections are completed with the Poisson's ratio of the first member that
+/// uses them.
+void read_materials_and_sections(const Entry& root, Setup& setup);
+
+/// [[cabinet]] in the order of the file, then [[frame]], then floors and walls of members.
+void read_bodies(const Entry& root, Setup& setup);
+
+/// contact.alpha where it is left out; after the bodies.
+void choose_alpha(const Entry& root, Setup& setup);
+
+/// Index of the body that the entry's key `body` names.
+int find_body(const Entry& entry, const Model& model);
+
+/// [[anchor]]; after the bodies.
+void read_anchors(const Entry& root, Setup& setup);
+
+/// [[probe]]; after the bodies.
+void read_probes(const Entry& root, Setup& setup);
+
+/// run.control; after the bodies.
+void read_control(const Entry& root, Setup& setup);
+
+/// [[expect]].
+void read_expectations(const Entry& root, Scene& scene);
+
+}  // namespace topple::io

@@ -1,0 +1,194 @@
+#include "solver/io/scene/scene_rewrite.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "solver/io/scene/scene_document.h"
+
+namespace topple::io {
+namespace {
+
+const char* const k_origin = "scene";
+
+/// Where something begins that was written at `place`, whose columns count letters.
+std::size_t offset_of(const std::string& text, const Place& place) {
+  std::size_t at = 0;
+  for (int line = 1; line < place.line; ++line) {
+    at = text.find('\n', at);
+    if (at == std::string::npos) throw std::logic_error("a place beyond the text");
+    ++at;
+  }
+  for (int column = 1; column < place.column && at < text.size(); ++column) do
+      ++at;
+    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80);
+  return at;
+}
+
+std::size_t end_of_text(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  const std::string three(3, quote);
+  const std::string closing = text.compare(at, 3, three) == 0 ? three : std::string(1, quote);
+  for (at += closing.size(); at < text.size(); ++at) {
+    if (quote == '"' && text[at] == '\\')
+      ++at;
+    else if (text.compare(at, closing.size(), closing) == 0)
+      return at + closing.size();
+  }
+  return at;
+}
+
+/// Behind the value that begins at `at`.
+std::size_t end_of_value(const std::string& text, std::size_t at) {
+  int depth = 0;
+  while (at < text.size()) {
+    const char c = text[at];
+    if (c == '"' || c == '\'') {
+      at = end_of_text(text, at);
+      if (depth == 0) return at;
+      continue;
+    }
+    if (c == '#') {
+      if (depth == 0) return at;
+      at = std::min(text.find('\n', at), text.size());
+      continue;
+    }
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') {
+      if (depth == 0) return at;
+      if (--depth == 0) return at + 1;
+    }
+    const bool bare_ends = c == ',' || c == '\n' || c == '\r' || c == ' ' || c == '\t';
+    if (depth == 0 && bare_ends) return at;
+    ++at;
+  }
+  return at;
+}
+
+std::size_t line_begin(const std::string& text, std::size_t at) {
+  const std::size_t before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  return before == std::string::npos ? 0 : before + 1;
+}
+
+std::size_t line_end(const std::string& text, std::size_t at) {
+  const std::size_t end = text.find('\n', at);
+  return end == std::string::npos ? text.size() : end + 1;
+}
+
+Node value_of(const std::string& toml) {
+  return std::move(parse_toml("value = " + toml, k_origin).items.at(0).value);
+}
+
+std::size_t number_of(const std::string& label) {
+  return static_cast<std::size_t>(std::stoul(label)) - 1;
+}
+
+/// The change made in the tree: what the text has to mean afterwards.
+void change_tree(Node& root, const KeyChange& change) {
+  Node* at = &root;
+  for (std::size_t k = 0; k + 1 < change.path.size(); ++k) {
+    const std::string& step = change.path[k];
+    if (at->kind == Node::Kind::list) {
+      if (number_of(step) == at->items.size()) at->items.push_back({});
+      at = &at->items.at(number_of(step)).value;
+      continue;
+    }
+    if (at->kind != Node::Kind::table) throw std::logic_error(step + ": has no keys");
+    if (!at->find_item(step)) {
+      at->items.push_back({step, {}, {}});
+      const std::string& next = change.path[k + 1];
+      if (k + 2 < change.path.size() && next == "1") at->items.back().value.kind = Node::Kind::list;
+    }
+    at = &at->find_item(step)->value;
+  }
+  const std::string& key = change.path.back();
+  if (!change.value) {
+    std::erase_if(at->items, [&](const Item& item) { return item.key == key; });
+  } else if (Item* const item = at->find_item(key)) {
+    item->value = value_of(*change.value);
+  } else {
+    at->items.push_back({key, {}, value_of(*change.value)});
+  }
+}
+
+bool same(const Node& a, const Node& b) {
+  if (a.kind != b.kind || a.items.size() != b.items.size() || a.boolean != b.boolean ||
+      a.integer != b.integer || a.real != b.real || a.text != b.text)
+    return false;
+  for (std::size_t i = 0; i < a.items.size(); ++i) {
+    const Node* const other = a.kind == Node::Kind::table ? b.find(a.items[i].key) : &b.items[i].value;
+    if (!other || !same(a.items[i].value, *other)) return false;
+  }
+  return true;
+}
+
+/// The table that holds the change's key; null: it does not stand in the text.
+const Node* holder(const Node& root, const KeyChange& change) {
+  const Node* at = &root;
+  for (std::size_t k = 0; at && k + 1 < change.path.size(); ++k) {
+    if (at->kind == Node::Kind::list)
+      at = number_of(change.path[k]) < at->items.size() ? &at->items[number_of(change.path[k])].value
+                                                        : nullptr;
+    else
+      at = at->find(change.path[k]);
+  }
+  return at;
+}
+
+std::string line_of(const KeyChange& change) {
+  return change.path.back() + " = " + *change.value + "\n";
+}
+
+/// In a new table at the end.
+void append_table(std::string& text, const KeyChange& change) {
+  const bool entry = change.path.size() == 3;
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  text += (entry ? "\n[[" : "\n[") + change.path[0] + (entry ? "]]\n" : "]\n") + line_of(change);
+}
+
+/// Behind the last key that stands on a line of the table's own, else behind its header.
+void insert_line(std::string& text, const Node& table, const KeyChange& change) {
+  std::size_t at = 0;
+  for (const Item& item : table.items) {
+    const std::size_t key = offset_of(text, item.key_place), value = offset_of(text, item.value.place);
+    const bool own =
+        text.compare(key, item.key.size(), item.key) == 0 && value > key && text.find('=', key) < value;
+    if (own) at = std::max(at, line_end(text, end_of_value(text, value)));
+  }
+  if (at == 0) at = line_end(text, offset_of(text, table.place));
+  if (at > 0 && text[at - 1] != '\n') text.insert(at++, "\n");
+  text.insert(at, line_of(change));
+}
+
+/// Makes the change in the text, for the forms in which scenes are usually written.
+void change_text(std::string& text, const KeyChange& change) {
+  const Node root = parse_toml(text, k_origin);
+  const Node* const table = holder(root, change);
+  const Item* const item = table ? table->find_item(change.path.back()) : nullptr;
+  if (item) {
+    const std::size_t begin = offset_of(text, item->value.place), end = end_of_value(text, begin);
+    if (change.value) {
+      text.replace(begin, end - begin, *change.value);
+    } else {
+      const std::size_t from = line_begin(text, offset_of(text, item->key_place));
+      text.erase(from, line_end(text, end) - from);
+    }
+  } else if (change.value) {
+    table ? insert_line(text, *table, change) : append_table(text, change);
+  }
+}
+
+}  // namespace
+
+std::string rewrite_toml(const std::string& text, const std::vector<KeyChange>& changes) {
+  Node wanted = parse_toml(text, k_origin);
+  for (const KeyChange& change : changes) change_tree(wanted, change);
+  std::string result = text;
+  try {
+    for (const KeyChange& change : changes) change_text(result, change);
+    if (same(parse_toml(result, k_origin), wanted)) return result;
+  } catch (const std::exception&) {  // written in another form
+  }
+  return write_toml(wanted);
+}
+
+}  // namespace topple::io

@@ -1,0 +1,239 @@
+#include "solver/io/scene/scene_save.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "solver/excitation.h"
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_file.h"
+#include "solver/io/scene/scene_rewrite.h"
+
+namespace topple::io {
+namespace {
+
+constexpr int k_most_rounds = 4;  // a value that was written may change what absent ones mean
+
+std::string every_digit(double x) {
+  char digits[40];
+  std::string text(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+/// In the unit of the key where that reads back the same, else in SI.
+std::string number_text(const Key& key, double si) {
+  if (!key.unit.empty()) {
+    const std::string text = value_text(key, si);
+    if (parse_quantity(text, key.dimension).si == si) return '"' + text + '"';
+  }
+  return every_digit(si);
+}
+
+std::string toml_of(const Edit& edit, const Parameters& now) {
+  const Key& key = key_of(edit.key);
+  const Vec3& value = edit.value;
+  switch (edit.key) {
+    case Edit::Key::direction:
+      return "[" + every_digit(value.x()) + ", " + every_digit(value.y()) + ", " + every_digit(value.z()) +
+             "]";
+    case Edit::Key::frequency:
+      if (now.shakes[static_cast<std::size_t>(edit.shake)].kind == Shake::Kind::sweep)
+        // A sweep that does not change is refused; the number next to it is not.
+        return "[" + number_text(key, value.x()) + ", " +
+               number_text(key, value.y() == value.x() ? std::nextafter(value.y(), 1e9) : value.y()) + "]";
+      return number_text(key, value.x());
+    case Edit::Key::want:
+      return value.x() != 0 ? "[\"motion\", \"stress\"]" : "[\"motion\"]";
+    default:
+      break;
+  }
+  if (key.type == KeyType::boolean) return value.x() != 0 ? "true" : "false";
+  if (key.type == KeyType::choice)
+    return '"' + std::string(key.choices[static_cast<std::size_t>(value.x())]) + '"';
+  return number_text(key, value.x());
+}
+
+/// The entry that a body was built from.
+struct BodyEntry {
+  std::string table;
+  std::size_t number, first_body, bodies;
+};
+
+BodyEntry entry_of_body(const Node& root, std::size_t body) {
+  std::size_t first = 0;
+  for (const char* const table : {"cabinet", "frame"}) {
+    const Node* const list = root.find(table);
+    for (std::size_t i = 0; list && i < list->items.size(); ++i) {
+      const Node* const copies = list->items[i].value.find("copies");
+      const std::size_t count = copies ? std::max<std::size_t>(1, copies->items.size()) : 1;
+      if (body < first + count) return {table, i + 1, first, count};
+      first += count;
+    }
+  }
+  throw InputError("no entry of the scene is body " + std::to_string(body + 1));
+}
+
+class Rewriting {
+ public:
+  Rewriting(const Scene& scene, const Parameters& now)
+      : model_(scene.setup.model),
+        now_(now),
+        analysis_(word(*find_key("run", "analysis"), static_cast<int>(scene.setup.run.analysis))) {
+    saved_.text = scene.text;
+  }
+
+  SavedScene run(const Scene& scene) {
+    take(scene.setup.parameters);
+    for (int round = 0;; ++round) {
+      saved_.text = rewrite_toml(saved_.text, changes_);
+      changes_.clear();
+      const Scene read = parse_scene(saved_.text, scene.name + ".toml", {}, files_of(scene));
+      take(read.setup.parameters);
+      if (changes_.empty()) return saved_;
+      if (round < k_most_rounds) continue;
+      for (const auto& [key, index] : different(read.setup.parameters))
+        saved_.given_up.push_back(edit_key({key, index}));
+      return saved_;
+    }
+  }
+
+ private:
+  std::vector<std::pair<Edit::Key, int>> different(const Parameters& read) const {
+    std::vector<std::pair<Edit::Key, int>> keys;
+    for (const auto& [key, index] : editable(model_, now_)) {
+      const bool retyped = shake_key(key) && kind(read, index) != kind(now_, index);
+      const bool step = key == Edit::Key::time_step && read.adaptive != now_.adaptive;
+      if (!retyped && !step && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
+      if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
+      if (key == Edit::Key::integrator && !frames_only()) continue;
+      const auto& analyses = key_of(key).analyses;
+      if (!analyses.empty() && std::ranges::find(analyses, analysis_) == analyses.end()) continue;
+      keys.emplace_back(key, index);
+    }
+    return keys;
+  }
+
+  void take(const Parameters& read) {
+    const Node root = parse_toml(saved_.text, "scene");
+    for (const auto& [key, index] : different(read))
+      change(root, {key, index, edited_value(now_, key, index)});
+    for (std::size_t i = 0; i < now_.shakes.size(); ++i) drop_foreign(root, i);
+    drop_foreign(root, read);
+    if (!frames_only() && read.integrator != now_.integrator && saved_.given_up.empty())
+      saved_.given_up.push_back(edit_key({Edit::Key::integrator}));
+  }
+
+  void change(const Node& root, const Edit& edit) {
+    std::string value = toml_of(edit, now_);
+    if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
+    if (edit.key == Edit::Key::model || edit.key == Edit::Key::damping) {
+      const BodyEntry entry = entry_of_body(root, static_cast<std::size_t>(edit.shake));
+      for (std::size_t b = entry.first_body; b < entry.first_body + entry.bodies; ++b)
+        if (edited_value(now_, edit.key, static_cast<int>(b)) != edit.value)
+          throw InputError(edit_key(edit) + ": \"" + model_.bodies[b].name + "\" is a copy of the same [[" +
+                           entry.table + "]] and has another; copies have the same");
+      add({entry.table, std::to_string(entry.number), std::string(key_of(edit.key).name)}, value);
+      return;
+    }
+    const Key& key = key_of(edit.key);
+    if (shake_key(edit.key) || edit.key == Edit::Key::anchor)
+      add({std::string(key.table), std::to_string(edit.shake + 1), std::string(key.name)}, value);
+    else
+      add({std::string(key.table), std::string(key.name)}, value);
+  }
+
+  /// Takes out keys that belong to another choice than the one made now.
+  void drop(const Node& table, const std::string& name, const std::vector<std::string>& path,
+            std::string_view choice, std::string_view made) {
+    for (const Item& item : table.items) {
+      const Key* const key = find_key(name, item.key);
+      if (!key || key->of != choice || std::ranges::find(key->when, made) != key->when.end()) continue;
+      std::vector<std::string> all = path;
+      all.push_back(item.key);
+      changes_.push_back({std::move(all), std::nullopt});
+    }
+  }
+
+  static std::string_view word(const Key& key, int number) {
+    return key.choices[static_cast<std::size_t>(number)];
+  }
+
+  void drop_foreign(const Node& root, std::size_t i) {
+    const Shake& shake = now_.shakes[i];
+    const Node* const list = root.find("shake");
+    if (!list || i >= list->items.size()) return;
+    const Node& entry = list->items[i].value;
+    const std::string number = std::to_string(i + 1);
+    drop(entry, "shake", {"shake", number}, "type",
+         word(key_of(Edit::Key::type), static_cast<int>(shake.kind)));
+    const bool sweep = shake.kind == Shake::Kind::sweep;
+    if (sweep && entry.find("taper") && 2 * shake.taper > shake_turns(shake, shake.start + shake.duration))
+      changes_.push_back({{"shake", number, "taper"}, std::nullopt});
+  }
+
+  void drop_foreign(const Node& root, const Parameters& read) {
+    if (const Node* const contact = root.find("contact"))
+      drop(*contact, "contact", {"contact"}, "law",
+           word(key_of(Edit::Key::law), static_cast<int>(now_.contact.kind)));
+    const Node* const run = root.find("run");
+    if (!run) return;
+    if (frames_only() && read.integrator != now_.integrator)
+      drop(*run, "run", {"run"}, "integrator",
+           word(key_of(Edit::Key::integrator), 1 + static_cast<int>(now_.integrator)));
+    if (!now_.adaptive) drop(*run, "run", {"run"}, "time_step", "");
+  }
+
+  static bool shake_key(Edit::Key key) { return key_of(key).table == "shake"; }
+  static Shake::Kind kind(const Parameters& p, int shake) {
+    return p.shakes[static_cast<std::size_t>(shake)].kind;
+  }
+
+  /// A scene that names an integrator has no rigid, elastic or automatic bodies.
+  bool frames_only() const {
+    return std::ranges::all_of(now_.models, [](BodyModel m) { return m == BodyModel::frame; });
+  }
+
+  void add(std::vector<std::string> path, const std::string& value) {
+    changes_.push_back({std::move(path), value});
+  }
+
+  const Model& model_;
+  const Parameters& now_;
+  const std::string_view analysis_;
+  SavedScene saved_;
+  std::vector<KeyChange> changes_;
+};
+
+}  // namespace
+
+ReadSceneFile files_of(const Scene& scene) {
+  return [&scene, elsewhere = builtin_files()](const std::string& name) {
+    for (const SceneFile& file : scene.files)
+      if (file.name == name) return file.bytes;
+    return elsewhere(name);
+  };
+}
+
+SavedScene edited_scene(const Scene& scene, const Parameters& now) {
+  return Rewriting(scene, now).run(scene);
+}
+
+Scene scene_with_record(const Scene& scene, const std::vector<std::string>& files) {
+  std::string names;
+  for (const std::string& file : files) names += (names.empty() ? "" : ", ") + written_text(file);
+  std::vector<KeyChange> changes{{{"shake", "1", "type"}, "\"record\""},
+                                 {{"shake", "1", "files"}, "[" + names + "]"}};
+  const Node root = parse_toml(scene.text, scene.name);
+  if (const Node* const shakes = root.find("shake"); shakes && !shakes->items.empty())
+    for (const Item& item : shakes->items[0].value.items) {
+      const Key* const key = find_key("shake", item.key);
+      const bool stays = !key || key->of.empty();
+      // What was said of another record does not hold for this one.
+      if (!stays && item.key != "files") changes.push_back({{"shake", "1", item.key}, std::nullopt});
+    }
+  return parse_scene(rewrite_toml(scene.text, changes), scene.name + ".toml", {}, files_of(scene));
+}
+
+}  // namespace topple::io

@@ -1,0 +1,131 @@
+#include "solver/io/scene/toml_precheck.h"
+
+#include <utility>
+
+namespace topple::io {
+namespace {
+
+constexpr int k_most_dots = 500;
+constexpr std::string_view k_byte_order_mark = "\xef\xbb\xbf";
+
+bool begins_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+         c == '"' || c == '\'';
+}
+
+class Scanner {
+ public:
+  explicit Scanner(std::string_view text)
+      : text_(text),
+        begin_(text.starts_with(k_byte_order_mark) ? k_byte_order_mark.size() : 0),
+        at_(begin_) {}
+
+  std::optional<TomlFault> find() {
+    bool line_is_blank = true;  // so far
+    int depth = 0;              // of brackets and braces
+    int dots = 0;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (static_cast<unsigned char>(c) >= 0x80) {
+        return fault("a letter beyond ASCII stands in quotes, or in a comment");
+      }
+      if (c == '#') {
+        skip_comment();
+        continue;
+      }
+      if (c == '"' || c == '\'') {
+        skip_string(c);
+        line_is_blank = false;
+        continue;
+      }
+      if (c == '[' && line_is_blank && depth == 0) {
+        if (auto nameless = skip_header_start()) return nameless;
+        line_is_blank = false;
+        depth = 0;
+        continue;
+      }
+      if (c == '.' && ++dots > k_most_dots) return fault("keys nested too deeply");
+      if (c == ',' || c == '=' || c == '\n') dots = 0;
+      if (c == '[' || c == '{') ++depth;
+      if ((c == ']' || c == '}') && depth > 0) --depth;
+      if (c == '\n') {
+        line_is_blank = true;
+      } else if (c != ' ' && c != '\t' && c != '\r') {
+        line_is_blank = false;
+      }
+      ++at_;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool at_any_of(std::string_view characters) const {
+    return at_ < text_.size() && characters.find(text_[at_]) != characters.npos;
+  }
+
+  void skip_comment() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
+
+  // A string that is not closed ends with its line, or, when of several lines, with the text.
+  void skip_string(char quote) {
+    const std::string triple(3, quote);
+    const bool several_lines = text_.substr(at_).starts_with(triple);
+    at_ += several_lines ? 3 : 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (!several_lines && c == '\n') return;
+      if (c == '\\' && quote == '"') {
+        at_ += 2;
+      } else if (c != quote) {
+        ++at_;
+      } else if (!several_lines) {
+        ++at_;
+        return;
+      } else if (text_.substr(at_).starts_with(triple)) {
+        at_ += 3;
+        for (int more = 0; more < 2 && at_any_of(std::string_view(&quote, 1)); ++more) ++at_;
+        return;
+      } else {
+        ++at_;
+      }
+    }
+    at_ = text_.size();
+  }
+
+  // "[" or "[[" and the blanks behind; a fault when no name follows. A text that ends here, or an empty name,
+  // is refused by the parser in its own words.
+  std::optional<TomlFault> skip_header_start() {
+    ++at_;
+    if (at_any_of("[")) ++at_;
+    while (at_any_of(" \t")) ++at_;
+    if (at_ == text_.size() || at_any_of("][") || begins_name(text_[at_])) return std::nullopt;
+    if (static_cast<unsigned char>(text_[at_]) >= 0x80) return std::nullopt;  // found as such
+    return fault("expected a table's name");
+  }
+
+  TomlFault fault(std::string message) const {
+    TomlFault result{at_, 1, 1, std::move(message)};
+    for (const char c : text_.substr(begin_, at_ - begin_)) {
+      if (c == '\n') {
+        ++result.line;
+        result.column = 1;
+      } else if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) {
+        ++result.column;
+      }
+    }
+    return result;
+  }
+
+  std::string_view text_;
+  std::size_t begin_;  // behind a byte order mark
+  std::size_t at_;
+};
+
+}  // namespace
+
+std::optional<TomlFault> find_toml_fault(std::string_view text) {
+  return Scanner(text).find();
+}
+
+}  // namespace topple::io

@@ -1,0 +1,17 @@
+// Scenes without what holds their furniture.
+#pragma once
+
+#include <optional>
+
+#include "solver/io/scene/scene.h"
+
+namespace topple::study {
+
+/// Entries of [[anchor]] in the text of a scene.
+int anchor_count(const io::Scene& scene);
+
+/// The scene with every [[anchor]] taken away; none when it has none. Throws io::InputError when the rest is
+/// no scene.
+std::optional<io::Scene> without_anchors(const io::Scene& scene);
+
+}  // namespace topple::study

@@ -1,0 +1,43 @@
+// Criteria of overturning that are drawn over frequency and amplitude.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/run.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/standing.h"
+
+namespace topple::study {
+
+/// Amplitude of the floor's acceleration that a criterion names, along the x axis.
+struct Criterion {
+  std::string name;          ///< "west"
+  std::string label;         ///< "West: a = g b/h"
+  std::string about;         ///< what it says and where it is from
+  std::vector<double> x, y;  ///< in the axes' units
+};
+
+/// Acceleration at which a rigid block lifts, m/s^2: g b/h (West; Milne 1885).
+double west_acceleration(const Standing& body);
+
+/// Velocity of the floor, m/s, below which a block does not overturn by Ishiyama's second criterion:
+///   0.4 sqrt(8 g R (1 - cos a)/(3 cos^2 a)), a = atan(b/h)
+/// Source: Y. Ishiyama, Earthquake Engineering and Structural Dynamics 10, 1982, 635-650.
+double ishiyama_velocity(const Standing& body);
+
+/// The criteria that hold over these axes, and why there are none.
+struct Criteria {
+  std::string bodies;  ///< names of those that they are for: the first to tip
+  Standing body = {};  ///< when there are any
+  std::vector<Criterion> list;
+  std::string why_not;  ///< "": there are
+};
+
+/// They hold where y is the amplitude and x the frequency or duration of the only shake, along the level,
+/// across edges of a body that starts at rest on a level floor; whole pulses: where both edges are as far
+/// off. A sine is compared with one of its cycles alone. Of a motion that has no formula there is West's
+/// only.
+Criteria criteria(const Setup& scene, const Axis& x, const Axis& y);
+
+}  // namespace topple::study

@@ -1,0 +1,26 @@
+#include "solver/study/overturn/floor_peak.h"
+
+#include <algorithm>
+
+#include "solver/excitation.h"
+#include "solver/study/common/intensity.h"
+
+namespace topple::study {
+
+FloorPeak floor_peak(std::vector<Shake> shakes, double duration) {
+  for (Shake& shake : shakes)
+    if (shake.kind == Shake::Kind::sine && shake.taper == 0) shake.initial_velocity = Shake::Start::jump;
+  const Motion motion = floor_motion(shakes, duration);
+  FloorPeak peak;
+  Vec3 velocity = Vec3::Zero();
+  for (std::size_t i = 0; i < motion.samples.size(); ++i) {
+    const double t = static_cast<double>(i) * motion.interval;
+    peak.acceleration = std::max(peak.acceleration, motion.samples[i].head<2>().norm());
+    if (i > 0) velocity += motion.interval / 2 * (motion.samples[i - 1] + motion.samples[i]);
+    velocity += floor_velocity_jump(shakes, t, t + motion.interval);
+    peak.velocity = std::max(peak.velocity, velocity.head<2>().norm());
+  }
+  return peak;
+}
+
+}  // namespace topple::study

@@ -1,0 +1,287 @@
+#include "solver/study/overturn/overturn_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <nlohmann/json.hpp>
+
+#include "solver/io/scene/edit_text.h"
+#include "solver/io/scene/scene_document.h"
+#include "solver/io/scene/scene_file.h"
+#include "solver/study/common/measure.h"
+
+namespace topple::study {
+namespace {
+
+using io::InputError;
+using nlohmann::ordered_json;
+
+constexpr const char* k_frequencies = "shake.1.frequency=0.2 Hz..5 Hz:24";
+constexpr const char* k_amplitudes = "shake.1.amplitude=50 gal..1000 gal:24";
+constexpr const char* k_durations = "shake.1.duration=0.1 s..2 s:24";
+constexpr const char* k_pulses = "shake.1.amplitude=100 gal..3000 gal:24";
+
+/// The axis that nobody named.
+std::string usual_axis(const io::Scene& scene, bool is_x) {
+  const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
+  if (!shakes.empty()) switch (shakes[0].kind) {
+      case Shake::Kind::sine:
+        return is_x ? k_frequencies : k_amplitudes;
+      case Shake::Kind::pulse:
+        return is_x ? k_durations : k_pulses;
+      case Shake::Kind::sweep:
+      case Shake::Kind::record:
+        break;
+    }
+  throw InputError(std::string(is_x ? "--x" : "--y") +
+                   " KEY=FROM..TO:N is required: the first shake is neither a sine nor a pulse");
+}
+
+/// What the scene leaves out of [run].
+std::vector<std::string> additions(const io::Scene& scene) {
+  const io::Node root = io::parse_toml(scene.text, scene.name);
+  const io::Node* run = root.find("run");
+  std::vector<std::string> out;
+  if (!run || !run->find("want")) out.push_back("run.want=[\"motion\"]");
+  if (!run || !run->find("stop_when")) out.push_back("run.stop_when=all-overturned");
+  return out;
+}
+
+}  // namespace
+
+OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
+                           double spread) {
+  if (scene.setup.run.analysis != Analysis::dynamic)
+    throw InputError("study overturn: " + scene.name + " is not dynamic; nothing overturns in it");
+  if (scene.setup.model.furniture_total() == 0)
+    throw InputError("study overturn: " + scene.name + " has no body that could overturn");
+  if (ensemble > 1 && scene.setup.parameters.shakes.empty())
+    throw InputError("--ensemble: " + scene.name + " has no shake, whose amplitude would be varied");
+  OverturnPlan plan{
+      .scene = std::move(scene), .x = {}, .y = {}, .ensemble = ensemble, .spread = spread, .set = {}};
+  plan.x = axis_of("--x", x.empty() ? usual_axis(plan.scene, true) : x, plan.scene);
+  plan.y = axis_of("--y", y.empty() ? usual_axis(plan.scene, false) : y, plan.scene);
+  check_axes(plan.scene, plan.x, plan.y);
+  plan.set = additions(plan.scene);
+  return plan;
+}
+
+ordered_json settings_of(const OverturnPlan& plan) {
+  ordered_json settings = settings_of("overturn", plan.scene, plan.x, plan.y);
+  settings.update({{"ensemble", plan.ensemble}, {"spread", plan.spread}});
+  return settings;
+}
+
+std::vector<int> case_order(const OverturnPlan& plan) {
+  const std::vector<int> points = coarse_to_fine(plan.x.count(), plan.y.count());
+  std::vector<int> order;
+  for (int from = 0, to = 1; from < plan.ensemble; from = to, to *= 4)
+    for (const int point : points)
+      for (int member = from; member < std::min(to, plan.ensemble); ++member)
+        order.push_back(point * plan.ensemble + member);
+  return order;
+}
+
+std::string OverturnRunner::run(int k, const std::function<bool()>& give_up) {
+  const OverturnPlan& plan = *plan_;
+  const int point = k / plan.ensemble;
+  std::string status = "completed";
+  ordered_json fell = ordered_json::array();
+  bool lifted = false, gave_up = false;
+  const double cpu = cpu_time_of(
+      [&] {
+        if (point != point_) {
+          point_ = point;
+          setup_.reset();
+          trouble_.clear();
+          std::vector<std::string> changes = plan.set;
+          changes.push_back(plan.x.change(point % plan.x.count()));
+          changes.push_back(plan.y.change(point / plan.x.count()));
+          try {
+            setup_ =
+                io::parse_scene(plan.scene.text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
+          } catch (const InputError& error) {
+            trouble_ = error.what();
+          }
+        }
+        if (!setup_) {
+          status = trouble_;
+          return;
+        }
+        const double turn =
+            2 * scattered(static_cast<std::uint64_t>(point), static_cast<std::uint64_t>(k % plan.ensemble)) -
+            1;
+        const Setup setup = plan.spread > 0 ? shaken_by(*setup_, 1 + plan.spread * turn) : *setup_;
+        Run run(setup);
+        while (!run.over() && !gave_up) {
+          run.advance();
+          gave_up = give_up();
+        }
+        if (!run.status().ok()) status = run.status().message(setup.model);
+        for (int b = 0; b < setup.model.furniture_total(); ++b) {
+          const BodyOutcome& body = run.outcome().bodies()[static_cast<std::size_t>(b)];
+          fell.push_back(body.beyond_since ? ordered_json(*body.beyond_since) : ordered_json(nullptr));
+          lifted |= body.first_uplift.has_value();
+        }
+      },
+      0);
+  if (gave_up) return "";
+  return ordered_json{{"status", status}, {"fell", fell}, {"lifted", lifted}, {"cpu_s", cpu}}.dump(
+      -1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+const char* name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::not_computed:
+      return "not computed";
+    case Verdict::failed:
+      return "failed";
+    case Verdict::all:
+      return "all overturn";
+    case Verdict::some:
+      return "some overturn";
+    case Verdict::rocks:
+      return "rocks";
+    case Verdict::stands:
+      return "stands";
+  }
+  return "";
+}
+
+std::optional<double> OverturnPoint::probability() const {
+  return runs > 0 ? std::optional(static_cast<double>(overturned) / runs) : std::nullopt;
+}
+
+std::optional<Interval> OverturnPoint::interval() const {
+  return runs > 0 ? std::optional(wilson(overturned, runs)) : std::nullopt;
+}
+
+std::optional<double> OverturnPoint::time(double part) const {
+  if (times.empty()) return std::nullopt;
+  const double at = part * static_cast<double>(times.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, times.size() - 1);
+  return std::lerp(times[below], times[above], at - static_cast<double>(below));
+}
+
+namespace {
+
+bool is_intensity(const Axis& axis) {
+  return axis.table == "shake" && (axis.name == "amplitude" || axis.name == "scale") &&
+         axis.values.front() > 0;
+}
+
+/// Place of the value nearest to the scene's.
+int own_place(const Axis& axis) {
+  if (!axis.own) return axis.count() / 2;
+  const auto distance = [&](double value) {
+    return axis.logarithmic ? std::abs(std::log(value / *axis.own)) : std::abs(value - *axis.own);
+  };
+  const auto nearest =
+      std::ranges::min_element(axis.values, [&](double a, double b) { return distance(a) < distance(b); });
+  return static_cast<int>(nearest - axis.values.begin());
+}
+
+/// Adds one run; counts[verdict].
+void add_run(OverturnPoint& point, const ordered_json& row, int counts[]) {
+  point.cpu += row["cpu_s"].get<double>();
+  const std::string status = row["status"].get<std::string>();
+  if (status != "completed") {
+    if (point.failed++ == 0) point.status = status;
+    return;
+  }
+  if (point.failed == 0) point.status = status;
+  ++point.runs;
+  std::optional<double> first;
+  int fallen = 0;
+  point.fell.resize(row["fell"].size());
+  for (std::size_t b = 0; b < row["fell"].size(); ++b) {
+    if (row["fell"][b].is_null()) continue;
+    const double time = row["fell"][b].get<double>();
+    first = std::min(first.value_or(time), time);
+    ++point.fell[b];
+    ++fallen;
+  }
+  if (first) {
+    ++point.overturned;
+    point.times.push_back(*first);
+  }
+  const Verdict verdict = fallen == static_cast<int>(row["fell"].size()) ? Verdict::all
+                          : fallen > 0                                   ? Verdict::some
+                          : row["lifted"].get<bool>()                    ? Verdict::rocks
+                                                                         : Verdict::stands;
+  ++counts[static_cast<int>(verdict)];
+}
+
+}  // namespace
+
+std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int k) {
+  const Axis& axis = map.fragility_along_y ? plan.y : plan.x;
+  std::vector<Level> out;
+  for (int i = 0; i < axis.count(); ++i) {
+    const int point = map.fragility_along_y ? i * plan.x.count() + k : k * plan.x.count() + i;
+    const OverturnPoint& at = map.points[static_cast<std::size_t>(point)];
+    out.push_back({axis.values[static_cast<std::size_t>(i)], at.runs, at.overturned});
+  }
+  return out;
+}
+
+std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k) {
+  constexpr double k_before = -1e9;  // s: at once, since nothing shakes yet
+  const Model& model = plan.scene.setup.model;
+  const Axis &along = map.fragility_along_y ? plan.y : plan.x,
+             &other = map.fragility_along_y ? plan.x : plan.y;
+  std::vector<FloorPeak> out;
+  for (int i = 0; i < along.count(); ++i) {
+    Parameters parameters = plan.scene.setup.parameters;
+    for (const auto& [axis, place] : {std::pair(&other, k), std::pair(&along, i)}) {
+      if (axis->table != "shake") continue;
+      std::optional<Edit> edit = io::parse_edit_key(axis->key);
+      if (!edit) return {};
+      edit->value = edited_value(parameters, edit->key, edit->shake);
+      edit->value.x() = axis->in_si(place);
+      apply(*edit, model, k_before, parameters);
+    }
+    out.push_back(floor_peak(parameters.shakes, plan.scene.setup.run.duration));
+  }
+  return out;
+}
+
+std::vector<Level> levels_over(const GroundMeasure& measure, std::vector<Level> levels,
+                               const std::vector<FloorPeak>& peaks) {
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i].intensity = peaks[i].*measure.value / measure.si;
+  return levels;
+}
+
+OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& rows) {
+  OverturnMap map;
+  const Model& model = plan.scene.setup.model;
+  for (int b = 0; b < model.furniture_total(); ++b) map.bodies.push_back(model.bodies[b].name);
+  map.of = plan.cases();
+  for (int p = 0; p < plan.points(); ++p) {
+    OverturnPoint point;
+    point.fell.resize(map.bodies.size());
+    int counts[static_cast<int>(Verdict::stands) + 1] = {};
+    for (int member = 0; member < plan.ensemble; ++member) {
+      const std::string& row = rows[static_cast<std::size_t>(p * plan.ensemble + member)];
+      if (row.empty()) continue;
+      ++map.run;
+      add_run(point, ordered_json::parse(row), counts);
+    }
+    std::ranges::sort(point.times);
+    if (point.runs > 0)
+      point.verdict = static_cast<Verdict>(std::ranges::max_element(counts) - std::begin(counts));
+    else if (point.failed > 0)
+      point.verdict = Verdict::failed;
+    map.points.push_back(std::move(point));
+  }
+  map.criteria = criteria(plan.scene.setup, plan.x, plan.y);
+  if (!is_intensity(plan.y) && !is_intensity(plan.x)) return map;
+  map.fragility_along_y = is_intensity(plan.y);
+  const Axis& other = map.fragility_along_y ? plan.x : plan.y;
+  map.own_column = own_place(other);
+  for (int k = 0; k < other.count(); ++k) map.fragility.push_back(fit_fragility(levels(plan, map, k)));
+  return map;
+}
+
+}  // namespace topple::study

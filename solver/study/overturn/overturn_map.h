@@ -1,0 +1,125 @@
+// Who overturns, over two keys of a scene.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/spread.h"
+#include "solver/study/overturn/criteria.h"
+#include "solver/study/overturn/floor_peak.h"
+#include "solver/study/overturn/fragility.h"
+
+namespace topple::study {
+
+/// What is computed: a run at each point of two axes, or `ensemble` of them with the amplitude of every shake
+/// times a factor within 1 -+ spread, evenly distributed, that depends on point and member alone.
+struct OverturnPlan {
+  io::Scene scene;
+  Axis x, y;
+  int ensemble = 1;
+  double spread = 0;
+  std::vector<std::string> set;  ///< KEY=VALUE, what runs have that the scene leaves out: motion alone is
+                                 ///< wanted, and a run stops when all has overturned
+
+  int points() const { return x.count() * y.count(); }
+  int cases() const { return points() * ensemble; }  ///< point ensemble + member
+};
+
+/// `x`, `y`: as of --x and --y; empty: frequency (of a pulse: duration) and amplitude of the first shake,
+/// 24 by 24. Throws io::InputError when the scene is not dynamic, an axis is refused, or there is no shake to
+/// perturb.
+OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
+                           double spread);
+
+/// What rows depend on, for KeptRows.
+nlohmann::ordered_json settings_of(const OverturnPlan& plan);
+
+/// The order in which cases are begun: one run at each point, coarse points first (coarse_to_fine), then
+/// rounds over all points that come to 4, 16, 64 ... runs.
+std::vector<int> case_order(const OverturnPlan& plan);
+
+/// Runs cases one after another; the scene of a point is read once for those that follow each other.
+class OverturnRunner {
+ public:
+  explicit OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {}
+  /// A row of JSON in one line: "status" ("completed", or why it failed), "fell" (s, per piece of furniture,
+  /// null: it stands), "lifted", "cpu_s". Empty: give_up() came true, it is asked after each step.
+  std::string run(int k, const std::function<bool()>& give_up);
+
+ private:
+  const OverturnPlan* plan_;
+  int point_ = -1;
+  std::optional<Setup> setup_;
+  std::string trouble_;  ///< why there is no setup
+};
+
+/// From the worst to the best that is known.
+enum class Verdict { not_computed, failed, all, some, rocks, stands };
+/// "all overturn".
+const char* name(Verdict verdict);
+
+/// What became of the runs at one point.
+struct OverturnPoint {
+  Verdict verdict = Verdict::not_computed;  ///< of most runs that ended, the worse of two; failed: all did
+  int runs = 0, failed = 0;                 ///< that ended, without and with failure
+  int overturned = 0;                       ///< runs in which a body overturned
+  std::vector<int> fell;                    ///< per piece of furniture: runs in which it did
+  std::vector<double> times;                ///< s, of the first overturning in each such run, ascending
+  std::string status = "not run";           ///< "completed", or why the first that failed did
+  double cpu = 0;                           ///< s
+
+  /// Of the runs that did not fail; none without one.
+  std::optional<double> probability() const;
+  std::optional<Interval> interval() const;
+  /// Quantile of the times, part = 0..1; none without times.
+  std::optional<double> time(double part) const;
+};
+
+struct OverturnMap {
+  std::vector<std::string> bodies;  ///< furniture
+  std::vector<OverturnPoint> points;
+  int run = 0, of = 0;  ///< cases
+  Criteria criteria;
+  /// Along the axis that is an amplitude or scale of a shake, at each value of the other.
+  std::vector<Fragility> fragility;
+  bool fragility_along_y = true;
+  /// Where on the other axis the scene's own value is nearest; the middle without one.
+  int own_column = 0;
+};
+
+/// rows: one per case; empty: not run.
+OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& rows);
+
+/// Runs at the values of the intensity axis, at place k of the other one.
+std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int k);
+
+/// How strong the floor shakes at those values, without the spread of an ensemble; empty: an axis changes the
+/// shake by a key that no edit has.
+std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k);
+
+/// Intensities that fragility is told over besides the axis's own.
+struct GroundMeasure {
+  const char *name, *title, *unit;  ///< "pga", "peak ground acceleration", "gal"
+  double FloorPeak::*value;
+  double si;
+};
+inline constexpr GroundMeasure k_ground_measures[] = {
+    {"pga", "peak ground acceleration", "gal", &FloorPeak::acceleration, k_gal},
+    {"pgv", "peak ground velocity", "cm/s", &FloorPeak::velocity, 0.01}};
+
+/// `levels` with a measure of the floor's motion, in its unit, as their intensity.
+std::vector<Level> levels_over(const GroundMeasure& measure, std::vector<Level> levels,
+                               const std::vector<FloorPeak>& peaks);
+
+/// The points as a list of flat objects: the content of overturn.csv.
+nlohmann::ordered_json rows_as_json(const OverturnPlan& plan, const OverturnMap& map);
+
+/// Axes, arrays over them (rows by y, columns by x), curves and fragility, by name.
+nlohmann::ordered_json map_as_json(const OverturnPlan& plan, const OverturnMap& map);
+
+}  // namespace topple::study
