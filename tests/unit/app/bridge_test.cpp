@@ -8,6 +8,7 @@
 
 #include "app/picture/annotations.h"
 #include "app/picture/words.h"
+#include "app/support/terms.h"
 #include "scenes.h"
 
 namespace topple::app {

@@ -8,7 +8,7 @@ namespace topple::test {
 namespace {
 
 // Angles on both sides of the switch from series to closed form (0.3), and up to pi.
-const double k_angles[] = {0, 1e-9, 1e-4, 0.1, 0.2999999, 0.3, 0.3000001, 0.7, 1.5, 2.5, 3.14};
+const double k_turns[] = {0, 1e-9, 1e-4, 0.1, 0.2999999, 0.3, 0.3000001, 0.7, 1.5, 2.5, 3.14};
 
 struct Reference {
   long double f0 = 0, f1 = 0, f2 = 0, df1 = 0, df2 = 0, g = 0, dg = 0;
@@ -52,7 +52,7 @@ Reference reference(long double x) {
 }
 
 TEST(Rotation, coefficients_agree_with_their_power_series_on_both_sides_of_the_switch) {
-  for (double a : k_angles) {
+  for (double a : k_turns) {
     SCOPED_TRACE(a);
     const double x = a * a;
     const Reference r = reference(x);
@@ -75,7 +75,7 @@ TEST(Rotation, coefficients_agree_with_their_power_series_on_both_sides_of_the_s
 
 TEST(Rotation, exponential_is_the_rotation_by_the_vectors_angle) {
   std::mt19937 rng(1);
-  for (double a : k_angles) {
+  for (double a : k_turns) {
     SCOPED_TRACE(a);
     const Vec3 axis = random_direction(rng);
     const Mat3 expected = Eigen::AngleAxisd(a, axis).toRotationMatrix();
@@ -88,7 +88,7 @@ TEST(Rotation, exponential_is_the_rotation_by_the_vectors_angle) {
 
 TEST(Rotation, logarithm_inverts_the_exponential) {
   std::mt19937 rng(2);
-  for (double a : k_angles)
+  for (double a : k_turns)
     for (int i = 0; i < 20; ++i) {
       const Vec3 psi = a * random_direction(rng);
       SCOPED_TRACE(psi.transpose());
@@ -127,7 +127,7 @@ TEST(Rotation, left_jacobian_carries_increments_to_the_left_of_the_exponential) 
 
 TEST(Rotation, inverse_jacobian_inverts_and_both_keep_the_axis) {
   std::mt19937 rng(5);
-  for (double a : k_angles)
+  for (double a : k_turns)
     for (int i = 0; i < 10; ++i) {
       const Vec3 psi = a * random_direction(rng);
       SCOPED_TRACE(psi.transpose());
