@@ -5,7 +5,7 @@
 
 namespace topple::app {
 
-/// The tables of phrases (app/*_words.h) as they are written.
+/// The tables of phrases (*_words.h, without those of reports) as they are written.
 std::string phrase_tables();
 
 }  // namespace topple::app
