@@ -74,7 +74,7 @@ TEST_F(ManualTest, page_has_every_folder_of_the_user_that_is_looked_at) {
   const std::string text = page(), files = text.substr(text.find("\n.SH FILES\n")),
                     environment = files.substr(files.find("\n.SH ENVIRONMENT\n"));
   std::set<std::string> variables;
-  for (const auto& entry : std::filesystem::directory_iterator(TOPPLE_SOURCE_DIR "/app"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(TOPPLE_SOURCE_DIR "/app"))
     if (entry.path().extension() == ".cpp")
       variables.merge(matches(bytes_of(entry.path()), R"re("(XDG_[A-Z_]+)")re"));
   EXPECT_GE(variables.size(), 3u);
