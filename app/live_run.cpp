@@ -76,7 +76,7 @@ void LiveRun::Worker::begin() {
     return;
   }
   if (stop_) return;
-  start_recording();
+  start_recording(arithmetic());
   record(observer_.observe(*run_));
   report_head();
   set(LiveStatus::Kind::halted);
