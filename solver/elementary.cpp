@@ -418,3 +418,11 @@ double hypot(double x, double y) {
 }
 
 }  // namespace topple::elementary
+
+namespace topple {
+
+const char* arithmetic() {
+  return "topple-1";
+}
+
+}  // namespace topple

@@ -29,3 +29,11 @@ double cbrt(double x);
 double hypot(double x, double y);
 
 }  // namespace topple::elementary
+
+namespace topple {
+
+/// What the bits of a run follow: a word for these functions, the rule of rounding, the order of operations
+/// and the method. Recordings keep it. Its number is raised when a scene comes to give other bits.
+const char* arithmetic();
+
+}  // namespace topple

@@ -212,18 +212,38 @@ State unpack(const Model& model, std::span<const double> numbers) {
   return state;
 }
 
-std::uint64_t hash(const State& state) {
-  std::uint64_t sum = 14695981039346656037ull;
-  const auto mix = [&](std::uint64_t bits) {
+namespace {
+
+// FNV-1a over numbers of eight bytes, the lowest byte first.
+class Hash {
+ public:
+  void mix(double number) {
+    const auto bits = std::bit_cast<std::uint64_t>(number);
     for (int shift = 0; shift < 64; shift += 8) {
-      sum ^= bits >> shift & 0xff;
-      sum *= 1099511628211ull;
+      sum_ ^= bits >> shift & 0xff;
+      sum_ *= 1099511628211ull;
     }
-  };
-  mix(static_cast<std::uint64_t>(state.step));
-  each_number(state, [&](double x) { mix(std::bit_cast<std::uint64_t>(x)); });
-  each_touching(state, [&](double x) { mix(std::bit_cast<std::uint64_t>(x)); });
-  return sum;
+  }
+  std::uint64_t sum() const { return sum_; }
+
+ private:
+  std::uint64_t sum_ = 14695981039346656037ull;
+};
+
+}  // namespace
+
+std::uint64_t hash(const State& state) {
+  Hash hash;
+  hash.mix(std::bit_cast<double>(state.step));
+  each_number(state, [&](double x) { hash.mix(x); });
+  each_touching(state, [&](double x) { hash.mix(x); });
+  return hash.sum();
+}
+
+std::uint64_t hash(std::span<const double> packed) {
+  Hash hash;
+  for (const double number : packed) hash.mix(number);
+  return hash.sum();
 }
 
 namespace {

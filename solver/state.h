@@ -87,6 +87,8 @@ State unpack(const Model& model, std::span<const double> numbers);
 
 /// 64-bit FNV-1a over the bytes of pack().
 std::uint64_t hash(const State& state);
+/// The same of a state that is packed, also as an older version packed it.
+std::uint64_t hash(std::span<const double> packed);
 
 /// No NaN, no infinity, nothing above k_largest_number anywhere; without `nodes` in all but the per-node and
 /// per-element arrays.

@@ -403,7 +403,8 @@ class CommandLine {
     add_path(command, "FILE", info_.file, "", "scene or recording").required();
     add_path(command, "--json", info_.json, "FILE|-", "write JSON; - for standard output");
     command.add_flag("--verify", info_.verify,
-                     "run the recording again; name the first step and element that differ");
+                     "run the recording again; name the first step and element that differ, and tell damage "
+                     "from another arithmetic");
     command.callback([this] { action_ = [this] { return info_command(info_); }; });
   }
 

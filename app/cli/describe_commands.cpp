@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
@@ -13,6 +14,7 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
+#include "solver/elementary.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
 #include "solver/io/scene/edit_text.h"
@@ -124,6 +126,8 @@ ordered_json describe(const io::Recording& recording) {
   const std::int32_t newest = recording.newest_branch();
   const std::vector<std::int64_t> shown = recording.frames_on_way_to(newest);
   out["kind"] = "recording";
+  out["format"] = recording.format();
+  out["arithmetic"] = recording.arithmetic();
   out["status"] = recording.status();
   out["frames"] = recording.frame_count();
   out["recorded_s"] = shown.empty() ? 0 : recording.index()[shown.back()].time;
@@ -149,36 +153,53 @@ std::string counted(std::int64_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+ordered_json describe(const io::Difference& found, const Model& model) {
+  const auto& [at, what, element] = found;
+  ordered_json out{
+      {"branch", at.branch}, {"step", at.step}, {"time_s", at.time}, {"what", what}, {"element", nullptr}};
+  if (element >= 0) {
+    const Member& member = model.members[model.elements[element].member];
+    out["element"] = element;
+    out["member"] = member.name;
+    out["body"] = model.bodies[member.body].name;
+  }
+  return out;
+}
+
 ordered_json verify(const io::Recording& recording) {
   const auto total = static_cast<double>(recording.checkpoint_count());
   Progress progress("re-run", "checkpoints", std::max(total, 1.), false);
   const io::Rerun rerun =
       io::rerun(recording, [&](std::int64_t seen) { progress.update(static_cast<double>(seen)); });
+  const bool same = rerun.differences.empty(), own = recording.arithmetic() == arithmetic();
   ordered_json out{{"checkpoints", rerun.checkpoints},
                    {"branches", recording.history().branches.size()},
-                   {"same", rerun.differences.empty()},
+                   {"damaged", !rerun.damage.empty() || (!same && own)},
+                   {"same", rerun.damage.empty() && same},
                    {"differences", ordered_json::array()}};
   const Model model = io::recorded_scene(recording).setup.model;
-  for (const auto& [at, what, element] : rerun.differences) {
-    ordered_json difference{
-        {"branch", at.branch}, {"step", at.step}, {"time_s", at.time}, {"what", what}, {"element", nullptr}};
-    if (element >= 0) {
-      const Member& member = model.members[model.elements[element].member];
-      difference["element"] = element;
-      difference["member"] = member.name;
-      difference["body"] = model.bodies[member.body].name;
-    }
-    out["differences"].push_back(std::move(difference));
-  }
+  for (const auto* list : {&rerun.damage, &rerun.differences})
+    for (const io::Difference& difference : *list) out["differences"].push_back(describe(difference, model));
   return out;
 }
 
-std::string verdict(const ordered_json& v) {
+double first_difference(const ordered_json& verify) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto& d : verify["differences"]) first = std::min(first, d["time_s"].get<double>());
+  return first;
+}
+
+std::string verdict(const ordered_json& recording) {
+  const ordered_json& v = recording["verify"];
   const auto checkpoints = v["checkpoints"].get<std::int64_t>();
   std::string out = fmt::format("re-run: {} of {} {} the same state {}\n",
                                 counted(checkpoints, "checkpoint", "checkpoints"),
                                 counted(v["branches"].get<std::int64_t>(), "branch", "branches"),
                                 checkpoints == 1 ? "has" : "have", checkpoints == 1 ? "hash" : "hashes");
+  if (!v["same"].get<bool>() && !v["damaged"].get<bool>())
+    out += fmt::format(
+        "undamaged; written by another arithmetic ({}, format {}): the re-run parts at {:.6g} s\n",
+        recording["arithmetic"].get<std::string>(), recording["format"].get<int>(), first_difference(v));
   for (const auto& d : v["differences"])
     out += fmt::format("branch {} differs first at {:.6g} s (step {}): {}{}\n", d["branch"].get<int>(),
                        d["time_s"].get<double>(), d["step"].get<std::int64_t>(), d["what"].get<std::string>(),
@@ -221,6 +242,8 @@ std::string table(const ordered_json& d) {
                      is_static(d) ? fmt::format("load step {}", d["recorded_steps"].get<long>())
                                   : fmt::format("{:g} s", d["recorded_s"].get<double>()),
                      d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
+  out +=
+      fmt::format("format {}; arithmetic: {}\n", d["format"].get<int>(), d["arithmetic"].get<std::string>());
   if (!is_static(d) && d.contains("energy")) out += energy_in_words(d["energy"]);
   if (d["branches"].size() > 1 || !d["edits"].empty())
     out += fmt::format("{}, {}\n", counted(d["branches"].size(), "branch", "branches"),
@@ -261,14 +284,15 @@ int info_command(const InfoOptions& options) {
     description = describe(io::load_scene(file));
     if (verified) throw BadInput("--verify: " + file + " is a scene; only a recording can be run again");
   }
-  const bool differs = verified && !description["verify"]["same"].get<bool>();
+  // Another arithmetic is no fault of the file: what can be verified of it is.
+  const bool damaged = verified && description["verify"]["damaged"].get<bool>();
   if (json == "-")
     fmt::print("{}\n", json_text(description, 2));
   else if (!json.empty())
     write_whole_file(json, json_text(description, 2) + "\n");
   else
-    fmt::print("{}{}", table(description), verified ? verdict(description["verify"]) : "");
-  return differs ? k_failed : k_done;
+    fmt::print("{}{}", table(description), verified ? verdict(description) : "");
+  return damaged ? k_failed : k_done;
 }
 
 int scenes_command() {

@@ -66,10 +66,10 @@ void LiveWorker::follow() {
   set(LiveStatus::Kind::replay);
 }
 
-void LiveWorker::start_recording() {
+void LiveWorker::start_recording(const std::string& arithmetic) {
   if (source_.output.empty()) return;
   try {
-    auto recorder = std::make_shared<LiveRecorder>(source_.output, *source_.scene);
+    auto recorder = std::make_shared<LiveRecorder>(source_.output, *source_.scene, arithmetic);
     const std::lock_guard lock(mutex_);
     recorder_ = std::move(recorder);
     status_.recording = source_.output;
@@ -107,6 +107,13 @@ void LiveWorker::fork(const Fork& from) {
   const bool replayed = source_.recording.has_value();
   if (run_) record(observer_.last(*run_));
   going_ = false;
+  try {
+    if (replayed) io::expect_to_go_on(*source_.recording);
+  } catch (const io::InputError& error) {
+    status_.message = error.what();
+    set(LiveStatus::Kind::replay);
+    return;
+  }
   set(LiveStatus::Kind::returning);
   Run run = run_before(from.branch, from.step);
   bool reached = run.status().ok();
@@ -141,7 +148,7 @@ void LiveWorker::fork(const Fork& from) {
 void LiveWorker::carry_on_recording() {
   const io::Recording from = std::move(*source_.recording);
   source_.recording.reset();
-  start_recording();
+  start_recording(from.arithmetic());
   if (recorder_) {
     for (const Branch& branch : history_.branches)
       if (branch.parent >= 0) recorder_->post(branch);

@@ -18,8 +18,9 @@ class LiveRecorder {
  public:
   using Item = std::variant<io::Observation, Branch, LoggedEdit>;
 
-  /// Starts the recording. Throws io::WriteError when it cannot be.
-  LiveRecorder(const std::string& path, const io::Scene& scene);
+  /// Starts the recording. `arithmetic`: as for io::Recorder. Throws io::WriteError when it cannot be.
+  LiveRecorder(const std::string& path, const io::Scene& scene,
+               const std::string& arithmetic = topple::arithmetic());
   /// A recording that was not finished reads as interrupted.
   ~LiveRecorder();
   LiveRecorder(const LiveRecorder&) = delete;
@@ -33,7 +34,7 @@ class LiveRecorder {
   std::string failure() const;
 
  private:
-  void work(const std::string& path, const io::Scene& scene);
+  void work(const std::string& path, const io::Scene& scene, const std::string& arithmetic);
   void write_until_ended(io::Recorder& recorder);
 
   mutable std::mutex mutex_;

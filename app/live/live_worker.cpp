@@ -75,7 +75,7 @@ void LiveWorker::begin() {
     return;
   }
   if (stop_) return;
-  start_recording();
+  start_recording(arithmetic());
   record(observer_.observe(*run_));
   report_head();
   set(LiveStatus::Kind::halted);

@@ -102,7 +102,7 @@ class LiveWorker {
   void read_recording();
   void read_rows();
   void follow();
-  void start_recording();
+  void start_recording(const std::string& arithmetic);
   void obey(const Command& command);
   void change(const Edit& edit);
   void fork(const Fork& from);

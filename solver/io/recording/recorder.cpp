@@ -7,8 +7,9 @@ struct Recorder::Impl {
 };
 
 Recorder::Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-                   const Model& model, const std::vector<SceneFile>& files)
-    : impl_(new Impl{RecordingWriter(path, scene_name, scene_text, model, row_shape(model), files)}) {}
+                   const Model& model, const std::vector<SceneFile>& files, const std::string& arithmetic)
+    : impl_(new Impl{
+          RecordingWriter(path, scene_name, scene_text, model, row_shape(model), files, arithmetic)}) {}
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/elementary.h"
 #include "solver/history.h"
 #include "solver/io/common/errors.h"
 #include "solver/io/recording/observer.h"
@@ -18,14 +19,19 @@ namespace topple::io {
 inline constexpr const char* k_another_model =
     "the scene in the recording gives another model than the one it was recorded with";
 
+/// Recording::arithmetic() of one that does not name its own: sines and logarithms were the C library's.
+inline constexpr const char* k_system_arithmetic = "the system's functions";
+
 /// Writes a recording while the run goes on. One thread owns it. After a failed write it never touches the
 /// file again and every call throws the first WriteError.
 class Recorder {
  public:
   /// Starts the recording in "PATH.part-PID"; the first flush with a frame renames it to `path`, so that a
-  /// start that fails leaves an older file there as it was. Writes branch 0. Throws WriteError.
+  /// start that fails leaves an older file there as it was. Writes branch 0. `arithmetic`: of the rows; of
+  /// another recording when it is gone on from. Throws WriteError.
   Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-           const Model& model, const std::vector<SceneFile>& files = {});
+           const Model& model, const std::vector<SceneFile>& files = {},
+           const std::string& arithmetic = topple::arithmetic());
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
@@ -64,6 +70,13 @@ class Recording {
   Recording(Recording&&) noexcept;
   Recording& operator=(Recording&&) noexcept;
 
+  std::int32_t format() const;
+  /// That its rows and state hashes follow (elementary.h).
+  const std::string& arithmetic() const;
+  /// A run can go on from its checkpoints. Those of older formats are numbers for their hash alone.
+  bool can_go_on() const;
+  /// Makes zero what frames of its format do not hold.
+  void leave_out_unrecorded(FrameRow& row) const;
   const std::string& scene_name() const;
   const std::string& scene_text() const;
   /// Those that the scene names, as they were when it was recorded.
@@ -103,6 +116,9 @@ class Recording {
 
 /// The scene from the text and the files in the recording. Throws InputError.
 Scene recorded_scene(const Recording& recording);
+
+/// Throws InputError where no run can go on from the recording.
+void expect_to_go_on(const Recording& recording);
 
 /// True when the file's first bytes are those of HDF5.
 bool is_recording(const std::string& path);

@@ -1,7 +1,11 @@
 #include "solver/io/recording/recording_format.h"
 
+#include <algorithm>
+
 namespace topple::io {
 namespace {
+
+constexpr std::size_t k_plastic = 8, k_damping = 9, k_model_switch = 10;  // columns of /frames/energy
 
 struct Column {
   const char* name;
@@ -20,11 +24,12 @@ Handle four_numbers() {
   return Handle(H5Tarray_create2(H5T_IEEE_F64LE, 1, &count), H5Tclose);
 }
 
-Handle event_kind(bool anchors) {
+Handle event_kind(int kinds, bool anchors) {
   Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
-  const auto insert = [&type](const char* name, Event::Kind kind) {
+  int left = kinds;
+  const auto insert = [&](const char* name, Event::Kind kind) {
     const auto number = static_cast<std::int32_t>(kind);
-    checked(H5Tenum_insert(type, name, &number));
+    if (left-- > 0) checked(H5Tenum_insert(type, name, &number));
   };
   insert("uplift", Event::Kind::uplift);
   insert("impact", Event::Kind::impact);
@@ -32,11 +37,28 @@ Handle event_kind(bool anchors) {
   insert("hinge", Event::Kind::hinge);
   insert("fracture", Event::Kind::fracture);
   insert("model", Event::Kind::model);
-  if (anchors) insert("anchor", Event::Kind::anchor);
+  left = anchors;
+  insert("anchor", Event::Kind::anchor);
   return type;
 }
 
 }  // namespace
+
+bool Format::has_field(std::string_view name) const {
+  return std::ranges::find(no_fields, name) == no_fields.end();
+}
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all{
+      {1, 3, false, {"member_contact", "load_factor"}, {k_plastic, k_damping, k_model_switch}},
+      {2, 5, false, {"member_contact", "load_factor"}, {k_plastic, k_damping, k_model_switch}},
+      {3, 5, false, {"member_contact"}, {k_damping, k_model_switch}},
+      {4, 6, false, {"member_contact"}, {k_damping}},
+      {5, 6, false, {"member_contact"}, {k_damping}},
+      {6, 6, true, {"member_contact"}},
+      {k_format_version, 6, true, {}}};
+  return all;
+}
 
 template <>
 Handle record_type<FrameRecord>() {
@@ -61,9 +83,20 @@ Handle record_type<CheckpointRecord>() {
                               {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
 }
 
-Handle event_type(bool anchors) {
+template <>
+Handle record_type<StateRowRecord>() {
+  using R = StateRowRecord;
+  return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
+                              {"data_checksum", offsetof(R, data_checksum), H5T_STD_U32LE},
+                              {"step", offsetof(R, step), H5T_STD_I64LE},
+                              {"time", offsetof(R, time), H5T_IEEE_F64LE},
+                              {"hash", offsetof(R, hash), H5T_STD_U64LE},
+                              {"checksum", offsetof(R, checksum), H5T_STD_U32LE}});
+}
+
+Handle event_type(const Format& format, bool anchors) {
   using R = EventRecord;
-  const Handle kind = event_kind(anchors);
+  const Handle kind = event_kind(format.event_kinds, anchors);
   const Handle value = four_numbers();
   return compound(sizeof(R), {{"branch", offsetof(R, branch), H5T_STD_I32LE},
                               {"kind", offsetof(R, kind), kind},
@@ -164,6 +197,14 @@ void expect_same_model(const Model& model, const FrameRow& row) {
       row.contact_depth.size() != model.contact_points.size() * model.planes.size() ||
       row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
     throw InputError(k_another_model);
+}
+
+void leave_out(const Format& format, FrameRow& row) {
+  const auto fields = frame_fields({});
+  const auto bytes = field_bytes(row);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (!format.has_field(fields[i].name)) std::ranges::fill(bytes[i], std::byte{});
+  for (const std::size_t column : format.no_energies) row.energy[column] = 0;
 }
 
 }  // namespace topple::io

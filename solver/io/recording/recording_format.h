@@ -1,6 +1,6 @@
 // What a recording looks like inside, shared by its writer and its reader. All numbers are little-endian.
 //
-//   /              attributes: format, version, scene (its name)
+//   /              attributes: format, version, scene (its name), arithmetic (absent in older ones)
 //   /scene         the scene text, bytes
 //   /files/N       the files that it names, bytes; attribute: name. Absent in older recordings
 //   /model/...     fixed data, see recording_model.cpp; every fixed data set has its CRC-32C as attribute
@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "solver/io/recording/frame_row.h"
@@ -30,6 +31,19 @@ namespace topple::io {
 inline constexpr const char* k_format = "topple recording";
 inline constexpr std::int32_t k_format_version = 7;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
+
+/// How the recordings of one format differ from those of today.
+struct Format {
+  std::int32_t version;
+  int event_kinds;                            ///< of Event::Kind, `anchor` not counted
+  bool can_go_on;                             ///< states are packed as they are now
+  std::vector<std::string_view> no_fields;    ///< data sets of today's /frames that are not there
+  std::vector<std::size_t> no_energies = {};  ///< columns of today's /frames/energy that are not there
+
+  bool has_field(std::string_view name) const;
+};
+/// Those that are read, the oldest first. What a format does not hold is read as zero.
+const std::vector<Format>& formats();
 
 /// Rows per chunk of the frame fields, and rows gathered before they are handed to HDF5.
 inline constexpr hsize_t k_chunk_rows = 32;
@@ -49,6 +63,15 @@ struct CheckpointRecord {
   double time = 0;
   std::uint64_t hash = 0;
   std::int64_t first = 0, count = 0;  ///< of its numbers
+  std::uint32_t checksum = 0, unused = 0;
+};
+/// Of the first recordings: their states have one size, and each is a row of /checkpoints/state.
+struct StateRowRecord {
+  std::int32_t branch = k_not_written;
+  std::uint32_t data_checksum = 0;
+  std::int64_t step = 0;
+  double time = 0;
+  std::uint64_t hash = 0;
   std::uint32_t checksum = 0, unused = 0;
 };
 struct EventRecord {
@@ -87,7 +110,7 @@ struct ResultRecord {
 template <typename Record>
 Handle record_type();
 /// Of EventRecord.
-Handle event_type(bool anchors);
+Handle event_type(const Format& format, bool anchors);
 
 template <typename Record>
 std::uint32_t record_checksum(const Record& record) {
@@ -143,6 +166,8 @@ auto field_bytes(Row& row) {
 
 /// Throws InputError when the rows are not those of the model.
 void expect_same_model(const Model& model, const FrameRow& row);
+/// Makes zero what a row of this format does not hold.
+void leave_out(const Format& format, FrameRow& row);
 
 /// Writes the group /model.
 void write_model(hid_t file, const Model& model);

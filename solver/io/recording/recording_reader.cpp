@@ -1,10 +1,12 @@
 #include "solver/io/recording/recording_reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <tuple>
@@ -133,7 +135,8 @@ struct Recording::Impl {
                            &branch_rows, &result_rows, &summary_bytes}) {
       *set = {};
     }
-    fields.clear();
+    fields = {};
+    held.clear();
     file.reset();
   }
 
@@ -146,6 +149,7 @@ struct Recording::Impl {
                   H5Fclose);
     expect_format();
     name = read_text_attribute(file, "scene");
+    read_arithmetic();
     const auto bytes = read_fixed(file, "scene");
     text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     read_files();
@@ -154,17 +158,27 @@ struct Recording::Impl {
     load();
   }
 
-  void expect_format() const {
+  void expect_format() {
     if (!has_attribute(file, "format") || !has_attribute(file, "version") ||
         read_text_attribute(file, "format") != k_format) {
       throw InputError(path + ": is an HDF5 file, but not a recording of topple");
     }
     const std::int32_t version = read_int_attribute(file, "version");
-    if (version != k_format_version) {
+    const auto found =
+        std::ranges::find_if(formats(), [version](const Format& f) { return f.version == version; });
+    if (found == formats().end()) {
       throw InputError(path + ": recording format " + std::to_string(version) +
-                       " is not supported by this version, which reads format " +
-                       std::to_string(k_format_version));
+                       " is not supported by this version, which reads formats " +
+                       std::to_string(formats().front().version) + " to " + std::to_string(k_format_version));
     }
+    format = &*found;
+  }
+
+  void read_arithmetic() {
+    arithmetic =
+        has_attribute(file, "arithmetic") ? read_text_attribute(file, "arithmetic") : k_system_arithmetic;
+    const auto is_printed = [](unsigned char c) { return c < 0x80 && std::isprint(c); };
+    if (!std::ranges::all_of(arithmetic, is_printed)) throw Hdf5Error("attribute arithmetic is damaged");
   }
 
   void read_files() {
@@ -193,43 +207,73 @@ struct Recording::Impl {
   void open_rows() {
     const auto records = [this](const char* set, const Handle& type) { return RowReader(file, set, type); };
     frame_index = records("frames/index", record_type<FrameRecord>());
-    checkpoint_index = records("checkpoints/index", record_type<CheckpointRecord>());
+    checkpoint_state = RowReader(file, "checkpoints/state", H5T_IEEE_F64LE);
+    state_row.reset();
+    const auto dims = checkpoint_state.row_dims();
+    if (dims.size() > 1) throw Hdf5Error("checkpoints/state has another shape than expected");
+    if (!dims.empty()) state_row = std::max<hsize_t>(dims[0], 1);
+    checkpoint_index = records("checkpoints/index",
+                               state_row ? record_type<StateRowRecord>() : record_type<CheckpointRecord>());
     const bool anchors = checked(H5Lexists(file, "frames/anchor", H5P_DEFAULT)) > 0;
-    event_rows = records("events", event_type(anchors));
+    event_rows = records("events", event_type(*format, anchors));
     edit_rows = records("edits", record_type<EditRecord>());
     branch_rows = records("branches", record_type<BranchRecord>());
     result_rows = records("result", record_type<ResultRecord>());
     summary_bytes = records("summary", text_type(1));
-    checkpoint_state = RowReader(file, "checkpoints/state", H5T_IEEE_F64LE);
+    open_fields(anchors);
+  }
+
+  void open_fields(bool anchors) {
     const auto descriptions = frame_fields({});
     for (std::size_t i = 0; i < (anchors ? k_field_count : k_field_count - 1); ++i) {
+      if (!format->has_field(descriptions[i].name)) continue;
       const std::string set = std::string("frames/") + descriptions[i].name;
-      fields.emplace_back(file, set.c_str(), descriptions[i].type);
+      fields[i] = RowReader(file, set.c_str(), descriptions[i].type);
+      held.push_back(i);
     }
-    const auto first = [](const RowReader& rows) {
-      const auto dims = rows.row_dims();
-      return dims.empty() ? std::size_t{0} : static_cast<std::size_t>(dims[0]);
+    const auto first = [&](std::string_view field) {
+      for (const std::size_t i : held)
+        if (const auto dims = fields[i].row_dims(); descriptions[i].name == field && !dims.empty())
+          return static_cast<std::size_t>(dims[0]);
+      return std::size_t{0};
     };
-    shape = {.nodes = first(fields[0]),
-             .elements = first(fields[2]),
-             .contacts = first(fields[5]),
-             .touched = first(fields[7]),
-             .bodies = first(fields[9]),
-             .anchors = anchors ? first(fields.back()) : 0};
-    const auto expected = frame_fields(shape);
-    for (std::size_t i = 0; i < fields.size(); ++i) {
+    shape = {.nodes = first("position"),
+             .elements = first("section_force"),
+             .contacts = first("contact_depth"),
+             .touched = first("member_contact"),
+             .bodies = first("body"),
+             .anchors = first("anchor")};
+    auto expected = frame_fields(shape);
+    for (const std::size_t i : held) {
+      if (descriptions[i].name == std::string_view("energy"))
+        expected[i].dims[0] -= format->no_energies.size();
       if (fields[i].row_dims() != expected[i].dims) {
         throw Hdf5Error(std::string("frames/") + expected[i].name + " has another shape than expected");
       }
     }
+    if (!format->has_field("member_contact") && shape.bodies > 1) shape.touched = shape.elements;
+  }
+
+  std::vector<CheckpointRecord> read_checkpoints() const {
+    if (!state_row) return read_records<CheckpointRecord>(checkpoint_index, "checkpoints/index");
+    std::vector<CheckpointRecord> records;
+    for (const auto& r : read_records<StateRowRecord>(checkpoint_index, "checkpoints/index"))
+      records.push_back({.branch = r.branch,
+                         .data_checksum = r.data_checksum,
+                         .step = r.step,
+                         .time = r.time,
+                         .hash = r.hash,
+                         .first = static_cast<std::int64_t>(records.size() * *state_row),
+                         .count = static_cast<std::int64_t>(*state_row)});
+    return records;
   }
 
   void load() {
     frames = read_records<FrameRecord>(frame_index, "frames/index");
-    checkpoints = read_records<CheckpointRecord>(checkpoint_index, "checkpoints/index");
+    checkpoints = read_checkpoints();
     recorded_events = read_records<EventRecord>(event_rows, "events");
-    for (const RowReader& field : fields) frames.resize(std::min<std::size_t>(frames.size(), field.rows()));
-    const auto numbers = static_cast<std::int64_t>(checkpoint_state.rows());
+    for (const std::size_t i : held) frames.resize(std::min<std::size_t>(frames.size(), fields[i].rows()));
+    const auto numbers = static_cast<std::int64_t>(checkpoint_state.rows() * state_row.value_or(1));
     for (const CheckpointRecord& record : checkpoints)
       if (record.first < 0 || record.count < 0 || record.first > numbers)
         throw Hdf5Error("checkpoints/index is damaged");
@@ -285,12 +329,15 @@ struct Recording::Impl {
     row.branch = record.branch;
     row.step = record.step;
     row.time = record.time;
+    row.energy.resize(row.energy.size() - format->no_energies.size());
     std::uint32_t checksum = 0;
     const auto bytes = field_bytes(row);
-    for (std::size_t i = 0; i < fields.size(); ++i) {
+    for (const std::size_t i : held) {
       fields[i].read(index, 1, bytes[i].data());
       checksum = crc32c(bytes[i], checksum);
     }
+    for (const std::size_t column : format->no_energies)
+      row.energy.insert(row.energy.begin() + static_cast<std::ptrdiff_t>(column), 0.);
     if (checksum != record.data_checksum) {
       throw Hdf5Error("frame " + std::to_string(index) + " is damaged (checksum differs)");
     }
@@ -311,7 +358,7 @@ struct Recording::Impl {
                            &edit_rows, &branch_rows, &checkpoint_state}) {
       set->refresh();
     }
-    for (RowReader& field : fields) field.refresh();
+    for (const std::size_t i : held) fields[i].refresh();
     load();
     return known() != before;
   }
@@ -321,9 +368,12 @@ struct Recording::Impl {
   Handle file;
   RowReader frame_index, checkpoint_index, checkpoint_state, event_rows, edit_rows, branch_rows, result_rows,
       summary_bytes;
-  std::vector<RowReader> fields;
+  const Format* format = nullptr;
+  std::array<RowReader, k_field_count> fields;
+  std::vector<std::size_t> held;     ///< those of the fields that there are
+  std::optional<hsize_t> state_row;  ///< numbers of every state, where each is a row
   RowShape shape;
-  std::string name, text, status, summary;
+  std::string name, arithmetic, text, status, summary;
   std::vector<SceneFile> scene_files;
   std::vector<FrameRecord> frames;
   std::vector<CheckpointRecord> checkpoints;
@@ -337,6 +387,18 @@ Recording::~Recording() = default;
 Recording::Recording(Recording&&) noexcept = default;
 Recording& Recording::operator=(Recording&&) noexcept = default;
 
+std::int32_t Recording::format() const {
+  return impl_->format->version;
+}
+const std::string& Recording::arithmetic() const {
+  return impl_->arithmetic;
+}
+bool Recording::can_go_on() const {
+  return impl_->format->can_go_on;
+}
+void Recording::leave_out_unrecorded(FrameRow& row) const {
+  leave_out(*impl_->format, row);
+}
 const std::string& Recording::scene_name() const {
   return impl_->name;
 }
@@ -376,7 +438,7 @@ bool Recording::left_open() const {
 }
 std::int64_t Recording::incomplete_frames() const {
   hsize_t begun = impl_->frame_index.rows();
-  for (const RowReader& field : impl_->fields) begun = std::max(begun, field.rows());
+  for (const std::size_t i : impl_->held) begun = std::max(begun, impl_->fields[i].rows());
   return static_cast<std::int64_t>(begun) - frame_count();
 }
 
@@ -415,8 +477,9 @@ Checkpoint Recording::checkpoint(std::int64_t index) const {
                           .time = record.time,
                           .hash = record.hash,
                           .state = std::vector<double>(static_cast<std::size_t>(record.count))};
-    impl_->checkpoint_state.read(static_cast<hsize_t>(record.first), static_cast<hsize_t>(record.count),
-                                 checkpoint.state.data());
+    const auto row = static_cast<std::int64_t>(impl_->state_row.value_or(1));
+    impl_->checkpoint_state.read(static_cast<hsize_t>(record.first / row),
+                                 static_cast<hsize_t>(record.count / row), checkpoint.state.data());
     if (crc32c(std::as_bytes(std::span(checkpoint.state))) != record.data_checksum) {
       throw Hdf5Error("checkpoint " + std::to_string(index) + " is damaged (checksum differs)");
     }
@@ -453,6 +516,14 @@ Scene recorded_scene(const Recording& recording) {
     throw InputError(name + ": is not in the recording");
   };
   return parse_scene(recording.scene_text(), recording.scene_name(), {}, read);
+}
+
+void expect_to_go_on(const Recording& recording) {
+  if (recording.can_go_on()) return;
+  const auto first = std::ranges::find_if(formats(), [](const Format& f) { return f.can_go_on; });
+  throw InputError("the recording has format " + std::to_string(recording.format()) +
+                   ": it can be looked at and exported; runs go on from format " +
+                   std::to_string(first->version) + " and later");
 }
 
 bool is_recording(const std::string& path) {

@@ -88,7 +88,7 @@ void RowSet::describe(const char* units, const char* columns) {
 
 RecordingWriter::RecordingWriter(const std::string& path, const std::string& scene_name,
                                  const std::string& scene_text, const Model& model, const RowShape& shape,
-                                 const std::vector<SceneFile>& files)
+                                 const std::vector<SceneFile>& files, const std::string& arithmetic)
     : path_(destination(path)), part_(path_), shown_path_(path) {
   part_ += ".part-" + std::to_string(getpid());
   std::error_code ignored;
@@ -98,7 +98,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const std::string& sce
       descriptions_ = frame_fields(shape);
       std::transform(descriptions_.begin(), descriptions_.end(), field_bytes_.begin(), row_bytes);
       field_count_ = field_count(shape);
-      create(scene_name, scene_text, model, files);
+      create(scene_name, scene_text, model, files, arithmetic);
     });
   } catch (const WriteError&) {
     fs::remove(part_, ignored);
@@ -133,7 +133,7 @@ void RecordingWriter::guarded(Work&& work) {
 }
 
 void RecordingWriter::create(const std::string& scene_name, const std::string& scene_text, const Model& model,
-                             const std::vector<SceneFile>& files) {
+                             const std::vector<SceneFile>& files, const std::string& arithmetic) {
   const Handle access = unbuffered_access();
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
@@ -145,6 +145,7 @@ void RecordingWriter::create(const std::string& scene_name, const std::string& s
   write_attribute(file_, "format", k_format);
   write_attribute(file_, "version", k_format_version);
   write_attribute(file_, "scene", scene_name);
+  write_attribute(file_, "arithmetic", arithmetic);
   const Handle character = text_type(1);
   write_fixed(file_, "scene", character, {scene_text.size()}, scene_text.data());
   write_files(files);
@@ -184,7 +185,7 @@ void RecordingWriter::create_rows() {
   checkpoint_index_ = records(checkpoints, "index", CheckpointRecord{});
   checkpoint_state_ = RowSet(checkpoints, "state", H5T_IEEE_F64LE, {}, k_number_chunk);
   const EventRecord no_event;
-  const Handle event = event_type(field_count_ == k_field_count);
+  const Handle event = event_type(formats().back(), field_count_ == k_field_count);
   events_ = RowSet(file_, "events", event, {}, k_index_chunk_rows, &no_event);
   edits_ = records(file_, "edits", EditRecord{});
   blobs_ = RowSet(file_, "blobs", H5T_STD_U8LE, {}, k_byte_chunk);

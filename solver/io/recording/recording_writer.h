@@ -43,7 +43,8 @@ class RecordingWriter {
   /// Starts the recording as "PATH.part-PID" beside `path`. The first flush with a frame renames it to
   /// `path`, so that a start that fails leaves an older file at `path` as it was. Throws WriteError.
   RecordingWriter(const std::string& path, const std::string& scene_name, const std::string& scene_text,
-                  const Model& model, const RowShape& shape, const std::vector<SceneFile>& files = {});
+                  const Model& model, const RowShape& shape, const std::vector<SceneFile>& files = {},
+                  const std::string& arithmetic = topple::arithmetic());
   /// Closes; without finish() the recording reads as interrupted.
   ~RecordingWriter();
   RecordingWriter(const RecordingWriter&) = delete;
@@ -63,7 +64,7 @@ class RecordingWriter {
   template <typename Work>
   void guarded(Work&& work);
   void create(const std::string& scene_name, const std::string& scene_text, const Model& model,
-              const std::vector<SceneFile>& files);
+              const std::vector<SceneFile>& files, const std::string& arithmetic);
   void write_files(const std::vector<SceneFile>& files);
   void create_rows();
   [[noreturn]] void refuse(const std::string& what, double time);

@@ -35,12 +35,13 @@ SoundRows sound_rows(const Recording& recording) {
 }
 
 void write_recovered(const Recording& recording, const SoundRows& rows, const std::string& path) {
+  expect_to_go_on(recording);  // a copy of another format would hold what nobody recorded
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
   if (!rows.frames.empty()) expect_same_model(model, recording.frame(rows.frames.front()));
   StagedFile staged(path);
   RecordingWriter writer(staged.part().string(), recording.scene_name(), recording.scene_text(), model,
-                         row_shape(model), recording.scene_files());
+                         row_shape(model), recording.scene_files(), recording.arithmetic());
   for (const Branch& branch : recording.history().branches)
     if (branch.parent >= 0) writer.append(branch);  // a writer begins with the root
   for (const LoggedEdit& edit : recording.history().edits) writer.append(edit);

@@ -19,7 +19,7 @@ SoundRows sound_rows(const Recording& recording);
 
 /// Writes a closed recording that holds these rows and all events, edits, branches and the result of
 /// `recording`. It appears at `path` whole or not at all. Throws WriteError, and InputError when the scene
-/// gives another model now than the one that was recorded.
+/// gives another model now than the one that was recorded, or the format is one that no run goes on from.
 void write_recovered(const Recording& recording, const SoundRows& rows, const std::string& path);
 
 }  // namespace topple::io

@@ -41,6 +41,7 @@ std::optional<topple::Run> start(const Recording& recording, const Setup& setup,
       if (logged.step <= run.step()) run.edit(logged.edit);
     return run;
   }
+  if (!recording.can_go_on()) return std::nullopt;
   const std::optional<Checkpoint> checkpoint = checkpoint_before(recording, branch);
   if (!checkpoint) return std::nullopt;
   State state = state_of(setup.model, *checkpoint);
@@ -118,20 +119,38 @@ Difference difference(const Model& model, const Instant& at, const State& record
   return out;
 }
 
+template <typename Row>
+Instant instant_of(const Row& row) {
+  return {row.branch, row.step, row.time};
+}
+
+bool has_its_hash(const Checkpoint& checkpoint) {
+  return hash(std::span(checkpoint.state)) == checkpoint.hash;
+}
+
+/// Reads everything, as the comparison of a branch ends at its first difference.
+std::vector<Difference> damage(const Recording& recording) {
+  std::vector<Difference> found;
+  for (std::int64_t i = 0; i < recording.frame_count(); ++i) recording.frame(i);
+  for (std::int64_t i = 0; i < recording.checkpoint_count(); ++i)
+    if (const Checkpoint checkpoint = recording.checkpoint(i); !has_its_hash(checkpoint))
+      found.push_back({instant_of(checkpoint), "hash of the stored state"});
+  return found;
+}
+
 /// Steps a branch again; nothing when all is the same.
 class Comparison {
  public:
   Comparison(const Recording& recording, const Setup& setup, const Branch& branch)
       : recording_(recording), model_(setup.model), branch_(branch), run_(start(recording, setup, branch)) {}
 
-  /// Up to the checkpoint; false after the first difference.
+  /// Up to the checkpoint; false after the first difference and for a state that cannot be compared.
   bool reach(std::int64_t checkpoint) {
     const Checkpoint recorded = recording_.checkpoint(checkpoint);
     if (!compare_frames(recorded.step) || !go_to(recorded)) return false;
+    if (!recording_.can_go_on() || !has_its_hash(recorded)) return false;
     const State state = state_of(model_, recorded);
-    if (hash(state) != recorded.hash)
-      difference_ = {instant_of(recorded), "hash of the stored state"};
-    else if (hash(run_->state()) != recorded.hash)
+    if (hash(run_->state()) != recorded.hash)
       difference_ = topple::io::difference(model_, instant_of(recorded), state, run_->state());
     return !difference_;
   }
@@ -140,10 +159,6 @@ class Comparison {
   const std::optional<Difference>& found() const { return difference_; }
 
  private:
-  template <typename Row>
-  static Instant instant_of(const Row& row) {
-    return {row.branch, row.step, row.time};
-  }
   template <typename Row>
   bool go_to(const Row& row) {
     if (!run_ || !repeat(*run_, recording_.history(), branch_.id, row.step))
@@ -163,7 +178,9 @@ class Comparison {
       const bool edited = std::any_of(edits.begin(), edits.end(), [&](const LoggedEdit& e) {
         return e.branch == at.branch && e.step == at.step;
       });
-      difference_ = topple::io::difference(model_, recorded, frame_row(*run_), edited);
+      FrameRow again = frame_row(*run_);
+      recording_.leave_out_unrecorded(again);
+      difference_ = topple::io::difference(model_, recorded, again, edited);
     }
     return !difference_;
   }
@@ -185,6 +202,7 @@ Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>&
   if (recording.frame_count() > 0) expect_same_model(setup.model, recording.frame(0));
   const std::vector<Instant>& all = recording.checkpoint_index();
   Rerun result;
+  result.damage = damage(recording);
   std::int64_t passed = 0;
   for (const Branch& branch : history.branches) {
     Comparison comparison(recording, setup, branch);

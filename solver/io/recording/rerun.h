@@ -24,13 +24,15 @@ struct Difference {
 /// What a second run came to.
 struct Rerun {
   std::int64_t checkpoints = 0;         ///< found the same
+  std::vector<Difference> damage;       ///< stored states that do not have their hashes
   std::vector<Difference> differences;  ///< of each branch the first
 };
 
-/// Runs every branch again, from the scene text and the edits, and compares the numbers of all its frames
-/// and the state hashes of its checkpoints: the root from its start, others from their parent at the fork,
-/// which is reached from the checkpoint before it and not compared again. `seen` is called with the number of
-/// checkpoints passed. Throws InputError for a recording that does not belong to its scene.
+/// Reads every frame and checkpoint, then runs every branch again, from the scene text and the edits, and
+/// compares the numbers of all its frames and the state hashes of its checkpoints (of formats from which a
+/// run can go on): the root from its start, others from their parent at the fork, which is reached from the
+/// checkpoint before it and not compared again. `seen` is called with the number of checkpoints passed.
+/// Throws InputError for a recording that is damaged or does not belong to its scene.
 Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>& seen);
 
 }  // namespace topple::io

@@ -67,7 +67,7 @@ class PlayerTest : public ::testing::Test {
     const io::Recording recording(path(name));
     EXPECT_EQ(recording.history().branches.size(), static_cast<std::size_t>(branches));
     const io::Rerun rerun = io::rerun(recording, [](std::int64_t) {});
-    EXPECT_TRUE(rerun.differences.empty());
+    EXPECT_TRUE(rerun.damage.empty() && rerun.differences.empty());
     EXPECT_GT(rerun.checkpoints, branches);
   }
 
@@ -350,6 +350,21 @@ TEST_F(PlayerTest, a_recording_is_replayed_and_comes_to_life_in_a_file_of_its_ow
       }());
   run_->close("stopped");
   expect_repeatable("again.h5", 2);
+}
+
+TEST_F(PlayerTest, a_recording_from_which_no_run_goes_on_is_shown_and_says_so) {
+  io::Recording recording(TOPPLE_SOURCE_DIR "/tests/recordings/format-3.h5");
+  const auto scene = std::make_shared<const io::Scene>(io::recorded_scene(recording));
+  start({.scene = scene, .recording = std::move(recording), .output = path("again.h5")});
+  EXPECT_EQ(player().way().size(), 7u);
+  player().scrub(0.2);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return !player().status().message.empty(); }));
+  EXPECT_NE(player().status().message.find("has format 3"), std::string::npos);
+  EXPECT_EQ(player().status().kind, LiveStatus::Kind::replay);
+  ASSERT_TRUE(until([&] { return player().can_continue(); }));
+  EXPECT_EQ(player().row()->step, 200);
+  EXPECT_FALSE(std::filesystem::exists(path("again.h5")));
 }
 
 TEST_F(PlayerTest, a_record_is_scaled_replayed_and_continued_when_its_file_is_gone) {

@@ -26,6 +26,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/precision_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/present_studies_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/recording_formats_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recover_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report_test.cpp

@@ -122,10 +122,11 @@ TEST_F(RerunTest, a_checkpoint_with_another_hash_is_told_with_its_branch) {
   const Recording recording(path("a.h5"));
   const Rerun result = again(recording);
   EXPECT_EQ(result.checkpoints, recording.checkpoint_count() - 1);
-  ASSERT_EQ(result.differences.size(), 1u);
-  EXPECT_EQ(result.differences[0].at.branch, 2);
-  EXPECT_EQ(result.differences[0].at.step, 3000);
-  EXPECT_EQ(result.differences[0].what, "hash of the stored state");
+  EXPECT_TRUE(result.differences.empty());
+  ASSERT_EQ(result.damage.size(), 1u);
+  EXPECT_EQ(result.damage[0].at.branch, 2);
+  EXPECT_EQ(result.damage[0].at.step, 3000);
+  EXPECT_EQ(result.damage[0].what, "hash of the stored state");
 }
 
 TEST_F(RerunTest, an_edit_that_was_not_recorded_shows_as_a_difference_of_its_branch_only) {
