@@ -49,7 +49,9 @@ TEST_F(VerifyTest, a_fresh_recording_has_the_same_hashes) {
   EXPECT_TRUE(ended.out.ends_with("re-run: 2 checkpoints of 1 branch have the same state hashes\n"))
       << ended.out;
   const nlohmann::ordered_json json = json_of(topple({"info", "a.h5", "--verify", "--json", "-"}).out);
-  EXPECT_EQ(json["verify"], json_of(R"({"checkpoints": 2, "branches": 1, "same": true, "differences": []})"));
+  EXPECT_EQ(
+      json["verify"],
+      json_of(R"({"checkpoints": 2, "branches": 1, "damaged": false, "same": true, "differences": []})"));
   EXPECT_FALSE(info("a.h5").contains("verify"));
 }
 
