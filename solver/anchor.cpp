@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/elastic_basis.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 #include "solver/state.h"
 #include "solver/step_control.h"
 

@@ -1,7 +1,7 @@
 #include "solver/beam.h"
 
+#include "solver/math/rotation.h"
 #include "solver/plasticity.h"
-#include "solver/rotation.h"
 
 namespace topple {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/element_state.h"
+#include "solver/math/types.h"
 #include "solver/model.h"
-#include "solver/types.h"
 
 namespace topple {
 

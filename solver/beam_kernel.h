@@ -1,9 +1,9 @@
 // The element of beam.h for a pack of elements at once: P is Four, or another type with its operations.
 #pragma once
 
-#include "solver/elementary.h"
-#include "solver/pack.h"
-#include "solver/rotation.h"
+#include "solver/math/elementary.h"
+#include "solver/math/pack.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/beam_kernel.h"
-#include "solver/block_lu.h"
+#include "solver/math/block_lu.h"
 #include "solver/model.h"
 #include "solver/section_forces.h"
 

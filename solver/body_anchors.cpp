@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "solver/elastic_basis.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "solver/elastic_basis.h"
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 
 namespace topple {
 namespace {

@@ -15,10 +15,10 @@
 #include "solver/body_state.h"
 #include "solver/contact_law.h"
 #include "solver/energy.h"
+#include "solver/math/pack.h"
+#include "solver/math/upwards.h"
 #include "solver/model.h"
-#include "solver/pack.h"
 #include "solver/step.h"
-#include "solver/upwards.h"
 
 namespace topple {
 

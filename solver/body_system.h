@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "solver/beam_pack.h"
-#include "solver/block_lu.h"
 #include "solver/contact_law.h"
-#include "solver/copy_values.h"
+#include "solver/math/block_lu.h"
+#include "solver/math/copy_values.h"
 #include "solver/member_contact.h"
 #include "solver/model.h"
 #include "solver/parameters.h"

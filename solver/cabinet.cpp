@@ -7,9 +7,9 @@
 #include <map>
 
 #include "solver/body_builder.h"
-#include "solver/elementary.h"
 #include "solver/mass_fit.h"
-#include "solver/rotation.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -6,9 +6,9 @@
 #include <new>
 
 #include "solver/beam.h"
-#include "solver/elementary.h"
 #include "solver/hinges.h"
-#include "solver/rotation.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 
 namespace topple {
 namespace {

@@ -1,8 +1,8 @@
 // Penalty forces at one contact, after Eqs. 2 and 3.
 #pragma once
 
+#include "solver/math/types.h"
 #include "solver/parameters.h"
-#include "solver/types.h"
 
 namespace topple {
 

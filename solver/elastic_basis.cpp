@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solver/beam.h"
-#include "solver/block_lu.h"
-#include "solver/elementary.h"
+#include "solver/math/block_lu.h"
+#include "solver/math/elementary.h"
 #include "solver/modes.h"
 #include "solver/plasticity.h"
 #include "solver/section_forces.h"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple {
 

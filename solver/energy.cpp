@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/excitation.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/accelerogram.h"
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 
 namespace topple {
 namespace {

@@ -1,8 +1,8 @@
 // Motion of the floor.
 #pragma once
 
+#include "solver/math/types.h"
 #include "solver/parameters.h"
-#include "solver/types.h"
 
 namespace topple {
 

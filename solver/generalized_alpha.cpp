@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "solver/hinges.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "solver/edit.h"
+#include "solver/math/rotation.h"
 #include "solver/overturn.h"
-#include "solver/rotation.h"
 
 namespace topple {
 const char* name(Rung rung) {

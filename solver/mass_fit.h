@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple {
 

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/block_lu.h"
 #include "solver/contact_law.h"
+#include "solver/math/block_lu.h"
 #include "solver/proximity.h"
 
 namespace topple {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/math/types.h"
 #include "solver/section.h"
-#include "solver/types.h"
 
 namespace topple {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "solver/beam.h"
-#include "solver/block_lu.h"
 #include "solver/body_system.h"
-#include "solver/elementary.h"
-#include "solver/rotation.h"
+#include "solver/math/block_lu.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/elementary.h"
 #include "solver/hinges.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 #include "solver/plasticity.h"
-#include "solver/rotation.h"
 
 namespace topple {
 namespace {

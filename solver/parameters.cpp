@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "solver/overflow.h"
+#include "solver/math/overflow.h"
 
 namespace topple {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/math/types.h"
 #include "solver/model.h"
-#include "solver/types.h"
 
 namespace topple {
 

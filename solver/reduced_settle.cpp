@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/math/rotation.h"
 #include "solver/reduced_body.h"
-#include "solver/rotation.h"
 
 namespace topple {
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 #include "solver/reduced_body.h"
 #include "solver/rigid_solver.h"
-#include "solver/rotation.h"
 #include "solver/step_control.h"
 
 namespace topple {

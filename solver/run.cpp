@@ -5,7 +5,7 @@
 
 #include "solver/excitation.h"
 #include "solver/ladder.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 #include "solver/step_control.h"
 
 namespace topple {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/elementary.h"
-#include "solver/types.h"
+#include "solver/math/elementary.h"
+#include "solver/math/types.h"
 
 namespace topple {
 namespace {

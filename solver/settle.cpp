@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/elementary.h"
 #include "solver/hinges.h"
-#include "solver/rotation.h"
+#include "solver/math/elementary.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -6,10 +6,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "solver/copy_values.h"
-#include "solver/overflow.h"
-#include "solver/pack.h"
-#include "solver/rotation.h"
+#include "solver/math/copy_values.h"
+#include "solver/math/overflow.h"
+#include "solver/math/pack.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {

@@ -8,10 +8,10 @@
 #include "solver/anchor.h"
 #include "solver/body_state.h"
 #include "solver/element_state.h"
+#include "solver/math/types.h"
 #include "solver/member_contact.h"
 #include "solver/model.h"
 #include "solver/parameters.h"
-#include "solver/types.h"
 
 namespace topple {
 

@@ -5,7 +5,7 @@
 
 #include "solver/contact_law.h"
 #include "solver/hinges.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 #include "solver/settle.h"
 
 namespace topple {

@@ -28,7 +28,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "solver/io/scene/scene.h"
-#include "solver/processor.h"
+#include "solver/math/processor.h"
 
 namespace topple::app {
 namespace {

@@ -11,8 +11,8 @@
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "solver/math/rotation.h"
 #include "solver/overturn.h"
-#include "solver/rotation.h"
 
 namespace topple::app {
 namespace {

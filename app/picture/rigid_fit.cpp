@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "app/picture/row.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 namespace topple::app {
 namespace {

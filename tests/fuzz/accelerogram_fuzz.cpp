@@ -6,7 +6,7 @@
 #include "fuzz.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene/scene.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 using namespace topple;
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "solver/io/scene/scene.h"
-#include "solver/processor.h"
+#include "solver/math/processor.h"
 #include "solver/run.h"
 
 namespace {

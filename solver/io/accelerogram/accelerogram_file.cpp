@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/accelerogram.h"
-#include "solver/elementary.h"
 #include "solver/io/accelerogram/accelerogram_text.h"
 #include "solver/io/common/units.h"
+#include "solver/math/elementary.h"
 
 namespace topple::io {
 namespace {

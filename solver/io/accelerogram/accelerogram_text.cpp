@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "solver/io/common/units.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::io::accelerogram {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::io {
 

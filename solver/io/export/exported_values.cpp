@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "solver/math/rotation.h"
 #include "solver/plasticity.h"
-#include "solver/rotation.h"
 #include "solver/section_forces.h"
 
 namespace topple::io {

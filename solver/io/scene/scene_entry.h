@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/io/scene/scene_document.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::io {
 

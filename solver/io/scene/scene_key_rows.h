@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/io/scene/scene_key.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::io {
 

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "solver/elementary.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_number.h"
+#include "solver/math/elementary.h"
 #include "solver/study/common/kept_rows.h"
 
 namespace topple::study {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "solver/math/types.h"
 #include "solver/parameters.h"
-#include "solver/types.h"
 
 namespace topple::study {
 

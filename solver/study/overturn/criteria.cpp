@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::study {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::study {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "solver/edit.h"
 #include "solver/elastic_basis.h"
-#include "solver/elementary.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/math/elementary.h"
 #include "solver/step_control.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/laws.h"

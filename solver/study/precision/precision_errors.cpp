@@ -4,8 +4,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "solver/math/rotation.h"
 #include "solver/overturn.h"
-#include "solver/rotation.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
 

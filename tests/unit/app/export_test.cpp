@@ -11,7 +11,7 @@
 #include "solver/hinges.h"
 #include "solver/io/recording/hdf5_handle.h"
 #include "solver/io/recording/recording.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::app {
 namespace {

@@ -1,7 +1,7 @@
 // Recordings of all formats before the program: shown, exported, and verified as far as they can be.
 #include "program.h"
-#include "solver/elementary.h"
 #include "solver/io/recording/recording.h"
+#include "solver/math/elementary.h"
 
 namespace topple::app {
 namespace {

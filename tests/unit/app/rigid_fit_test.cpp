@@ -6,7 +6,7 @@
 #include "app/picture/row.h"
 #include "scenes.h"
 #include "solver/io/scene/scene.h"
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 namespace topple::app {
 namespace {

@@ -2,7 +2,7 @@
 #include "app/cli/nearest_name.h"
 #include "program.h"
 #include "scenes.h"
-#include "solver/processor.h"
+#include "solver/math/processor.h"
 
 namespace topple::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scene_samples.h"
 #include "solver/io/scene/scene.h"
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::io {
 namespace {

@@ -3,10 +3,10 @@
 #include <tuple>
 
 #include "recording_fixture.h"
-#include "solver/elementary.h"
 #include "solver/io/export/exported_values.h"
 #include "solver/io/recording/recover.h"
 #include "solver/io/recording/rerun.h"
+#include "solver/math/elementary.h"
 
 namespace topple::io::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/block_lu.h"
+#include "solver/math/block_lu.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The elementary functions against MPFR, and the bits they give on every machine.
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 
 #include <gtest/gtest.h>
 #include <mpfr.h>

@@ -1,4 +1,4 @@
-#include "solver/fused.h"
+#include "solver/math/fused.h"
 
 #include <gtest/gtest.h>
 

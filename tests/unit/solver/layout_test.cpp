@@ -159,7 +159,7 @@ std::string objection(const Include& include) {
     if (!include.quoted) {
       const bool standard =
           include.target.find('/') == std::string::npos && include.target.find(".h") == std::string::npos;
-      const bool intrinsics = include.file == "solver/pack.h" && include.target == "immintrin.h";
+      const bool intrinsics = include.file == "solver/math/pack.h" && include.target == "immintrin.h";
       if (!standard && !intrinsics && !starts_with(include.target, "Eigen/"))
         return arrow + "mechanics needs Eigen and the standard library alone";
       if (std::find(k_outside.begin(), k_outside.end(), include.target) != k_outside.end())
@@ -251,7 +251,7 @@ TEST(Layout, wrong_arrows_are_found) {
                            {"solver/io/scene/scene.cpp", "GL/gl.h", false},
                            {"solver/study/common/map.cpp", "render/output/image.h", true},
                            {"solver/study/common/map.cpp", "app/support/files.h", true},
-                           {"render/scene/camera.cpp", "solver/types.h", true},
+                           {"render/scene/camera.cpp", "solver/math/types.h", true},
                            {"render/scene/camera.cpp", "solver/io/scene/scene.h", true},
                            {"render/scene/camera.cpp", "app/main.h", true},
                            {"app/main.cpp", "GLFW/glfw3.h", false},
@@ -275,7 +275,7 @@ TEST(Layout, wrong_arrows_are_found) {
 TEST(Layout, right_arrows_are_not_objected_to) {
   const Include right[] = {{"solver/step.cpp", "solver/model.h", true},
                            {"solver/step.cpp", "Eigen/LU", false},
-                           {"solver/pack.h", "immintrin.h", false},
+                           {"solver/math/pack.h", "immintrin.h", false},
                            {"solver/step.cpp", "vector", false},
                            {"solver/io/scene/scene.cpp", "solver/run.h", true},
                            {"solver/io/scene/scene.cpp", "fstream", false},

@@ -1,4 +1,4 @@
-#include "solver/rotation.h"
+#include "solver/math/rotation.h"
 
 #include <gtest/gtest.h>
 

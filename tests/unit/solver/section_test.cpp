@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 namespace topple::test {
 namespace {

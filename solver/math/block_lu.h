@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "solver/pack.h"
-#include "solver/types.h"
+#include "solver/math/pack.h"
+#include "solver/math/types.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/elementary.h"
+#include "solver/math/elementary.h"
 
 #include <algorithm>
 #include <array>

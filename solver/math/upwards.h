@@ -2,7 +2,7 @@
 // normal, sums over contacts cost less where it is this one, and come out the same.
 #pragma once
 
-#include "solver/pack.h"
+#include "solver/math/pack.h"
 
 namespace topple {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "solver/elementary.h"
-#include "solver/types.h"
+#include "solver/math/elementary.h"
+#include "solver/math/types.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/processor.h"
+#include "solver/math/processor.h"
 
 namespace topple {
 

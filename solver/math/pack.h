@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "solver/types.h"
+#include "solver/math/types.h"
 
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
 #if !defined(__FMA__) && !defined(__aarch64__)
-#include "solver/fused.h"
+#include "solver/math/fused.h"
 #endif
 
 namespace topple {
