@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/body_state.h"
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/body_state.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 
 namespace topple {
 

@@ -3,7 +3,7 @@
 
 #include "solver/element_state.h"
 #include "solver/math/types.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple {
 

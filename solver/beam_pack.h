@@ -7,7 +7,7 @@
 
 #include "solver/beam_kernel.h"
 #include "solver/math/block_lu.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 #include "solver/section_forces.h"
 
 namespace topple {

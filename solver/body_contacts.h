@@ -12,12 +12,12 @@
 #include <span>
 #include <vector>
 
-#include "solver/body_state.h"
 #include "solver/contact_law.h"
 #include "solver/energy.h"
 #include "solver/math/pack.h"
 #include "solver/math/upwards.h"
-#include "solver/model.h"
+#include "solver/model/body_state.h"
+#include "solver/model/model.h"
 #include "solver/step.h"
 
 namespace topple {

@@ -9,7 +9,7 @@
 
 #include "solver/beam.h"
 #include "solver/damping.h"
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 
 namespace topple {
 double load_factor(const Load& load, double t) {

@@ -10,8 +10,8 @@
 #include "solver/math/block_lu.h"
 #include "solver/math/copy_values.h"
 #include "solver/member_contact.h"
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/section_forces.h"
 #include "solver/state.h"
 

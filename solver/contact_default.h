@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 
 namespace topple {
 

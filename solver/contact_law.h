@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/math/types.h"
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 
 namespace topple {
 

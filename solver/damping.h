@@ -6,8 +6,8 @@
 // 2008). Recorded stresses are the elastic ones.
 #pragma once
 
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 
 namespace topple {
 

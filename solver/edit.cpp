@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solver/contact_law.h"
-#include "solver/excitation.h"
 #include "solver/math/elementary.h"
+#include "solver/model/excitation.h"
 
 namespace topple {
 namespace {

@@ -1,8 +1,8 @@
 // Small deformations of a free body: its lowest modes, and what the others add when loads act slowly.
 #pragma once
 
-#include "solver/body_state.h"
-#include "solver/model.h"
+#include "solver/model/body_state.h"
+#include "solver/model/model.h"
 #include "solver/state.h"
 
 namespace topple {

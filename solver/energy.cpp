@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/excitation.h"
 #include "solver/math/rotation.h"
+#include "solver/model/excitation.h"
 
 namespace topple {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/body_system.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 #include "solver/state.h"
 
 namespace topple {

@@ -14,8 +14,8 @@
 // the change of energy is booked as EnergyLedger::model_switch.
 #pragma once
 
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/reduced_body.h"
 #include "solver/state.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple {
 

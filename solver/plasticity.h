@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/element_state.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/math/types.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple {
 

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "solver/damping.h"
-#include "solver/excitation.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
+#include "solver/model/excitation.h"
 #include "solver/step_control.h"
 
 namespace topple {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/excitation.h"
 #include "solver/ladder.h"
 #include "solver/math/rotation.h"
+#include "solver/model/excitation.h"
 #include "solver/step_control.h"
 
 namespace topple {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "solver/edit.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/overturn.h"
-#include "solver/parameters.h"
 #include "solver/state.h"
 #include "solver/statics.h"
 #include "solver/step.h"

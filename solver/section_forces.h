@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/beam.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 #include "solver/state.h"
 
 namespace topple {

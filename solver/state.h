@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "solver/anchor.h"
-#include "solver/body_state.h"
 #include "solver/element_state.h"
 #include "solver/math/types.h"
 #include "solver/member_contact.h"
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/body_state.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 
 namespace topple {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "solver/model.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/parallel_for.h"
-#include "solver/parameters.h"
 #include "solver/profile.h"
 #include "solver/section_forces.h"
 #include "solver/state.h"

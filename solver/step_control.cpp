@@ -6,8 +6,8 @@
 
 #include "solver/anchor.h"
 #include "solver/contact_law.h"
-#include "solver/excitation.h"
 #include "solver/generalized_alpha.h"
+#include "solver/model/excitation.h"
 
 namespace topple {
 namespace {

@@ -1,8 +1,8 @@
 // How long the next step of an adaptive run may be.
 #pragma once
 
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/state.h"
 
 namespace topple {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "app/support/terms.h"
-#include "solver/accelerogram.h"
 #include "solver/edit.h"
 #include "solver/ladder.h"
+#include "solver/model/accelerogram.h"
 #include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/teaching_words.h"
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::app {

@@ -8,7 +8,7 @@
 #include "app/panels/log_chart.h"
 #include "app/panels/teaching_panel.h"
 #include "app/panels/teaching_words.h"
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/overturn/criteria.h"
 

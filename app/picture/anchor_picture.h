@@ -3,7 +3,7 @@
 
 #include "render/scene/scene_frame.h"
 #include "solver/io/recording/observer.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple::app {
 

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "solver/io/recording/observer.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple::app {
 

@@ -7,7 +7,7 @@
 #include "app/picture/beam_quantity.h"
 #include "render/scene/scene_frame.h"
 #include "solver/io/recording/observer.h"
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 
 namespace topple::app {
 

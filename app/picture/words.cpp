@@ -9,7 +9,7 @@
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 
 namespace topple::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "app/report/report_parts.h"
-#include "solver/accelerogram.h"
-#include "solver/excitation.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 
 namespace topple::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/report/report_parts.h"
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 
 namespace topple::app {
 namespace {

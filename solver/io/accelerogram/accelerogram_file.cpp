@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/accelerogram.h"
 #include "solver/io/accelerogram/accelerogram_text.h"
 #include "solver/io/common/units.h"
 #include "solver/math/elementary.h"
+#include "solver/model/accelerogram.h"
 
 namespace topple::io {
 namespace {

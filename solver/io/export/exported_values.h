@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/io/recording/frame_row.h"
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple::io {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple::io {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 #include "solver/plasticity.h"
 
 namespace topple::io {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <set>
 
-#include "solver/cabinet.h"
 #include "solver/damping.h"
 #include "solver/elastic_basis.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/model/cabinet.h"
 #include "solver/proximity.h"
 
 namespace topple::io {

@@ -1,10 +1,10 @@
 #include "solver/io/scene/scene_keys.h"
 
-#include "solver/cabinet.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene/scene_key_rows.h"
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/cabinet.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/run.h"
 
 namespace topple::io {

@@ -1,6 +1,6 @@
-#include "solver/cabinet.h"
 #include "solver/io/scene/scene_key_rows.h"
-#include "solver/parameters.h"
+#include "solver/model/cabinet.h"
+#include "solver/model/parameters.h"
 
 namespace topple::io {
 namespace {

@@ -4,11 +4,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "solver/excitation.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_rewrite.h"
+#include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/accelerogram.h"
-#include "solver/excitation.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 
 namespace topple::study {
 namespace {

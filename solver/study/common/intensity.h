@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/math/types.h"
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 
 namespace topple::study {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 
 namespace topple::study {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 
 namespace topple::study {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/model.h"
+#include "solver/model/model.h"
 #include "solver/study/common/measure.h"
 
 namespace topple::study {

@@ -1,7 +1,7 @@
 // Exact values that benchmarks are compared with.
 #pragma once
 
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple::study {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 #include "solver/study/common/intensity.h"
 
 namespace topple::study {

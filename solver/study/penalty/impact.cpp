@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/body_builder.h"
 #include "solver/contact_law.h"
+#include "solver/model/body_builder.h"
 #include "solver/step.h"
 
 namespace topple::study {

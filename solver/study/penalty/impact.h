@@ -1,7 +1,7 @@
 // Restitution of the contact laws in a normal impact.
 #pragma once
 
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 #include "solver/study/penalty/contact_trials.h"
 
 namespace topple::study {

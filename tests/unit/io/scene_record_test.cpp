@@ -11,8 +11,8 @@
 #include <map>
 
 #include "scene_samples.h"
-#include "solver/accelerogram.h"
-#include "solver/excitation.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {

@@ -7,12 +7,12 @@
 #include <tuple>
 
 #include "scene_samples.h"
-#include "solver/cabinet.h"
 #include "solver/contact_default.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_entry.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/model/cabinet.h"
 
 namespace topple::io {
 namespace {

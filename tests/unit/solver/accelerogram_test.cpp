@@ -1,4 +1,4 @@
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 #include "solver/step_control.h"
 #include "unit/solver/fixtures.h"
 

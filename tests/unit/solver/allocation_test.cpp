@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "solver/accelerogram.h"
 #include "solver/elastic_basis.h"
-#include "solver/excitation.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"
 
 namespace {

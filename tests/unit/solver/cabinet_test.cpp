@@ -1,4 +1,4 @@
-#include "solver/cabinet.h"
+#include "solver/model/cabinet.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <stdexcept>
 
-#include "solver/accelerogram.h"
 #include "solver/damping.h"
 #include "solver/elastic_basis.h"
 #include "solver/ladder.h"
+#include "solver/model/accelerogram.h"
 #include "solver/modes.h"
 #include "unit/solver/fixtures.h"
 

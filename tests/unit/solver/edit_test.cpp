@@ -4,10 +4,10 @@
 
 #include <set>
 
-#include "solver/accelerogram.h"
 #include "solver/contact_law.h"
 #include "solver/elastic_basis.h"
-#include "solver/excitation.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,4 @@
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 
 #include <gtest/gtest.h>
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "solver/beam.h"
-#include "solver/body_builder.h"
 #include "solver/body_system.h"
-#include "solver/cabinet.h"
 #include "solver/math/rotation.h"
-#include "solver/model.h"
-#include "solver/parameters.h"
+#include "solver/model/body_builder.h"
+#include "solver/model/cabinet.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
 #include "solver/run.h"
 #include "solver/state.h"
 #include "solver/step.h"

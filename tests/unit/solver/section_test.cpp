@@ -1,4 +1,4 @@
-#include "solver/section.h"
+#include "solver/model/section.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "solver/contact_law.h"
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,11 +1,11 @@
-#include "solver/excitation.h"
+#include "solver/model/excitation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "solver/accelerogram.h"
 #include "solver/math/elementary.h"
+#include "solver/model/accelerogram.h"
 
 namespace topple {
 namespace {

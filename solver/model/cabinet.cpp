@@ -1,4 +1,4 @@
-#include "solver/cabinet.h"
+#include "solver/model/cabinet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <limits>
 #include <map>
 
-#include "solver/body_builder.h"
-#include "solver/mass_fit.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
+#include "solver/model/body_builder.h"
+#include "solver/model/mass_fit.h"
 
 namespace topple {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/mass_fit.h"
+#include "solver/model/mass_fit.h"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/body_builder.h"
+#include "solver/model/body_builder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "solver/cabinet.h"
-#include "solver/model.h"
+#include "solver/model/cabinet.h"
+#include "solver/model/model.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/parameters.h"
+#include "solver/model/parameters.h"
 
 #include <cmath>
 

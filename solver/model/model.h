@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "solver/math/types.h"
-#include "solver/section.h"
+#include "solver/model/section.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/accelerogram.h"
+#include "solver/model/accelerogram.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

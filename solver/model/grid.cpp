@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "solver/body_builder.h"
-#include "solver/cabinet.h"
+#include "solver/model/body_builder.h"
+#include "solver/model/cabinet.h"
 
 namespace topple {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/model.h"
+#include "solver/model/model.h"
 
 namespace topple {
 
