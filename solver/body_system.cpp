@@ -7,8 +7,8 @@
 #include <new>
 #include <tuple>
 
-#include "solver/beam.h"
-#include "solver/damping.h"
+#include "solver/element/beam.h"
+#include "solver/element/damping.h"
 #include "solver/model/excitation.h"
 
 namespace topple {

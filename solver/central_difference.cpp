@@ -5,7 +5,7 @@
 #include <cmath>
 #include <new>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 #include "solver/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"

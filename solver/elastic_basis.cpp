@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
+#include "solver/element/plasticity.h"
+#include "solver/element/section_forces.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/elementary.h"
 #include "solver/modes.h"
-#include "solver/plasticity.h"
-#include "solver/section_forces.h"
 
 namespace topple {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "solver/beam.h"
-#include "solver/plasticity.h"
+#include "solver/element/beam.h"
+#include "solver/element/plasticity.h"
 
 namespace topple {
 namespace {

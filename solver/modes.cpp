@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/beam.h"
 #include "solver/body_system.h"
+#include "solver/element/beam.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/element/plasticity.h"
 #include "solver/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
-#include "solver/plasticity.h"
 
 namespace topple {
 namespace {

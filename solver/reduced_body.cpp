@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/damping.h"
+#include "solver/element/damping.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"

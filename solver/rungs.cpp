@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solver/balance.h"
+#include "solver/element/plasticity.h"
 #include "solver/overturn.h"
-#include "solver/plasticity.h"
 
 namespace topple {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/anchor.h"
-#include "solver/element_state.h"
+#include "solver/element/element_state.h"
 #include "solver/math/types.h"
 #include "solver/member_contact.h"
 #include "solver/model/body_state.h"

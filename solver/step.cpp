@@ -7,7 +7,7 @@
 
 #include "solver/balance.h"
 #include "solver/central_difference.h"
-#include "solver/damping.h"
+#include "solver/element/damping.h"
 #include "solver/energy.h"
 #include "solver/generalized_alpha.h"
 #include "solver/model/excitation.h"

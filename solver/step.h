@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "solver/element/section_forces.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/parallel_for.h"
 #include "solver/profile.h"
-#include "solver/section_forces.h"
 #include "solver/state.h"
 
 namespace topple {

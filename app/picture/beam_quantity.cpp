@@ -5,7 +5,7 @@
 
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
-#include "solver/plasticity.h"
+#include "solver/element/plasticity.h"
 
 namespace topple::app {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "app/picture/rigid_fit.h"
 #include "app/support/language.h"
-#include "solver/element_state.h"
+#include "solver/element/element_state.h"
 
 namespace topple::app {
 

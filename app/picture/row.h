@@ -2,9 +2,9 @@
 #pragma once
 
 #include "render/scene/scene_frame.h"
+#include "solver/element/section_forces.h"
 #include "solver/io/recording/observer.h"
 #include "solver/model/model.h"
-#include "solver/section_forces.h"
 
 namespace topple::app {
 

@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "solver/element/plasticity.h"
+#include "solver/element/section_forces.h"
 #include "solver/math/rotation.h"
-#include "solver/plasticity.h"
-#include "solver/section_forces.h"
 
 namespace topple::io {
 

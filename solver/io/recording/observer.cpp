@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/element/plasticity.h"
 #include "solver/model/excitation.h"
-#include "solver/plasticity.h"
 
 namespace topple::io {
 namespace {

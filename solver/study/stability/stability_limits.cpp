@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "solver/central_difference.h"
-#include "solver/damping.h"
 #include "solver/edit.h"
+#include "solver/element/damping.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 

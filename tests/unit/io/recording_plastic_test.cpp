@@ -2,8 +2,8 @@
 #include <sstream>
 
 #include "recording_fixture.h"
+#include "solver/element/plasticity.h"
 #include "solver/io/export/export_csv.h"
-#include "solver/plasticity.h"
 
 namespace topple::io::testing {
 namespace {

@@ -1,12 +1,12 @@
-#include "solver/beam_pack.h"
+#include "solver/element/beam_pack.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
-#include "solver/beam.h"
-#include "solver/beam_kernel.h"
-#include "solver/plasticity.h"
+#include "solver/element/beam.h"
+#include "solver/element/beam_kernel.h"
+#include "solver/element/plasticity.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,4 @@
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 
 #include <gtest/gtest.h>
 

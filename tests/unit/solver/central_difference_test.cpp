@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

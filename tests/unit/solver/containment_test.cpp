@@ -6,8 +6,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "solver/damping.h"
 #include "solver/elastic_basis.h"
+#include "solver/element/damping.h"
 #include "solver/ladder.h"
 #include "solver/model/accelerogram.h"
 #include "solver/modes.h"

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Include {
-  std::string file;    // path in the tree, "solver/beam.cpp"
+  std::string file;    // path in the tree, "solver/element/beam.cpp"
   std::string target;  // as written
   bool quoted;         // "..." and not <...>
 };
@@ -221,11 +221,11 @@ TEST(Layout, no_folder_holds_more_than_forty_files) {
 
 TEST(Layout, reader_finds_includes_however_they_are_written) {
   std::istringstream text(
-      "#include \"solver/beam.h\"\n  #  include <vector>  // why\n// #include "
+      "#include \"solver/element/beam.h\"\n  #  include <vector>  // why\n// #include "
       "<thread>\n#include<Eigen/Core>\n");
   const std::vector<Include> found = includes_of("solver/x.cpp", text);
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_EQ(found[0].target, "solver/beam.h");
+  EXPECT_EQ(found[0].target, "solver/element/beam.h");
   EXPECT_TRUE(found[0].quoted);
   EXPECT_EQ(found[1].target, "vector");
   EXPECT_FALSE(found[1].quoted);

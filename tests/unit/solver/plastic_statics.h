@@ -4,9 +4,9 @@
 
 #include <Eigen/LU>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
+#include "solver/element/plasticity.h"
 #include "solver/hinges.h"
-#include "solver/plasticity.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

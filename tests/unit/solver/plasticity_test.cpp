@@ -1,8 +1,8 @@
-#include "solver/plasticity.h"
+#include "solver/element/plasticity.h"
 
 #include <gtest/gtest.h>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "solver/beam_kernel.h"
+#include "solver/element/beam_kernel.h"
+#include "solver/element/section_forces.h"
 #include "solver/math/block_lu.h"
 #include "solver/model/model.h"
-#include "solver/section_forces.h"
 
 namespace topple {
 

@@ -1,7 +1,7 @@
 // Plastic flow of a whole section under axial force, torsion and bending.
 #pragma once
 
-#include "solver/element_state.h"
+#include "solver/element/element_state.h"
 #include "solver/model/model.h"
 
 namespace topple {

@@ -1,9 +1,9 @@
-#include "solver/beam_pack.h"
+#include "solver/element/beam_pack.h"
 
 #include <algorithm>
 #include <new>
 
-#include "solver/plasticity.h"
+#include "solver/element/plasticity.h"
 
 namespace topple {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/section_forces.h"
+#include "solver/element/section_forces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/plasticity.h"
+#include "solver/element/plasticity.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "solver/damping.h"
+#include "solver/element/damping.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // The two-node linear Timoshenko element with one integration point, geometrically exact.
 #pragma once
 
-#include "solver/element_state.h"
+#include "solver/element/element_state.h"
 #include "solver/math/types.h"
 #include "solver/model/model.h"
 

@@ -1,7 +1,7 @@
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 
+#include "solver/element/plasticity.h"
 #include "solver/math/rotation.h"
-#include "solver/plasticity.h"
 
 namespace topple {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/beam.h"
+#include "solver/element/beam.h"
 #include "solver/model/model.h"
 #include "solver/state.h"
 
