@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/anchor.h"
 #include "solver/body_contacts.h"
+#include "solver/contact/anchor.h"
 
 namespace topple {
 

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/energy.h"
 #include "solver/math/pack.h"
 #include "solver/math/upwards.h"

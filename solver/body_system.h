@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
+#include "solver/contact/member_contact.h"
 #include "solver/element/beam_pack.h"
 #include "solver/element/section_forces.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/copy_values.h"
-#include "solver/member_contact.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/state.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "solver/anchor.h"
+#include "solver/contact/anchor.h"
+#include "solver/contact/member_contact.h"
 #include "solver/element/element_state.h"
 #include "solver/math/types.h"
-#include "solver/member_contact.h"
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"

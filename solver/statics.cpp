@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/hinges.h"
 #include "solver/math/rotation.h"
 #include "solver/settle.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/anchor.h"
-#include "solver/contact_law.h"
+#include "solver/contact/anchor.h"
+#include "solver/contact/contact_law.h"
 #include "solver/generalized_alpha.h"
 #include "solver/model/excitation.h"
 

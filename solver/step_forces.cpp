@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 
 namespace topple {
 

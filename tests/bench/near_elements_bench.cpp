@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "solver/proximity.h"
+#include "solver/contact/proximity.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

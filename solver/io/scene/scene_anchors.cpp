@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
+#include "solver/contact/proximity.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
-#include "solver/proximity.h"
 
 namespace topple::io {
 namespace {

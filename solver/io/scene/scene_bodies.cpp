@@ -3,12 +3,12 @@
 #include <cmath>
 #include <set>
 
+#include "solver/contact/proximity.h"
 #include "solver/elastic_basis.h"
 #include "solver/element/damping.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/model/cabinet.h"
-#include "solver/proximity.h"
 
 namespace topple::io {
 namespace {

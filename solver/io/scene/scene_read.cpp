@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/contact_default.h"
+#include "solver/contact/contact_default.h"
 #include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::study {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/modes.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/laws.h"

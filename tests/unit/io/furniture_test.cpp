@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "solver/contact/proximity.h"
 #include "solver/io/scene/scene.h"
-#include "solver/proximity.h"
 #include "solver/run.h"
 
 namespace topple::io {

@@ -1,5 +1,5 @@
 // Anchors against theory, on every rung and with every integrator.
-#include "solver/anchor.h"
+#include "solver/contact/anchor.h"
 
 #include <thread>
 

@@ -1,4 +1,4 @@
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/central_difference.h"
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

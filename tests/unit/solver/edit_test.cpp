@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/elastic_basis.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"

@@ -1,4 +1,4 @@
-#include "solver/member_contact.h"
+#include "solver/contact/member_contact.h"
 
 #include <Eigen/LU>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/gnuplot.h"
 #include "solver/study/common/rows.h"

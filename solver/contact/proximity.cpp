@@ -1,4 +1,4 @@
-#include "solver/proximity.h"
+#include "solver/contact/proximity.h"
 
 #include <algorithm>
 #include <cmath>

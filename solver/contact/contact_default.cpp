@@ -1,4 +1,4 @@
-#include "solver/contact_default.h"
+#include "solver/contact/contact_default.h"
 
 #include <algorithm>
 #include <cmath>

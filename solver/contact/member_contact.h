@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "solver/contact_law.h"
+#include "solver/contact/contact_law.h"
+#include "solver/contact/proximity.h"
 #include "solver/math/block_lu.h"
-#include "solver/proximity.h"
 
 namespace topple {
 

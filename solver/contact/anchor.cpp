@@ -1,4 +1,4 @@
-#include "solver/anchor.h"
+#include "solver/contact/anchor.h"
 
 #include <algorithm>
 #include <cmath>
