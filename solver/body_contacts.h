@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "solver/contact/contact_law.h"
-#include "solver/energy.h"
 #include "solver/math/pack.h"
 #include "solver/math/upwards.h"
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
+#include "solver/state/energy.h"
 #include "solver/step.h"
 
 namespace topple {

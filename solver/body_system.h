@@ -13,7 +13,7 @@
 #include "solver/math/copy_values.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 namespace topple {
 

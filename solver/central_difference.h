@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/body_system.h"
-#include "solver/energy.h"
 #include "solver/generalized_alpha.h"
+#include "solver/state/energy.h"
 #include "solver/step.h"
 
 namespace topple {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "solver/body_system.h"
-#include "solver/energy.h"
 #include "solver/hinges.h"
+#include "solver/state/energy.h"
 #include "solver/step.h"
 
 namespace topple {

@@ -6,7 +6,7 @@
 
 #include "solver/body_system.h"
 #include "solver/model/model.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 namespace topple {
 

@@ -17,7 +17,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/reduced_body.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 namespace topple {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/model/model.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 #include "solver/step.h"
 
 namespace topple {

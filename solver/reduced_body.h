@@ -29,7 +29,7 @@
 #include "solver/body_contacts.h"
 #include "solver/body_system.h"
 #include "solver/elastic_basis.h"
-#include "solver/energy.h"
+#include "solver/state/energy.h"
 #include "solver/step.h"
 
 namespace topple {

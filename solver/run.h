@@ -8,7 +8,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/overturn.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 #include "solver/statics.h"
 #include "solver/step.h"
 

@@ -11,8 +11,8 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/parallel_for.h"
-#include "solver/profile.h"
-#include "solver/state.h"
+#include "solver/state/profile.h"
+#include "solver/state/state.h"
 
 namespace topple {
 

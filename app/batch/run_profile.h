@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "solver/profile.h"
+#include "solver/state/profile.h"
 
 namespace topple::app {
 

@@ -6,7 +6,7 @@
 
 #include "solver/elastic_basis.h"
 #include "solver/math/rotation.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 #include "solver/step_control.h"
 
 namespace topple {

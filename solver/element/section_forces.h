@@ -5,7 +5,7 @@
 
 #include "solver/element/beam.h"
 #include "solver/model/model.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 namespace topple {
 

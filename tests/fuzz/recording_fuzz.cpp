@@ -10,7 +10,7 @@
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/recording/recording_reader.h"
 #include "solver/io/scene/edit_text.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 using namespace topple;
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/energy.h"
+#include "solver/state/energy.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

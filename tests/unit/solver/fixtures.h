@@ -16,7 +16,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/run.h"
-#include "solver/state.h"
+#include "solver/state/state.h"
 #include "solver/step.h"
 
 namespace topple::test {

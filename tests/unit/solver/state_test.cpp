@@ -1,4 +1,4 @@
-#include "solver/state.h"
+#include "solver/state/state.h"
 
 #include <gtest/gtest.h>
 

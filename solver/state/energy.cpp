@@ -1,4 +1,4 @@
-#include "solver/energy.h"
+#include "solver/state/energy.h"
 
 #include <algorithm>
 #include <cmath>
