@@ -6,9 +6,9 @@
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
 #include "solver/element/section_forces.h"
+#include "solver/frame/modes.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/elementary.h"
-#include "solver/modes.h"
 
 namespace topple {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "solver/body_system.h"
+#include "solver/frame/body_system.h"
 #include "solver/model/model.h"
 #include "solver/state/state.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/element/plasticity.h"
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 

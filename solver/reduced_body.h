@@ -27,8 +27,8 @@
 
 #include "solver/body_anchors.h"
 #include "solver/body_contacts.h"
-#include "solver/body_system.h"
 #include "solver/elastic_basis.h"
+#include "solver/frame/body_system.h"
 #include "solver/state/energy.h"
 #include "solver/step.h"
 

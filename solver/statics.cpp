@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/contact/contact_law.h"
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
+#include "solver/frame/settle.h"
 #include "solver/math/rotation.h"
-#include "solver/settle.h"
 
 namespace topple {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "solver/body_system.h"
+#include "solver/frame/body_system.h"
 #include "solver/step.h"
 
 namespace topple {

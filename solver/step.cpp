@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "solver/balance.h"
-#include "solver/central_difference.h"
 #include "solver/element/damping.h"
-#include "solver/generalized_alpha.h"
+#include "solver/frame/central_difference.h"
+#include "solver/frame/generalized_alpha.h"
+#include "solver/frame/settle.h"
 #include "solver/model/excitation.h"
 #include "solver/rungs.h"
-#include "solver/settle.h"
 #include "solver/state/energy.h"
 #include "solver/step_control.h"
 #include "solver/step_forces.h"

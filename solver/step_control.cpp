@@ -6,7 +6,7 @@
 
 #include "solver/contact/anchor.h"
 #include "solver/contact/contact_law.h"
-#include "solver/generalized_alpha.h"
+#include "solver/frame/generalized_alpha.h"
 #include "solver/model/excitation.h"
 
 namespace topple {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "solver/body_system.h"
-#include "solver/generalized_alpha.h"
+#include "solver/frame/body_system.h"
+#include "solver/frame/generalized_alpha.h"
 #include "solver/islands.h"
 #include "solver/ladder.h"
 #include "solver/reduced_body.h"

@@ -7,8 +7,8 @@
 #include "app/batch/summary.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
+#include "solver/frame/modes.h"
 #include "solver/io/scene/scene.h"
-#include "solver/modes.h"
 
 namespace topple::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "solver/elastic_basis.h"
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 
 namespace topple {
 

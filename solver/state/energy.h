@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/body_system.h"
+#include "solver/frame/body_system.h"
 
 namespace topple {
 

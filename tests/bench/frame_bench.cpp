@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "solver/body_system.h"
+#include "solver/frame/body_system.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solver/frame/modes.h"
 #include "solver/io/scene/scene.h"
-#include "solver/modes.h"
 #include "solver/study/common/parallel.h"
 #include "solver/study/common/rows.h"
 #include "solver/study/elements/theory.h"

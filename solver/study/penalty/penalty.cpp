@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/contact/contact_law.h"
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/laws.h"
 #include "solver/study/common/parallel.h"

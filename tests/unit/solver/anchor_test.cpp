@@ -3,8 +3,8 @@
 
 #include <thread>
 
-#include "solver/central_difference.h"
 #include "solver/elastic_basis.h"
+#include "solver/frame/central_difference.h"
 #include "solver/step_control.h"
 #include "unit/solver/fixtures.h"
 

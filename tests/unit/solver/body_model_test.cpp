@@ -1,6 +1,6 @@
 // Rigid, reduced and elastic bodies beside the frame that they stand for.
 #include "body_models.h"
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 
 namespace topple::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/central_difference.h"
+#include "solver/frame/central_difference.h"
 
 #include <gtest/gtest.h>
 

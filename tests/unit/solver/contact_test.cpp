@@ -1,8 +1,8 @@
 // Contact laws at work: impacts, rest, friction, all on a body that meets the floor flat.
 #include <gtest/gtest.h>
 
-#include "solver/central_difference.h"
 #include "solver/contact/contact_law.h"
+#include "solver/frame/central_difference.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

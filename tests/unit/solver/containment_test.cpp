@@ -8,9 +8,9 @@
 
 #include "solver/elastic_basis.h"
 #include "solver/element/damping.h"
+#include "solver/frame/modes.h"
 #include "solver/ladder.h"
 #include "solver/model/accelerogram.h"
-#include "solver/modes.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

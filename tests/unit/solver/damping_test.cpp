@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/central_difference.h"
 #include "solver/elastic_basis.h"
+#include "solver/frame/central_difference.h"
 #include "solver/ladder.h"
 #include "unit/solver/fixtures.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "solver/body_system.h"
 #include "solver/element/beam.h"
+#include "solver/frame/body_system.h"
 #include "solver/math/rotation.h"
 #include "solver/model/body_builder.h"
 #include "solver/model/cabinet.h"

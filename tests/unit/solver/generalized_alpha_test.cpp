@@ -1,4 +1,4 @@
-#include "solver/generalized_alpha.h"
+#include "solver/frame/generalized_alpha.h"
 
 #include <gtest/gtest.h>
 

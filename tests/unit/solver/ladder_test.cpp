@@ -2,7 +2,7 @@
 #include "solver/ladder.h"
 
 #include "body_models.h"
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 
 namespace topple::test {
 namespace {

@@ -281,7 +281,7 @@ TEST(Layout, right_arrows_are_not_objected_to) {
                            {"solver/io/scene/scene.cpp", "fstream", false},
                            {"solver/io/scene/scene.cpp", "hdf5.h", false},
                            {"solver/study/common/map.cpp", "solver/io/scene/scene.h", true},
-                           {"solver/study/common/map.cpp", "solver/modes.h", true},
+                           {"solver/study/common/map.cpp", "solver/frame/modes.h", true},
                            {"solver/study/common/map.cpp", "thread", false},
                            {"app/main.cpp", "solver/study/map.h", true},
                            {"render/gl/gl.cpp", "GL/gl.h", false},

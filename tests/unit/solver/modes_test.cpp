@@ -1,4 +1,4 @@
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "solver/generalized_alpha.h"
+#include "solver/frame/generalized_alpha.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

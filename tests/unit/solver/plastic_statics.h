@@ -6,7 +6,7 @@
 
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,4 @@
-#include "solver/settle.h"
+#include "solver/frame/settle.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/central_difference.h"
+#include "solver/frame/central_difference.h"
 #include "solver/run.h"
 #include "unit/solver/fixtures.h"
 

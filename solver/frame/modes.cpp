@@ -1,4 +1,4 @@
-#include "solver/modes.h"
+#include "solver/frame/modes.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/body_system.h"
 #include "solver/element/beam.h"
+#include "solver/frame/body_system.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"

@@ -1,4 +1,4 @@
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 
 #include <algorithm>
 #include <cmath>

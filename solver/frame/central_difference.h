@@ -1,8 +1,8 @@
 // Explicit time integration.
 #pragma once
 
-#include "solver/body_system.h"
-#include "solver/generalized_alpha.h"
+#include "solver/frame/body_system.h"
+#include "solver/frame/generalized_alpha.h"
 #include "solver/state/energy.h"
 #include "solver/step.h"
 

@@ -1,10 +1,10 @@
-#include "solver/generalized_alpha.h"
+#include "solver/frame/generalized_alpha.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "solver/body_system.h"
-#include "solver/hinges.h"
+#include "solver/frame/body_system.h"
+#include "solver/frame/hinges.h"
 #include "solver/state/energy.h"
 #include "solver/step.h"
 

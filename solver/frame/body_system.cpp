@@ -1,4 +1,4 @@
-#include "solver/body_system.h"
+#include "solver/frame/body_system.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "solver/central_difference.h"
+#include "solver/frame/central_difference.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <new>
 
 #include "solver/element/beam.h"
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 

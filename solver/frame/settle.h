@@ -1,8 +1,8 @@
 // Rest under gravity.
 #pragma once
 
-#include "solver/body_system.h"
-#include "solver/generalized_alpha.h"
+#include "solver/frame/body_system.h"
+#include "solver/frame/generalized_alpha.h"
 #include "solver/step.h"
 
 namespace topple {

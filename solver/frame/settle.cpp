@@ -1,10 +1,10 @@
-#include "solver/settle.h"
+#include "solver/frame/settle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "solver/hinges.h"
+#include "solver/frame/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 
