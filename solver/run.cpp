@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
+#include "solver/body/step_control.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
-#include "solver/step_control.h"
 
 namespace topple {
 namespace {

@@ -6,14 +6,14 @@
 #include <optional>
 
 #include "solver/balance.h"
+#include "solver/body/rungs.h"
+#include "solver/body/step_control.h"
 #include "solver/element/damping.h"
 #include "solver/frame/central_difference.h"
 #include "solver/frame/generalized_alpha.h"
 #include "solver/frame/settle.h"
 #include "solver/model/excitation.h"
-#include "solver/rungs.h"
 #include "solver/state/energy.h"
-#include "solver/step_control.h"
 #include "solver/step_forces.h"
 #include "solver/workspace.h"
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "solver/body/islands.h"
+#include "solver/body/ladder.h"
+#include "solver/body/reduced_body.h"
 #include "solver/frame/body_system.h"
 #include "solver/frame/generalized_alpha.h"
-#include "solver/islands.h"
-#include "solver/ladder.h"
-#include "solver/reduced_body.h"
 #include "solver/step.h"
 
 namespace topple {

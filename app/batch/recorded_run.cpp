@@ -12,8 +12,8 @@
 #include "app/support/interrupt.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
+#include "solver/body/ladder.h"
 #include "solver/io/recording/recording.h"
-#include "solver/ladder.h"
 #include "solver/study/common/refinement.h"
 #include "solver/study/common/team.h"
 

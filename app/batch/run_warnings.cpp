@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "app/support/terms.h"
+#include "solver/body/ladder.h"
 #include "solver/edit.h"
-#include "solver/ladder.h"
 #include "solver/model/accelerogram.h"
 #include "solver/study/stability/stability_limits.h"
 

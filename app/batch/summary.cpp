@@ -9,7 +9,7 @@
 
 #include "app/batch/run_warnings.h"
 #include "app/support/terms.h"
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
 
 namespace topple::app {
 namespace {

@@ -14,11 +14,11 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
+#include "solver/body/ladder.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene.h"
-#include "solver/ladder.h"
 #include "solver/math/elementary.h"
 
 namespace topple::app {

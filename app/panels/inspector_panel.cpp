@@ -11,7 +11,7 @@
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
 
 namespace topple::app {
 namespace {

@@ -12,8 +12,8 @@
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "render/scene/text_layout.h"
+#include "solver/body/ladder.h"
 #include "solver/io/scene/edit_text.h"
-#include "solver/ladder.h"
 
 namespace topple::app {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/body/step_control.h"
 #include "solver/math/rotation.h"
 #include "solver/state/state.h"
-#include "solver/step_control.h"
 
 namespace topple {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
 #include "solver/frame/modes.h"
 
 namespace topple {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
 #include "solver/io/scene/scene.h"
 #include "solver/overturn.h"
 #include "unit/solver/fixtures.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
+#include "solver/body/elastic_basis.h"
 #include "solver/contact/proximity.h"
-#include "solver/elastic_basis.h"
 #include "solver/element/damping.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "solver/body/elastic_basis.h"
+#include "solver/body/step_control.h"
 #include "solver/edit.h"
-#include "solver/elastic_basis.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/math/elementary.h"
-#include "solver/step_control.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/laws.h"
 #include "solver/study/common/measure.h"

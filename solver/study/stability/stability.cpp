@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "solver/body/ladder.h"
 #include "solver/io/scene/scene_file.h"
-#include "solver/ladder.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/refinement.h"
 #include "solver/study/common/spread.h"

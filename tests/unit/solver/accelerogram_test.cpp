@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
+#include "solver/body/step_control.h"
 #include "solver/model/excitation.h"
-#include "solver/step_control.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

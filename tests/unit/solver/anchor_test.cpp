@@ -3,9 +3,9 @@
 
 #include <thread>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
-#include "solver/step_control.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,8 +1,8 @@
 // Cabinets computed as rigid, elastic or frame, which the tests of the model ladder share.
 #pragma once
 
-#include "solver/elastic_basis.h"
-#include "solver/ladder.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/body/ladder.h"
 #include "solver/overturn.h"
 #include "unit/solver/fixtures.h"
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <stdexcept>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/body/ladder.h"
 #include "solver/element/damping.h"
 #include "solver/frame/modes.h"
-#include "solver/ladder.h"
 #include "solver/model/accelerogram.h"
 #include "unit/solver/fixtures.h"
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/body/ladder.h"
 #include "solver/frame/central_difference.h"
-#include "solver/ladder.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

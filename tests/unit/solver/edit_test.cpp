@@ -4,8 +4,8 @@
 
 #include <set>
 
+#include "solver/body/elastic_basis.h"
 #include "solver/contact/contact_law.h"
-#include "solver/elastic_basis.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"

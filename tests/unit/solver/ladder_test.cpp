@@ -1,5 +1,5 @@
 // The model ladder: which rung a body stands on, and switches within a run.
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
 
 #include "body_models.h"
 #include "solver/frame/modes.h"

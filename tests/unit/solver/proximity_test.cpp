@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/islands.h"
+#include "solver/body/islands.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,4 @@
-#include "solver/step_control.h"
+#include "solver/body/step_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "solver/reduced_body.h"
+#include "solver/body/reduced_body.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/body/step_control.h"
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
-#include "solver/step_control.h"
 
 namespace topple {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/body_contacts.h"
-#include "solver/step_control.h"
+#include "solver/body/body_contacts.h"
+#include "solver/body/step_control.h"
 
 namespace topple {
 

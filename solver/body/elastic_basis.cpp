@@ -1,4 +1,4 @@
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/body_contacts.h"
+#include "solver/body/body_contacts.h"
 #include "solver/contact/anchor.h"
 
 namespace topple {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/body/reduced_body.h"
+#include "solver/body/rigid_solver.h"
+#include "solver/body/step_control.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
-#include "solver/reduced_body.h"
-#include "solver/rigid_solver.h"
-#include "solver/step_control.h"
 
 namespace topple {
 namespace {

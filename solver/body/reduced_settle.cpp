@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/body/reduced_body.h"
 #include "solver/math/rotation.h"
-#include "solver/reduced_body.h"
 
 namespace topple {
 

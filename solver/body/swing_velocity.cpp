@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "solver/reduced_body.h"
-#include "solver/rigid_solver.h"
+#include "solver/body/reduced_body.h"
+#include "solver/body/rigid_solver.h"
 
 namespace topple {
 namespace {

@@ -1,11 +1,11 @@
-#include "solver/body_contacts.h"
+#include "solver/body/body_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
 #include "solver/math/elementary.h"
 
 namespace topple {

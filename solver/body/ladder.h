@@ -14,9 +14,9 @@
 // the change of energy is booked as EnergyLedger::model_switch.
 #pragma once
 
+#include "solver/body/reduced_body.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/reduced_body.h"
 #include "solver/state/state.h"
 
 namespace topple {

@@ -1,10 +1,10 @@
-#include "solver/islands.h"
+#include "solver/body/islands.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
 #include "solver/math/rotation.h"
 
 namespace topple {

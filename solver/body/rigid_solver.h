@@ -1,7 +1,7 @@
 // Six equations of a rigid body in blocks of three.
 #pragma once
 
-#include "solver/body_contacts.h"
+#include "solver/body/body_contacts.h"
 
 namespace topple {
 

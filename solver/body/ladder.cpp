@@ -1,4 +1,4 @@
-#include "solver/ladder.h"
+#include "solver/body/ladder.h"
 
 #include <algorithm>
 

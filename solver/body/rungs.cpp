@@ -1,4 +1,4 @@
-#include "solver/rungs.h"
+#include "solver/body/rungs.h"
 
 #include <algorithm>
 #include <cmath>

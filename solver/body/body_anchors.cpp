@@ -1,8 +1,8 @@
-#include "solver/body_anchors.h"
+#include "solver/body/body_anchors.h"
 
 #include <algorithm>
 
-#include "solver/elastic_basis.h"
+#include "solver/body/elastic_basis.h"
 #include "solver/math/rotation.h"
 
 namespace topple {

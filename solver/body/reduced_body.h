@@ -25,9 +25,9 @@
 #include <span>
 #include <vector>
 
-#include "solver/body_anchors.h"
-#include "solver/body_contacts.h"
-#include "solver/elastic_basis.h"
+#include "solver/body/body_anchors.h"
+#include "solver/body/body_contacts.h"
+#include "solver/body/elastic_basis.h"
 #include "solver/frame/body_system.h"
 #include "solver/state/energy.h"
 #include "solver/step.h"
