@@ -8,7 +8,7 @@
 
 #include "solver/model/model.h"
 #include "solver/state/state.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple {
 

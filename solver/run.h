@@ -9,8 +9,8 @@
 #include "solver/model/parameters.h"
 #include "solver/overturn.h"
 #include "solver/state/state.h"
-#include "solver/statics.h"
-#include "solver/step.h"
+#include "solver/step/statics.h"
+#include "solver/step/step.h"
 
 namespace topple {
 

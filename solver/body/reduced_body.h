@@ -30,7 +30,7 @@
 #include "solver/body/elastic_basis.h"
 #include "solver/frame/body_system.h"
 #include "solver/state/energy.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple {
 

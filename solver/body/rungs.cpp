@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/balance.h"
 #include "solver/element/plasticity.h"
 #include "solver/overturn.h"
+#include "solver/step/balance.h"
 
 namespace topple {
 namespace {

@@ -1,7 +1,7 @@
 // The rung on which each body is computed, from step to step (ladder.h).
 #pragma once
 
-#include "solver/workspace.h"
+#include "solver/step/workspace.h"
 
 namespace topple {
 

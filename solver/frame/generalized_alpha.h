@@ -6,7 +6,7 @@
 #include "solver/frame/body_system.h"
 #include "solver/frame/hinges.h"
 #include "solver/state/energy.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple {
 

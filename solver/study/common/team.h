@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "solver/parallel_for.h"
+#include "solver/step/parallel_for.h"
 
 namespace topple::study {
 

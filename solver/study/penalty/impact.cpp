@@ -5,7 +5,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/model/body_builder.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple::study {
 namespace {

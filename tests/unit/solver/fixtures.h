@@ -17,7 +17,7 @@
 #include "solver/model/parameters.h"
 #include "solver/run.h"
 #include "solver/state/state.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple::test {
 

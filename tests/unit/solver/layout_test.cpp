@@ -233,19 +233,19 @@ TEST(Layout, reader_finds_includes_however_they_are_written) {
 }
 
 TEST(Layout, wrong_arrows_are_found) {
-  const Include wrong[] = {{"solver/step.cpp", "solver/io/scene/scene.h", true},
-                           {"solver/step.cpp", "solver/study/map.h", true},
-                           {"solver/step.cpp", "render/scene/camera.h", true},
-                           {"solver/step.cpp", "app/main.h", true},
-                           {"solver/step.cpp", "thread", false},
-                           {"solver/step.cpp", "immintrin.h", false},
-                           {"solver/step.cpp", "chrono", false},
-                           {"solver/step.cpp", "fstream", false},
-                           {"solver/step.cpp", "iostream", false},
-                           {"solver/step.cpp", "filesystem", false},
-                           {"solver/step.cpp", "cstdlib", false},
-                           {"solver/step.cpp", "hdf5.h", false},
-                           {"solver/step.cpp", "toml++/toml.hpp", false},
+  const Include wrong[] = {{"solver/step/step.cpp", "solver/io/scene/scene.h", true},
+                           {"solver/step/step.cpp", "solver/study/map.h", true},
+                           {"solver/step/step.cpp", "render/scene/camera.h", true},
+                           {"solver/step/step.cpp", "app/main.h", true},
+                           {"solver/step/step.cpp", "thread", false},
+                           {"solver/step/step.cpp", "immintrin.h", false},
+                           {"solver/step/step.cpp", "chrono", false},
+                           {"solver/step/step.cpp", "fstream", false},
+                           {"solver/step/step.cpp", "iostream", false},
+                           {"solver/step/step.cpp", "filesystem", false},
+                           {"solver/step/step.cpp", "cstdlib", false},
+                           {"solver/step/step.cpp", "hdf5.h", false},
+                           {"solver/step/step.cpp", "toml++/toml.hpp", false},
                            {"solver/io/scene/scene.cpp", "solver/study/map.h", true},
                            {"solver/io/scene/scene.cpp", "app/main.h", true},
                            {"solver/io/scene/scene.cpp", "GL/gl.h", false},
@@ -273,10 +273,10 @@ TEST(Layout, wrong_arrows_are_found) {
 }
 
 TEST(Layout, right_arrows_are_not_objected_to) {
-  const Include right[] = {{"solver/step.cpp", "solver/model/model.h", true},
-                           {"solver/step.cpp", "Eigen/LU", false},
+  const Include right[] = {{"solver/step/step.cpp", "solver/model/model.h", true},
+                           {"solver/step/step.cpp", "Eigen/LU", false},
                            {"solver/math/pack.h", "immintrin.h", false},
-                           {"solver/step.cpp", "vector", false},
+                           {"solver/step/step.cpp", "vector", false},
                            {"solver/io/scene/scene.cpp", "solver/run.h", true},
                            {"solver/io/scene/scene.cpp", "fstream", false},
                            {"solver/io/scene/scene.cpp", "hdf5.h", false},
@@ -295,7 +295,7 @@ TEST(Layout, circles_of_modules_are_found) {
                                          {"app/live/a.h", "app/live/b.h", true},
                                          {"app/live/b.cpp", "app/support/c.h", true},
                                          {"app/live/a.cpp", "app/support/c.h", true},
-                                         {"app/support/c.cpp", "solver/step.h", true}};
+                                         {"app/support/c.cpp", "solver/step/step.h", true}};
   EXPECT_EQ(modules_in_circles(straight), std::set<std::string>{});
   // a header that a source leads back to
   std::vector<Include> round = straight;

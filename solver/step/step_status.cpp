@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple {
 namespace {

@@ -1,7 +1,7 @@
 // Accelerations and contacts of a state, outside a step.
 #pragma once
 
-#include "solver/workspace.h"
+#include "solver/step/workspace.h"
 
 namespace topple {
 

@@ -1,11 +1,10 @@
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
 
-#include "solver/balance.h"
 #include "solver/body/rungs.h"
 #include "solver/body/step_control.h"
 #include "solver/element/damping.h"
@@ -14,8 +13,9 @@
 #include "solver/frame/settle.h"
 #include "solver/model/excitation.h"
 #include "solver/state/energy.h"
-#include "solver/step_forces.h"
-#include "solver/workspace.h"
+#include "solver/step/balance.h"
+#include "solver/step/step_forces.h"
+#include "solver/step/workspace.h"
 
 namespace topple {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/step_forces.h"
+#include "solver/step/step_forces.h"
 
 #include <algorithm>
 #include <tuple>

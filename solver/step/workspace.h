@@ -10,7 +10,7 @@
 #include "solver/body/reduced_body.h"
 #include "solver/frame/body_system.h"
 #include "solver/frame/generalized_alpha.h"
-#include "solver/step.h"
+#include "solver/step/step.h"
 
 namespace topple {
 

@@ -1,7 +1,7 @@
 // Contacts of the newest step.
 #pragma once
 
-#include "solver/workspace.h"
+#include "solver/step/workspace.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/balance.h"
+#include "solver/step/balance.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -10,9 +10,9 @@
 #include "solver/element/section_forces.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/parallel_for.h"
 #include "solver/state/profile.h"
 #include "solver/state/state.h"
+#include "solver/step/parallel_for.h"
 
 namespace topple {
 

@@ -1,4 +1,4 @@
-#include "solver/statics.h"
+#include "solver/step/statics.h"
 
 #include <algorithm>
 #include <cmath>
