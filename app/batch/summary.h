@@ -5,7 +5,7 @@
 #include <string>
 
 #include "solver/io/scene/scene.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 #include "solver/study/common/refinement.h"
 
 namespace topple::app {

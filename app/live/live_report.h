@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "solver/history.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
+#include "solver/run/history.h"
 
 namespace topple::app {
 

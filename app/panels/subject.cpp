@@ -12,7 +12,7 @@
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/math/rotation.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 
 namespace topple::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/io/recording/observer.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::app {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "app/report/report_parts.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 
 namespace topple::app {
 namespace {

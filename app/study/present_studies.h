@@ -7,7 +7,7 @@
 
 #include "app/study/sweep.h"
 #include "app/support/background.h"
-#include "solver/edit.h"
+#include "solver/run/edit.h"
 #include "solver/study/overturn/overturn_map.h"
 #include "solver/study/precision/precision.h"
 

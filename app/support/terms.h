@@ -1,7 +1,7 @@
 // What all parts of the program say of a scene in the same way.
 #pragma once
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::app {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "solver/edit.h"
 #include "solver/math/rotation.h"
-#include "solver/overturn.h"
+#include "solver/run/edit.h"
+#include "solver/run/overturn.h"
 
 namespace topple {
 const char* name(Rung rung) {

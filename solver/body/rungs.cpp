@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/element/plasticity.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "solver/step/balance.h"
 
 namespace topple {

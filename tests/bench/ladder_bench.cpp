@@ -8,7 +8,7 @@
 
 #include "solver/body/elastic_basis.h"
 #include "solver/io/scene/scene.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

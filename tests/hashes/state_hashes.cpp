@@ -10,7 +10,7 @@
 
 #include "solver/io/scene/scene.h"
 #include "solver/math/processor.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/io/recording/frame_row.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "solver/history.h"
 #include "solver/io/common/errors.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/math/elementary.h"
+#include "solver/run/history.h"
 
 namespace topple::io {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "solver/edit.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/run/edit.h"
 
 namespace topple::io {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/io/common/errors.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 

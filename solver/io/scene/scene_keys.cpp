@@ -5,7 +5,7 @@
 #include "solver/model/cabinet.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 namespace {

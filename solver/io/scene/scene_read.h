@@ -3,7 +3,7 @@
 
 #include "solver/io/scene/scene_content.h"
 #include "solver/io/scene/scene_entry.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::study {
 

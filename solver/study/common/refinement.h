@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::study {
 

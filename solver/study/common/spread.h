@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::study {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 #include "solver/study/common/axis.h"
 #include "solver/study/common/standing.h"
 

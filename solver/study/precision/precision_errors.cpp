@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/math/rotation.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
 

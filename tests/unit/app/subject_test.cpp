@@ -8,7 +8,7 @@
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
 #include "live.h"
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 
 namespace topple::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "solver/contact/proximity.h"
 #include "solver/io/scene/scene.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "solver/edit.h"
+#include "solver/run/edit.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "solver/model/cabinet.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 #include "solver/state/state.h"
 #include "solver/step/step.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,4 @@
-#include "solver/history.h"
+#include "solver/run/history.h"
 
 #include <gtest/gtest.h>
 

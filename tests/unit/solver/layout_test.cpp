@@ -277,7 +277,7 @@ TEST(Layout, right_arrows_are_not_objected_to) {
                            {"solver/step/step.cpp", "Eigen/LU", false},
                            {"solver/math/pack.h", "immintrin.h", false},
                            {"solver/step/step.cpp", "vector", false},
-                           {"solver/io/scene/scene.cpp", "solver/run.h", true},
+                           {"solver/io/scene/scene.cpp", "solver/run/run.h", true},
                            {"solver/io/scene/scene.cpp", "fstream", false},
                            {"solver/io/scene/scene.cpp", "hdf5.h", false},
                            {"solver/study/common/map.cpp", "solver/io/scene/scene.h", true},
@@ -286,7 +286,7 @@ TEST(Layout, right_arrows_are_not_objected_to) {
                            {"app/main.cpp", "solver/study/map.h", true},
                            {"render/gl/gl.cpp", "GL/gl.h", false},
                            {"app/main.cpp", "render/scene/camera.h", true},
-                           {"app/main.cpp", "solver/run.h", true}};
+                           {"app/main.cpp", "solver/run/run.h", true}};
   for (const Include& include : right) EXPECT_EQ(objection(include), "");
 }
 

@@ -1,4 +1,4 @@
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 
 #include <gtest/gtest.h>
 

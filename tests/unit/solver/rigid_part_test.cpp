@@ -1,5 +1,5 @@
 // Rigid bodies on stiff contacts: long steps against the same contacts followed in every detail.
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

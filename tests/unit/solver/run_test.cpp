@@ -1,4 +1,4 @@
-#include "solver/run.h"
+#include "solver/run/run.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/run.h"
+#include "solver/run/run.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

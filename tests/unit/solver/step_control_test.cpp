@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/frame/central_difference.h"
-#include "solver/run.h"
+#include "solver/run/run.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

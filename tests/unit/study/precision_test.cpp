@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "solver/overturn.h"
+#include "solver/run/overturn.h"
 #include "solver/study/precision/precision_chart.h"
 #include "study_cases.h"
 

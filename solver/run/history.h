@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/edit.h"
-#include "solver/run.h"
+#include "solver/run/edit.h"
+#include "solver/run/run.h"
 
 namespace topple {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "solver/edit.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
-#include "solver/overturn.h"
+#include "solver/run/edit.h"
+#include "solver/run/overturn.h"
 #include "solver/state/state.h"
 #include "solver/step/statics.h"
 #include "solver/step/step.h"
