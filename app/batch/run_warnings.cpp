@@ -8,8 +8,8 @@
 
 #include "app/support/terms.h"
 #include "solver/body/ladder.h"
+#include "solver/contact/contact_period.h"
 #include "solver/model/accelerogram.h"
-#include "solver/run/edit.h"
 #include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {

@@ -10,6 +10,7 @@
 #include "app/batch/run_warnings.h"
 #include "app/support/terms.h"
 #include "solver/body/ladder.h"
+#include "solver/state/body_pose.h"
 
 namespace topple::app {
 namespace {

@@ -9,6 +9,7 @@
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
 #include "app/support/terms.h"
+#include "solver/body/ladder.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene.h"
 

@@ -10,6 +10,7 @@
 #include "app/panels/precision_words.h"
 #include "app/panels/shell_words.h"
 #include "app/panels/teaching_words.h"
+#include "solver/body/ladder.h"
 #include "solver/io/scene/edit_text.h"
 
 namespace topple::app {

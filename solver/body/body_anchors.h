@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/body/anchors.h"
 #include "solver/body/body_contacts.h"
-#include "solver/contact/anchor.h"
 
 namespace topple {
 

@@ -18,7 +18,7 @@
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
 #include "solver/state/energy.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "solver/body/body_contacts.h"
-#include "solver/body/step_control.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 
@@ -62,14 +62,12 @@ double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const
       for (int which = 0; which < groups_[g].size; ++which) {
         if (gap[which] < 0)
           stiffness += penalty_stiffness(law, -gap[which] / side.L[which], side.L[which]);
-        else if (closing[which] * k_longest_step > gap[which])
-          limit = std::min(limit, std::max(gap[which] / closing[which],
-                                           side.L[which] / (k_closing_part * closing[which])));
+        else
+          limit = std::min(limit, closing_limit(gap[which], closing[which], side.L[which]));
       }
     }
   }
-  if (stiffness > 0) limit = std::min(limit, 2 * k_pi * std::sqrt(mass_ / stiffness) / k_contact_part);
-  return limit;
+  return std::min(limit, bounce_limit(mass_, stiffness));
 }
 
 }  // namespace topple

@@ -3,7 +3,6 @@
 
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
-#include "solver/state/state.h"
 
 namespace topple {
 
@@ -24,5 +23,8 @@ struct ElasticBasis {
 
 /// None when the body has supports, or nodes without mass or inertia.
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int body);
+
+/// Angular frequency of the first elastic mode of a body with its supports, rad/s; 0 when it has none.
+double first_frequency(const Model& model, int body);
 
 }  // namespace topple

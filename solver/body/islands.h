@@ -1,4 +1,4 @@
-// Which bodies may touch each other now, and the systems that they make.
+// The systems that frames which may touch each other make.
 #pragma once
 
 #include <memory>
@@ -10,23 +10,14 @@
 
 namespace topple {
 
-/// Most that a node is likely to move within h, m.
-double likely_travel(const Model& model, const State& state, double h);
-
-/// Greatest displacement of a node from one state to another, m.
-double greatest_travel(const Model& model, const State& from, const State& to);
-
-/// Searches for near elements again where state.near does not cover that every node moves by `travel`, m.
-void look_around(const Model& model, NearSearch& search, State& state, double travel);
-
 /// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
 /// whose nodes are all held, and those on other rungs, are in none.
 class Islands {
  public:
   explicit Islands(const Model& model);
   /// Systems of the frames in `bodies` and of `near`, whose bodies are frames or held, in the order of their
-  /// first bodies; those that nothing changes are kept.
-  void arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& near);
+  /// first bodies; those that nothing changes are kept. False: nothing changes.
+  bool arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& near);
   const std::vector<BodySystem*>& systems() const { return systems_; }
   /// One body without the others, whatever its rung; nullptr: held.
   BodySystem* alone(int body);

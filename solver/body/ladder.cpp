@@ -2,11 +2,23 @@
 
 #include <algorithm>
 
+#include "solver/body/elastic_basis.h"
+#include "solver/contact/contact_period.h"
 #include "solver/math/rotation.h"
-#include "solver/run/edit.h"
-#include "solver/run/overturn.h"
+#include "solver/state/body_pose.h"
 
 namespace topple {
+namespace {
+
+// Of supports and loads: such a body is a frame.
+bool bears_on_nodes(const Model& model, int body) {
+  const auto its = [&](const auto& at) { return model.node_body[at.node] == body; };
+  return std::any_of(model.supports.begin(), model.supports.end(), its) ||
+         std::any_of(model.loads.begin(), model.loads.end(), its);
+}
+
+}  // namespace
+
 const char* name(Rung rung) {
   return rung == Rung::rigid ? "rigid" : rung == Rung::elastic ? "elastic" : "frame";
 }
@@ -31,6 +43,12 @@ const char* name(RungReason reason) {
       return "calm again";
   }
   return "";
+}
+
+bool can_be(const Model& model, int body, BodyModel asked) {
+  if (asked == BodyModel::frame) return true;
+  if (bears_on_nodes(model, body)) return false;
+  return asked == BodyModel::rigid || model.bodies[body].elastic;
 }
 
 RungChoice base_rung(const Model& model, const Parameters& parameters, int body) {

@@ -14,7 +14,6 @@
 // the change of energy is booked as EnergyLedger::model_switch.
 #pragma once
 
-#include "solver/body/reduced_body.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/state/state.h"
@@ -32,6 +31,10 @@ inline constexpr double k_negligible = 1e-4;
 const char* name(Rung rung);
 /// A few words: "a section is near yield".
 const char* name(RungReason reason);
+
+/// Whether a body can be computed as `model`: rigid and frame always, but for one that stands on supports or
+/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
+bool can_be(const Model& model, int body, BodyModel asked);
 
 /// The rung on which a body begins, and to which it comes back.
 struct RungChoice {

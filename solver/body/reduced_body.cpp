@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/body/step_control.h"
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {
@@ -25,6 +25,18 @@ constexpr double k_least_part = 1. / 4096;  // of a step
 double greatest_stiffness(const ContactLaw& law) {
   const double slope = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
   return std::max(slope, law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0.);
+}
+
+// f(k) for the modes k .. k + 3 of Amplitudes, which Eigen would take one by one.
+template <class F>
+[[gnu::always_inline]] inline void each_four_modes(F f) {
+  static_assert(k_modes % 4 == 0);
+  for (int k = 0; k < k_modes; k += 4) f(k);
+}
+// sum += factor a b
+[[gnu::always_inline]] inline void add_product(double factor, const Amplitudes& a, const Amplitudes& b,
+                                               Amplitudes& sum) {
+  each_four_modes([&](int k) { store(&sum[k], load(&sum[k]) + Four(factor) * load(&a[k]) * load(&b[k])); });
 }
 
 }  // namespace
@@ -83,9 +95,11 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   s.rotation.coeffs() << now.v.x, now.v.y, now.v.z, now.w;
   s.angular_velocity = unpacked(inverse_inertia_ * rotate(conjugate(turn), momentum));
   if (s.rung != Rung::elastic) return unpacked(spin);
-  const Amplitudes q = s.amplitude;
-  s.amplitude = cosine_ * q + sine_ * s.rate;
-  s.rate = cosine_ * s.rate + back_ * q;
+  each_four_modes([&](int k) {
+    const Four q = load(&s.amplitude[k]), rate = load(&s.rate[k]), cosine = load(&cosine_[k]);
+    store(&s.amplitude[k], cosine * q + load(&sine_[k]) * rate);
+    store(&s.rate[k], cosine * rate + load(&back_[k]) * q);
+  });
   return unpacked(spin);
 }
 
@@ -219,7 +233,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   const bool bends = s.rung == Rung::elastic;
   if (bends) {
     find_swing(h, damping_time(model_, parameters, body_));
-    s.rate *= damped_;
+    each_four_modes([&](int k) { store(&s.rate[k], load(&s.rate[k]) * load(&damped_[k])); });
   }
   const Amplitudes rate0 = s.rate;
   const PackQuaternion<double> q0 = packed(before.rotation);
@@ -227,7 +241,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(r0, packed(before.moment)));
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(kick0);
-  if (bends) s.rate += h / 2 * kick_ * s.load;
+  if (bends) add_product(h / 2, kick_, s.load, s.rate);
   const Vec3 spin = drift(h, s);
 
   const PackMat3 r = rotation_matrix(packed(s.rotation));
@@ -253,12 +267,12 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
     BodyVelocity u = drifted;
     u.linear = mul_add(h / 2 / mass_, packed(before.force), u.linear);
     u.angular = u.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(before.moment)));
-    if (bends) u.rate += h / 2 * kick_ * before.load;
+    if (bends) add_product(h / 2, kick_, before.load, u.rate);
     BodyVelocity free{mul_add(h / 2, packed(field), drifted.linear), drifted.angular, drifted.rate};
     if (tied) {
       free.linear = mul_add(h / 2 / mass_, packed(pull), free.linear);
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
-      if (bends) free.rate += h / 2 * kick_ * pressed;
+      if (bends) add_product(h / 2, kick_, pressed, free.rate);
     }
     if (!solve_velocity(parameters, end.law, r, h, free, u, loads, s.load, modes(s), w)) return give_up();
   }
@@ -271,7 +285,7 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   }
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
-  if (bends) s.rate += h / 2 * kick_ * s.load;
+  if (bends) add_product(h / 2, kick_, s.load, s.rate);
 
   // As book_work, and what the method itself takes out, from its own kinematics.
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
@@ -284,12 +298,18 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       0.5 * dot(packed(Vec3(before.moment + s.moment)), r0 * packed(spin)) -
       0.5 * dot(packed(Vec3(s.angular_velocity + before.angular_velocity)), inertia_ * packed(faster));
   if (bends) {
-    booked.damping += 0.5 * (before.rate.square() - rate0.square()).sum();
-    booked.numerical +=
-        (0.5 * (before.load + s.load) * (s.amplitude - before.amplitude) -
-         0.5 * (s.rate.square() - rate0.square()) -
-         0.5 * basis_->frequency.square() * (s.amplitude.square() - before.amplitude.square()))
-            .sum();
+    Amplitudes damped, numerical;
+    each_four_modes([&](int k) {
+      const auto square = [](Four x) { return x * x; };
+      const Four half = 0.5, a0 = load(&before.amplitude[k]), a = load(&s.amplitude[k]),
+                 square0 = square(load(&rate0[k]));
+      store(&damped[k], square(load(&before.rate[k])) - square0);
+      store(&numerical[k], half * (load(&before.load[k]) + load(&s.load[k])) * (a - a0) -
+                               half * (square(load(&s.rate[k])) - square0) -
+                               half * square(load(&basis_->frequency[k])) * (square(a) - square(a0)));
+    });
+    booked.damping += 0.5 * damped.sum();
+    booked.numerical += numerical.sum();
   }
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);

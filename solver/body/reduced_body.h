@@ -28,9 +28,8 @@
 #include "solver/body/body_anchors.h"
 #include "solver/body/body_contacts.h"
 #include "solver/body/elastic_basis.h"
-#include "solver/frame/body_system.h"
 #include "solver/state/energy.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 
@@ -80,6 +79,8 @@ class ReducedBody {
   /// have been found.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
+  /// Index into the model of the node of a contact point.
+  int node_of(int point) const { return model_.contact_points[point].node; }
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
   /// Section forces of the body's elements at `s` under the contacts found last, into those of the model;

@@ -5,9 +5,9 @@
 
 #include "solver/body/reduced_body.h"
 #include "solver/body/rigid_solver.h"
-#include "solver/body/step_control.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {

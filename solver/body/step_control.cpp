@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/contact/anchor.h"
+#include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/generalized_alpha.h"
 #include "solver/model/excitation.h"
@@ -17,15 +17,7 @@ constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at
 constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it counts as nothing
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
-// Mean rotation of a body's nodes, rad/s.
-double spin(const Body& body, const State& state) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
-    sum += state.rotation[i] * state.angular_velocity[i];
-  return sum.norm() / body.node_count;
-}
-
-// As contact_limit, for the members of all bodies that are near each other.
+// For the members of all bodies that are near each other.
 double member_limit(const Model& model, const ContactLaw& law, const State& state) {
   double limit = std::numeric_limits<double>::infinity();
   if (state.near.empty()) return limit;
@@ -45,31 +37,11 @@ double member_limit(const Model& model, const ContactLaw& law, const State& stat
     } else {
       const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
       const double closing = -relative.dot(at.between) / l;
-      if (closing * k_longest_step > gap)
-        limit = std::min(limit, std::max(gap / closing, L / (k_closing_part * closing)));
+      limit = std::min(limit, closing_limit(gap, closing, L));
     }
   }
   for (std::size_t b = 0; b < stiffness.size(); ++b)
-    if (stiffness[b] > 0)
-      limit = std::min(limit, 2 * k_pi * std::sqrt(model.bodies[b].mass / stiffness[b]) / k_contact_part);
-  return limit;
-}
-
-double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const State& state) {
-  double stiffness = 0, limit = std::numeric_limits<double>::infinity();
-  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
-    const ContactPoint& point = model.contact_points[p];
-    for (const Plane& plane : model.planes) {
-      const double L = contact_length(point, plane);
-      const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
-      const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
-      if (depth > 0)
-        stiffness += penalty_stiffness(law, depth, L);
-      else if (closing * k_longest_step > gap)
-        limit = std::min(limit, std::max(gap / closing, L / (k_closing_part * closing)));
-    }
-  }
-  if (stiffness > 0) limit = std::min(limit, 2 * k_pi * std::sqrt(body.mass / stiffness) / k_contact_part);
+    limit = std::min(limit, bounce_limit(model.bodies[b].mass, stiffness[b]));
   return limit;
 }
 
@@ -77,15 +49,8 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
-  double limit = std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
-                           member_limit(model, law, state), anchor_look_ahead(model, state)});
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (state.bodies[b].rung != Rung::frame) continue;
-    const Body& body = model.bodies[b];
-    limit = std::min(limit, contact_limit(model, body, law, state));
-    if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;
-  }
-  return std::max(limit, 2 * k_least_step);
+  return std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
+                   member_limit(model, law, state), anchor_look_ahead(model, state)});
 }
 
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,

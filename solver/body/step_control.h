@@ -4,19 +4,13 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/state/state.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 
-inline constexpr double k_least_step = 1e-8;    ///< s, shorter steps are given up
-inline constexpr double k_longest_step = 0.05;  ///< s
-inline constexpr double k_first_step = 1e-4;    ///< s, tried first
-inline constexpr double k_contact_part = 20;    ///< steps per period of a body on its contacts
-inline constexpr double k_closing_part = 4;     ///< steps in which a closing contact crosses its width
-inline constexpr double k_turn = 0.1;           ///< rad per step
-
-/// What the motion at `state` allows, s: T_contact/20 of a body that touches, the time to touch or L/(4 v)
-/// where a contact closes, 0.1/|omega|, the time between two samples of a record that shakes the floor. Of
-/// frames, whose nodes are where `state` has them; and anchor_look_ahead of all bodies.
+/// What the motion at `state` allows, s, but for what each part knows of itself (Part::time_limit): as these
+/// where members near each other, and anchors of any body, close or hold; the time between two samples of a
+/// record that shakes the floor.
 double look_ahead(const Model& model, const Parameters& parameters, const State& state);
 
 /// Local error of a step of the implicit methods over what the tolerance allows it; at most 1 passes.

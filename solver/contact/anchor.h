@@ -9,15 +9,10 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "solver/model/body_state.h"
 #include "solver/model/model.h"
-#include "solver/model/parameters.h"
 
 namespace topple {
-
-struct State;
 
 enum class AnchorHold : std::uint8_t { in_place, away, broken };
 
@@ -26,6 +21,9 @@ struct AnchorState {
   double length = 0;  ///< m, natural
   AnchorHold hold = AnchorHold::in_place;
 };
+
+/// Whether it holds when its point is `length` away from the floor's, m.
+bool holds(const Anchor& anchor, const AnchorState& state, double length);
 
 struct AnchorForce {
   double tension = 0;         ///< N, negative: pushes
@@ -42,29 +40,5 @@ Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& 
 /// Derivative of a force at the end of `arm`, and of its moment about the beginning, by displacement and
 /// rotation of the beginning: `tangent` is that of the force by its place.
 Mat6 anchor_slope(const Mat3& tangent, const Vec3& arm, const Vec3& force);
-
-/// Displacement of the attached point in a mode of the rung elastic, reference axes, per amplitude.
-Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
-
-/// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's rung.
-struct AnchorPoint {
-  Vec3 at, velocity;
-};
-AnchorPoint anchor_point(const Model& model, const State& state, int anchor);
-
-/// Of every anchor at `state`, N and J.
-std::vector<AnchorForce> anchor_forces(const Model& model, const State& state);
-
-/// Puts anchors in place and takes them away as `parameters` say; sets `changed` of their bodies. False:
-/// nothing changed.
-bool switch_anchors(const Model& model, const Parameters& parameters, State& state,
-                    std::vector<char>& changed);
-
-/// Breaks those that hold more than their strength. As switch_anchors.
-bool break_anchors(const Model& model, State& state, std::vector<char>& changed);
-
-/// Longest step that resolves the anchors at `state`, s: a twentieth of the period of a body on one that
-/// holds, the time until one begins to hold.
-double anchor_look_ahead(const Model& model, const State& state);
 
 }  // namespace topple

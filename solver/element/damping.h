@@ -17,7 +17,4 @@ inline double damping_time(const Model& model, const Parameters& parameters, int
   return 2 * parameters.damping[body] / model.bodies[body].first_frequency;
 }
 
-/// w1 of a body, rad/s; 0 when it has none.
-double first_frequency(const Model& model, int body);
-
 }  // namespace topple

@@ -10,18 +10,6 @@ SectionForces section_forces(const Element& element, const BeamStrain& elastic) 
           element.bending_stiffness.cwiseProduct(elastic.kappa)};
 }
 
-void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
-  forces.resize(model.elements.size());
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
-    const Element& element = model.elements[e];
-    const int i = element.node[0], j = element.node[1];
-    const BeamStrain strain = beam_strain(
-        element, element.s,
-        beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
-    forces[e] = section_forces(element, elastic_strain(state.elements[e], strain));
-  }
-}
-
 SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
   SectionForces out = at_point;
   const double arm = length / 2 * (xi + s);

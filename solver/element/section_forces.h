@@ -1,21 +1,15 @@
 // Forces in the sections of members, and the stress that they make.
 #pragma once
 
-#include <vector>
-
 #include "solver/element/beam.h"
 #include "solver/model/model.h"
-#include "solver/state/state.h"
 
 namespace topple {
 
 /// At an elastic strain.
 SectionForces section_forces(const Element& element, const BeamStrain& elastic);
 
-/// Section forces of every element at `state`.
-void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
-
-/// The same at xi in -1..1 along the element, by equilibrium from the stress point r = -s:
+/// Those of the stress point r = -s at xi in -1..1 along the element, by equilibrium:
 ///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
 SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
 

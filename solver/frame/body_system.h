@@ -13,6 +13,7 @@
 #include "solver/math/copy_values.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
+#include "solver/state/energy.h"
 #include "solver/state/state.h"
 
 namespace topple {
@@ -53,11 +54,6 @@ struct NodePack {
   Four mass;                                  ///< kg; of what fills 0
   Four inverse_mass;                          ///< 1/kg
   PackMatrix<Four> inertia, inverse_inertia;  ///< as Model::node_inertia; the former of what fills 0
-};
-
-/// Energies of a system that depend on where it is, J.
-struct BodyEnergy {
-  double kinetic = 0, strain = 0, contact = 0, anchor = 0;
 };
 
 /// Factor of a load at time t.

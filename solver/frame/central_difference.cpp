@@ -7,6 +7,7 @@
 
 #include "solver/element/beam.h"
 #include "solver/frame/hinges.h"
+#include "solver/frame/work.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 

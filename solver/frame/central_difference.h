@@ -4,7 +4,7 @@
 #include "solver/frame/body_system.h"
 #include "solver/frame/generalized_alpha.h"
 #include "solver/state/energy.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 

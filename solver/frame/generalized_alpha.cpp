@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "solver/frame/hinges.h"
+#include "solver/frame/work.h"
 #include "solver/math/rotation.h"
 
 namespace topple {

@@ -6,7 +6,8 @@
 #include "solver/frame/body_system.h"
 #include "solver/frame/hinges.h"
 #include "solver/state/energy.h"
-#include "solver/step/step.h"
+#include "solver/state/profile.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 

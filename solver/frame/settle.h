@@ -3,7 +3,7 @@
 
 #include "solver/frame/body_system.h"
 #include "solver/frame/generalized_alpha.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 

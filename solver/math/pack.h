@@ -5,13 +5,11 @@
 #include <cmath>
 #include <cstring>
 
+#include "solver/math/fused.h"
 #include "solver/math/types.h"
 
 #ifdef __AVX2__
 #include <immintrin.h>
-#endif
-#if !defined(__FMA__) && !defined(__aarch64__)
-#include "solver/math/fused.h"
 #endif
 
 namespace topple {
@@ -334,9 +332,8 @@ template <class P, class... Rest>
 
 /// Of four nodes.
 [[gnu::always_inline]] inline PackVector<Four> gather(const Vec3* x, const std::array<int, 4>& node) {
-  using First = double __attribute__((vector_size(16)));  // two numbers of a vector
   const auto two = [x](int a, int b) {
-    First of_a, of_b;
+    Two of_a, of_b;  // the first two numbers of each
     std::memcpy(&of_a, x[a].data(), sizeof of_a);
     std::memcpy(&of_b, x[b].data(), sizeof of_b);
     return __builtin_shufflevector(of_a, of_b, 0, 1, 2, 3);

@@ -2,14 +2,23 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
-#include "solver/model/cabinet.h"
 #include "solver/model/model.h"
 
 namespace topple {
+
+/// A description that no body can be built from; what() is one sentence without file and line, `key` the
+/// scene key at fault ("cg_height").
+struct BuildError : std::runtime_error {
+  BuildError(std::string key_at_fault, const std::string& what)
+      : std::runtime_error(what), key(std::move(key_at_fault)) {}
+  std::string key;
+};
 
 /// Appends one body to a model: open, add lines and contact points, then close. Node positions that agree
 /// within k_same_place are one node.

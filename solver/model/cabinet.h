@@ -1,22 +1,13 @@
 // Builders: bodies from members.
 #pragma once
 
-#include <array>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "solver/model/body_builder.h"
 #include "solver/model/model.h"
 
 namespace topple {
-
-/// A description that no body can be built from; what() is one sentence without file and line, `key` the
-/// scene key at fault ("cg_height").
-struct BuildError : std::runtime_error {
-  BuildError(std::string key_at_fault, const std::string& what)
-      : std::runtime_error(what), key(std::move(key_at_fault)) {}
-  std::string key;
-};
 
 /// A steel cabinet: twelve edges, shelves, and diagonals in place of its panels. Lengths between the centre
 /// lines of the edge members, which is where it rocks.

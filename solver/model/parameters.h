@@ -72,6 +72,11 @@ enum class BodyModel { automatic, rigid, elastic, frame };
 
 enum class Integrator { generalized_alpha, central_difference, newmark };
 
+/// Its steps have a limit of stability, and need no equations solved.
+inline bool is_explicit(Integrator integrator) {
+  return integrator == Integrator::central_difference;
+}
+
 /// Of the number of a choice of `run.integrator`, whose first is auto.
 inline Integrator chosen_integrator(int choice) {
   return static_cast<Integrator>(choice > 0 ? choice - 1 : 0);

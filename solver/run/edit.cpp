@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/ladder.h"
 #include "solver/contact/contact_law.h"
+#include "solver/contact/contact_period.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 
@@ -30,13 +32,6 @@ double period(const Shake& shake, double t) {
       return k_record_period;
   }
   return 0;
-}
-
-// Of supports and loads: such a body is a frame.
-bool bears_on_nodes(const Model& model, int body) {
-  const auto its = [&](const auto& at) { return model.node_body[at.node] == body; };
-  return std::any_of(model.supports.begin(), model.supports.end(), its) ||
-         std::any_of(model.loads.begin(), model.loads.end(), its);
 }
 
 void start_passage(Shake& shake, double t) {
@@ -89,12 +84,6 @@ std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parame
   for (int i = 0; i < static_cast<int>(parameters.anchors.size()); ++i) add({K::anchor}, i);
   add({K::integrator, K::want, K::time_step});
   return keys;
-}
-
-bool can_be(const Model& model, int body, BodyModel asked) {
-  if (asked == BodyModel::frame) return true;
-  if (bears_on_nodes(model, body)) return false;
-  return asked == BodyModel::rigid || model.bodies[body].elastic;
 }
 
 Vec3 edited_value(const Parameters& p, Edit::Key key, int index) {
@@ -256,24 +245,6 @@ void apply(const Edit& edit, const Model& model, double t, Parameters& p) {
       break;
   }
   start_contact_passage(law, model, t, p);
-}
-
-double contact_period(const Model& model, int index, const ContactLaw& law, const Vec3& gravity) {
-  const Body& body = model.bodies[index];
-  if (model.planes.empty() || gravity.isZero(0) || body.contact_point_count == 0) return 0;
-  const double points = static_cast<double>(std::max<std::size_t>(1, body.base_points.size()));
-  const ContactPoint& point = model.contact_points[body.first_contact_point];
-  const double width = model.planes.front().width > 0 ? model.planes.front().width : point.width;
-  const double L = (point.width + width) / 2, g = gravity.norm();
-  const double depth = elementary::pow(body.mass * g / (points * law.alpha), 1 / law.q);
-  return 2 * k_pi * std::sqrt(L * depth / (law.q * g));
-}
-
-double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity) {
-  double longest = 0;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    longest = std::max(longest, contact_period(model, b, law, gravity));
-  return longest;
 }
 
 }  // namespace topple

@@ -42,10 +42,6 @@ struct Edit {
 /// Every key, and shake, body or anchor that it is for, that can be edited.
 std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parameters& parameters);
 
-/// Whether a body can be computed as `model`: rigid and frame always, but for one that stands on supports or
-/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
-bool can_be(const Model& model, int body, BodyModel asked);
-
 /// The value that an edit of this key and shake, body or anchor sets.
 Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 
@@ -56,12 +52,5 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 /// to ten times its frequency in 10 s. What another contact law holds in its springs the next step books. The
 /// result depends on nothing but the arguments, so that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
-
-/// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with
-/// depth = (W / (n alpha))^(1/q) on the n contact points of its base. 0 without gravity or planes.
-double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity);
-
-/// The same of one body; 0 without gravity, planes or contact points.
-double contact_period(const Model& model, int body, const ContactLaw& law, const Vec3& gravity);
 
 }  // namespace topple

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "solver/model/model.h"
+#include "solver/state/body_pose.h"
 #include "solver/state/state.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 
@@ -20,23 +21,6 @@ inline constexpr double k_closing = 1e-2;
 
 /// Impacts of a body of which time and the peak that follows are kept.
 inline constexpr std::size_t k_kept_impacts = 100;
-
-/// Pose of a body as a rigid one: mass-weighted best fit of its nodes (Kabsch/Horn).
-struct BodyPose {
-  Vec3 centre;    ///< m, centre of gravity
-  Quat rotation;  ///< reference to current
-};
-BodyPose body_pose(const Model& model, const State& state, int body);
-
-/// Momentum of a body.
-struct BodyMomentum {
-  Vec3 velocity;          ///< m/s, of the centre of gravity
-  Vec3 angular_momentum;  ///< kg m^2/s, about the centre of gravity, world axes
-};
-BodyMomentum body_momentum(const Model& model, const State& state, int body);
-
-/// Angle between the body's vertical axis now and in its reference pose, rad, 0..pi.
-double tilt(const BodyPose& pose);
 
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
 /// rad. Infinite for a body without a base or with supports.

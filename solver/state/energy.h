@@ -1,15 +1,21 @@
 // Where the energy of a step went.
 #pragma once
 
-#include <vector>
-
-#include "solver/frame/body_system.h"
+#include "solver/contact/contact_law.h"
 
 namespace topple {
 
 /// Energies that bodies exchanged in a step, J; added to.
 struct StepEnergy {
   double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0, plastic = 0, damping = 0;
+  StepEnergy& operator+=(const StepEnergy& other);
+};
+
+/// Energies of a body, or of several, that depend on where it is, J.
+struct BodyEnergy {
+  double kinetic = 0, strain = 0, contact = 0, anchor = 0;
+  BodyEnergy& operator+=(const BodyEnergy& other);
+  double sum() const { return kinetic + strain + contact + anchor; }
 };
 
 /// What a contact law that changes over a step puts into springs that do not move: input. Call for every
@@ -27,13 +33,5 @@ class LawChange {
   const ContactLaw &before_, &after_;
   StepEnergy& energy_;
 };
-
-/// Work of gravity, floor, loads, viscous stresses and contacts on a system over a step from t to t + h
-/// between two evaluations of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick
-/// springs are not booked: their energy is known at both ends. What an edit of the contact law puts into them
-/// counts as input.
-void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
-               const BodyMotion& start, const BodyMotion& end, const Contacts& contacts_start,
-               const Contacts& contacts_end, StepEnergy& energy);
 
 }  // namespace topple

@@ -1,5 +1,6 @@
 #include "solver/state/state.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -231,6 +232,34 @@ class Hash {
 };
 
 }  // namespace
+
+double EnergyLedger::balance_error() const {
+  return largest > 0 ? std::abs(unexplained()) / largest : 0;
+}
+
+void EnergyLedger::open(const BodyEnergy& held) {
+  kinetic = held.kinetic;
+  strain = held.strain;
+  contact = held.contact;
+  anchor = held.anchor;
+  start_total = held.sum();
+  largest = std::max(kinetic, strain + contact + anchor);
+}
+
+void EnergyLedger::close(const StepEnergy& exchanged, const BodyEnergy& held) {
+  input += exchanged.input;
+  gravity += exchanged.gravity;
+  friction += exchanged.friction;
+  normal_damping += exchanged.normal_damping;
+  numerical += exchanged.numerical;
+  plastic += exchanged.plastic;
+  damping += exchanged.damping;
+  kinetic = held.kinetic;
+  strain = held.strain;
+  contact = held.contact;
+  anchor = held.anchor;
+  largest = std::max({largest, std::abs(input), kinetic, std::abs(gravity), strain + contact + anchor});
+}
 
 std::uint64_t hash(const State& state) {
   Hash hash;

@@ -12,6 +12,7 @@
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
+#include "solver/state/energy.h"
 
 namespace topple {
 
@@ -42,6 +43,9 @@ struct EnergyLedger {
   }
   /// |unexplained| over the largest energy exchanged so far (input, kinetic, potential).
   double balance_error() const;
+  /// A run begins with what its bodies hold; a step ends.
+  void open(const BodyEnergy& held);
+  void close(const StepEnergy& exchanged, const BodyEnergy& held);
 };
 
 /// Motion of a run at one accepted step, in the floor's frame. Per-node arrays have Model::node_total()

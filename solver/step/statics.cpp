@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"

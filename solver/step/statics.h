@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/frame/body_system.h"
-#include "solver/step/step.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 

@@ -1,11 +1,27 @@
-// Contacts of the newest step.
+// Forces at the end of the newest step.
 #pragma once
 
+#include <vector>
+
+#include "solver/element/section_forces.h"
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
+#include "solver/state/state.h"
+#include "solver/state/step_result.h"
 #include "solver/step/workspace.h"
 
 namespace topple {
 
-/// Body and element with the greatest contact force of the newest step; false: nothing touches.
-bool blame_hardest_contact(const Model& model, Workspace::Impl& w, StepStatus& status);
+/// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
+/// `workspace`. Also finds the section forces of bodies on the rung elastic.
+const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
+                                                const State& state, Workspace& workspace);
+
+/// Forces between members of the last call of contact_forces.
+const std::vector<MemberForce>& member_forces(Workspace& workspace);
+
+/// Section forces of every element at the state that prepare, resume or the last successful step left; of
+/// bodies that are not frames, at that of the last contact_forces.
+const std::vector<SectionForces>& section_forces(Workspace& workspace);
 
 }  // namespace topple

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/anchors.h"
 #include "solver/element/plasticity.h"
 #include "solver/model/excitation.h"
+#include "solver/state/body_pose.h"
 
 namespace topple::io {
 namespace {

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "solver/body/ladder.h"
 #include "solver/io/common/errors.h"
 
 namespace topple::io {

@@ -5,7 +5,6 @@
 
 #include "solver/body/elastic_basis.h"
 #include "solver/contact/proximity.h"
-#include "solver/element/damping.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/model/cabinet.h"

@@ -1,4 +1,5 @@
 #include "solver/study/penalty/contact_trials.h"
+#include "solver/state/body_pose.h"
 
 #include <algorithm>
 #include <cmath>

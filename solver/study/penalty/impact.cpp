@@ -5,6 +5,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/model/body_builder.h"
+#include "solver/state/body_pose.h"
 #include "solver/step/step.h"
 
 namespace topple::study {

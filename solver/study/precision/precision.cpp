@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "solver/body/elastic_basis.h"
+#include "solver/body/ladder.h"
 #include "solver/body/step_control.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/math/elementary.h"
-#include "solver/run/edit.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/laws.h"
 #include "solver/study/common/measure.h"

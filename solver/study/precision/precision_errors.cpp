@@ -6,6 +6,7 @@
 
 #include "solver/math/rotation.h"
 #include "solver/run/overturn.h"
+#include "solver/state/body_pose.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <limits>
 
+#include "solver/contact/contact_period.h"
 #include "solver/element/damping.h"
 #include "solver/frame/central_difference.h"
-#include "solver/run/edit.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 

@@ -10,6 +10,7 @@
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "scenes.h"
+#include "solver/body/anchors.h"
 
 namespace topple::app {
 namespace {

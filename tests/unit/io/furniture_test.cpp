@@ -6,6 +6,7 @@
 #include "solver/contact/proximity.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
+#include "solver/state/body_pose.h"
 
 namespace topple::io {
 namespace {

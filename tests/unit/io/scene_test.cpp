@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "scene_samples.h"
+#include "solver/body/anchors.h"
 #include "solver/contact/contact_default.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"

@@ -3,9 +3,11 @@
 
 #include <thread>
 
+#include "solver/body/anchors.h"
 #include "solver/body/elastic_basis.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
+#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -3,7 +3,7 @@
 
 #include "solver/body/elastic_basis.h"
 #include "solver/body/ladder.h"
-#include "solver/run/overturn.h"
+#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -5,9 +5,12 @@
 #include <set>
 
 #include "solver/body/elastic_basis.h"
+#include "solver/body/ladder.h"
 #include "solver/contact/contact_law.h"
+#include "solver/contact/contact_period.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
+#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

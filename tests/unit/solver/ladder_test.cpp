@@ -3,6 +3,7 @@
 
 #include "body_models.h"
 #include "solver/frame/modes.h"
+#include "solver/state/body_pose.h"
 
 namespace topple::test {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solver/state/sections.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

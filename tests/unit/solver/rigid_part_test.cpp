@@ -1,5 +1,5 @@
 // Rigid bodies on stiff contacts: long steps against the same contacts followed in every detail.
-#include "solver/run/overturn.h"
+#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -6,6 +6,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/model/excitation.h"
+#include "solver/state/sections.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

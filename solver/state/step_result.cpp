@@ -1,8 +1,6 @@
-// What a step says when it fails.
-#include <cstdio>
-#include <string>
+#include "solver/state/step_result.h"
 
-#include "solver/step/step.h"
+#include <cstdio>
 
 namespace topple {
 namespace {

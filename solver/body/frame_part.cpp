@@ -1,0 +1,123 @@
+#include "solver/body/frame_part.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/frame/central_difference.h"
+#include "solver/frame/settle.h"
+#include "solver/state/step_limits.h"
+
+namespace topple {
+namespace {
+
+// Mean rotation of a body's nodes, rad/s.
+double spin(const Body& body, const State& state) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    sum += state.rotation[i] * state.angular_velocity[i];
+  return sum.norm() / body.node_count;
+}
+
+double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const State& state) {
+  double stiffness = 0, limit = std::numeric_limits<double>::infinity();
+  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+    const ContactPoint& point = model.contact_points[p];
+    for (const Plane& plane : model.planes) {
+      const double L = contact_length(point, plane);
+      const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
+      const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
+      if (depth > 0)
+        stiffness += penalty_stiffness(law, depth, L);
+      else
+        limit = std::min(limit, closing_limit(gap, closing, L));
+    }
+  }
+  return std::min(limit, bounce_limit(body.mass, stiffness));
+}
+
+}  // namespace
+
+bool FramePart::has(const std::vector<char>& marked) const {
+  return std::any_of(system_.bodies.begin(), system_.bodies.end(), [&](int b) { return marked[b]; });
+}
+
+StepStatus FramePart::settle(const Parameters& parameters, State& state, PartScratch& scratch) {
+  return settle_system(system_, parameters, state, scratch.frame);
+}
+
+BodyEnergy FramePart::balance(const Parameters& parameters, const Instant& now,
+                              const std::vector<char>& marked, State& state) {
+  if (!has(marked)) return {};
+  BodySystem& s = system_;
+  s.load(state, motion_);
+  s.load_memory(state);
+  s.evaluate(parameters, state.time, motion_, state.stick, motion_.position);
+  for (int i = 0; i < s.count; ++i) {
+    const int g = s.node[i];
+    for (int k = 0; k < 3; ++k) {
+      if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
+      if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
+    }
+    const Mat3& j = s.model.node_inertia[g];
+    const Vec3& omega = state.angular_velocity[g];
+    state.acceleration[g] = state.algorithmic_acceleration[g] = s.force[i] / s.model.node_mass[g];
+    state.angular_acceleration[g] = state.algorithmic_angular_acceleration[g] =
+        j.inverse() * (state.rotation[g].conjugate() * s.moment[i] - omega.cross(j * omega));
+  }
+  return s.energy(now.law, motion_, s.contacts, sections_);
+}
+
+void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
+  IntegratorScratch& w = scratch.frame;
+  const double t = span.start.time;
+  {
+    const InPhase phase(w.profile, Phase::forces);
+    outcome.status =
+        is_explicit(span.parameters.integrator)
+            ? advance_central_difference(system_, span.parameters, next, t, span.h, w, outcome.exchanged)
+            : advance_generalized_alpha(system_, span.parameters, next, t, span.h, span.halvings, w,
+                                        outcome.exchanged);
+  }
+  if (!outcome.status.ok()) return;
+  const InPhase phase(w.profile, Phase::energy);
+  outcome.held = system_.energy(span.end.law, w.trial, system_.contacts, sections_);
+}
+
+double FramePart::time_limit(const Parameters& parameters, const State& state) {
+  const ContactLaw law = contact_law(parameters, state.time);
+  double limit = k_longest_step;
+  for (const int b : system_.bodies) {
+    const Body& body = system_.model.bodies[b];
+    limit = std::min(limit, contact_limit(system_.model, body, law, state));
+    if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;
+  }
+  return limit;
+}
+
+void FramePart::list_forces(const Instant& now, const State& state, Forces& forces) {
+  system_.load(state, motion_);
+  system_.load_memory(state);
+  system_.find_contacts(now.law, motion_, state.stick, motion_.position, contacts_);
+  for (const TouchingPair& pair : contacts_.planes)
+    forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
+  for (const MemberTouch& touch : contacts_.members.touches)
+    forces.members.push_back(
+        {system_.near[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
+}
+
+HardestContact FramePart::hardest_contact(const HardestContact& hardest) {
+  HardestContact found = hardest;
+  const auto look = [&](double force, int local) {
+    if (!(force > found.force)) return;
+    const int node = system_.node[local];
+    found = {force, system_.model.node_body[node], node, system_.element_at(node)};
+  };
+  for (const TouchingPair& pair : system_.contacts.planes) look(pair.out.normal, pair.node);
+  for (const MemberTouch& touch : system_.contacts.members.touches)
+    look(touch.out.normal, system_.member_pairs()[touch.pair].node[0]);
+  return found;
+}
+
+}  // namespace topple

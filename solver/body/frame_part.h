@@ -1,0 +1,33 @@
+// Frames that may touch each other, or one alone.
+#pragma once
+
+#include "solver/body/part.h"
+#include "solver/frame/body_system.h"
+
+namespace topple {
+
+class FramePart final : public Part {
+ public:
+  /// `system` and `sections`, of every element of the model, outlive this.
+  FramePart(BodySystem& system, std::vector<SectionForces>& sections)
+      : system_(system), sections_(sections) {}
+
+  bool has(const std::vector<char>& marked) const override;
+  StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
+  BodyEnergy balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+                     State& state) override;
+  void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
+  double time_limit(const Parameters& parameters, const State& state) override;
+  void list_forces(const Instant& now, const State& state, Forces& forces) override;
+  HardestContact hardest_contact(const HardestContact& hardest) override;
+  void take_sticks(const State& state) override { system_.take_sticks(state); }
+  void give_sticks(State& state) override { system_.give_sticks(state); }
+
+ private:
+  BodySystem& system_;
+  std::vector<SectionForces>& sections_;
+  BodyMotion motion_;
+  Contacts contacts_;
+};
+
+}  // namespace topple

@@ -1,0 +1,174 @@
+#include "solver/body/model_switch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/element/plasticity.h"
+#include "solver/state/body_pose.h"
+
+namespace topple {
+namespace {
+
+// Greatest sqrt(f + 1) of a body's sections.
+double yield_ratio(const Model& model, int b, const std::vector<SectionForces>& sections) {
+  const Body& body = model.bodies[b];
+  double greatest = 0;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const Element& element = model.elements[e];
+    if (!std::isfinite(element.capacity[0])) continue;
+    for (const int end : {-1, 1})
+      greatest = std::max(
+          greatest,
+          std::sqrt(1 + yield_function(element, forces_along(sections[e], element.length, element.s, end))));
+  }
+  return greatest;
+}
+
+// A body whose nodes or elements say that it must stay a frame.
+bool is_bent(const Model& model, const State& state, int b) {
+  const Body& body = model.bodies[b];
+  const auto first = state.elements.begin() + body.first_element;
+  return std::any_of(first, first + body.element_count, [](const ElementState& element) {
+    return element.hinge != Hinge::none || !element.offset.gamma.isZero(0) || !element.offset.kappa.isZero(0);
+  });
+}
+
+double strain_energy(const Model& model, int b, const std::vector<SectionForces>& sections) {
+  const Body& body = model.bodies[b];
+  double strain = 0;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+    strain += section_energy(model.elements[e], sections[e]);
+  return strain;
+}
+
+}  // namespace
+
+struct ModelSwitch::Switching {
+  const Model& model;
+  const Parameters& parameters;
+  const Instant& now;
+  State& state;
+  Parts& parts;
+};
+
+ModelSwitch::ModelSwitch(const Model& model) : near_(model.bodies.size()), new_frames_(model.bodies.size()) {}
+
+void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
+  if (!base_.empty()) return;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    base_.push_back(base_rung(model, parameters, b));
+}
+
+void ModelSwitch::find_near(const Model& model, const State& state) {
+  std::ranges::fill(near_, false);
+  for (const ElementPair& pair : state.near)
+    for (const int e : {pair.a, pair.b}) near_[model.members[model.elements[e].member].body] = true;
+}
+
+// At the state of `on`, where the contacts of those that are not frames have been found.
+RungChoice ModelSwitch::choose(const Switching& on, int b) {
+  const auto& [model, parameters, now, state, parts] = on;
+  BodyState& s = state.bodies[b];
+  const RungChoice& base = base_[b];
+  if (base.rung == Rung::frame) return base;
+  if (near_[b]) return {Rung::frame, RungReason::near};
+  if (s.rung == Rung::frame) {
+    const Body& body = model.bodies[b];
+    const bool calm = !is_bent(model, state, b) &&
+                      strain_energy(model, b, parts.sections) <
+                          k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
+                      yield_ratio(model, b, parts.sections) < k_calm_yield;
+    if (!calm)
+      s.calm_since = -1;
+    else if (s.calm_since < 0)
+      s.calm_since = state.time;
+    else if (state.time - s.calm_since >= k_calm_for)
+      return {base.rung, RungReason::calm};
+    return {s.rung, s.reason};
+  }
+  if (s.rung == Rung::elastic && parameters.models[b] == BodyModel::automatic) {
+    ReducedBody& body = parts.reduced(state, b);
+    if (body.rotation_bound(s) > k_small_rotation) return {Rung::frame, RungReason::deformation};
+    if (body.yield_bound(s) > k_near_yield) {
+      body.section_forces(s, parts.sections);
+      if (yield_ratio(model, b, parts.sections) > k_near_yield) return {Rung::frame, RungReason::yield};
+    }
+  }
+  return s.rung == base.rung ? RungChoice{s.rung, s.reason} : base;
+}
+
+// The contacts of the body's present model have been found.
+void ModelSwitch::change(const Switching& on, RungChoice choice, int b) {
+  const Model& model = on.model;
+  const Instant& now = on.now;
+  State& state = on.state;
+  Parts& parts = on.parts;
+  BodyState& s = state.bodies[b];
+  const auto of_frame = [&] {
+    BodySystem& system = parts.alone(b);
+    system.load(state, motion_);
+    system.load_memory(state);
+    system.find_contacts(now.law, motion_, state.stick, motion_.position, system.contacts);
+    return system.energy(now.law, motion_, system.contacts, parts.sections).sum();
+  };
+  ReducedBody& body = parts.reduced(state, b);
+  const double height = body_pose(model, state, b).centre.dot(on.parameters.gravity);
+  const double before = s.rung == Rung::frame ? of_frame() : body.energy(now.law, s).sum();
+  if (choice.rung == Rung::frame) {
+    place_nodes(model, state);
+    body.add_residual(s, state);
+    new_frames_[b] = true;
+  } else if (s.rung == Rung::frame) {
+    s = reduce(model, state, b, choice.rung);
+  } else if (choice.rung == Rung::rigid) {
+    s.amplitude.setZero();
+    s.rate.setZero();
+  }
+  s.rung = choice.rung;
+  s.reason = choice.reason;
+  s.calm_since = -1;
+  const double after =
+      s.rung == Rung::frame ? of_frame() : body.balance(on.parameters, now, s, state.stick).sum();
+  const double sunk = height - body_pose(model, state, b).centre.dot(on.parameters.gravity);
+  state.energy.model_switch += after - before + model.bodies[b].mass * sunk;
+  state.energy.gravity += model.bodies[b].mass * sunk;
+}
+
+void ModelSwitch::start(const Model& model, const Parameters& parameters, State& state, Parts& parts) {
+  find_base(model, parameters);
+  find_near(model, state);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const RungChoice choice =
+        near_[b] && base_[b].rung != Rung::frame ? RungChoice{Rung::frame, RungReason::near} : base_[b];
+    BodyState& s = state.bodies[b];
+    if (s.rung == Rung::frame && choice.rung != Rung::frame) s = reduce(model, state, b, choice.rung);
+    s.rung = choice.rung;
+    s.reason = choice.reason;
+  }
+  parts.arrange(state);
+}
+
+bool ModelSwitch::update(const Model& model, const Parameters& parameters, const Instant& now, State& state,
+                         Parts& parts) {
+  const Switching on{model, parameters, now, state, parts};
+  find_base(model, parameters);
+  find_near(model, state);
+  std::ranges::fill(new_frames_, false);
+  bool other_frames = false;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    BodyState& s = state.bodies[b];
+    const bool was_frame = s.rung == Rung::frame;
+    if (!was_frame) parts.reduced(state, b).find_contacts(now, s, state.stick);
+    const RungChoice choice = choose(on, b);
+    if (choice.rung == s.rung)
+      s.reason = choice.reason;
+    else
+      change(on, choice, b);
+    other_frames = other_frames || was_frame != (s.rung == Rung::frame);
+  }
+  parts.arrange(state);
+  if (parts.moves_nodes()) parts.balance(parameters, now, new_frames_, state);
+  return other_frames;
+}
+
+}  // namespace topple

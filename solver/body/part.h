@@ -1,0 +1,75 @@
+// What a step advances: bodies that meet no others within it, whatever they are computed as.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/body/reduced_body.h"
+#include "solver/frame/generalized_alpha.h"
+#include "solver/state/energy.h"
+#include "solver/state/step_result.h"
+
+namespace topple {
+
+/// Scratch of the parts that one worker advances; may be thrown away at any time.
+struct PartScratch {
+  ReducedScratch reduced;
+  IntegratorScratch frame;
+};
+
+/// A step of size h, s, from `start` to `end`.
+struct StepSpan {
+  const Parameters& parameters;
+  const Instant& start;
+  const Instant& end;
+  double h;
+  int halvings;  ///< the implicit methods halve it so often when Newton does not converge
+};
+
+/// What became of a part in a step.
+struct PartOutcome {
+  StepEnergy exchanged;
+  BodyEnergy held;  ///< at the end; undefined when it failed
+  StepStatus status;
+};
+
+/// Where the greatest normal contact force acts.
+struct HardestContact {
+  double force = 0;  ///< N
+  int body = -1, node = -1, element = -1;
+};
+
+/// Forces between bodies and planes, and between members.
+struct Forces {
+  std::vector<ContactForce> contacts;
+  std::vector<MemberForce> members;
+};
+
+/// Parts of one model share no body: each changes its own bodies' entries of a State alone, but for what
+/// touching members remember (take_sticks).
+class Part {
+ public:
+  virtual ~Part() = default;
+  /// Whether one of its bodies is marked.
+  virtual bool has(const std::vector<char>& marked) const = 0;
+  /// Rest under gravity, as settle() of step.h.
+  virtual StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) = 0;
+  /// Accelerations and contacts from the balance of forces; of its bodies that are marked,
+  /// and of those they may touch; returns what these hold.
+  virtual BodyEnergy balance(const Parameters& parameters, const Instant& now,
+                             const std::vector<char>& marked, State& state) = 0;
+  /// `next`: the state at the start; becomes that at the end. After a failure the part's bodies are
+  /// undefined.
+  virtual void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) = 0;
+  /// Longest step that resolves how its bodies touch and turn, s.
+  virtual double time_limit(const Parameters& parameters, const State& state) = 0;
+  /// Appends its forces at `state`; those of the sections of bodies of few unknowns are found too.
+  virtual void list_forces(const Instant& now, const State& state, Forces& forces) = 0;
+  /// Of the newest step; `hardest` where none is harder.
+  virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
+  /// Keeps what touching members remember to itself until give_sticks, while parts advance side by side.
+  virtual void take_sticks(const State&) {}
+  virtual void give_sticks(State&) {}
+};
+
+}  // namespace topple

@@ -1,0 +1,112 @@
+#include "solver/body/parts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "solver/body/frame_part.h"
+#include "solver/body/reduced_part.h"
+#include "solver/body/step_control.h"
+#include "solver/element/damping.h"
+#include "solver/frame/central_difference.h"
+
+namespace topple {
+namespace {
+
+constexpr std::size_t k_bodies_per_part = 16;  // of few unknowns: some microseconds
+
+}  // namespace
+
+Parts::Parts(const Model& model)
+    : sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}),
+      model_(model),
+      islands_(model),
+      reduced_(model.bodies.size()),
+      all_bodies_(model.bodies.size(), true) {}
+
+void Parts::arrange(const State& state) {
+  if (!islands_.arrange(state.bodies, state.near) && arranged_) return;
+  arranged_ = true;
+  parts_.clear();
+  std::vector<ReducedPart::Member> some;
+  const auto close_part = [&] {
+    if (!some.empty()) parts_.push_back(std::make_unique<ReducedPart>(std::exchange(some, {}), sections));
+  };
+  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+    if (state.bodies[b].rung == Rung::frame) continue;
+    some.push_back({b, &reduced(state, b)});
+    if (some.size() == k_bodies_per_part) close_part();
+  }
+  close_part();
+  for (BodySystem* system : islands_.systems())
+    parts_.push_back(std::make_unique<FramePart>(*system, sections));
+}
+
+BodyEnergy Parts::balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+                          State& state) {
+  BodyEnergy held;
+  for (const auto& part : parts_)
+    if (part->has(marked)) held += part->balance(parameters, now, marked, state);
+  return held;
+}
+
+BodyEnergy Parts::balance(const Parameters& parameters, const Instant& now, State& state) {
+  return balance(parameters, now, all_bodies_, state);
+}
+
+double Parts::time_limit(const Parameters& parameters, const State& state) {
+  double limit = look_ahead(model_, parameters, state);
+  for (const auto& part : parts_) limit = std::min(limit, part->time_limit(parameters, state));
+  return std::max(limit, 2 * k_least_step);
+}
+
+std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state) {
+  ContactLaw law = parameters.contact;
+  if (parameters.contact_passage.over > 0) {
+    law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
+    law.q = std::max(law.q, parameters.contact_before.q);
+  }
+  std::optional<ExplicitLimit> least;
+  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+    BodySystem* const system = state.bodies[b].rung == Rung::frame ? islands_.alone(b) : nullptr;
+    if (!system) continue;
+    int node = -1;
+    const double step = topple::explicit_limit(*system, &law, damping_time(model_, parameters, b), &node);
+    if (!least || step < least->step) least = {step, b, node, system->element_at(node)};
+  }
+  return least;
+}
+
+ReducedBody& Parts::reduced(const State& state, int body) {
+  if (!reduced_[body]) reduced_[body] = std::make_unique<ReducedBody>(model_, body);
+  reduced_[body]->remember(state.anchors);
+  return *reduced_[body];
+}
+
+double jump_floor(const Model& model, const Vec3& floor, State& state) {
+  double gain = 0;
+  const auto push = [&](double mass, Vec3& velocity) {
+    gain -= 0.5 * mass * velocity.squaredNorm();
+    velocity -= floor;
+    gain += 0.5 * mass * velocity.squaredNorm();
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (state.bodies[b].rung != Rung::frame) {
+      push(body.mass, state.bodies[b].velocity);
+      continue;
+    }
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      push(model.node_mass[i], state.velocity[i]);
+  }
+  for (const Support& support : model.supports)
+    for (int k = 0; k < 3; ++k)
+      if (support.fixed >> k & 1) {
+        double& v = state.velocity[support.node][k];
+        gain -= 0.5 * model.node_mass[support.node] * v * v;
+        v = 0;
+      }
+  state.floor_velocity += floor;
+  return gain;
+}
+
+}  // namespace topple

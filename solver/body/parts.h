@@ -1,0 +1,62 @@
+// All parts of a model, as its bodies are computed now.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solver/body/islands.h"
+#include "solver/body/part.h"
+
+namespace topple {
+
+/// Greatest stable step of central differences, s, and what sets it.
+struct ExplicitLimit {
+  double step;
+  int body, node, element;
+};
+
+class Parts {
+ public:
+  explicit Parts(const Model& model);
+
+  /// For the models of bodies, the pairs that may touch and the anchors of `state`. A few bodies of few
+  /// unknowns are one part; their parts come first, in the order of bodies.
+  void arrange(const State& state);
+  const std::vector<std::unique_ptr<Part>>& all() const { return parts_; }
+  /// A step moves nodes: there are frames.
+  bool moves_nodes() const { return !islands_.systems().empty(); }
+
+  /// Part::balance of those that are marked; of all.
+  BodyEnergy balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+                     State& state);
+  BodyEnergy balance(const Parameters& parameters, const Instant& now, State& state);
+  /// What the motion at `state` allows, s: look_ahead, T_contact/20 of a body that touches, the time to touch
+  /// or L/(4 v) where a contact closes, 0.1/|omega|.
+  double time_limit(const Parameters& parameters, const State& state);
+  /// Of the frames of `state`, each alone with all contacts closed, with the stiffer of the two laws between
+  /// which an edit changes; none without frames.
+  std::optional<ExplicitLimit> explicit_limit(const Parameters& parameters, const State& state);
+
+  /// One body as one of few unknowns, with the anchors of `state`; as nodes.
+  ReducedBody& reduced(const State& state, int body);
+  BodySystem& alone(int body) { return *islands_.alone(body); }
+
+  /// Section forces of every element that the newest step, or balance, left; of bodies that are not frames
+  /// those that Part::list_forces found last.
+  std::vector<SectionForces> sections;
+
+ private:
+  const Model& model_;
+  Islands islands_;
+  std::vector<std::unique_ptr<ReducedBody>> reduced_;  // per body, once it was one
+  std::vector<std::unique_ptr<Part>> parts_;
+  bool arranged_ = false;
+  const std::vector<char> all_bodies_;
+};
+
+/// The floor's velocity jumps by `floor`, m/s: bodies keep their own, so that they move the other way in the
+/// floor's frame. Returns the kinetic energy that they gain there, J.
+double jump_floor(const Model& model, const Vec3& floor, State& state);
+
+}  // namespace topple

@@ -1,0 +1,85 @@
+#include "solver/body/reduced_part.h"
+
+#include <algorithm>
+
+#include "solver/state/profile.h"
+#include "solver/state/step_limits.h"
+
+namespace topple {
+
+bool ReducedPart::has(const std::vector<char>& marked) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Member& m) { return marked[m.index]; });
+}
+
+StepStatus ReducedPart::settle(const Parameters& parameters, State& state, PartScratch&) {
+  StepStatus status;
+  for (const auto& [index, body] : bodies_) {
+    body->remember(state.anchors);
+    if (body->settle(parameters, state.bodies[index], state.stick)) continue;
+    status.kind = StepStatus::Kind::not_settled;
+    status.time = state.time;
+    status.body = index;
+    break;
+  }
+  return status;
+}
+
+BodyEnergy ReducedPart::balance(const Parameters& parameters, const Instant& now,
+                                const std::vector<char>& marked, State& state) {
+  BodyEnergy held;
+  for (const auto& [index, body] : bodies_) {
+    if (!marked[index]) continue;
+    body->remember(state.anchors);
+    held += body->balance(parameters, now, state.bodies[index], state.stick);
+  }
+  return held;
+}
+
+void ReducedPart::advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
+  const InPhase phase(scratch.frame.profile, Phase::reduced);
+  for (const auto& [index, body] : bodies_) {
+    BodyState& s = next.bodies[index];
+    body->remember(next.anchors);
+    outcome.status.kind = body->advance(span.parameters, span.start, span.end, span.h, s, next.stick,
+                                        outcome.exchanged, scratch.reduced);
+    if (!outcome.status.ok()) {
+      outcome.status.time = span.end.time;
+      outcome.status.body = index;
+      return;
+    }
+    outcome.held += body->energy(span.end.law, s);
+  }
+}
+
+double ReducedPart::time_limit(const Parameters& parameters, const State& state) {
+  const ContactLaw law = contact_law(parameters, state.time);
+  double limit = k_longest_step;
+  for (const auto& [index, body] : bodies_) {
+    body->remember(state.anchors);
+    limit = std::min(limit, body->look_ahead(law, state.bodies[index]));
+  }
+  return limit;
+}
+
+void ReducedPart::list_forces(const Instant& now, const State& state, Forces& forces) {
+  for (const auto& [index, body] : bodies_) {
+    body->remember(state.anchors);
+    body->find_contacts(now, state.bodies[index], state.stick);
+    body->section_forces(state.bodies[index], sections_);
+    body->list_contacts(forces.contacts);
+  }
+}
+
+HardestContact ReducedPart::hardest_contact(const HardestContact& hardest) {
+  HardestContact found = hardest;
+  std::vector<ContactForce> forces;
+  for (const auto& [index, body] : bodies_) {
+    forces.clear();
+    body->list_contacts(forces);
+    for (const ContactForce& force : forces)
+      if (force.normal > found.force) found = {force.normal, index, body->node_of(force.point)};
+  }
+  return found;
+}
+
+}  // namespace topple

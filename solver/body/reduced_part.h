@@ -1,0 +1,36 @@
+// Some bodies of few unknowns, none of which is near another.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "solver/body/part.h"
+
+namespace topple {
+
+class ReducedPart final : public Part {
+ public:
+  /// The bodies with these numbers; they outlive this.
+  struct Member {
+    int index;
+    ReducedBody* body;
+  };
+  /// `sections`, of every element of the model, outlive this.
+  ReducedPart(std::vector<Member> bodies, std::vector<SectionForces>& sections)
+      : bodies_(std::move(bodies)), sections_(sections) {}
+
+  bool has(const std::vector<char>& marked) const override;
+  StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
+  BodyEnergy balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+                     State& state) override;
+  void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
+  double time_limit(const Parameters& parameters, const State& state) override;
+  void list_forces(const Instant& now, const State& state, Forces& forces) override;
+  HardestContact hardest_contact(const HardestContact& hardest) override;
+
+ private:
+  std::vector<Member> bodies_;
+  std::vector<SectionForces>& sections_;
+};
+
+}  // namespace topple

@@ -1,0 +1,16 @@
+// How fast bodies bounce on the contacts that they rest on.
+#pragma once
+
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
+
+namespace topple {
+
+/// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with
+/// depth = (W / (n alpha))^(1/q) on the n contact points of its base. 0 without gravity or planes.
+double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity);
+
+/// The same of one body; 0 without gravity, planes or contact points.
+double contact_period(const Model& model, int body, const ContactLaw& law, const Vec3& gravity);
+
+}  // namespace topple

@@ -1,0 +1,75 @@
+#include "solver/step/adaptive_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/body/step_control.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_safety = 0.9;        // of the error that is aimed at
+constexpr double k_most_growth = 2;     // from step to step
+constexpr double k_most_shrinking = 5;  // of a step that is tried again
+constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
+constexpr double k_explicit_share = 0.9;
+
+// The size to try next after one of size h with this error and these iterations.
+double next_size(double h, double error, int iterations) {
+  double growth = error > 0 ? k_safety / std::sqrt(error) : k_most_growth;
+  if (iterations > k_many_iterations) growth = std::min(growth, 1.);
+  return h * std::clamp(growth, 1 / k_most_shrinking, k_most_growth);
+}
+
+// At most h, so that what is left of the way takes no step much shorter than the others.
+double fit(double h, double left) {
+  if (left <= h) return left;
+  return left < 2 * h ? left / 2 : h;
+}
+
+}  // namespace
+
+StepStatus adaptive_step(const Model& model, const Parameters& parameters, const State& state,
+                         Workspace::Impl& w, double until) {
+  if (is_explicit(parameters.integrator)) w.find_explicit_limit(parameters, state);
+  const bool by_limit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
+  const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
+  double h = state.step_size > 0 ? state.step_size : k_first_step;
+  h = by_limit ? k_explicit_share * w.explicit_limit->step
+               : std::min(h, w.parts.time_limit(parameters, state));
+  h = fit(h, left);
+  StepStatus status;
+  int iterations = 0, rejected = 0;
+  for (;;) {
+    status = try_step(model, parameters, state, h, 0, w);
+    iterations += status.newton_iterations;
+    const double error = status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h) : 0;
+    if (status.ok() && error <= 1) {
+      if (h == left) w.next.time = state.time + left;
+      const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
+      w.next.step_size = h;
+      if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
+      break;
+    }
+    if (status.kind == StepStatus::Kind::step_too_long) {  // a body becomes a frame
+      ++rejected;
+      h = k_explicit_share * status.limit;
+      continue;
+    }
+    if (by_limit || h < 2 * k_least_step) {
+      if (status.ok()) {
+        status.kind = StepStatus::Kind::not_accurate;
+        status.time = w.next.time;
+      }
+      break;
+    }
+    ++rejected;
+    h = std::max(status.ok() ? std::min(next_size(h, error, 0), h / 1.2) : h / 2, k_least_step);
+  }
+  status.newton_iterations = iterations;
+  status.rejected = rejected;
+  status.by_tolerance = !by_limit;
+  return status;
+}
+
+}  // namespace topple

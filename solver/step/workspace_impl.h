@@ -1,0 +1,53 @@
+// What Workspace keeps between steps, for the sources of the step alone.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/body/model_switch.h"
+#include "solver/body/parts.h"
+#include "solver/contact/proximity.h"
+#include "solver/step/workspace.h"
+
+namespace topple {
+
+struct Workspace::Impl {
+  explicit Impl(const Model& model) : parts(model), models(model), search(model) {
+    forces.contacts.reserve(model.contact_points.size() * model.planes.size());
+  }
+  /// Forgets what other parameters were good for.
+  void invalidate_caches(const Parameters& now) {
+    if (parameters == now) return;
+    parameters = now;
+    models.forget();
+    reached.reset();
+    explicit_limit.reset();
+  }
+
+  /// Of parameters and a state whose bodies are computed as `parts` are.
+  const std::optional<ExplicitLimit>& find_explicit_limit(const Parameters& now, const State& state) {
+    if (!explicit_limit) explicit_limit = parts.explicit_limit(now, state);
+    return explicit_limit;
+  }
+  /// Whether a step needs the per-node arrays: there are frames, or no step from such a state was tried yet.
+  bool moves_nodes(const State& state) const {
+    return parts.moves_nodes() || next.position.size() != state.position.size();
+  }
+
+  Parts parts;
+  ModelSwitch models;
+  NearSearch search;
+  std::vector<PartScratch> scratches{1};        // per worker
+  std::vector<PartOutcome> outcomes;            // per part, of the newest step
+  std::optional<Parameters> parameters;         // met last; for them hold:
+  std::optional<Instant> reached;               //   the end of the last step that was tried
+  std::optional<ExplicitLimit> explicit_limit;  //   of the frames there are
+  std::vector<char> changed;                    // per body: one of its anchors was switched or broke
+  ParallelFor parallel;
+  Profile profile;
+  Forces forces;
+  State next;
+  int most_iterations = 0;  // of one part in the newest step
+};
+
+}  // namespace topple
