@@ -12,7 +12,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/recording/recording.h"
 #include "solver/study/common/refinement.h"
 #include "solver/study/common/team.h"
@@ -27,7 +27,7 @@ int paying_jobs(const Setup& setup) {
   if (is_static(setup)) return 1;
   int frames = 0, others = 0;
   for (int b = 0; b < setup.model.furniture_total(); ++b)
-    ++(base_rung(setup.model, setup.parameters, b).rung == Rung::frame ? frames : others);
+    ++(traits(base_level(setup.model, setup.parameters, b).level).moves_nodes ? frames : others);
   if (frames < 2 && others < k_many_bodies) return 1;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, frames + others);
 }
@@ -97,9 +97,9 @@ const char* extent_unit(bool loads) {
   return loads ? " of the way" : " s";
 }
 
-RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner) {
+RecordedRun record(const io::Scene& scene, const host::Target& target, const RunManner& manner) {
   std::optional<io::Recorder> recorder;
-  if (!path.empty()) recorder.emplace(path, scene.name, scene.text, scene.setup.model, scene.files);
+  if (!target.path.empty()) recorder.emplace(target, scene.name, scene.text, scene.setup.model, scene.files);
   const auto start = Clock::now();
   std::optional<study::Team> team;
   Run run(scene.setup);
@@ -149,7 +149,7 @@ RecordedRun record(const io::Scene& scene, const std::string& path, const RunMan
                            : fmt::format("interrupted at {:.6g} s", run.state().time);
   } catch (const io::WriteError& error) {
     if (!begun) throw;
-    throw with_remains(error, path, is_static(scene.setup));
+    throw with_remains(error, target.path.string(), is_static(scene.setup));
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {
@@ -26,9 +27,9 @@ struct RunManner {
 /// What follows the number up to which there is something: of a static run its part of the way.
 const char* extent_unit(bool loads);
 
-/// Runs `scene`, recording to `path` (empty: not at all), until its end, a failure or Ctrl+C, which is
+/// Runs `scene`, recording to `target` (empty: not at all), until its end, a failure or Ctrl+C, which is
 /// deferred (interrupt.h). Throws io::WriteError when the recording cannot be written; it says what can still
 /// be read.
-RecordedRun record(const io::Scene& scene, const std::string& path, const RunManner& manner);
+RecordedRun record(const io::Scene& scene, const host::Target& target, const RunManner& manner);
 
 }  // namespace topple::app

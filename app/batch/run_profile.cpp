@@ -21,7 +21,7 @@ struct PhaseWords {
 
 constexpr PhaseWords k_phases[] = {
     {Phase::search, "search_s", "search for near bodies, copying"},
-    {Phase::ladder, "models_s", "choice of models"},
+    {Phase::models, "models_s", "choice of models"},
     {Phase::reduced, "bodies_s", "rigid and elastic bodies"},
     {Phase::forces, "forces_s", "forces of frames"},
     {Phase::tangent, "tangent_s", "tangents"},

@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "app/support/terms.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
+#include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
+#include "solver/frame/integrator.h"
 #include "solver/model/accelerogram.h"
 #include "solver/study/stability/stability_limits.h"
 
@@ -94,7 +96,7 @@ void warn_of_step(const Run& run, Warnings& list) {
           1e3 * h, 1e3 * shake.record->interval));
   double bounce = std::numeric_limits<double>::infinity();
   for (int b = 0; b < model.furniture_total(); ++b)
-    if (base_rung(model, p, b).rung == Rung::frame)
+    if (traits(base_level(model, p, b).level).moves_nodes)
       if (const double period = contact_period(model, b, p.contact, p.gravity); period > 0)
         bounce = std::min(bounce, period);
   if (h > bounce / k_resolved_bounce)
@@ -111,23 +113,14 @@ void warn_of_step(const Run& run, Warnings& list) {
 }
 
 void warn_of_law(const Run& run, Warnings& list) {
-  switch (run.parameters().contact.kind) {
-    case ContactLawKind::coulomb:
-    case ContactLawKind::paper:
-      return;
-    case ContactLawKind::printed:
-      break;
-  }
-  if (!run.setup().model.planes.empty())
-    list.push_back(
-        "law = \"printed\" holds bodies back where they part and lets them sink at rest: verdicts "
-        "with it mean nothing; \"coulomb\" and \"paper\" do neither");
+  const ContactLawTraits& law = traits(run.parameters().contact);
+  if (law.warning && !run.setup().model.planes.empty())
+    list.push_back(fmt::format("law = \"{}\" {}", law.word, law.warning));
 }
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
-  const bool by_tolerance =
-      run.parameters().adaptive && run.parameters().integrator != Integrator::central_difference;
+  const bool by_tolerance = run.parameters().adaptive && !traits(run.parameters().integrator).is_explicit;
   const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
   if (const double balance = e.balance_error(); balance > k_good_balance)
     list.push_back(

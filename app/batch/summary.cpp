@@ -1,6 +1,7 @@
 #include "app/batch/summary.h"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +10,9 @@
 
 #include "app/batch/run_warnings.h"
 #include "app/support/terms.h"
-#include "solver/body/ladder.h"
-#include "solver/state/body_pose.h"
+#include "solver/body/body_pose.h"
+#include "solver/body/model_level.h"
+#include "solver/frame/integrator.h"
 
 namespace topple::app {
 namespace {
@@ -43,15 +45,16 @@ ordered_json intervals(const std::vector<double>& times) {
 
 ordered_json changes(const BodyOutcome& o) {
   ordered_json out = ordered_json::array();
-  for (const RungChange& change : o.rung_changes)
-    out.push_back(
-        {{"time_s", number(change.time)}, {"model", name(change.rung)}, {"reason", name(change.reason)}});
+  for (const LevelChange& change : o.level_changes)
+    out.push_back({{"time_s", number(change.time)},
+                   {"model", traits(change.level).word},
+                   {"reason", name(change.reason)}});
   return out;
 }
 
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
-          {"model", name(o.rung.value_or(Rung::frame))},
+          {"model", traits(o.level.value_or(ModelLevel::frame)).word},
           {"model_changes", changes(o)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
@@ -93,18 +96,6 @@ ordered_json anchors(const Run& run) {
   return out;
 }
 
-std::string integrator_name(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::central_difference:
-      return "central-difference";
-    case Integrator::newmark:
-      return "newmark";
-    case Integrator::generalized_alpha:
-      break;
-  }
-  return "generalized-alpha";
-}
-
 /// The mean of an adaptive run.
 ordered_json time_step(const Run& run) {
   const Parameters& p = run.parameters();
@@ -136,12 +127,6 @@ ordered_json peak_load_factor(const Run& run) {
   for (const LoadStep& step : run.load_steps())
     if (step.converged) peak = std::max(peak.value_or(step.factor), step.factor);
   return number(peak);
-}
-
-/// Characters of a UTF-8 text.
-int characters(const std::string& text) {
-  return static_cast<int>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 std::string text(const ordered_json& value, const char* format) {
@@ -221,6 +206,11 @@ std::string anchor_line(const ordered_json& a) {
 
 }  // namespace
 
+std::size_t letters(const std::string& text) {
+  const std::string clean = utf8::replace_invalid(text);
+  return static_cast<std::size_t>(utf8::distance(clean.begin(), clean.end()));
+}
+
 ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
   return {{"name", anchor.name},
           {"body", model.bodies[static_cast<std::size_t>(anchor.body)].name},
@@ -244,7 +234,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["realtime_factor"] =
       wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);
   out["integrator"] =
-      is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrator_name(p.integrator));
+      is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(traits(p.integrator).word);
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
@@ -366,7 +356,8 @@ std::string energy_in_words(const ordered_json& e) {
 std::string summary_table(const ordered_json& s) {
   std::string out = s["analysis"] == "static" ? static_head(s) : dynamic_head(s);
   int width = 14;
-  for (const auto& b : s["bodies"]) width = std::max(width, characters(b["name"].get<std::string>()));
+  for (const auto& b : s["bodies"])
+    width = std::max(width, static_cast<int>(letters(b["name"].get<std::string>())));
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
                      "uplift", "impacts", "peak tilt", "final tilt", "slide", "peak stress");
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",

@@ -31,6 +31,9 @@ std::string refinement_in_words(const Setup& setup);
 /// Name, body, type and strength of an anchor.
 nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor);
 
+/// Of a UTF-8 text; what is not counts as one each.
+std::size_t letters(const std::string& text);
+
 /// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 

@@ -1,5 +1,3 @@
-#include "app/cli/compare_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/batch/summary.h"
+#include "app/cli/command.h"
 #include "app/picture/ghost_video.h"
 #include "app/picture/replay.h"
 #include "app/support/errors.h"
@@ -27,6 +26,14 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
+
+struct CompareOptions {
+  std::string a, b;  ///< scenes or recordings
+  std::string json;  ///< file, "-" or empty
+  std::string mp4;   ///< ghost video; empty: none
+  bool quiet = false;
+  bool force = false;  ///< in place of files of any kind
+};
 
 constexpr std::size_t k_narrowest = 10, k_widest = 64;  // letters of a column
 
@@ -71,8 +78,10 @@ void check(const CompareOptions& options, const Side& a, const Side& b) {
     throw BadInput("one of " + a.source + " and " + b.source + " is static, the other is not");
   const std::string sources[] = {a.source, b.source};
   for (const std::string& source : sources) {
-    if (!options.json.empty() && options.json != "-") require_writable_text("--json", options.json, source);
-    if (!options.mp4.empty()) require_writable_file("--mp4", options.mp4, source);
+    if (!options.json.empty() && options.json != "-")
+      require_writable_text("--json", {options.json, options.force}, host::FileKind::json, source);
+    if (!options.mp4.empty())
+      require_writable_file("--mp4", {options.mp4, options.force}, host::FileKind::mp4, source);
   }
   if (!options.mp4.empty() && same_file(options.json, options.mp4))
     throw BadInput("--json: " + options.json + " is the video; choose another name");
@@ -163,10 +172,6 @@ class Table {
   }
 
  private:
-  static std::size_t letters(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-  }
   std::vector<std::array<std::string, 3>> rows_;
 };
 
@@ -211,8 +216,6 @@ std::string tables(const ordered_json& result) {
          outcomes.text();
 }
 
-}  // namespace
-
 int compare_command(const CompareOptions& options) {
   Side a = open_side(options.a), b = open_side(options.b);
   check(options, a, b);
@@ -228,8 +231,8 @@ int compare_command(const CompareOptions& options) {
                             {"bodies", outcomes(a, b)}};
   if (pictures && a.recording && b.recording) {
     const Replay of_a(*a.recording), of_b(*b.recording);
-    const int drawn =
-        draw_ghost_video(options.mp4, {a.source, a.scene, of_a}, {b.source, b.scene, of_b}, options.quiet);
+    const int drawn = draw_ghost_video({options.mp4, options.force}, {a.source, a.scene, of_a},
+                                       {b.source, b.scene, of_b}, options.quiet);
     if (drawn != k_done) return drawn;
   }
   if (options.json == "-") {
@@ -238,8 +241,24 @@ int compare_command(const CompareOptions& options) {
   }
   fmt::print("{}", tables(result));
   if (pictures && code == k_done) fmt::print("\nvideo: {}\n", options.mp4);
-  if (!options.json.empty()) write_whole_file(options.json, json_text(result, 2) + "\n");
+  if (!options.json.empty())
+    write_whole_file({options.json, options.force}, host::FileKind::json, json_text(result, 2) + "\n");
   return code;
+}
+
+}  // namespace
+
+void add_compare(Commands& commands) {
+  const auto [command, compare] =
+      commands.add("compare", "what two scenes or recordings say and do differently",
+                   "compare weak.h5 strong.h5 --mp4 both.mp4", compare_command);
+  add_path(command, "A", compare.a, "", "scene or recording").required();
+  add_path(command, "B", compare.b, "", "scene or recording").required();
+  add_json(command, compare.json, "write the differences as JSON");
+  add_force(command, compare.force);
+  add_path(command, "--mp4", compare.mp4, "FILE.mp4",
+           "video of both on one clock, A solid, B translucent (needs ffmpeg)");
+  add_quiet(command, compare.quiet);
 }
 
 }  // namespace topple::app

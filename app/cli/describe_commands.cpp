@@ -1,5 +1,3 @@
-#include "app/cli/describe_commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
+#include "app/cli/command.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
 #include "solver/io/scene/edit_text.h"
@@ -82,7 +81,7 @@ ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies, co
                       {"value", e.event.value}};
   if (e.event.kind == Event::Kind::anchor) out["anchor"] = anchors[anchor]["name"];
   if (e.event.kind == Event::Kind::model) {
-    out["model"] = name(static_cast<Rung>(e.event.value));
+    out["model"] = traits(static_cast<ModelLevel>(e.event.value)).word;
     out["reason"] = name(e.event.reason);
   }
   return out;
@@ -104,21 +103,24 @@ bool is_static(const ordered_json& description) {
 /// The ledger at one instant, named as in the summary.
 ordered_json describe_energy(const io::FrameRow& row, bool is_static) {
   const std::vector<double>& e = row.energy;
-  return {{"input_J", e[0]},
-          {"kinetic_J", e[1]},
-          {"strain_J", e[2]},
-          {"gravity_J", e[3]},
-          {"contact_J", e[4]},
-          {"dissipated_J", e[5] + e[6] + e[7] + e[8] + e[9] + (e.size() > 13 ? e[13] : 0)},
-          {"friction_J", e[5]},
-          {"normal_damping_J", e[6]},
-          {"numerical_J", e[7]},
-          {"plastic_J", e[8]},
-          {"damping_J", e[9]},
-          {"model_switch_J", e[10]},
-          {"anchor_J", e.size() > 13 ? e[12] : 0},
-          {"released_J", e.size() > 13 ? e[13] : 0},
-          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[11])}};
+  const bool anchors = e.size() > io::k_released;
+  const double released = anchors ? e[io::k_released] : 0;
+  return {{"input_J", e[io::k_input]},
+          {"kinetic_J", e[io::k_kinetic]},
+          {"strain_J", e[io::k_strain]},
+          {"gravity_J", e[io::k_gravity]},
+          {"contact_J", e[io::k_contact]},
+          {"dissipated_J", e[io::k_friction] + e[io::k_normal_damping] + e[io::k_numerical] +
+                               e[io::k_plastic] + e[io::k_damping] + released},
+          {"friction_J", e[io::k_friction]},
+          {"normal_damping_J", e[io::k_normal_damping]},
+          {"numerical_J", e[io::k_numerical]},
+          {"plastic_J", e[io::k_plastic]},
+          {"damping_J", e[io::k_damping]},
+          {"model_switch_J", e[io::k_model_switch]},
+          {"anchor_J", anchors ? ordered_json(e[io::k_anchor]) : ordered_json(0)},
+          {"released_J", anchors ? ordered_json(released) : ordered_json(0)},
+          {"balance_error", is_static ? ordered_json(nullptr) : ordered_json(e[io::k_balance_error])}};
 }
 
 ordered_json describe(const io::Recording& recording) {
@@ -256,13 +258,15 @@ std::string table(const ordered_json& d) {
   return out;
 }
 
-}  // namespace
-
-int check_command(const std::vector<std::string>& scenes, const std::vector<std::string>& overrides) {
+struct CheckOptions {
+  std::vector<std::string> scenes;     ///< paths or names
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+};
+int check_command(const CheckOptions& options) {
   int code = k_done;
-  for (const std::string& scene : scenes) {
+  for (const std::string& scene : options.scenes) {
     try {
-      io::load_scene(scene, overrides);
+      io::load_scene(scene, options.overrides);
       fmt::print("{}: ok\n", scene);
     } catch (const io::InputError& error) {
       say(error.what());
@@ -272,9 +276,16 @@ int check_command(const std::vector<std::string>& scenes, const std::vector<std:
   return code;
 }
 
+struct InfoOptions {
+  std::string file;     ///< scene or recording
+  std::string json;     ///< file, "-" or empty
+  bool verify = false;  ///< run a recording again
+  bool force = false;   ///< in place of files of any kind
+};
 int info_command(const InfoOptions& options) {
-  const auto& [file, json, verified] = options;
-  if (!json.empty() && json != "-") require_writable_text("--json", json, file);
+  const auto& [file, json, verified, force] = options;
+  if (!json.empty() && json != "-")
+    require_writable_text("--json", {json, force}, host::FileKind::json, file);
   ordered_json description;
   if (io::is_recording(file)) {
     const io::Recording recording = open_foreign_recording(file);
@@ -289,7 +300,7 @@ int info_command(const InfoOptions& options) {
   if (json == "-")
     fmt::print("{}\n", json_text(description, 2));
   else if (!json.empty())
-    write_whole_file(json, json_text(description, 2) + "\n");
+    write_whole_file({json, force}, host::FileKind::json, json_text(description, 2) + "\n");
   else
     fmt::print("{}{}", table(description), verified ? verdict(description) : "");
   return damaged ? k_failed : k_done;
@@ -301,6 +312,31 @@ int scenes_command() {
     fmt::print("{:<18} {}\n", name, io::load_scene(name).title);
   }
   return k_done;
+}
+
+}  // namespace
+
+void add_check(Commands& commands) {
+  const auto [command, check] =
+      commands.add("check", "validate scenes without running them",
+                   "check my-office.toml --set shake.1.amplitude=\"0.2 g\"", check_command);
+  command.add_option("SCENES", check.scenes, "paths or names")->required()->type_name("");
+  add_set(command, check.overrides);
+}
+
+void add_info(Commands& commands) {
+  const auto [command, info] = commands.add("info", "describe a scene or a recording",
+                                            "info paper-a.h5 --verify --json -", info_command);
+  add_path(command, "FILE", info.file, "", "scene or recording").required();
+  add_json(command, info.json, "write JSON");
+  add_force(command, info.force);
+  command.add_flag("--verify", info.verify,
+                   "run the recording again; name the first step and element that differ, and tell damage "
+                   "from another arithmetic");
+}
+
+void add_scenes(Commands& commands) {
+  commands.add("scenes", "list the built-in scenes", "scenes", scenes_command);
 }
 
 }  // namespace topple::app

@@ -1,9 +1,8 @@
-#include "app/cli/export_command.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "app/cli/command.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
@@ -14,6 +13,15 @@
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {
+namespace {
+
+struct ExportOptions {
+  std::string recording;
+  std::string csv;     ///< folder; or
+  std::string xdmf;    ///< file; or
+  std::string vtk;     ///< folder
+  bool force = false;  ///< in place of files of any kind
+};
 
 int export_command(const ExportOptions& options) {
   if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
@@ -23,11 +31,12 @@ int export_command(const ExportOptions& options) {
             fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
   const io::Recording recording = open_foreign_recording(options.recording);
   if (!options.xdmf.empty()) {
-    for (const std::string& file : {options.xdmf, options.xdmf + ".h5"})
-      require_writable_file("--xdmf", file, options.recording);
+    require_writable_file("--xdmf", {options.xdmf, options.force}, host::FileKind::xdmf, options.recording);
+    require_writable_file("--xdmf", {options.xdmf + ".h5", options.force}, host::FileKind::hdf5,
+                          options.recording);
     if (std::filesystem::path(options.xdmf).filename().string().find(':') != std::string::npos)
       throw BadInput("--xdmf: " + options.xdmf + ": ParaView finds no data behind a name with a colon");
-    io::export_xdmf(recording, options.xdmf);
+    io::export_xdmf(recording, {options.xdmf, options.force});
     return k_done;
   }
   const std::string& folder = options.csv.empty() ? options.vtk : options.csv;
@@ -36,10 +45,28 @@ int export_command(const ExportOptions& options) {
   if (error) throw BadInput(folder + ": cannot be created: " + error.message());
   require_writable_folder(folder, folder);
   if (options.csv.empty())
-    io::export_vtk(recording, folder);
+    io::export_vtk(recording, {folder, options.force});
   else
-    io::export_csv(recording, folder);
+    io::export_csv(recording, {folder, options.force});
   return k_done;
+}
+
+}  // namespace
+
+void add_export(Commands& commands) {
+  const auto [command, data] = commands.add(
+      "export", "data of a recording for spreadsheets and ParaView",
+      "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf", export_command);
+  add_path(command, "RECORDING", data.recording, "", "recording").required();
+  CLI::Option_group& what = *command.add_option_group("output", "what to write");
+  add_path(what, "--csv", data.csv, "DIR",
+           "folder for bodies.csv, nodes.csv, elements.csv, floor.csv, energy.csv, anchors.csv");
+  add_path(what, "--xdmf", data.xdmf, "FILE.xdmf",
+           "for ParaView 5.11 and later; the data go to FILE.xdmf.h5");
+  add_path(what, "--vtk", data.vtk, "DIR",
+           "folder for frames.pvd and a .vtp file a frame, for what reads VTK's own format");
+  what.require_option(1);
+  add_force(command, data.force);
 }
 
 }  // namespace topple::app

@@ -14,8 +14,10 @@ int main(int argc, char** argv) {
   const std::string frame{std::istreambuf_iterator<char>(in), {}}, folder = argv[2];
   try {
     topple::app::read_commands([&](const CLI::App& commands) {
-      topple::app::write_whole_file(folder + "/topple.1", topple::app::manual_page(commands, frame));
-      topple::app::write_whole_file(folder + "/topple", topple::app::bash_completion(commands));
+      topple::app::write_whole_file(folder + "/topple.1", topple::host::FileKind::any,
+                                    topple::app::manual_page(commands, frame));
+      topple::app::write_whole_file(folder + "/topple", topple::host::FileKind::any,
+                                    topple::app::bash_completion(commands));
     });
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -36,9 +36,20 @@ std::string unknown_option(const CLI::App& table) {
   return "";
 }
 
-/// CLI11's sentences on the number of values say little: "--json: 1 required FILE|- missing".
+/// CLI11's sentences on the number of values say little: "--json: 1 required FILE|- missing". Those on lists
+/// of words, "--lang: de not in {en,ja}", are worded as others on values.
 std::string in_words(const CLI::ParseError& error) {
   std::string text = error.what();
+  constexpr std::string_view list = " not in {";
+  if (const std::size_t end = text.rfind(list); end != std::string::npos && text.ends_with('}')) {
+    const std::size_t begin = text.find(": ") + 2;
+    std::string known;
+    for (const char letter : text.substr(end + list.size())) {
+      if (letter != '}') known += letter;
+      if (letter == ',') known += ' ';
+    }
+    return text.substr(0, begin) + "\"" + text.substr(begin, end - begin) + "\" is not one of " + known;
+  }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return text;
   const std::string option = text.substr(0, text.find(':'));
   if (text.find("At Most 1") != std::string::npos) return option + ": given more than once";

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
+#include "app/cli/command.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "solver/frame/modes.h"
@@ -74,15 +75,28 @@ ordered_json modes_summary(const io::Scene& scene, int count) {
 int modes_command(const ModesOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
   const bool to_output = options.json == "-";
-  if (!options.json.empty() && !to_output) require_writable_text("--json", options.json, options.scene);
+  if (!options.json.empty() && !to_output)
+    require_writable_text("--json", {options.json, options.force}, host::FileKind::json, options.scene);
   const ordered_json out = modes_summary(scene, options.count);
   if (to_output) {
     fmt::print("{}\n", json_text(out, 2));
     return k_done;
   }
   fmt::print("{}", table(out));
-  if (!options.json.empty()) write_whole_file(options.json, json_text(out, 2) + "\n");
+  if (!options.json.empty())
+    write_whole_file({options.json, options.force}, host::FileKind::json, json_text(out, 2) + "\n");
   return k_done;
+}
+
+void add_modes(Commands& commands) {
+  const auto [command, modes] = commands.add("modes", "natural frequencies and mode shapes of each body",
+                                             "modes cantilever --count 5 --json modes.json", modes_command);
+  add_scene(command, modes.scene);
+  add_read(command, "--count", "N", whole_number(modes.count, 1, 1000),
+           "modes of each body, rigid ones among them; default 10");
+  add_set(command, modes.overrides);
+  add_force(command, modes.force);
+  add_json(command, modes.json, "write the modes as JSON");
 }
 
 }  // namespace topple::app

@@ -1,19 +1,24 @@
-#include "app/cli/render_command.h"
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "app/batch/recorded_run.h"
+#include "app/cli/command.h"
 #include "app/panels/appearance.h"
 #include "app/panels/subject.h"
 #include "app/picture/bridge.h"
 #include "app/picture/drawing_processes.h"
+#include "app/picture/image_files.h"
+#include "app/picture/picture_settings.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
@@ -27,7 +32,8 @@
 #include "app/window/window_picture.h"
 #include "render/gl/off_screen.h"
 #include "render/output/picture.h"
-#include "render/output/video.h"
+#include "render/scene/camera.h"
+#include "render/scene/orbit.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
 
@@ -35,6 +41,29 @@ namespace topple::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int k_least_side = 64, k_most_side = 8192;  // px
+constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
+
+struct RenderOptions {
+  std::string source;                  ///< scene or recording
+  std::vector<std::string> overrides;  ///< of a scene
+  std::string png, mp4, still;         ///< one of them
+  std::optional<double> at;            ///< s, of the still
+  int width = 1280, height = 720;
+  int fps = 30;
+  render::NamedView view = render::NamedView::iso;
+  std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
+  std::optional<std::string> follow;   ///< body the camera goes along with; empty: of `inspect`, or first
+  std::optional<double> from, to;      ///< s
+  bool ui = false;                     ///< with the panels of the window
+  Language language = Language::english;
+  PictureSettings picture;  ///< all but `diagram`
+  std::string inspect;      ///< BODY or BODY/MEMBER, looked at closely; empty: none
+  render::Renderer renderer = render::Renderer::any;
+  bool quiet = false;
+  bool force = false;  ///< in place of files of any kind
+};
 
 /// Refuses what can be refused before anything runs. `last`: time of the last instant, s; of a static run its
 /// part of the way.
@@ -53,7 +82,10 @@ void check_times(const RenderOptions& o, bool loads, double first, double last, 
 
 void check_outputs(const RenderOptions& o) {
   if (o.png.empty()) {
-    require_writable_file(o.mp4.empty() ? "--still" : "--mp4", o.mp4.empty() ? o.still : o.mp4, o.source);
+    if (o.mp4.empty())
+      require_writable_file("--still", {o.still, o.force}, host::FileKind::png, o.source);
+    else
+      require_writable_file("--mp4", {o.mp4, o.force}, host::FileKind::mp4, o.source);
     return;
   }
   std::error_code error;
@@ -139,7 +171,7 @@ using OpenDrawing = std::function<DrawAt()>;
 
 int draw_still(const RenderOptions& o, const OpenDrawing& open) {
   if (interrupted()) return k_interrupted;
-  render::write_png(o.still, open()(*o.at));
+  write_png({o.still, o.force}, open()(*o.at));
   return k_done;
 }
 
@@ -149,9 +181,11 @@ std::string picture_name(int number) {
 
 /// Pictures from `from` to `to`, as files in a folder or as a video.
 int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, double to) {
-  std::optional<render::VideoWriter> video;
-  if (!o.mp4.empty()) video.emplace(o.mp4, o.width, o.height, o.fps);
+  std::optional<VideoWriter> video;
+  if (!o.mp4.empty()) video.emplace(host::Target(o.mp4, o.force), o.width, o.height, o.fps);
   const int count = static_cast<int>(std::floor((to - from) * o.fps + 1e-6)) + 1;
+  for (int i = 0; !video && i < count; ++i)
+    host::expect_replaceable({fs::path(o.png) / picture_name(i), o.force}, host::FileKind::png);
   Progress progress("drawing", "pictures", count, o.quiet);
   draw_pictures(
       count,
@@ -159,7 +193,7 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
         return [&, draw_at = open()](int i) -> std::vector<std::uint8_t> {
           render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
           if (video) return std::move(image.rgba);
-          render::write_png(fs::path(o.png) / picture_name(i), image);
+          write_png({fs::path(o.png) / picture_name(i), o.force}, image);
           return {};
         };
       },
@@ -218,9 +252,11 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   return code;
 }
 
-}  // namespace
-
 int render_command(const RenderOptions& options) {
+  if (!options.mp4.empty() && (options.width % 2 != 0 || options.height % 2 != 0))
+    throw BadInput("--size: a video needs an even width and height");
+  if (options.ui && options.orbit)
+    throw BadInput("--camera: with --ui, one of front, side, top, iso, follow");
   window_language() = options.language;
   if (io::is_recording(options.source)) {
     if (!options.overrides.empty())
@@ -231,10 +267,10 @@ int render_command(const RenderOptions& options) {
   check_times(options, is_static(scene->setup), 0, scene->setup.run.duration, "the scene");
   followed_by(options, scene->setup.model, inspected_by(options, scene->setup.model));
   defer_interrupts();
-  check_outputs(options);
   if (options.png.empty())
     require_no_record(options.mp4.empty() ? "--still" : "--mp4",
                       options.mp4.empty() ? options.still : options.mp4, options.source, *scene);
+  check_outputs(options);
   const TemporaryFile file;
   const RecordedRun run = record(*scene, file.path(), {.quiet = options.quiet});
   if (!run.trouble.empty())
@@ -248,6 +284,145 @@ int render_command(const RenderOptions& options) {
     say(error.what());
     return run.exit_code;
   }
+}
+
+Reader size_of(RenderOptions& options) {
+  return [&options](const std::string& text) {
+    const std::size_t cross = std::min(text.find('x'), text.size());
+    const auto side = [](std::string_view digits) {
+      const int value = number_in<int>(digits).value_or(0);
+      return value >= k_least_side && value <= k_most_side ? value : 0;
+    };
+    options.width = side(std::string_view(text).substr(0, cross));
+    options.height = side(std::string_view(text).substr(std::min(cross + 1, text.size())));
+    if (options.width > 0 && options.height > 0) return std::string();
+    return fmt::format("\"{}\" is not WIDTHxHEIGHT with {}..{} each", text, k_least_side, k_most_side);
+  };
+}
+
+/// Into view, orbit and follow.
+Reader camera_of(RenderOptions& options) {
+  return [&options](const std::string& text) -> std::string {
+    std::string camera = text;
+    if (const std::size_t at = camera.find("follow");
+        at == 0 || (at < camera.size() && camera[at - 1] == ',')) {
+      const std::string body = camera.substr(at + std::strlen("follow"));
+      if (body.empty() || (body.front() == ':' && body.size() > 1)) {
+        options.follow = body.empty() ? "" : body.substr(1);
+        camera = at == 0 ? "iso" : camera.substr(0, at - 1);
+      }
+    }
+    if (const auto view = render::view_named(camera)) {
+      options.view = *view;
+      return "";
+    }
+    std::vector<float> numbers;
+    for (std::size_t at = 0; at <= camera.size();) {
+      const std::size_t end = std::min(camera.find(',', at), camera.size());
+      const auto number = number_in<float>(std::string_view(camera).substr(at, end - at));
+      numbers.push_back(number.value_or(std::numeric_limits<float>::quiet_NaN()));
+      at = end + 1;
+    }
+    const bool good = numbers.size() == 6 &&
+                      std::ranges::all_of(numbers, [](float x) { return std::abs(x) <= k_farthest; }) &&
+                      std::abs(numbers[1]) <= 90 && numbers[2] > 0;
+    if (!good)
+      return "\"" + text +
+             "\" is not one of front, side, top, iso, follow, nor AZIMUTH,ELEVATION,DISTANCE,X,Y,Z with an "
+             "elevation of -90..90 and a distance above 0";
+    constexpr float radians = std::numbers::pi_v<float> / 180;
+    options.orbit = render::Orbit{.target = {numbers[3], numbers[4], numbers[5]},
+                                  .distance = numbers[2],
+                                  .sight = {numbers[0] * radians, numbers[1] * radians}};
+    return "";
+  };
+}
+
+Reader range_of(PictureSettings& picture) {
+  return [&picture](const std::string& text) -> std::string {
+    const auto number = number_in<double>(text);
+    picture.range = text == "run"       ? RangePolicy::run
+                    : text == "instant" ? RangePolicy::instant
+                                        : RangePolicy::fixed;
+    picture.maximum = number.value_or(1);
+    const bool good = number && *number >= k_least_maximum && *number <= k_most_maximum;
+    if (picture.range != RangePolicy::fixed || good) return "";
+    return "\"" + text + "\" is not run, instant or a number from 1e-6 to 1e12";
+  };
+}
+
+Reader exaggeration(double& value) {
+  return [&value](const std::string& text) -> std::string {
+    value = number_in<double>(text).value_or(0);
+    return value >= 1 && value <= k_most_exaggeration ? "" : "\"" + text + "\" is not a number from 1 to 200";
+  };
+}
+
+void add_picture(CLI::App& command, RenderOptions& options) {
+  PictureSettings& picture = options.picture;
+  std::vector<std::pair<std::string, BeamQuantity>> quantities;
+  std::vector<std::string_view> words;
+  for (const BeamQuantityTraits& row : beam_quantities()) {
+    quantities.emplace_back(row.word, row.kind);
+    words.emplace_back(row.word);
+  }
+  add_choice(command, "--colour", "QUANTITY", picture.colour, quantities,
+             fmt::format("what beams are coloured by, one of {}; default stress", fmt::join(words, ", ")));
+  add_choice<render::ColourMap>(
+      command, "--map", "NAME", picture.map,
+      {{"viridis", render::ColourMap::viridis}, {"cividis", render::ColourMap::cividis}},
+      "viridis (default) or cividis: colours of what has no sign");
+  add_read(command, "--range", "RANGE", range_of(picture),
+           "run (default), instant, or the greatest value in the legend's unit: where colours end");
+  add_read(command, "--exaggerate", "FACTOR", exaggeration(picture.exaggeration),
+           "deformation drawn so many times as large, 1 to 200");
+  command.add_flag("--forces", picture.contact_forces,
+                   "arrows of what floors, walls and other bodies do to bodies");
+  command.add_flag_callback(
+      "--no-panels", [&picture] { picture.panels = false; }, "without the sheets of cabinets");
+  add_choice<Trails>(command, "--trails", "SPAN", picture.trails,
+                     {{"second", Trails::second}, {"run", Trails::run}},
+                     "second or run: paths of centres of gravity and tops of bodies since then");
+  add_path(command, "--inspect", options.inspect, "BODY[/MEMBER]",
+           "look closely at a body or member: forces along the member; all values with --ui");
+}
+
+}  // namespace
+
+void add_render(Commands& commands) {
+  const auto [command, options] =
+      commands.add("render", "draw pictures or a video of a scene or recording",
+                   "render paper-a --still tipping.png --at 2.3 --size 1920x1080", render_command);
+  add_path(command, "SOURCE", options.source, "", "scene or recording").required();
+  CLI::Option_group& what = *command.add_option_group("output", "what to write");
+  add_path(what, "--png", options.png, "DIR", "folder for a sequence of PNG files");
+  add_path(what, "--mp4", options.mp4, "FILE.mp4", "video (needs ffmpeg)");
+  CLI::Option& still = add_path(what, "--still", options.still, "FILE.png", "one picture");
+  still.each([&picture = options.picture](const std::string&) { picture.alone = true; });
+  what.require_option(1);
+  CLI::Option& at = add_read(command, "--at", "SECONDS", seconds(options.at),
+                             "time of the still; statics: part of the way, 0..1");
+  at.needs(&still);
+  still.needs(&at);
+  add_read(command, "--from", "SECONDS", seconds(options.from), "first instant");
+  add_read(command, "--to", "SECONDS", seconds(options.to), "last instant");
+  add_read(command, "--size", "WxH", size_of(options), "pixels, default 1280x720");
+  add_read(command, "--fps", "RATE", whole_number(options.fps, 1, 1000), "pictures per second, default 30");
+  add_read(command, "--camera", "NAME", camera_of(options),
+           "front, side, top, iso (default) or follow: iso, going along with the body of --inspect "
+           "or the first; "
+           "or AZIMUTH,ELEVATION,DISTANCE,X,Y,Z: of the eye from the point looked at, in degrees "
+           "and m; each "
+           "may end in ,follow or ,follow:BODY");
+  add_set(command, options.overrides);
+  add_quiet(command, options.quiet);
+  add_force(command, options.force);
+  command.add_flag("--ui", options.ui, "with the panels of the window around the scene");
+  add_language(command, options.language, "en (default) or ja");
+  add_choice<render::Renderer>(command, "--renderer", "NAME", options.renderer,
+                               {{"osmesa", render::Renderer::osmesa}, {"egl", render::Renderer::egl}},
+                               "osmesa or egl, default osmesa, or egl where that is missing");
+  add_picture(command, options);
 }
 
 }  // namespace topple::app

@@ -1,5 +1,3 @@
-#include "app/cli/report_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,9 @@
 #include <memory>
 
 #include "app/batch/recorded_run.h"
+#include "app/cli/command.h"
 #include "app/picture/replay.h"
+#include "app/picture/row.h"
 #include "app/report/report.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
@@ -23,6 +23,16 @@
 namespace topple::app {
 namespace {
 
+struct ReportOptions {
+  std::string scene;
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  std::string file;                    ///< HTML; empty: NAME-report.html in the working folder
+  Language language = Language::english;
+  std::optional<int> jobs;  ///< runs at a time; absent: one per core
+  bool quiet = false;
+  bool force = false;  ///< in place of files of any kind
+};
+
 constexpr int k_trials = 21;
 constexpr double k_spread = 0.05;             // of the input
 constexpr double k_falling = 45;              // degrees, of the picture of a fall
@@ -32,10 +42,10 @@ constexpr render::Float4 k_plain = {0.30f, 0.42f, 0.55f, 1};
 
 /// Of one body in a row (FrameRow::body), degrees.
 double tilt_of(const io::FrameRow& row, std::size_t body) {
-  return row.body[11 * body + 7] * k_degrees;
+  return row.body[body].tilt * k_degrees;
 }
 double critical_of(const io::FrameRow& row, std::size_t body) {
-  return row.body[11 * body + 10] * k_degrees;
+  return row.body[body].critical_angle * k_degrees;
 }
 
 std::vector<TiltCurve> tilt_curves(const Replay& replay, const nlohmann::ordered_json& bodies) {
@@ -100,11 +110,7 @@ std::vector<KeyPicture::Label> labels_of(const io::FrameRow& row, const render::
                                          std::size_t bodies) {
   std::vector<KeyPicture::Label> labels;
   for (std::size_t b = 0; b < bodies && bodies <= k_labels; ++b) {
-    Eigen::Vector4f place(0, 0, 0, 1);
-    for (int k = 0; k < 3; ++k)
-      place[k] =
-          static_cast<float>(row.body[11 * b + static_cast<std::size_t>(k)] + row.floor_displacement[k]);
-    const Eigen::Vector4f clip = camera.projection * camera.view * place;
+    const Eigen::Vector4f clip = camera.projection * camera.view * centre_of(row, b).homogeneous();
     labels.push_back({b, 50 * (1 + clip.x() / clip.w()), 50 * (1 - clip.y() / clip.w())});
   }
   return labels;
@@ -136,15 +142,13 @@ void draw(const io::Scene& scene, const Replay& replay, std::vector<KeyPicture>&
 std::string command_text(const ReportOptions& options) {
   std::string text = "topple report " + options.scene;
   for (const std::string& change : options.overrides) text += " --set '" + change + "'";
-  return text + " --lang " + options.language;
+  return text + " --lang " + (options.language == Language::japanese ? "ja" : "en");
 }
 
 int interrupted_report(const std::string& file) {
   say("interrupted; " + file + " is not written");
   return k_interrupted;
 }
-
-}  // namespace
 
 int report_command(const ReportOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
@@ -155,8 +159,8 @@ int report_command(const ReportOptions& options) {
   const std::string file = !options.file.empty()
                                ? options.file
                                : std::filesystem::path(scene.name).filename().string() + "-report.html";
-  require_writable_text("--output", file, options.scene);
   require_no_record("--output", file, options.scene, scene);
+  require_writable_text("--output", {file, options.force}, host::FileKind::html, options.scene);
   defer_interrupts();
 
   const TemporaryFile temporary;
@@ -197,10 +201,24 @@ int report_command(const ReportOptions& options) {
     report.without_anchors = std::move(without.summary);
   }
   if (interrupted()) return interrupted_report(file);
-  const Language language = options.language == "ja" ? Language::japanese : Language::english;
-  write_whole_file(file, report_page(report, language));
+  write_whole_file({file, options.force}, host::FileKind::html, report_page(report, options.language));
   fmt::print("report: {}\n", file);
   return k_done;
+}
+
+}  // namespace
+
+void add_report(Commands& commands) {
+  const auto [command, report] =
+      commands.add("report", "one page for an engineer: what falls, when, how certain that is",
+                   "report paper-a -o paper-a.html --lang ja", report_command);
+  add_scene(command, report.scene);
+  add_path(command, "-o,--output", report.file, "FILE.html", "page to write, default SCENE-report.html");
+  add_language(command, report.language, "en (default) or ja");
+  add_set(command, report.overrides);
+  add_force(command, report.force);
+  add_jobs(command, report.jobs, "runs at a time, default one per core");
+  add_quiet(command, report.quiet);
 }
 
 }  // namespace topple::app

@@ -1,5 +1,3 @@
-#include "app/cli/verify_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/batch/summary.h"
+#include "app/cli/command.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
@@ -25,6 +24,14 @@ namespace topple::app {
 namespace {
 
 using nlohmann::ordered_json;
+
+struct VerifyOptions {
+  std::vector<std::string> scenes;  ///< paths or names; empty: all verification scenes
+  std::string filter;               ///< empty: every row
+  std::string json;                 ///< file, "-" or empty
+  bool quiet = false;
+  bool force = false;  ///< in place of files of any kind
+};
 
 constexpr std::size_t k_columns = 100;
 constexpr int k_modes = 20;  // of each body, analysis = "modes"
@@ -215,12 +222,11 @@ std::string table(const ordered_json& out) {
                             out["wall_s"].get<double>());
 }
 
-}  // namespace
-
 int verify_command(const VerifyOptions& options) {
   const std::vector<io::Scene> scenes = load_scenes(options);
   const bool to_output = options.json == "-";
-  if (!options.json.empty() && !to_output) require_writable_text("--json", options.json, "");
+  if (!options.json.empty() && !to_output)
+    require_writable_text("--json", {options.json, options.force}, host::FileKind::json, "");
   defer_interrupts();
   const auto start = Clock::now();
   const ordered_json rows = run_all(scenes, options.quiet);
@@ -240,9 +246,23 @@ int verify_command(const VerifyOptions& options) {
     fmt::print("{}\n", json_text(out, 2));
   } else {
     fmt::print("{}", table(out));
-    if (!options.json.empty()) write_whole_file(options.json, json_text(out, 2) + "\n");
+    if (!options.json.empty())
+      write_whole_file({options.json, options.force}, host::FileKind::json, json_text(out, 2) + "\n");
   }
   return missed == 0 ? k_done : k_failed;
+}
+
+}  // namespace
+
+void add_verify(Commands& commands) {
+  const auto [command, verify] = commands.add("verify", "compare with theory and published numbers",
+                                              "verify --filter rocking --json verify.json", verify_command);
+  command.add_option("SCENES", verify.scenes, "paths or names of scenes with [[expect]]; absent: all cases")
+      ->type_name("");
+  add_path(command, "--filter", verify.filter, "TEXT", "cases with this in the name of scene or row");
+  add_json(command, verify.json, "write the rows as JSON");
+  add_force(command, verify.force);
+  add_quiet(command, verify.quiet);
 }
 
 }  // namespace topple::app

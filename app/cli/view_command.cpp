@@ -1,5 +1,3 @@
-#include "app/cli/view_command.h"
-
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -8,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/cli/command.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
@@ -95,8 +94,6 @@ int say_end(const std::string& scene, const std::vector<LiveStatus>& ends) {
   return good && !failed ? k_done : k_failed;
 }
 
-}  // namespace
-
 int view_command(const ViewOptions& options) {
   std::optional<LiveSource> source;
   if (!options.source.empty())
@@ -126,6 +123,20 @@ int view_command(const ViewOptions& options) {
   show(window, stage, shell);
   const std::string scene = shell.session() ? shell.session()->scene().name : "";
   return say_end(scene, shell.close(interrupted() ? "interrupted" : "stopped"));
+}
+
+}  // namespace
+
+void add_view(Commands& commands) {
+  const auto [command, view] =
+      commands.add("view", "watch a scene in a window, shake it, rewind it; or a recording",
+                   "view paper-a --set contact.alpha=\"500 kgf\"", view_command);
+  add_path(command, "SOURCE", view.source, "", "scene or recording; without: choose");
+  add_path(command, "-o,--output", view.recording, "REC.h5",
+           "recording to write, in place of an older one; default a new one in the state folder");
+  add_set(command, view.overrides);
+  add_force(command, view.force);
+  add_language(command, view.language, "en or ja, default as last chosen, or that of the locale");
 }
 
 }  // namespace topple::app

@@ -69,7 +69,8 @@ void LiveWorker::follow() {
 void LiveWorker::start_recording(const std::string& arithmetic) {
   if (source_.output.empty()) return;
   try {
-    auto recorder = std::make_shared<LiveRecorder>(source_.output, *source_.scene, arithmetic);
+    auto recorder = std::make_shared<LiveRecorder>(host::Target(source_.output, source_.force),
+                                                   *source_.scene, arithmetic);
     const std::lock_guard lock(mutex_);
     recorder_ = std::move(recorder);
     status_.recording = source_.output;

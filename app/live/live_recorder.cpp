@@ -10,8 +10,9 @@ constexpr std::size_t k_most_waiting = 1000;     // that memory holds for a slow
 
 }  // namespace
 
-LiveRecorder::LiveRecorder(const std::string& path, const io::Scene& scene, const std::string& arithmetic) {
-  thread_ = std::thread([this, path, &scene, arithmetic] { work(path, scene, arithmetic); });
+LiveRecorder::LiveRecorder(const host::Target& target, const io::Scene& scene,
+                           const std::string& arithmetic) {
+  thread_ = std::thread([this, target, &scene, arithmetic] { work(target, scene, arithmetic); });
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return started_ || !failure_.empty(); });
   if (started_) return;
@@ -55,9 +56,9 @@ std::string LiveRecorder::failure() const {
   return failure_;
 }
 
-void LiveRecorder::work(const std::string& path, const io::Scene& scene, const std::string& arithmetic) {
+void LiveRecorder::work(const host::Target& target, const io::Scene& scene, const std::string& arithmetic) {
   try {
-    io::Recorder recorder(path, scene.name, scene.text, scene.setup.model, scene.files, arithmetic);
+    io::Recorder recorder(target, scene.name, scene.text, scene.setup.model, scene.files, arithmetic);
     {
       const std::lock_guard lock(mutex_);
       started_ = true;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
@@ -19,7 +20,7 @@ class LiveRecorder {
   using Item = std::variant<io::Observation, Branch, LoggedEdit>;
 
   /// Starts the recording. `arithmetic`: as for io::Recorder. Throws io::WriteError when it cannot be.
-  LiveRecorder(const std::string& path, const io::Scene& scene,
+  LiveRecorder(const host::Target& target, const io::Scene& scene,
                const std::string& arithmetic = topple::arithmetic());
   /// A recording that was not finished reads as interrupted.
   ~LiveRecorder();
@@ -34,7 +35,7 @@ class LiveRecorder {
   std::string failure() const;
 
  private:
-  void work(const std::string& path, const io::Scene& scene, const std::string& arithmetic);
+  void work(const host::Target& target, const io::Scene& scene, const std::string& arithmetic);
   void write_until_ended(io::Recorder& recorder);
 
   mutable std::mutex mutex_;

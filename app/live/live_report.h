@@ -53,6 +53,7 @@ struct LiveSource {
   std::shared_ptr<const io::Scene> scene;
   std::optional<io::Recording> recording = {};  ///< replay this recording of the scene, which may still grow
   std::string output = {};                      ///< where a live run is recorded; empty: nowhere
+  bool force = false;                           ///< in place of a file of any kind
 };
 
 /// Makes one step; tests slow it down.

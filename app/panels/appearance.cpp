@@ -104,9 +104,10 @@ Appearance read_appearance(const fs::path& path, std::string& warning) {
 void keep_appearance(const fs::path& path, const Appearance& appearance) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);  // what is wrong shows when the file is written
-  write_whole_file(path.string(), fmt::format("scale = {}\ntheme = \"{}\"\nlanguage = \"{}\"\n",
-                                              appearance.scale, appearance.dark ? "dark" : "light",
-                                              appearance.language == Language::japanese ? "ja" : "en"));
+  write_whole_file(path, host::FileKind::any,
+                   fmt::format("scale = {}\ntheme = \"{}\"\nlanguage = \"{}\"\n", appearance.scale,
+                               appearance.dark ? "dark" : "light",
+                               appearance.language == Language::japanese ? "ja" : "en"));
 }
 
 render::Letters window_letters(const io::Scene* scene) {

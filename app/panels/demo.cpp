@@ -4,6 +4,7 @@
 
 #include "app/panels/teaching_words.h"
 #include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::app {
@@ -41,7 +42,7 @@ std::span<const Demo> demos() {
 
 bool can_shake_as_sine(const Player& player) {
   const auto& shakes = player.parameters().shakes;
-  return player.can_edit() && !shakes.empty() && shakes.front().kind != Shake::Kind::record;
+  return player.can_edit() && !shakes.empty() && traits(shakes.front().kind).has_amplitude;
 }
 
 void shake_as_sine(Player& player, double frequency, double amplitude) {
@@ -49,7 +50,7 @@ void shake_as_sine(Player& player, double frequency, double amplitude) {
   const auto post = [&](Edit::Key key, const Vec3& value) {
     if (edited_value(player.parameters(), key, 0) != value) player.edit({key, 0, value});
   };
-  post(Edit::Key::type, Vec3(static_cast<double>(Shake::Kind::sine), 0, 0));
+  post(Edit::Key::type, Vec3(place_of(shake_kinds(), Shake::Kind::sine), 0, 0));
   post(Edit::Key::on, Vec3(1, 0, 0));
   Vec3 number = edited_value(player.parameters(), Edit::Key::frequency, 0);
   number.x() = frequency;
@@ -75,9 +76,9 @@ std::optional<DemoGuide::Instant> DemoGuide::instant_of(Until until) const {
   if (until == Until::start) return Instant{0, true};
   const double since = instants_.empty() ? 0 : instants_.back().time;
   if (until == Until::end) {
-    const auto tilt = 11 * static_cast<std::size_t>(body_) + 7;
+    const auto b = static_cast<std::size_t>(body_);
     for (const RowPtr& row : player_.way())
-      if (row->time >= since && row->body[tilt] > k_lying) return Instant{row->time, true};
+      if (row->time >= since && row->body[b].tilt > k_lying) return Instant{row->time, true};
     return is_over(player_.status()) ? std::optional(Instant{player_.end(), true}) : std::nullopt;
   }
   const Event::Kind kind = until == Until::uplift   ? Event::Kind::uplift

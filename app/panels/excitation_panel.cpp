@@ -9,6 +9,7 @@
 #include "app/panels/teaching_panel.h"
 #include "app/panels/teaching_words.h"
 #include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/overturn/criteria.h"
 
@@ -35,18 +36,6 @@ double peak_velocity(const Accelerogram& record) {
   return most;
 }
 
-/// Of a sine that swings as long in one direction.
-double cycles_of(Shake::Shape shape) {
-  switch (shape) {
-    case Shake::Shape::full_sine:
-      return 1;
-    case Shake::Shape::half_sine:
-    case Shake::Shape::rectangle:
-      break;
-  }
-  return 0.5;
-}
-
 ShakePlace place_of(const Shake& shake) {
   const double level = shake.direction.head<2>().norm();
   switch (shake.kind) {
@@ -54,7 +43,7 @@ ShakePlace place_of(const Shake& shake) {
     case Shake::Kind::sweep:
       return {shake.frequency, level * shake.amplitude};
     case Shake::Kind::pulse:
-      return {cycles_of(shake.shape) / shake.duration, level * shake.amplitude};
+      return {traits(shake.shape).cycles / shake.duration, level * shake.amplitude};
     case Shake::Kind::record:
       break;
   }

@@ -11,7 +11,7 @@
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 
 namespace topple::app {
 namespace {
@@ -227,13 +227,13 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
     const Body& body = at.model.bodies[subject.index];
     ImGui::TextDisabled(
         "%s",
-        say(k_body_line, body.mass, body.member_count, say(k_rungs[at.row.rung[subject.index]])).c_str());
+        say(k_body_line, body.mass, body.member_count, say(k_levels[at.row.level[subject.index]])).c_str());
   } else {
     const Anchor& anchor = at.model.anchors[subject.index];
-    const float* const values = &at.row.anchor[4 * subject.index];
-    ImGui::TextDisabled("%s", say(k_anchor_line, anchor_type_in_words(anchor),
-                                  at.model.bodies[anchor.body].name, anchor.stiffness / 1e3, 1e3 * values[2])
-                                  .c_str());
+    ImGui::TextDisabled("%s",
+                        say(k_anchor_line, anchor_type_in_words(anchor), at.model.bodies[anchor.body].name,
+                            anchor.stiffness / 1e3, 1e3 * at.row.anchor[subject.index].natural_length)
+                            .c_str());
     ImGui::TextUnformatted(anchor_in_words(at.model, at.row, subject.index).c_str());
   }
   return pressed;

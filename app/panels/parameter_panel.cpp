@@ -9,9 +9,10 @@
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
 #include "app/support/terms.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene.h"
+#include "solver/model/excitation.h"
 
 namespace topple::app {
 namespace {
@@ -49,6 +50,23 @@ constexpr Slider k_sweep[] = {
     {Edit::Key::frequency, k_sweep_from, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true},
     {Edit::Key::frequency, k_sweep_to, k_frequency_about, "Hz", "%.3g Hz", 0.1, 10, false, true, 1},
 };
+
+constexpr Phrase k_as_in_scenes{"{0}", "{0}"};
+
+/// A parameter without a row above is called as in scenes, and all that is legal is usual.
+Slider slider_of(Edit::Key key) {
+  const auto* const own = std::ranges::find(k_sliders, key, [](const Slider& look) { return look.key; });
+  if (own != std::end(k_sliders)) return *own;
+  const io::Key& of = io::key_of(key);
+  const double unit = io::unit_value(of.unit, of.dimension);
+  return {key,
+          {of.name.data(), of.name.data()},
+          k_as_in_scenes,
+          of.unit.data(),
+          "%.3g",
+          of.least / unit,
+          of.most / unit};
+}
 
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
 
@@ -206,8 +224,8 @@ void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
       return row.tick(say(k_on), say(k_on_about));
     case Edit::Key::type:
       row.choice(say(k_type), k_type_about,
-                 [](int k) { return static_cast<Shake::Kind>(k) != Shake::Kind::record; });
-      return row.button(k_shake_once, static_cast<double>(Shake::Kind::pulse), k_shake_once_about);
+                 [](int k) { return shake_kinds()[static_cast<std::size_t>(k)].has_amplitude; });
+      return row.button(k_shake_once, place_of(shake_kinds(), Shake::Kind::pulse), k_shake_once_about);
     case Edit::Key::law:
       return row.choice(say(k_law), k_law_about, [](int) { return true; });
     case Edit::Key::integrator:
@@ -216,58 +234,43 @@ void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
       return row.tick(say(k_stresses_wanted), say(k_stresses_wanted_about));
     case Edit::Key::model:
       ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
-      return row.choice(say(k_model), k_model_about,
-                        [&](int k) { return can_be(setup.model, index, static_cast<BodyModel>(k)); });
+      return row.choice(say(k_model), k_model_about, [&](int k) {
+        return can_be(setup.model, index, body_models()[static_cast<std::size_t>(k)].kind);
+      });
     case Edit::Key::anchor: {
       const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];
       return row.tick(anchor.name,
                       say(k_anchor_about, setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
     }
     case Edit::Key::frequency:
-      if (player.parameters().shakes[static_cast<std::size_t>(index)].kind == Shake::Kind::sweep) {
+      if (traits(player.parameters().shakes[static_cast<std::size_t>(index)].kind).sweeps) {
         for (const Slider& look : k_sweep) Row(player, key, index, refused).slider(look);
         return;
       }
       [[fallthrough]];
     default:
-      row.slider(*std::find_if(std::begin(k_sliders), std::end(k_sliders),
-                               [key](const Slider& look) { return look.key == key; }));
+      row.slider(slider_of(key));
   }
-}
-
-enum class Group { floor, contact, bodies, anchors, integration };
-
-Group group_of(Edit::Key key) {
-  if (key <= Edit::Key::scale) return Group::floor;
-  if (key <= Edit::Key::restitution) return Group::contact;
-  if (key <= Edit::Key::damping) return Group::bodies;
-  return key == Edit::Key::anchor ? Group::anchors : Group::integration;
 }
 
 /// False: what stands below it is folded away.
-bool draw_heading(Group group, int index, const Parameters& parameters) {
+bool draw_heading(Edit::Of of, int index, const Parameters& parameters) {
   constexpr std::size_t k_few = 2;  // bodies, whose rows need no folding
-  switch (group) {
-    case Group::floor:
+  switch (of) {
+    case Edit::Of::shake:
       ImGui::TextDisabled(
           "%s", (parameters.shakes.size() == 1 ? say(k_floor) : say(k_floor_shake, index + 1)).c_str());
       return true;
-    case Group::bodies:
+    case Edit::Of::body:
       return ImGui::CollapsingHeader((say(k_bodies) + "##bodies").c_str(),
                                      parameters.models.size() <= k_few ? ImGuiTreeNodeFlags_DefaultOpen : 0);
     default:
-      ImGui::TextDisabled("%s", say(group == Group::contact   ? k_contact
-                                    : group == Group::anchors ? k_anchors_heading
-                                                              : k_integration)
+      ImGui::TextDisabled("%s", say(of == Edit::Of::contact  ? k_contact
+                                    : of == Edit::Of::anchor ? k_anchors_heading
+                                                             : k_integration)
                                     .c_str());
       return true;
   }
-}
-
-/// Statics have no time.
-bool is_dynamic(Edit::Key key) {
-  return key == Edit::Key::law || key == Edit::Key::friction_static || key == Edit::Key::restitution ||
-         group_of(key) == Group::bodies || group_of(key) == Group::integration;
 }
 
 /// Else contact parameters change nothing.
@@ -288,15 +291,15 @@ bool draw_parameters(Player& player, std::string& refused) {
   const Parameters& parameters = player.parameters();
   const Setup& setup = player.scene().setup;
   ImGui::BeginDisabled(!player.can_edit());
-  std::optional<std::pair<Group, int>> heading;
+  std::optional<std::pair<Edit::Of, int>> heading;
   bool open = true, precision = false;
   for (const auto& [key, index] : editable(setup.model, parameters)) {
-    if (is_static(setup) && is_dynamic(key)) continue;
-    const Group group = group_of(key);
-    if (group == Group::contact && !can_touch(setup.model)) continue;
-    const std::pair<Group, int> of{group, group == Group::floor ? index : 0};
-    if (heading != of) open = draw_heading(group, index, parameters);
-    heading = of;
+    if (is_static(setup) && traits(key).dynamic) continue;
+    const Edit::Of of = traits(key).of;
+    if (of == Edit::Of::contact && !can_touch(setup.model)) continue;
+    const std::pair below{of, of == Edit::Of::shake ? index : 0};
+    if (heading != below) open = draw_heading(of, index, parameters);
+    heading = below;
     if (open) draw_row(player, key, index, refused);
     if (key == Edit::Key::time_step) precision = draw_precision_button();
   }

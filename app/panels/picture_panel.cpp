@@ -53,16 +53,16 @@ void choose_colour(PictureSettings& settings, BeamQuantity colour) {
 bool draw_picture_settings(PictureSettings& settings, double maximum) {
   bool changed = false;
   label(k_colour);
-  Phrase names[k_beam_quantities];
-  for (std::size_t i = 0; i < k_beam_quantities; ++i) names[i] = name_of(static_cast<BeamQuantity>(i)).name;
-  BeamQuantity colour = settings.colour;
-  if (choose("##colour", names, colour)) {
-    choose_colour(settings, colour);
+  std::vector<Phrase> names;
+  for (const BeamQuantityTraits& quantity : beam_quantities()) names.push_back(quantity.name);
+  std::size_t colour = place_of(settings.colour);
+  if (choose("##colour", names.data(), names.size(), colour)) {
+    choose_colour(settings, beam_quantities()[colour].kind);
     changed = true;
   }
   label(k_map);
-  ImGui::BeginDisabled(name_of(settings.colour).is_signed);
-  if (name_of(settings.colour).is_signed) {
+  ImGui::BeginDisabled(traits(settings.colour).is_signed);
+  if (traits(settings.colour).is_signed) {
     const Phrase only[] = {k_diverging};
     std::size_t first = 0;
     choose("##map", only, 1, first);
@@ -86,7 +86,7 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
       changed = true;
     }
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", say(k_enter_takes, name_of(settings.colour).unit).c_str());
+      ImGui::SetTooltip("%s", say(k_enter_takes, traits(settings.colour).unit).c_str());
   }
   label(k_deformation);
   const double one = 1;

@@ -10,7 +10,7 @@
 #include "app/panels/precision_words.h"
 #include "app/panels/shell_words.h"
 #include "app/panels/teaching_words.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/scene/edit_text.h"
 
 namespace topple::app {
@@ -187,12 +187,12 @@ void draw_steps(Player& player, const PrecisionFound& found, int present, Measur
   std::erase_if(front, [&](int k) {
     return !edits_to(player, found.parameters[static_cast<std::size_t>(k)]) || !error_of(found, k, measure);
   });
-  int cheaper = -1, dearer = -1;  // the front is in the order of cost
+  int cheaper = -1, costlier = -1;  // the front is in the order of cost
   const double now = present >= 0 ? *row(found, present).cost : 0;
   for (const int k : front) {
     if (k == present) continue;
     if (*row(found, k).cost < now) cheaper = k;
-    if (*row(found, k).cost > now && dearer < 0) dearer = k;
+    if (*row(found, k).cost > now && costlier < 0) costlier = k;
   }
   const auto button = [&](const Phrase& name, const char* id, int k) {
     ImGui::BeginDisabled(k < 0 || !player.can_edit());
@@ -202,7 +202,7 @@ void draw_steps(Player& player, const PrecisionFound& found, int present, Measur
   };
   button(k_cheaper, "##cheaper", cheaper);
   ImGui::SameLine();
-  button(k_more_exact, "##exact", dearer);
+  button(k_more_exact, "##exact", costlier);
 }
 
 void draw_measure(Measure& measure) {
@@ -252,7 +252,8 @@ std::optional<std::vector<Edit>> edits_to(const Player& player, const Parameters
     const bool step = key == Edit::Key::time_step;
     if (step ? wanted.adaptive : false) continue;
     if (edit.value == edited_value(now, key, of) && !(step && now.adaptive)) continue;
-    if (key == Edit::Key::model && !can_be(model, of, static_cast<BodyModel>(edit.value.x())))
+    if (key == Edit::Key::model &&
+        !can_be(model, of, body_models()[static_cast<std::size_t>(edit.value.x())].kind))
       return std::nullopt;
     edits.push_back(edit);
   }

@@ -36,9 +36,9 @@ template <BeamQuantity quantity>
 double beam_value(const Instant& now, std::size_t index) {
   return greatest(now, index,
                   [&](std::size_t e, const SectionForces& forces) {
-                    return value_of(quantity, now.model, e, forces);
+                    return traits(quantity).value(now.model, e, forces);
                   }) /
-         name_of(quantity).per_unit;
+         traits(quantity).per_unit;
 }
 
 double yield_ratio(const Instant& now, std::size_t index) {
@@ -52,21 +52,12 @@ double force_value(const Instant& now, std::size_t index) {
                   [](std::size_t, const SectionForces& forces) { return component_of(forces, component); });
 }
 
-const double* body_numbers(const Instant& now, std::size_t index) {
-  return &now.row.body[11 * index];
-}
-
-Quat body_turn(const io::FrameRow& row, std::size_t index) {
-  const double* const q = &row.body[11 * index + 3];
-  return Quat(q[0], q[1], q[2], q[3]);
-}
-
 double tilt_value(const Instant& now, std::size_t index) {
-  return body_numbers(now, index)[7] * k_degrees;
+  return now.row.body[index].tilt * k_degrees;
 }
 
 double slide_value(const Instant& now, std::size_t index) {
-  return 1e3 * body_numbers(now, index)[8];
+  return 1e3 * now.row.body[index].slide;
 }
 
 /// From the turn between the neighbours.
@@ -74,7 +65,7 @@ double angular_velocity(const Instant& now, std::size_t index) {
   const io::FrameRow& from = now.before ? *now.before : now.row;
   const io::FrameRow& to = now.after ? *now.after : now.row;
   if (!(to.time > from.time)) return k_nothing;
-  return log_quaternion(body_turn(to, index) * body_turn(from, index).conjugate()).norm() /
+  return log_quaternion(to.body[index].rotation() * from.body[index].rotation().conjugate()).norm() /
          (to.time - from.time);
 }
 
@@ -84,7 +75,7 @@ double kinetic_value(const Instant& now, std::size_t index) {
 
 OverturnBarrier barrier(const Instant& now, std::size_t index) {
   return overturn_barrier(now.model, static_cast<int>(index),
-                          {Vec3(body_numbers(now, index)), body_turn(now.row, index)}, now.gravity.norm());
+                          {now.row.body[index].centre(), now.row.body[index].rotation()}, now.gravity.norm());
 }
 
 double margin_value(const Instant& now, std::size_t index) {
@@ -103,19 +94,19 @@ double displacement_value(const Instant& now, std::size_t index) {
   double most = 0;
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
     most = std::max(most, displacement(now.model, now.row, fit, i).norm());
-  return most / name_of(BeamQuantity::displacement).per_unit;
+  return most / traits(BeamQuantity::displacement).per_unit;
 }
 
-template <std::size_t number>
+template <float io::AnchorNumbers::*number>
 double anchor_value(const Instant& now, std::size_t index) {
-  return now.row.anchor[4 * index + number];
+  return now.row.anchor[index].*number;
 }
 
 double stretch_value(const Instant& now, std::size_t index) {
-  const float* const values = &now.row.anchor[4 * index];
-  if (values[3] == io::k_anchor_away || values[3] == io::k_anchor_broken) return k_nothing;
+  const io::AnchorNumbers& anchor = now.row.anchor[index];
+  if (anchor.state == io::k_anchor_away || anchor.state == io::k_anchor_broken) return k_nothing;
   const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) - now.model.anchors[index].to;
-  return 1e3 * (span.norm() - values[2]);
+  return 1e3 * (span.norm() - anchor.natural_length);
 }
 
 constexpr SubjectValue k_member_values[] = {
@@ -134,9 +125,10 @@ constexpr SubjectValue k_body_values[] = {{window_words::k_tilt, "°", tilt_valu
                                           {window_words::k_left_to_overturn, "J", margin_value},
                                           {window_words::k_share_left, "%", margin_share},
                                           {window_words::k_elastic_displacement, "mm", displacement_value}};
-constexpr SubjectValue k_anchor_values[] = {{window_words::k_force, "N", anchor_value<0>},
-                                            {window_words::k_stretch, "mm", stretch_value},
-                                            {window_words::k_energy, "J", anchor_value<1>}};
+constexpr SubjectValue k_anchor_values[] = {
+    {window_words::k_force, "N", anchor_value<&io::AnchorNumbers::tension>},
+    {window_words::k_stretch, "mm", stretch_value},
+    {window_words::k_energy, "J", anchor_value<&io::AnchorNumbers::energy>}};
 
 template <typename Named>
 std::string names_of(const std::vector<Named>& all, std::size_t first, std::size_t count) {

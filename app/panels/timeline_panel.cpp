@@ -12,7 +12,7 @@
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "render/scene/text_layout.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/scene/edit_text.h"
 
 namespace topple::app {
@@ -33,8 +33,8 @@ std::vector<std::size_t> told_bodies(const Player& player) {
   for (std::size_t b = 0; b < furniture; ++b) {
     double most = 0;
     for (const RowPtr& row : player.way()) {
-      const double critical = row->body[11 * b + 10];
-      most = std::max(most, row->body[11 * b + 7] / (critical > 0 ? critical : 1));
+      const double critical = row->body[b].critical_angle;
+      most = std::max(most, row->body[b].tilt / (critical > 0 ? critical : 1));
     }
     shares.emplace_back(-most, b);
   }
@@ -111,12 +111,12 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   const std::vector<RowPtr>& rows = player.way();
   const auto& bodies = player.scene().setup.model.bodies;
   const auto tilt = [](std::size_t b) {
-    return [b](const io::FrameRow& row) { return row.body[11 * b + 7] * k_degrees; };
+    return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
   };
   double critical = 0, most = k_least_tilt;
   const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
   for (std::size_t b = 0; b < furniture; ++b) {
-    if (!rows.empty()) critical = std::max(critical, rows.back()->body[11 * b + 10] * k_degrees);
+    if (!rows.empty()) critical = std::max(critical, rows.back()->body[b].critical_angle * k_degrees);
     most = std::max(most, 1.1 * peak(rows, tilt(b)));
   }
   lane.low = 0;
@@ -178,7 +178,7 @@ std::string event_text(const Player& player, const io::RecordedEvent& event) {
                                                                    : k_passes;
   const std::string words =
       event.event.kind == Event::Kind::model
-          ? say(k_computed_as, say(k_rungs[static_cast<std::size_t>(event.event.value)]),
+          ? say(k_computed_as, say(k_levels[static_cast<std::size_t>(event.event.value)]),
                 say(k_rung_reasons[static_cast<std::size_t>(event.event.reason)]))
           : say(what);
   const Model& model = player.scene().setup.model;

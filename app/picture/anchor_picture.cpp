@@ -118,8 +118,8 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
     out.profiles.push_back(profile);
   for (std::size_t k = 0; k < model.anchors.size(); ++k) {
     const Anchor& anchor = model.anchors[k];
-    const float state = row.anchor[4 * k + 3];
-    const double length = row.anchor[4 * k + 2];
+    const float state = row.anchor[k].state;
+    const double length = row.anchor[k].natural_length;
     const Vec3 from = anchor.to + shift, to = attached_point(model, row, shift, k);
     Vec3 direction = to - from;
     if (!(direction.norm() > 1e-6)) continue;

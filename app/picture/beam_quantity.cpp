@@ -10,64 +10,51 @@
 namespace topple::app {
 namespace {
 
-constexpr QuantityName k_names[k_beam_quantities] = {
-    {"stress", window_words::k_stress, "MPa", 1e6, false},
-    {"yield-ratio", window_words::k_yield_ratio, "", 1, false},
-    {"axial", window_words::k_axial, "N", 1, true},
-    {"moment", window_words::k_moment, "N m", 1, false},
-    {"torsion", window_words::k_torsion, "N m", 1, true},
-    {"displacement", window_words::k_displacement, "mm", 1e-3, false},
+constexpr BeamQuantityTraits k_quantities[] = {
+    {BeamQuantity::stress, "stress", window_words::k_stress, "MPa", 1e6, false,
+     [](const Model& model, std::size_t e, const SectionForces& forces) {
+       return equivalent_stress(model.sections[model.members[model.elements[e].member].section], forces);
+     },
+     [](double stress) { return stress; }},
+    {BeamQuantity::yield_ratio, "yield-ratio", window_words::k_yield_ratio, "", 1, false,
+     [](const Model& model, std::size_t e, const SectionForces& forces) {
+       return std::sqrt(std::max(yield_function(model.elements[e], forces) + 1, 0.));
+     },
+     [](double) { return 1.; }},
+    {BeamQuantity::axial, "axial", window_words::k_axial, "N", 1, true,
+     [](const Model&, std::size_t, const SectionForces& forces) { return forces.normal.x(); }, nullptr},
+    {BeamQuantity::moment, "moment", window_words::k_moment, "N m", 1, false,
+     [](const Model&, std::size_t, const SectionForces& forces) {
+       return std::hypot(forces.moment.y(), forces.moment.z());
+     },
+     nullptr},
+    {BeamQuantity::torsion, "torsion", window_words::k_torsion, "N m", 1, true,
+     [](const Model&, std::size_t, const SectionForces& forces) { return forces.moment.x(); }, nullptr},
+    {BeamQuantity::displacement, "displacement", window_words::k_displacement, "mm", 1e-3, false, nullptr,
+     nullptr},
 };
 
 }  // namespace
 
-const QuantityName& name_of(BeamQuantity quantity) {
-  return k_names[static_cast<std::size_t>(quantity)];
+std::span<const BeamQuantityTraits> beam_quantities() {
+  return k_quantities;
 }
 
-std::optional<BeamQuantity> beam_quantity_named(std::string_view option) {
-  for (std::size_t i = 0; i < k_beam_quantities; ++i)
-    if (option == k_names[i].option) return static_cast<BeamQuantity>(i);
-  return std::nullopt;
-}
-
-double value_of(BeamQuantity quantity, const Model& model, std::size_t e, const SectionForces& forces) {
-  const Element& element = model.elements[e];
-  switch (quantity) {
-    case BeamQuantity::stress:
-      return equivalent_stress(model.sections[model.members[element.member].section], forces);
-    case BeamQuantity::yield_ratio:
-      return std::sqrt(std::max(yield_function(element, forces) + 1, 0.));
-    case BeamQuantity::axial:
-      return forces.normal.x();
-    case BeamQuantity::moment:
-      return std::hypot(forces.moment.y(), forces.moment.z());
-    case BeamQuantity::torsion:
-      return forces.moment.x();
-    case BeamQuantity::displacement:
-      break;
-  }
-  return 0;
-}
-
-std::array<double, k_beam_quantities> peaks_of(const Model& model, const io::FrameRow& row) {
-  std::array<double, k_beam_quantities> peaks{};
-  const auto take = [&](BeamQuantity quantity, double value) {
-    double& peak = peaks[static_cast<std::size_t>(quantity)];
-    peak = std::max(peak, std::abs(value));
-  };
+std::vector<double> peaks_of(const Model& model, const io::FrameRow& row) {
+  std::vector<double> peaks(std::size(k_quantities));
+  const auto take = [](double value, double& peak) { peak = std::max(peak, std::abs(value)); };
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     if (model.bodies[model.members[model.elements[e].member].body].ground) continue;
     for (const double xi : {-1., 1.}) {
       const SectionForces forces = forces_at(model, row, e, xi);
-      for (std::size_t q = 0; q < k_beam_quantities; ++q)
-        take(static_cast<BeamQuantity>(q), value_of(static_cast<BeamQuantity>(q), model, e, forces));
+      for (std::size_t q = 0; q < peaks.size(); ++q)
+        if (k_quantities[q].value) take(k_quantities[q].value(model, e, forces), peaks[q]);
     }
   }
   const RigidFit fit = rigid_fit(model, row);
   for (int i = 0; i < model.node_total(); ++i)
     if (!model.bodies[model.node_body[i]].ground)
-      take(BeamQuantity::displacement, displacement(model, row, fit, i).norm());
+      take(displacement(model, row, fit, i).norm(), peaks[place_of(BeamQuantity::displacement)]);
   return peaks;
 }
 

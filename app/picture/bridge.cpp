@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "app/picture/anchor_picture.h"
@@ -65,19 +66,22 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.contact_force, b.contact_force, out.contact_force);
   mix(a.member_contact, b.member_contact, out.member_contact);
   mix(a.energy, b.energy, out.energy);
-  mix(a.body, b.body, out.body);
+  for (std::size_t i = 0; i < a.body.size(); ++i) {
+    const auto x = std::bit_cast<io::BodyArray>(a.body[i]), y = std::bit_cast<io::BodyArray>(b.body[i]);
+    io::BodyArray between;
+    mix(x, y, between);
+    out.body[i] = std::bit_cast<io::BodyNumbers>(between);
+    const Quat q = a.body[i].rotation().slerp(u, b.body[i].rotation());
+    out.body[i].qw = q.w(), out.body[i].qx = q.x(), out.body[i].qy = q.y(), out.body[i].qz = q.z();
+  }
   mix(a.floor_acceleration, b.floor_acceleration, out.floor_acceleration);
   mix(a.floor_displacement, b.floor_displacement, out.floor_displacement);
   out.load_factor = (1 - u) * a.load_factor + u * b.load_factor;
-  const auto turn = [u](const auto& x, const auto& y, auto& to, std::size_t at) {
-    const Quat q =
-        Quat(x[at], x[at + 1], x[at + 2], x[at + 3]).slerp(u, Quat(y[at], y[at + 1], y[at + 2], y[at + 3]));
+  for (int i = 0; 4 * static_cast<std::size_t>(i) < a.rotation.size(); ++i) {
+    const Quat q = rotation(a, i).slerp(u, rotation(b, i));
     const double parts[4] = {q.w(), q.x(), q.y(), q.z()};
-    for (std::size_t k = 0; k < 4; ++k)
-      to[at + k] = static_cast<std::remove_reference_t<decltype(to[at])>>(parts[k]);
-  };
-  for (std::size_t i = 0; i + 3 < a.rotation.size(); i += 4) turn(a.rotation, b.rotation, out.rotation, i);
-  for (std::size_t i = 0; i + 10 < a.body.size(); i += 11) turn(a.body, b.body, out.body, i + 3);
+    for (int k = 0; k < 4; ++k) out.rotation[4 * i + k] = static_cast<float>(parts[k]);
+  }
   return out;
 }
 
@@ -146,10 +150,10 @@ void Bridge::add_ghost(const io::FrameRow& row, const PictureSettings& settings,
 
 Bridge::ColourAt Bridge::colours(const io::FrameRow& row, const RigidFit& fit, BeamQuantity quantity) const {
   const Model& model = scene_.setup.model;
-  const double unit = name_of(quantity).per_unit;
-  if (quantity != BeamQuantity::displacement)
-    return [&model, &row, quantity, unit](std::size_t e, double t) {
-      return static_cast<float>(value_of(quantity, model, e, forces_at(model, row, e, 2 * t - 1)) / unit);
+  const double unit = traits(quantity).per_unit;
+  if (const auto value = traits(quantity).value)
+    return [&model, &row, value, unit](std::size_t e, double t) {
+      return static_cast<float>(value(model, e, forces_at(model, row, e, 2 * t - 1)) / unit);
     };
   return [&model, &row, &fit, unit](std::size_t e, double t) {
     const int* const node = model.elements[e].node;
@@ -166,13 +170,13 @@ double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& se
   if (settings.range == RangePolicy::fixed) return settings.maximum;
   const double top = settings.range == RangePolicy::run
                          ? extent_.top(settings.colour)
-                         : peaks_of(scene_.setup.model, row)[static_cast<std::size_t>(settings.colour)];
+                         : peaks_of(scene_.setup.model, row)[place_of(settings.colour)];
   if (!(top > 0)) return 1;
-  return std::max(top / name_of(settings.colour).per_unit, k_least_range);
+  return std::max(top / traits(settings.colour).per_unit, k_least_range);
 }
 
 render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& settings) const {
-  const QuantityName& name = name_of(settings.colour);
+  const BeamQuantityTraits& name = traits(settings.colour);
   render::Legend out;
   out.quantity = say(name.name);
   out.unit = name.unit;
@@ -184,15 +188,12 @@ render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& se
   out.is_signed = name.is_signed;
   out.square_root = !name.is_signed;
   const std::optional<double> yield = least_yield(scene_.setup.model);
-  if (settings.colour == BeamQuantity::stress && yield) {
-    out.mark = static_cast<float>(*yield / name.per_unit);
-    out.mark_label = say(window_words::k_yield_at, out.mark);
+  if (name.at_yield && yield) {
+    out.mark = static_cast<float>(name.at_yield(*yield) / name.per_unit);
+    out.mark_label = *name.unit ? say(window_words::k_yield_at, out.mark) : say(window_words::k_yield);
   } else if (settings.colour == BeamQuantity::yield_ratio) {
     out.mark = 1;
-    if (yield)
-      out.mark_label = say(window_words::k_yield);
-    else
-      out.notes.push_back(say(window_words::k_cannot_yield));
+    out.notes.push_back(say(window_words::k_cannot_yield));
   }
   if (settings.exaggeration != 1) out.notes.push_back(say(window_words::k_deformed, settings.exaggeration));
   return out;

@@ -8,6 +8,7 @@
 
 #include "app/picture/bridge.h"
 #include "app/picture/drawing_processes.h"
+#include "app/picture/image_files.h"
 #include "app/picture/words.h"
 #include "app/support/errors.h"
 #include "app/support/interrupt.h"
@@ -15,7 +16,6 @@
 #include "app/support/progress.h"
 #include "render/gl/off_screen.h"
 #include "render/output/picture.h"
-#include "render/output/video.h"
 
 namespace topple::app {
 namespace {
@@ -107,10 +107,11 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
 
 }  // namespace
 
-int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const NamedReplay& of_b, bool quiet) {
+int draw_ghost_video(const host::Target& target, const NamedReplay& of_a, const NamedReplay& of_b,
+                     bool quiet) {
   try {
     const Actor a(of_a), b(of_b);
-    render::VideoWriter video(path, k_width, k_height, k_rate);
+    VideoWriter video(target, k_width, k_height, k_rate);
     const double first = std::min(a.first(), b.first()), last = std::max(a.last(), b.last());
     const int count = static_cast<int>(std::floor((last - first) * k_rate + 1e-6)) + 1;
     Progress progress("drawing", "pictures", count, quiet);
@@ -145,7 +146,7 @@ int draw_ghost_video(const std::string& path, const NamedReplay& of_a, const Nam
     // Ctrl+C on a terminal reaches ffmpeg as well: that its pipe broke is then no error.
     if (!interrupted()) throw;
   }
-  say("interrupted; " + path + " is not written");
+  say("interrupted; " + target.path.string() + " is not written");
   return k_interrupted;
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/picture/replay.h"
 #include "render/output/image.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {
@@ -19,6 +20,6 @@ struct NamedReplay {
 /// Writes a video of 1280 x 720 and 30 pictures a second, seen from the floor: A solid and blue, B
 /// translucent and grey, both named, until the longer one ends. Returns an exit code (errors.h); says why
 /// when Ctrl+C came. Throws std::runtime_error.
-int draw_ghost_video(const std::string& path, const NamedReplay& a, const NamedReplay& b, bool quiet);
+int draw_ghost_video(const host::Target& target, const NamedReplay& a, const NamedReplay& b, bool quiet);
 
 }  // namespace topple::app

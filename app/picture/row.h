@@ -26,7 +26,7 @@ inline Vec3 floor_shift(const io::FrameRow& row) {
 
 /// m, of a body, in the picture's frame.
 inline Eigen::Vector3f centre_of(const io::FrameRow& row, std::size_t body) {
-  return (Vec3(&row.body[11 * body]) + floor_shift(row)).cast<float>();
+  return (row.body[body].centre() + floor_shift(row)).cast<float>();
 }
 
 inline render::Float3 to_float(const Vec3& v) {

@@ -18,7 +18,7 @@ void expect_same_model(const Model& model, const io::FrameRow& row) {
       row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
       row.contact_force.size() != 3 * model.contact_points.size() * model.planes.size() ||
       row.member_contact.size() != (model.bodies.size() > 1 ? 4 * elements : 0) ||
-      row.body.size() != 11 * model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
+      row.body.size() != model.bodies.size() || row.anchor.size() != model.anchors.size())
     throw io::InputError(io::k_another_model);
 }
 
@@ -37,9 +37,8 @@ BodyPoints body_points(const Model& model, const io::FrameRow& row, std::size_t 
   double height = 0;
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
     height = std::max(height, model.node_position[i].z() - body.centre_of_gravity.z());
-  const double* const pose = &row.body[11 * b];
-  const Vec3 centre = Vec3(pose) + floor_shift(row);
-  const Vec3 up = Quat(pose[3], pose[4], pose[5], pose[6]) * Vec3::UnitZ();
+  const Vec3 centre = row.body[b].centre() + floor_shift(row);
+  const Vec3 up = row.body[b].rotation() * Vec3::UnitZ();
   return {to_float(centre), to_float(centre + height * up)};
 }
 
@@ -66,8 +65,9 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
     low = low.cwiseMin(anchor.to + shift);
     high = high.cwiseMax(anchor.to + shift);
   }
-  const std::array<double, k_beam_quantities> peaks = peaks_of(model, row);
-  for (std::size_t q = 0; q < k_beam_quantities; ++q) peak_[q].push_back(peaks[q]);
+  const std::vector<double> peaks = peaks_of(model, row);
+  peak_.resize(peaks.size());
+  for (std::size_t q = 0; q < peaks.size(); ++q) peak_[q].push_back(peaks[q]);
   peak_contact_.push_back(greatest_contact_force(row));
   bodies_ = static_cast<std::size_t>(model.furniture_total());
   for (std::size_t b = 0; b < bodies_; ++b) points_.push_back(body_points(model, row, b));
@@ -88,7 +88,7 @@ void RunExtent::thin() {
 }
 
 double RunExtent::top(BeamQuantity quantity) const {
-  return usual_top(peak_[static_cast<std::size_t>(quantity)]);
+  return peak_.empty() ? 0 : usual_top(peak_[place_of(quantity)]);
 }
 
 double RunExtent::contact_force_top() const {

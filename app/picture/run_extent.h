@@ -41,8 +41,8 @@ class RunExtent {
   std::vector<float> way, load_factor;           ///< per row: State::time of a static run, and its loads
 
  private:
-  std::array<std::vector<double>, k_beam_quantities> peak_;  ///< SI, of each row
-  std::vector<double> peak_contact_;                         ///< N, likewise
+  std::vector<std::vector<double>> peak_;  ///< SI, of each quantity and row
+  std::vector<double> peak_contact_;       ///< N, likewise
   std::vector<BodyPoints> points_;
   std::size_t bodies_ = 0;
 };

@@ -26,7 +26,7 @@ using namespace window_words;
 enum class Stance { fallen, toppling, rocking, standing };
 
 Stance stance(const io::FrameRow& row, std::size_t body) {
-  const double tilt = row.body[11 * body + 7] * k_degrees, critical = row.body[11 * body + 10] * k_degrees;
+  const double tilt = row.body[body].tilt * k_degrees, critical = row.body[body].critical_angle * k_degrees;
   return tilt > k_lying     ? Stance::fallen
          : tilt > critical  ? Stance::toppling
          : tilt > k_upright ? Stance::rocking
@@ -35,8 +35,8 @@ Stance stance(const io::FrameRow& row, std::size_t body) {
 
 /// Of the angle at which it would topple; of a body without one, of that at which it lies.
 double share_of_critical(const io::FrameRow& row, std::size_t body) {
-  const double critical = row.body[11 * body + 10];
-  return row.body[11 * body + 7] / (critical > 0 ? critical : k_lying / k_degrees);
+  const double critical = row.body[body].critical_angle;
+  return row.body[body].tilt / (critical > 0 ? critical : k_lying / k_degrees);
 }
 
 std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t> others) {
@@ -59,8 +59,8 @@ std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t
 }  // namespace
 
 std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body) {
-  const double* const values = &row.body[11 * body];
-  const double tilt = values[7] * k_degrees, slide = values[8], critical = values[10] * k_degrees;
+  const io::BodyNumbers& now = row.body[body];
+  const double tilt = now.tilt * k_degrees, critical = now.critical_angle * k_degrees;
   std::string line = model.bodies[body].name + say(k_colon);
   if (critical == 0) return line + say(k_tilted, tilt);
   switch (stance(row, body)) {
@@ -76,7 +76,7 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
     case Stance::standing:
       line += say(k_standing);
   }
-  if (slide > k_slid_least) line += say(k_slid, 1e3 * slide);
+  if (now.slide > k_slid_least) line += say(k_slid, 1e3 * now.slide);
   return line;
 }
 
@@ -114,13 +114,13 @@ const Phrase& anchor_state(float state) {
 
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
-  const float* const values = &row.anchor[4 * k];
+  const io::AnchorNumbers& now = row.anchor[k];
   const bool named_by_type = anchor.name == anchor_type(anchor);
   const std::string line =
       anchor_type_in_words(anchor) + (named_by_type ? "" : " " + anchor.name) + say(k_colon);
-  if (values[3] != io::k_anchor_holds) return line + say(anchor_state(values[3]));
-  const double force = std::abs(values[0]);
-  return line + say(values[0] > 0 ? k_pulls : k_pushes, force) +
+  if (now.state != io::k_anchor_holds) return line + say(anchor_state(now.state));
+  const double force = std::abs(now.tension);
+  return line + say(now.tension > 0 ? k_pulls : k_pushes, force) +
          (std::isfinite(anchor.strength) ? say(k_of_strength, 100 * force / anchor.strength) : "");
 }
 
@@ -133,7 +133,7 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
   std::string counts;
   for (const float state : {io::k_anchor_holds, io::k_anchor_slack, io::k_anchor_broken, io::k_anchor_away}) {
     int count = 0;
-    for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[4 * k + 3] == state;
+    for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[k].state == state;
     if (count > 0)
       counts += fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(anchor_state(state)));
   }

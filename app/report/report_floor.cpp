@@ -20,16 +20,10 @@ std::string direction(const Vec3& d) {
   return fmt::format("({}, {}, {})", short_shown(d.x(), 3), short_shown(d.y(), 3), short_shown(d.z(), 3));
 }
 
-const Phrase& shape_name(Shake::Shape shape) {
-  switch (shape) {
-    case Shake::Shape::half_sine:
-      return words::k_half_sine;
-    case Shake::Shape::full_sine:
-      return words::k_full_sine;
-    case Shake::Shape::rectangle:
-      break;
-  }
-  return words::k_rectangle;
+std::string shape_name(const ReportPage& page, Shake::Shape shape) {
+  for (const auto& [kind, name] : words::k_shapes)
+    if (kind == shape) return page.text(name);
+  return traits(shape).word;
 }
 
 std::string in_words(const ReportPage& page, const Shake& shake) {
@@ -44,7 +38,7 @@ std::string in_words(const ReportPage& page, const Shake& shake) {
       return page.text(words::k_sweep, short_shown(shake.frequency), short_shown(shake.last_frequency), gal,
                        along, start, short_shown(shake.duration));
     case Shake::Kind::pulse:
-      return page.text(words::k_pulse, page.text(shape_name(shake.shape)), gal, along, start,
+      return page.text(words::k_pulse, shape_name(page, shake.shape), gal, along, start,
                        short_shown(shake.duration));
     case Shake::Kind::record:
       return page.text(words::k_record, short_shown(shake.record->duration), shake.record->components.size(),

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/report/report_parts.h"
-#include "solver/study/common/laws.h"
+#include "solver/contact/contact_law.h"
 
 namespace topple::app {
 namespace {
@@ -93,12 +93,12 @@ std::string settings_section(ReportPage& page) {
        report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
       {page.say(words::k_integrator), integrator(page)},
       {page.say(words::k_step), step(page)},
-      {page.say(words::k_contact), study::law_name(p.contact.kind)},
+      {page.say(words::k_contact), traits(p.contact).word},
       {page.say(words::k_alpha),
        fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
       {page.say(words::k_q), short_shown(p.contact.q)},
       {page.say(words::k_mu), short_shown(p.contact.friction)}};
-  if (p.contact.kind == ContactLawKind::coulomb) {
+  if (traits(p.contact).has_restitution) {
     rows.push_back({page.say(words::k_restitution), short_shown(p.contact.restitution)});
     rows.push_back({page.say(words::k_normal_speed), short_shown(p.contact.normal_speed) + " m/s"});
   }

@@ -1,7 +1,10 @@
 // Every sentence of the report page, in its languages: one table.
 #pragma once
 
+#include <utility>
+
 #include "app/support/language.h"
+#include "solver/model/parameters.h"
 
 namespace topple::app {
 
@@ -56,9 +59,12 @@ inline constexpr Phrase k_sweep{"Sweep from {0} to {1} Hz, {2} gal, along {3}, f
                                 "スイープ波 {0}～{1} Hz、{2} gal、方向 {3}、{4}秒から{5}秒間"};
 inline constexpr Phrase k_pulse{"{0} pulse, {1} gal, along {2}, from {3} s for {4} s",
                                 "{0}パルス、{1} gal、方向 {2}、{3}秒から{4}秒間"};
-inline constexpr Phrase k_half_sine{"Half-sine", "半正弦波"};
-inline constexpr Phrase k_full_sine{"Full-sine", "1周期正弦波"};
-inline constexpr Phrase k_rectangle{"Rectangular", "矩形"};
+/// Shapes of pulses that have a name besides their word.
+inline constexpr std::pair<Shake::Shape, Phrase> k_shapes[] = {
+    {Shake::Shape::half_sine, {"Half-sine", "半正弦波"}},
+    {Shake::Shape::full_sine, {"Full-sine", "1周期正弦波"}},
+    {Shake::Shape::rectangle, {"Rectangular", "矩形"}},
+};
 inline constexpr Phrase k_record{"Record of {0} s, components: {1}, peak {2} gal (scale {3}), from {4} s",
                                  "加速度記録 {0}秒、{1}成分、最大 {2} gal（倍率 {3}）、{4}秒から"};
 inline constexpr Phrase k_jump{

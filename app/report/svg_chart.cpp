@@ -1,11 +1,11 @@
 #include "app/report/svg_chart.h"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "render/scene/ticks.h"
 
@@ -113,11 +113,8 @@ double value_at(const ChartCurve& curve, double x) {
 }  // namespace
 
 std::string escaped(const std::string& text) {
-  // through JSON, whose writer knows what is UTF-8
-  const std::string clean = nlohmann::json::parse(
-      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   std::string out;
-  for (const char c : clean) {
+  for (const char c : utf8::replace_invalid(text)) {
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

@@ -99,11 +99,7 @@ std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const 
     parameters.reserve(static_cast<std::size_t>(plan->cases()));
     for (int k = 0; k < plan->cases(); ++k) parameters.push_back(plan->setup_of(k).parameters);
     work_through<PrecisionFound>(
-        desk, case_order(*plan), 1,
-        [&] {
-          return
-              [&](int k, const std::function<bool()>& give_up) { return study::run_case(*plan, k, give_up); };
-        },
+        desk, case_order(*plan), 1, work_on(*plan),
         [&] { return desk.stopped() || seconds_since(start) > k_quick; },
         [&](const StudyRows& rows) {
           return PrecisionFound{

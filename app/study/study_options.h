@@ -14,10 +14,11 @@ struct StudyOptions {
   std::optional<int> jobs;             ///< runs at a time; absent: 1 where CPU times count, else one per core
   bool quick = false;                  ///< within a time budget
   bool quiet = false;
-  std::string x, y;     ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
-  int ensemble = 1;     ///< runs a point
-  double spread = 0;    ///< of the ensemble's input
-  bool resume = false;  ///< go on with the rows of a sweep that was interrupted
+  std::string x, y;      ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
+  int ensemble = 1;      ///< runs a point
+  double spread = 0.05;  ///< of the input of more than one
+  bool resume = false;   ///< go on with the rows of a sweep that was interrupted
+  bool force = false;    ///< in place of files of any kind
 };
 
 }  // namespace topple::app

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/study/common/chart.h"
 
 namespace topple::app {
@@ -13,8 +14,8 @@ namespace topple::app {
 inline constexpr double k_quick = 34;
 
 /// DIR/KIND, to which the extensions are added. Creates the folder; throws BadInput unless the results can be
-/// put there.
-std::string place_for_results(const std::string& folder, const std::string& kind);
+/// put there. `force`: in place of files of any kind.
+std::string place_for_results(const std::string& folder, const std::string& kind, bool force);
 
 /// "topple 0.1.0 on AMD EPYC 7763, 2 cores", for charts.
 std::string origin_text();
@@ -24,7 +25,7 @@ nlohmann::ordered_json machine_json();
 
 /// Writes STEM.csv (of `rows`), .json, .svg and .png, numbers first: they stand even where no chart can be
 /// drawn. `script`: the chart for gnuplot.
-void write_study(const std::string& stem, const nlohmann::ordered_json& rows,
+void write_study(const host::Target& stem, const nlohmann::ordered_json& rows,
                  const nlohmann::ordered_json& document,
                  const std::function<std::string(study::ChartFormat)>& script);
 

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <exception>
-#include <filesystem>
 #include <mutex>
 #include <thread>
 
@@ -154,28 +153,6 @@ std::string SweepEnd::left_in_words(bool quick, const char* what) const {
   if (!quick) return "";
   return complete() ? ": --quick left nothing out"
                     : fmt::format("; --quick left out {}, --resume goes on from {}", what, file);
-}
-
-void write_sweep(const SweepEnd& end, const std::string& stem, const ordered_json& document,
-                 const std::function<std::string(study::ChartFormat)>& script) {
-  write_study(stem, document["rows"], document, script);
-  if (end.complete()) std::filesystem::remove(end.file);
-}
-
-ordered_json sweep_json(const std::string& kind, const std::string& title, const io::Scene& scene,
-                        const Crew& crew, const StudyOptions& options, const ordered_json& units,
-                        const ordered_json& settings) {
-  ordered_json all{{"jobs", crew.jobs()}, {"ranks", crew.ranks()}, {"quick", options.quick}};
-  all.update(settings);
-  return {{"topple", TOPPLE_VERSION},
-          {"schema", 1},
-          {"study", kind},
-          {"scene", scene.name},
-          {"title", title},
-          {"scene_title", scene.title},
-          {"units", units},
-          {"machine", machine_json()},
-          {"settings", all}};
 }
 
 }  // namespace topple::app

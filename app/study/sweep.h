@@ -10,8 +10,6 @@
 
 #include "app/study/study_options.h"
 #include "app/support/clock.h"
-#include "solver/io/scene/scene.h"
-#include "solver/study/common/chart.h"
 
 namespace topple::app {
 
@@ -22,6 +20,14 @@ class Ranks;
 using CaseWork = std::function<std::string(int k, const std::function<bool()>& give_up)>;
 /// Makes what one worker has for itself.
 using MakeWork = std::function<CaseWork()>;
+
+/// Workers that call run_case() of the plan's study.
+template <class Plan>
+MakeWork work_on(const Plan& plan) {
+  return [&plan] {
+    return [&plan](int k, const std::function<bool()>& give_up) { return run_case(plan, k, give_up); };
+  };
+}
 
 /// The workers of a sweep: threads of this process, and under mpirun those of the other ranks, to which rank
 /// 0 hands out cases. They need nothing but the same command line: rank 0 tells them the rest.
@@ -57,8 +63,8 @@ class Crew {
 };
 
 struct SweepPlan {
-  std::string kind;                 ///< of study
-  std::string stem;                 ///< of its results; rows are kept in STEM.rows while it goes on
+  std::string kind = {};            ///< of study
+  std::string stem = {};            ///< of its results; rows are kept in STEM.rows while it goes on
   nlohmann::ordered_json settings;  ///< that rows depend on, besides the version
   std::vector<int> order;           ///< of all cases, as they are begun
   std::vector<std::string> told;    ///< to other ranks
@@ -81,16 +87,5 @@ struct SweepEnd {
 /// must be deferred (interrupt.h): then none, and it is said where to go on. Runs that are under way then are
 /// given up: one may take minutes. Throws std::runtime_error when a row cannot be kept.
 std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options);
-
-/// The results of a sweep: write_study(), and rows are kept no longer once all are there.
-void write_sweep(const SweepEnd& end, const std::string& stem, const nlohmann::ordered_json& document,
-                 const std::function<std::string(study::ChartFormat)>& script);
-
-/// The first entries of the JSON of a sweep: what it is of and how it was made. `settings` in addition to
-/// those of every sweep.
-nlohmann::ordered_json sweep_json(const std::string& kind, const std::string& title, const io::Scene& scene,
-                                  const Crew& crew, const StudyOptions& options,
-                                  const nlohmann::ordered_json& units,
-                                  const nlohmann::ordered_json& settings);
 
 }  // namespace topple::app

@@ -21,14 +21,6 @@ bool is_special(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// Where a new content goes: a link stays a link, its target is replaced.
-fs::path behind_links(const std::string& path) {
-  std::error_code error;
-  const fs::path full = fs::absolute(path, error);
-  const fs::path real = error ? full : fs::weakly_canonical(full, error);
-  return error ? fs::path(path) : real;
-}
-
 }  // namespace
 
 void require_writable_folder(const std::string& folder, const std::string& what) {
@@ -43,21 +35,23 @@ void require_writable_folder(const std::string& folder, const std::string& what)
   unlink(probe.c_str());
 }
 
-void require_writable_file(const std::string& option, const std::string& path, const std::string& source) {
+void require_writable_file(const std::string& option, const host::Target& target, host::FileKind kind,
+                           const std::string& source) {
+  const std::string path = target.path.string();
   if (path.empty()) throw BadInput(option + ": the name is empty");
-  std::error_code error;
-  if (fs::is_directory(path, error)) throw BadInput(path + ": cannot be written: is a folder");
-  if (is_special(path)) throw BadInput(path + ": cannot be written: is not an ordinary file");
   if (same_file(path, source))
     throw BadInput(option + ": " + path + " is what is being read; choose another name");
-  const fs::path target = behind_links(path);
-  require_writable_folder(fs::absolute(target).parent_path().string(), path);
-  if (fs::exists(target, error) && access(target.c_str(), W_OK) != 0)
-    throw BadInput(path + ": cannot be written: " + std::strerror(errno));
+  try {
+    host::expect_replaceable(target, kind);
+  } catch (const host::FileError& error) {
+    throw BadInput(error.what());
+  }
+  require_writable_folder(host::behind_links(path).parent_path().string(), path);
 }
 
-void require_writable_text(const std::string& option, const std::string& path, const std::string& source) {
-  if (!is_special(path)) require_writable_file(option, path, source);
+void require_writable_text(const std::string& option, const host::Target& target, host::FileKind kind,
+                           const std::string& source) {
+  if (!is_special(target.path)) require_writable_file(option, target, kind, source);
 }
 
 void require_no_record(const std::string& option, const std::string& path, const std::string& source,
@@ -69,21 +63,21 @@ void require_no_record(const std::string& option, const std::string& path, const
 
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
-  return fs::equivalent(a, b, error) || (!a.empty() && !b.empty() && behind_links(a) == behind_links(b));
+  return fs::equivalent(a, b, error) ||
+         (!a.empty() && !b.empty() && host::behind_links(a) == host::behind_links(b));
 }
 
-void write_whole_file(const std::string& path, const std::string& content) {
-  const bool special = is_special(path);
-  const std::string target = special ? path : behind_links(path).string();
-  const std::string part = special ? path : target + ".part-" + std::to_string(getpid());
-  std::FILE* file = std::fopen(part.c_str(), "wb");
+void write_whole_file(const host::Target& target, host::FileKind kind, const std::string& content) {
+  if (!is_special(target.path)) {
+    host::StagedFile file(target, kind);
+    file.write(content);
+    return file.commit();
+  }
+  std::FILE* const file = std::fopen(target.path.c_str(), "wb");
   bool good = file && std::fwrite(content.data(), 1, content.size(), file) == content.size();
   int cause = errno;
   if (file && std::fclose(file) != 0 && good) good = false, cause = errno;
-  if (good && (special || std::rename(part.c_str(), target.c_str()) == 0)) return;
-  if (good) cause = errno;
-  if (!special) std::remove(part.c_str());
-  throw std::runtime_error(path + ": cannot be written: " + std::strerror(cause));
+  if (!good) throw host::FileError(target.path.string() + ": cannot be written: " + std::strerror(cause));
 }
 
 TemporaryFile::TemporaryFile() {

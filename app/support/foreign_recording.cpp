@@ -1,12 +1,8 @@
 #include "app/support/foreign_recording.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,7 +11,8 @@
 #include <filesystem>
 #include <new>
 #include <stdexcept>
-#include <vector>
+
+#include "solver/io/host/process.h"
 
 namespace topple::app {
 namespace {
@@ -70,53 +67,13 @@ bool within_memory(std::int64_t count, Read read) {
   return true;
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  operator int() const { return number_; }
-
- private:
-  int number_;
-};
-
-/// Starts the process with `answer` as its standard output and waits for it. Its wait status.
-int run_apart(const std::string& program, const std::string& path, int answer) {
-  std::string words[] = {program, std::string(k_read_apart), path};
-  char* argv[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, answer, STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t process = -1;
-  const int failed = posix_spawn(&process, program.c_str(), &actions, nullptr, argv, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error(program + ": " + std::strerror(failed));
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0)
-    if (errno != EINTR) throw std::runtime_error(std::string("a started process: ") + std::strerror(errno));
-  return status;
-}
-
-std::string answer_in(int file) {
-  std::string text(k_most_words, '\0');
-  const ssize_t length = pread(file, text.data(), text.size(), 0);
-  text.resize(length < 0 ? 0 : static_cast<std::size_t>(length));
-  return text;
-}
-
-std::string how_it_ended(int status, const Limits& limits) {
-  if (!WIFSIGNALED(status)) {
-    return WEXITSTATUS(status) == k_too_much_memory
+std::string how_it_ended(const host::Ended& ended, const Limits& limits) {
+  if (ended.signal == 0) {
+    return ended.code == k_too_much_memory
                ? fmt::format("it asks for more than {} MiB of memory", limits.memory >> 20)
-               : fmt::format("reading it ended with exit code {}", WEXITSTATUS(status));
+               : fmt::format("reading it ended with exit code {}", ended.code);
   }
-  switch (const int signal = WTERMSIG(status)) {
+  switch (ended.signal) {
     case SIGXCPU:
     case SIGKILL:
       return fmt::format("it takes more than {} s of processor time", limits.seconds);
@@ -124,19 +81,20 @@ std::string how_it_ended(int status, const Limits& limits) {
     case SIGTERM:
       return "interrupted";
     default:
-      return fmt::format("it brings the HDF5 library to a crash ({})", strsignal(signal));
+      return fmt::format("it brings the HDF5 library to a crash ({})", strsignal(ended.signal));
   }
 }
 
 }  // namespace
 
 io::Recording open_foreign_recording(const std::string& path, const std::string& program) {
-  const Descriptor answer(memfd_create("answer", MFD_CLOEXEC));
-  if (answer < 0) throw std::runtime_error(std::string("memfd_create: ") + std::strerror(errno));
-  const int status = run_apart(program, path, answer);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == k_read) return io::Recording(path);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == k_refused) throw io::InputError(answer_in(answer));
-  throw io::InputError(fmt::format("{}: cannot read: {}", path, how_it_ended(status, limits_for(path))));
+  const host::MemoryFile answer("answer");
+  host::Process process(program, {std::string(k_read_apart), path}, {.output = answer.descriptor()});
+  const host::Ended ended = process.wait();
+  if (ended.good()) return io::Recording(path);
+  if (ended.signal == 0 && ended.code == k_refused)
+    throw io::InputError(answer.content().substr(0, k_most_words));
+  throw io::InputError(fmt::format("{}: cannot read: {}", path, how_it_ended(ended, limits_for(path))));
 }
 
 int read_apart(const std::string& path) {

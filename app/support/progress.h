@@ -1,14 +1,33 @@
-// Progress of long work on stderr.
+// Progress of long work on stderr, or told to the process that started this one.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/support/clock.h"
 
 namespace topple::app {
 
-/// A bar with rate and remaining time on a terminal; plain lines every few seconds in a log; nothing when
-/// quiet.
+/// How far some work is.
+struct ProgressReport {
+  std::string what, unit;      ///< of the work; of what is counted
+  double done = 0, total = 1;  ///< units
+  double rate = 0, left = 0;   ///< units per s; s
+};
+/// "40 of 300 pictures, 23/s, 11 s left".
+std::string in_words(const ProgressReport& report);
+/// {"what":"drawing","unit":"pictures","done":40,"total":300,"rate":23,"left_s":11.3} and the end of the
+/// line.
+std::string json_line(const ProgressReport& report);
+/// Nothing when `line` is no such line.
+std::optional<ProgressReport> progress_in(const std::string& line);
+
+/// Variable of the environment that names the descriptor of a pipe: a process that has it writes a line of
+/// JSON there for each report, and none to stderr. Lines that the pipe has no room for are left out.
+inline constexpr const char* k_progress_variable = "TOPPLE_PROGRESS_FD";
+
+/// A bar with rate and remaining time on a terminal; plain lines every few seconds in a log; lines of JSON
+/// for a process that asked for them; nothing when quiet.
 class Progress {
  public:
   /// `unit` names what is counted ("s simulated", "pictures"); `total` > 0.
@@ -22,6 +41,7 @@ class Progress {
  private:
   const std::string what_, unit_;
   const double total_;
+  const int pipe_;  ///< -1: nobody asked
   const bool quiet_, terminal_;
   const Clock::time_point start_;
   Clock::time_point last_;

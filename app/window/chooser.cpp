@@ -1,6 +1,7 @@
 #include "app/window/chooser.h"
 
 #include <imgui.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <cctype>
@@ -37,13 +38,14 @@ void add_line(ImDrawList& list, ImFont* font, ImVec2 at, float width, ImU32 colo
   const auto wide = [&](const std::string& t) {
     return font->CalcTextSizeA(font->FontSize, 1e6f, 0, t.c_str()).x;
   };
-  std::string shown = text;
-  while (!shown.empty() && wide(shown == text ? shown : shown + "…") > width) {
-    do shown.pop_back();
-    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0xc0) == 0x80);
-    if (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0xc0) shown.pop_back();
+  const std::string whole = utf8::replace_invalid(text);
+  std::string shown = whole;
+  while (!shown.empty() && wide(shown == whole ? shown : shown + "…") > width) {
+    auto last = shown.end();
+    utf8::prior(last, shown.begin());
+    shown.erase(last, shown.end());
   }
-  list.AddText(font, font->FontSize, at, colour, (shown == text ? shown : shown + "…").c_str());
+  list.AddText(font, font->FontSize, at, colour, (shown == whole ? shown : shown + "…").c_str());
 }
 
 }  // namespace

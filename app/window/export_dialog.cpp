@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +39,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
                   orbit.distance, target.x(), target.y(), target.z(),
                   body ? ",follow:" + model.bodies[*body].name : ""),
       "--colour",
-      name_of(s.colour).option,
+      traits(s.colour).word,
       "--map",
       s.map == render::ColourMap::cividis ? "cividis" : "viridis",
       "--range",
@@ -107,12 +106,11 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
     std::error_code ignored;
     if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));
-    require_writable_file("export", result, recording);
+    require_writable_file("export", result, host::FileKind::any, recording);
     const auto due = std::chrono::steady_clock::now() + k_recorded;
     std::vector<std::string> words;
     if (what == What::tables) {
-      const std::string partial = result + fmt::format(".part-{}", getpid());
-      request_ = {{"export", recording, "--csv", partial}, result, partial, due};
+      request_ = {{"export", recording, "--csv"}, result, ExportJob::Makes::folder, due};
       return;
     }
     const bool video = what == What::video;
@@ -125,7 +123,7 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     else
       add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
     for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
-    request_ = {words, result, "", due};
+    request_ = {words, result, ExportJob::Makes::file, due};
   } catch (const std::runtime_error& error) {
     refused_ = error.what();
   }
@@ -134,7 +132,7 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
 void ExportDialog::begin_job() {
   const Request request = *std::exchange(request_, std::nullopt);
   try {
-    job_.emplace(program_, request.words, request.result, request.partial);
+    job_.emplace(program_, request.words, request.result, request.makes);
   } catch (const std::runtime_error& error) {
     refused_ = error.what();
   }

@@ -54,7 +54,8 @@ class ExportDialog {
   /// What becomes a job as soon as all that is shown has been recorded.
   struct Request {
     std::vector<std::string> words;
-    std::string result, partial;
+    std::string result;
+    ExportJob::Makes makes;
     std::chrono::steady_clock::time_point due;
   };
   std::optional<Request> request_;

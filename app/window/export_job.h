@@ -1,10 +1,12 @@
 // Pictures, videos and tables made by a second process of the program, so that the window goes on.
 #pragma once
 
-#include <sys/types.h>
-
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "solver/io/host/process.h"
+#include "solver/io/host/staged_file.h"
 
 namespace topple::app {
 
@@ -12,10 +14,12 @@ namespace topple::app {
 /// nothing is left of it when it fails, is cancelled, or its owner goes.
 class ExportJob {
  public:
-  /// `partial`: where the process writes a folder, which becomes `result` at the end; empty: it writes
-  /// `result`, a file, by itself. Throws std::runtime_error when it cannot be started.
-  ExportJob(const std::string& program, const std::vector<std::string>& arguments, std::string result,
-            std::string partial = "");
+  enum class Makes { file, folder };
+
+  /// A process writes a file, `result`, by itself; it is told the place of a folder behind `arguments`.
+  /// Throws std::runtime_error when it cannot be started.
+  ExportJob(const std::string& program, std::vector<std::string> arguments, std::string result,
+            Makes makes = Makes::file);
   ~ExportJob();
   ExportJob(const ExportJob&) = delete;
   ExportJob& operator=(const ExportJob&) = delete;
@@ -23,7 +27,7 @@ class ExportJob {
   /// Takes in what it said. True when anything changed.
   bool update();
   void cancel();
-  bool done() const { return process_ < 0; }
+  bool done() const { return !process_ || !process_->running(); }
   bool cancelled() const { return cancelled_; }
   /// Of a process that is done: why it failed; empty: it did not.
   const std::string& failure() const { return failure_; }
@@ -32,15 +36,15 @@ class ExportJob {
   const std::string& progress() const { return line_; }  ///< "40 of 300 pictures, 23/s, 11 s left"
 
  private:
-  void read_lines();
-  void take_line(const std::string& line);
-  void end(int status);
-  void remove_partial();
+  void read_reports();
+  void end(const host::Ended& ended);
 
-  std::string result_, partial_;
-  pid_t process_ = -1, was_ = -1;
-  int terminal_ = -1;
-  std::string unread_, line_, last_words_, failure_;
+  std::string result_;
+  std::optional<host::StagedFolder> folder_;
+  host::MemoryFile errors_;
+  host::Descriptor reports_;
+  std::optional<host::Process> process_;
+  std::string unread_, line_, failure_;
   double part_ = 0;
   bool cancelled_ = false;
 };

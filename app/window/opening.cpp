@@ -76,10 +76,11 @@ LiveSource open_source(const ViewOptions& o, const std::string& program) {
     source.scene = std::make_shared<const io::Scene>(io::load_scene(o.source, o.overrides));
   }
   source.output = o.recording;
+  source.force = o.force;
   if (o.recording.empty())
     source.output = default_recording(source.scene->name);
   else
-    require_writable_file("--output", o.recording, o.source);
+    require_writable_file("--output", {o.recording, o.force}, host::FileKind::hdf5, o.source);
   return source;
 }
 
@@ -112,7 +113,7 @@ void remember_recent(const std::string& path) {
   std::string text;
   for (const std::string& line : paths) text += line + '\n';
   try {
-    write_whole_file((fs::path(folder) / "recent").string(), text);
+    write_whole_file(fs::path(folder) / "recent", host::FileKind::any, text);
   } catch (const std::runtime_error&) {  // a full disk does not keep anybody from looking
   }
 }

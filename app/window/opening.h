@@ -17,6 +17,7 @@ struct ViewOptions {
   std::vector<std::string> overrides;  ///< of a scene
   std::string recording;               ///< where a live run is recorded; empty: in the user's state folder
   std::optional<Language> language;    ///< absent: as kept, or that of the locale
+  bool force = false;                  ///< in place of files of any kind
 };
 
 /// "~/.local/state/topple" or what XDG_STATE_HOME says, created; empty when there is no place for it.

@@ -33,7 +33,7 @@ bool put_beside(const io::SceneFile& file, const std::string& path) {
   if (name.is_absolute() || *name.lexically_normal().begin() == "..")
     throw io::InputError(place.string() + ": is gone; the scene names it outside of the folder");
   fs::create_directories(place.parent_path(), ignored);
-  write_whole_file(place.string(), file.bytes);
+  write_whole_file(place, host::FileKind::any, file.bytes);
   return true;
 }
 
@@ -41,7 +41,7 @@ bool put_beside(const io::SceneFile& file, const std::string& path) {
 
 std::vector<std::string> save_scene(const io::Scene& scene, const Parameters& now, const std::string& path,
                                     bool replace) {
-  require_writable_file("save", path, "");
+  require_writable_file("save", path, host::FileKind::any, "");
   std::error_code ignored;
   if (!replace && fs::exists(path, ignored)) throw io::InputError(say(ww::k_exists, path));
   const io::SavedScene saved = io::edited_scene(scene, now);
@@ -49,7 +49,7 @@ std::vector<std::string> save_scene(const io::Scene& scene, const Parameters& no
   try {
     for (const io::SceneFile& file : scene.files)
       if (put_beside(file, path)) written.push_back(fs::path(path).parent_path() / file.name);
-    write_whole_file(path, saved.text);
+    write_whole_file(path, host::FileKind::any, saved.text);
   } catch (const std::runtime_error&) {
     for (const fs::path& file : written) fs::remove(file, ignored);
     throw;

@@ -32,7 +32,7 @@ Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std:
       wake_(std::move(wake)),
       program_(std::move(program)),
       appearance_(appearance),
-      dressed_(appearance),
+      applied_(appearance),
       keep_(std::move(keep)),
       own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
       chooser_(stage, wake_),
@@ -68,7 +68,7 @@ void Shell::show(LiveSource source, const std::string& path) {
     closing_.push_back(std::async(
         std::launch::async, [run = Session::leave(std::move(session_))] { return run->close("stopped"); }));
   }
-  dressed_.reset();
+  applied_.reset();
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);
@@ -129,9 +129,9 @@ bool Shell::update(double wall_s) {
   const bool told_before = message_.has_value();
   bool news = finish_opening();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != dressed_) {
+  if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != applied_) {
     own_fonts_ = set_up_interface(stage_, scale_, fits, nullptr);
-    dressed_ = fits;
+    applied_ = fits;
     news = true;
   }
   if (chooser_.is_open()) news = chooser_.update() || news;

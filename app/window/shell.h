@@ -76,7 +76,7 @@ class Shell {
   const std::function<void()> wake_;
   const std::string program_;
   Appearance appearance_;
-  std::optional<Appearance> dressed_;  ///< as own_fonts_ are; none: a session's have replaced them
+  std::optional<Appearance> applied_;  ///< as own_fonts_ are; none: a session's have replaced them
   const Viewer::Keep keep_;
   render::OverlayFonts own_fonts_;  ///< of a window without a session
   Chooser chooser_;

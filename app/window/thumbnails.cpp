@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/picture/bridge.h"
+#include "app/picture/image_files.h"
 #include "app/support/terms.h"
 #include "app/window/opening.h"
 #include "render/scene/orbit.h"
@@ -150,7 +151,7 @@ bool Thumbnails::update() {
     one.image = stage_.portrait(frame, orbit.camera(aspect), render::ColourMap::viridis, k_thumbnail_width,
                                 k_thumbnail_height);
     try {
-      if (!one.file.empty()) render::write_png(one.file, *one.image);
+      if (!one.file.empty()) write_png({one.file, true}, *one.image);
     } catch (const std::runtime_error&) {  // it is drawn again the next time
     }
   }

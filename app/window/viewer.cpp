@@ -82,7 +82,7 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
       bridge_(player.scene(), player.extent()),
       settings_(settings),
       view_(view) {
-  dress();
+  apply_appearance();
 }
 
 Appearance Viewer::fitting() const {
@@ -90,14 +90,14 @@ Appearance Viewer::fitting() const {
   return app::fitting(appearance_, desktop_scale_, size.x, size.y);
 }
 
-void Viewer::dress() {
-  dressed_ = fitting();
-  scale_ = desktop_scale_ * static_cast<float>(dressed_.scale);
-  fonts_ = set_up_interface(stage_, desktop_scale_, dressed_, &player_.scene());
+void Viewer::apply_appearance() {
+  applied_ = fitting();
+  scale_ = desktop_scale_ * static_cast<float>(applied_.scale);
+  fonts_ = set_up_interface(stage_, desktop_scale_, applied_, &player_.scene());
   scene_changed_ = true;
 }
 
-void Viewer::wear(const Appearance& appearance) {
+void Viewer::choose_appearance(const Appearance& appearance) {
   appearance_ = appearance;
   try {
     if (keep_) keep_(appearance_);
@@ -109,9 +109,9 @@ void Viewer::wear(const Appearance& appearance) {
 }
 
 bool Viewer::update(double wall_s) {
-  const bool redress = dressed_ != fitting();
-  if (redress) dress();
-  bool news = player_.update(wall_s) || redress;
+  const bool reapply = applied_ != fitting();
+  if (reapply) apply_appearance();
+  bool news = player_.update(wall_s) || reapply;
   const bool words = std::exchange(words_due_, false);
   if (teaching_.guide && teaching_.guide->update()) news = true;
   const bool computes = (teaching_.accuracy && !teaching_.accuracy->over()) ||

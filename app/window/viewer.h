@@ -89,8 +89,8 @@ class Viewer {
 
  private:
   Appearance fitting() const;
-  void dress();
-  void wear(const Appearance& appearance);
+  void apply_appearance();
+  void choose_appearance(const Appearance& appearance);
   void resize(int direction);
   void let_go();
   void focus_next_panel();
@@ -121,7 +121,7 @@ class Viewer {
   render::Stage& stage_;
   const float desktop_scale_;
   float scale_ = 1;
-  Appearance appearance_, dressed_;  // as asked for, and as shown, where there is room
+  Appearance appearance_, applied_;  // as asked for, and as shown, where there is room
   const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;

@@ -80,7 +80,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
        [](Viewer& v) {
          Appearance other = v.appearance_;
          other.dark = !other.dark;
-         v.wear(other);
+         v.choose_appearance(other);
        }},
       {{"F1", "F1"},
        k_key_table,
@@ -119,8 +119,8 @@ void Viewer::toggle_following() {
 }
 
 void Viewer::next_colour() {
-  const auto next = static_cast<std::size_t>(settings_.colour) + 1;
-  choose_colour(settings_, static_cast<BeamQuantity>(next % k_beam_quantities));
+  const std::size_t next = (place_of(settings_.colour) + 1) % beam_quantities().size();
+  choose_colour(settings_, beam_quantities()[next].kind);
   scene_changed_ = true;
 }
 
@@ -132,7 +132,7 @@ void Viewer::turn(bool& on) {
 void Viewer::resize(int direction) {
   Appearance other = appearance_;
   other.scale = next_scale(other.scale, direction);
-  wear(other);
+  choose_appearance(other);
 }
 
 // Dear ImGui's own way, Ctrl+Tab, shows its names of panels.

@@ -8,6 +8,7 @@
 
 #include "app/panels/shell_words.h"
 #include "app/panels/theme.h"
+#include "app/picture/image_files.h"
 #include "app/picture/words.h"
 #include "app/support/files.h"
 #include "app/window/status_line.h"
@@ -142,7 +143,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     }
     ImGui::Separator();
     Appearance appearance = appearance_;
-    if (draw_appearance(appearance)) wear(appearance);
+    if (draw_appearance(appearance)) choose_appearance(appearance);
   } else if (tab_ == Tab::teach) {
     draw_teaching(player_, teaching_, refused_);
   } else if (row && draw_inspector(player_, *row, histories_, inspection_)) {
@@ -171,9 +172,9 @@ void Viewer::write_plots(PlotRequest request) {
   while (std::filesystem::exists(path, ignored));
   try {
     if (request == PlotRequest::csv)
-      write_whole_file(path.string(), plots_csv(player_, histories_, inspection_));
+      write_whole_file(path, host::FileKind::csv, plots_csv(player_, histories_, inspection_));
     else
-      render::write_png(path, picture_of_plots());
+      write_png(path, picture_of_plots());
     told_ = say(k_written, std::filesystem::absolute(path, ignored).string());
   } catch (const std::runtime_error& error) {
     told_ = say(k_not_written, error.what());

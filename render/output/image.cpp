@@ -1,9 +1,7 @@
 #include "render/output/image.h"
 
 #include <png.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -104,24 +102,6 @@ std::optional<Image> load_png(const std::filesystem::path& path) {
   image.rgba.resize(PNG_IMAGE_SIZE(png));
   if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr)) return std::nullopt;
   return image;
-}
-
-void write_png(const std::filesystem::path& path, const Image& image) {
-  const std::vector<std::uint8_t> bytes = encode_png(image);
-  std::filesystem::path partial = path;
-  partial += ".part" + std::to_string(getpid());
-  const auto fail = [&](int code) {
-    std::remove(partial.c_str());
-    throw std::runtime_error(path.string() + ": cannot write the picture: " + std::strerror(code));
-  };
-  std::FILE* file = std::fopen(partial.c_str(), "wb");
-  if (file == nullptr) fail(errno);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int write_error = errno;
-  const bool closed = std::fclose(file) == 0;
-  if (!written) fail(write_error);
-  if (!closed) fail(errno);
-  if (std::rename(partial.c_str(), path.c_str()) != 0) fail(errno);
 }
 
 }  // namespace topple::render

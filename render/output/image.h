@@ -1,4 +1,4 @@
-// Pictures in memory and as PNG files.
+// Pictures in memory, and as the bytes of PNG files.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,5 @@ std::vector<std::uint8_t> encode_png(const Image& image);
 
 /// Reads a PNG file; nothing when there is none that can be read.
 std::optional<Image> load_png(const std::filesystem::path& path);
-
-/// Writes a PNG file. It appears complete or not at all: an existing file is replaced only when the
-/// new one is written. Throws std::runtime_error with the path and the reason.
-void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace topple::render

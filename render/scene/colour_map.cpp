@@ -73,13 +73,6 @@ ColourTable diverging_table() {
 
 }  // namespace
 
-std::optional<ColourMap> colour_map_named(std::string_view name) {
-  if (name == "viridis") return ColourMap::viridis;
-  if (name == "cividis") return ColourMap::cividis;
-  if (name == "diverging") return ColourMap::diverging;
-  return std::nullopt;
-}
-
 const ColourTable& colour_table(ColourMap map) {
   static const ColourTable viridis = interpolated(k_viridis);
   static const ColourTable cividis = interpolated(k_cividis);

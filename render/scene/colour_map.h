@@ -4,15 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace topple::render {
 
+/// diverging: blue - grey - red, for signed values.
 enum class ColourMap { viridis, cividis, diverging };
-
-/// "viridis", "cividis" or "diverging" (blue - grey - red, for signed values).
-std::optional<ColourMap> colour_map_named(std::string_view name);
 
 inline constexpr int k_colour_map_size = 256;
 using ColourTable = std::array<std::array<std::uint8_t, 3>, k_colour_map_size>;

@@ -1,8 +1,10 @@
 #include "render/scene/text_layout.h"
 
 #include <imgui.h>
+#include <utf8.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace topple::render {
@@ -11,21 +13,21 @@ namespace {
 constexpr const char* k_ellipsis = "\xe2\x80\xa6";
 
 std::string one_line(std::string_view text) {
-  std::string line(text);
+  std::string line = utf8::replace_invalid(text);
   std::ranges::replace_if(
       line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return line;
 }
 
 void drop_last_letter(std::string& text) {
-  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
-  if (!text.empty()) text.pop_back();
+  auto last = text.end();
+  utf8::prior(last, text.begin());
+  text.erase(last, text.end());
 }
 
-/// Whether the letter there is one of Chinese or Japanese, which are written without spaces: three bytes from
-/// U+3000 on.
-bool is_ideographic(std::string_view text, std::size_t at) {
-  return static_cast<unsigned char>(text[at]) >= 0xe3 && static_cast<unsigned char>(text[at]) < 0xf0;
+/// Whether it is a letter of Chinese or Japanese, which are written without spaces.
+bool is_ideographic(std::uint32_t letter) {
+  return letter >= 0x3000 && letter <= 0xffff;
 }
 
 /// No line begins with these.
@@ -37,12 +39,14 @@ bool ends_a_phrase(std::string_view text, std::size_t at) {
 
 /// Where a line may end next after `at`: at a space, or beside a letter that needs none.
 std::size_t next_break(std::string_view text, std::size_t at) {
-  for (std::size_t i = at + 1; i < text.size(); ++i) {
-    if (text[i] == ' ') return i;
-    if ((static_cast<unsigned char>(text[i]) & 0xc0) == 0x80) continue;
-    std::size_t before = i - 1;
-    while (before > 0 && (static_cast<unsigned char>(text[before]) & 0xc0) == 0x80) --before;
-    if ((is_ideographic(text, i) || is_ideographic(text, before)) && !ends_a_phrase(text, i)) return i;
+  auto next = text.begin() + static_cast<std::ptrdiff_t>(at);
+  std::uint32_t before = next == text.end() ? 0 : utf8::next(next, text.end());
+  while (next != text.end()) {
+    const auto i = static_cast<std::size_t>(next - text.begin());
+    const std::uint32_t letter = utf8::next(next, text.end());
+    if (letter == ' ') return i;
+    if ((is_ideographic(letter) || is_ideographic(before)) && !ends_a_phrase(text, i)) return i;
+    before = letter;
   }
   return std::string_view::npos;
 }

@@ -33,14 +33,14 @@ AnchorPoint anchor_point(const Model& model, const State& state, int k) {
   const Anchor& anchor = model.anchors[k];
   const int g = anchor.node;
   const BodyState& s = state.bodies[anchor.body];
-  if (s.rung == Rung::frame) {
+  if (s.level == ModelLevel::frame) {
     const Vec3 arm = state.rotation[g] * anchor.arm;
     return {state.position[g] + arm,
             state.velocity[g] + state.rotation[g] * state.angular_velocity[g].cross(anchor.arm)};
   }
   const Body& body = model.bodies[anchor.body];
   Vec3 arm = model.node_position[g] - body.centre_of_gravity + anchor.arm, rate = Vec3::Zero();
-  if (s.rung == Rung::elastic)
+  if (s.level == ModelLevel::elastic)
     for (int m = 0; m < body.elastic->modes; ++m) {
       const Vec3 shape = anchor_shape(model, anchor, m);
       arm += s.amplitude[m] * shape;

@@ -10,10 +10,10 @@
 
 namespace topple {
 
-/// Displacement of the attached point in a mode of the rung elastic, reference axes, per amplitude.
+/// Displacement of the attached point in a mode of the level elastic, reference axes, per amplitude.
 Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
 
-/// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's rung.
+/// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's level.
 struct AnchorPoint {
   Vec3 at, velocity;
 };

@@ -40,7 +40,7 @@ void BodyAnchors::remember(std::span<const AnchorState> all) {
 void BodyAnchors::find(const BodyState& s) {
   for (Tie& tie : ties_) {
     tie.arm = tie.place;
-    for (std::size_t k = 0; s.rung == Rung::elastic && k < tie.shape.size(); ++k)
+    for (std::size_t k = 0; s.level == ModelLevel::elastic && k < tie.shape.size(); ++k)
       tie.arm += s.amplitude[static_cast<Eigen::Index>(k)] * tie.shape[k];
     tie.arm = s.rotation * tie.arm;
     tie.now = anchor_force(anchor(tie), tie.state, s.position + tie.arm);
@@ -69,17 +69,18 @@ double BodyAnchors::energy() const {
   return sum;
 }
 
-void BodyAnchors::press_modes(const BodyState& s, int modes, Amplitudes& load) const {
+void BodyAnchors::modal_loads(const BodyState& s, int modes, Amplitudes& load) const {
   for (const Tie& tie : ties_) {
     const Vec3 force = s.rotation.conjugate() * tie.now.force;
     for (int k = 0; k < modes; ++k) load[k] += tie.shape[k].dot(force);
   }
 }
 
-void BodyAnchors::add_slope(const BodyState& s, double lever, ContactSlope& slope) const {
+void BodyAnchors::add_slope(const BodyState& s, double gamma_dt, ContactSlope& slope) const {
   for (const Tie& tie : ties_) {
-    const Mat6 by_place = lever * anchor_slope(anchor_tangent(anchor(tie), tie.state, s.position + tie.arm),
-                                               tie.arm, tie.now.force);
+    const Mat6 by_place =
+        gamma_dt *
+        anchor_slope(anchor_tangent(anchor(tie), tie.state, s.position + tie.arm), tie.arm, tie.now.force);
     const auto block = [&](int row, int column) { return packed(Mat3(by_place.block<3, 3>(row, column))); };
     slope.force_linear = slope.force_linear + block(0, 0);
     slope.force_angular = slope.force_angular + block(0, 3);

@@ -34,10 +34,10 @@ class BodyAnchors {
   Vec3 moment() const;  ///< N m, about the centre of gravity
   double energy() const;
   /// Adds what they do to the modes, N/sqrt(kg).
-  void press_modes(const BodyState& s, int modes, Amplitudes& load) const;
-  /// At the pose `s` that find had: adds derivatives by the velocity along which the place changes `lever`
+  void modal_loads(const BodyState& s, int modes, Amplitudes& load) const;
+  /// At the pose `s` that find had: adds derivatives by the velocity along which the place changes `gamma_dt`
   /// times as much, s.
-  void add_slope(const BodyState& s, double lever, ContactSlope& slope) const;
+  void add_slope(const BodyState& s, double gamma_dt, ContactSlope& slope) const;
   /// Adds -d(force)/d(place) to the stiffness of the body's six unknowns and its modes.
   void add_stiffness(const BodyState& s, int modes, Eigen::MatrixXd& stiffness) const;
   /// Of those in place as stiff in all directions.

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "solver/body/elastic_basis.h"
+#include "solver/contact/coulomb.h"
 #include "solver/math/elementary.h"
 
 namespace topple {
@@ -28,7 +29,8 @@ PreparedLaw::PreparedLaw(const ContactLaw& law)
       root_alpha(std::sqrt(law.alpha)),
       loss(normal_loss(law.restitution)),
       bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed),
-      plain(law.kind == ContactLawKind::coulomb && law.q == 1 && !(law.excess() > 0)) {}
+      in_packs(traits(law).in_packs),
+      plain(in_packs && law.q == 1 && !(law.excess() > 0)) {}
 
 BodyContacts::BodyContacts(const Model& model, int body)
     : model_(model),
@@ -105,7 +107,7 @@ BodyContacts::BodyContacts(const Model& model, int body)
 
 BodyContacts::Points BodyContacts::place(const BodyState& s, const Group& group) const {
   Points at = group.place;
-  if (s.rung == Rung::elastic)
+  if (s.level == ModelLevel::elastic)
     for (std::size_t k = 0; k < group.shape.size(); ++k) at = at + s.amplitude[k] * group.shape[k];
   return at;
 }
@@ -125,7 +127,7 @@ double BodyContacts::slope_at_rest(const ContactLaw& law) const {
 
 void BodyContacts::find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick) {
   now_.clear();
-  gives_ = s.rung == Rung::elastic;
+  gives_ = s.level == ModelLevel::elastic;
   modes_ = gives_ && !groups_.empty() ? static_cast<int>(groups_[0].shape.size()) : 0;
   const double bend = gives_ ? k_bend * reach_ : 0;
   for (int k = 0; k < static_cast<int>(widest_.size()); ++k) {
@@ -185,79 +187,53 @@ void BodyContacts::follow(const BodyState& before, const PackMat3& r0, const Bod
   }
 }
 
-// As contact_force, four by four.
+// contact_force, four by four.
 template <bool with_slope, bool plain, class Normal>
 [[gnu::always_inline]] inline void BodyContacts::respond_coulomb(const PreparedLaw& law, const Normal& n,
-                                                                 const Points& v, double lever,
+                                                                 const Points& v, double gamma_dt,
                                                                  Touch& touch) const {
   const Side& here = side(touch);
   const Four zero = Four(0);
-  const Four vn = dot(n, v);
-  const double eps = law.normal_speed;
-  const Four inverse = 1 / sqrt(mul_add(vn, vn, Four(eps * eps)));
-  const Four factor = less_product(Four(1), law.loss * vn, inverse);
   const Four depth = plain ? touch.depth : power(touch.depth, law.q);
   touch.conservative = choose(touch.touching, touch.alpha * depth, zero);
-  touch.normal = touch.conservative * factor;
-
   const Four k = touch.stick_stiffness, c = law.root_alpha * here.damping;
-  const auto stick = tangential(n, touch.stick);
-  const bool static_friction = !plain && law.excess() > 0;
-  const auto slip = tangential(n, v), trial = mul_add(c, slip, k * stick);
-  const Four mu = static_friction ? friction_coefficient(law, dot(slip, slip)) : Four(law.friction);
-  const Four limit = touch.limit = mu * touch.normal, size2 = dot(trial, trial);
-  const Four::Mask sticks = size2 <= limit * limit;  // a NaN must not pass for sticking
-  const bool slips = bits(sticks | ~touch.touching) != k_all_lanes;
-  Four scale = Four(1), inverse_size = zero;
-  if (slips) {
-    inverse_size = 1 / sqrt(size2);
-    scale = choose(sticks, scale, limit * inverse_size);
-    inverse_size = choose(sticks, zero, inverse_size);
-  }
-  scale = choose(touch.touching, scale, zero);
-  touch.tangential = in_space(-scale * trial);
-  const Four spring2 = k * k * dot(stick, stick);
-  touch.stick_energy = 0.5 / k * choose(spring2 <= limit * limit, spring2, limit * limit);
-  touch.stick_energy = choose(touch.touching, touch.stick_energy, zero);
+  const bool weakens = !plain && law.excess() > 0;
+  const auto f =
+      coulomb_force(law, law.loss, weakens, n, v, touch.stick, touch.touching, touch.conservative, k, c);
+  touch.normal = f.normal;
+  touch.limit = f.limit;
+  touch.tangential = in_space(-f.scale * f.trial);
+  touch.stick_energy = choose(touch.touching, stick_energy(k, dot(f.stick, f.stick), f.limit), zero);
   if constexpr (with_slope) {
-    Four slope = -law.loss * eps * eps * touch.conservative * inverse * inverse * inverse, across = c;
-    if (lever > 0) {
+    Four slope = normal_slope(law, law.loss, touch.conservative, f.inverse), across = c;
+    if (gamma_dt > 0) {
       Four stiffness = touch.alpha / here.L;
       if (!plain && law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
-      slope -= choose(touch.touching, lever * stiffness * factor, zero);
-      across += lever * k;
+      slope -= choose(touch.touching, gamma_dt * stiffness * f.factor, zero);
+      across += gamma_dt * k;
     }
-    across = across * scale;
-    touch.lead = slope + across;
-    touch.across = across;
-    touch.drag = choose(sticks, across, zero);
-    touch.has_rest = slips;
-    if (slips) {
-      const auto along = inverse_size * trial;
-      Points side_way = sum_of(across, along, -(mu * slope), n);
-      if (static_friction) {
-        const Four above = mu - law.friction;
-        side_way =
-            mul_add(2 * above * above / (law.excess() * law.slip_speed * law.slip_speed) * touch.normal, slip,
-                    side_way);
-      }
-      touch.rest = outer(in_space(along), side_way);
-    }
+    across = across * f.scale;
+    touch.tangent_nn = slope + across;
+    touch.tangent_identity = across;
+    touch.drag = choose(f.sticks, across, zero);
+    touch.has_tangent_rest = f.slips;
+    if (f.slips) touch.tangent_rest = slip_slope(law, weakens, f, n, slope, across);
   }
 }
 
 template <bool with_slope, bool plain, class Normal>
 [[gnu::always_inline]] inline void BodyContacts::respond(const PreparedLaw& law, const Normal& n,
-                                                         const Points& v, double lever, Touch& touch) const {
-  if (plain || law.kind == ContactLawKind::coulomb) {
-    respond_coulomb<with_slope, plain>(law, n, v, lever, touch);
+                                                         const Points& v, double gamma_dt,
+                                                         Touch& touch) const {
+  if (plain || law.in_packs) {
+    respond_coulomb<with_slope, plain>(law, n, v, gamma_dt, touch);
   } else {
     touch.conservative = touch.normal = touch.stick_energy = Four(0);
     touch.tangential = in_all_lanes(Vec3::Zero());
     if (with_slope) {
-      touch.lead = touch.across = touch.drag = Four(0);
-      touch.has_rest = true;
-      for (Points& row : touch.rest.row) row = in_all_lanes(Vec3::Zero());
+      touch.tangent_nn = touch.tangent_identity = touch.drag = Four(0);
+      touch.has_tangent_rest = true;
+      for (Points& row : touch.tangent_rest.row) row = in_all_lanes(Vec3::Zero());
     }
     for (int which = 0; which < 4; ++which) {
       if (!touch.touching[which]) continue;
@@ -270,22 +246,22 @@ template <bool with_slope, bool plain, class Normal>
       touch.conservative.set(which, out.conservative);
       touch.normal.set(which, out.normal);
       set_lane(touch.tangential, which, out.tangential);
-      if (with_slope) set_lane(touch.rest, which, by_velocity + lever * by_position);
+      if (with_slope) set_lane(touch.tangent_rest, which, by_velocity + gamma_dt * by_position);
     }
   }
 }
 
 template <bool with_slope, ContactSums sums>
-ContactLoads BodyContacts::press(const PreparedLaw& law, const BodyVelocity& u, double lever) {
-  return law.plain && !gives_ ? press_all<with_slope, true, sums>(law, u, lever)
-                              : press_all<with_slope, false, sums>(law, u, lever);
+ContactLoads BodyContacts::evaluate_forces(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt) {
+  return law.plain && !gives_ ? evaluate_all<with_slope, true, sums>(law, u, gamma_dt)
+                              : evaluate_all<with_slope, false, sums>(law, u, gamma_dt);
 }
 
 template <bool with_slope, bool plain, ContactSums sums>
-[[gnu::flatten]] ContactLoads BodyContacts::press_all(const PreparedLaw& law, const BodyVelocity& u,
-                                                      double lever) {
+[[gnu::flatten]] ContactLoads BodyContacts::evaluate_all(const PreparedLaw& law, const BodyVelocity& u,
+                                                         double gamma_dt) {
   Points force = in_all_lanes(Vec3::Zero()), moment = force;
-  Four damped = Four(0), rubbed = damped;
+  Four damping_power = Four(0), friction_power = damping_power;
   const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
   const Points* shape = shapes_.data();
   const double slope = !plain && gives_ ? law.alpha * slope_at_rest(law) : 0;
@@ -301,30 +277,30 @@ template <bool with_slope, bool plain, ContactSums sums>
     if constexpr (!plain)
       for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
     with_normal(touch, [&](const auto& n) {
-      respond<with_slope, plain>(law, n, v, lever, touch);
+      respond<with_slope, plain>(law, n, v, gamma_dt, touch);
       if constexpr (sums == ContactSums::none) return;
       const auto rub = lying(n, touch.tangential);
       const Points push = mul_add(touch.normal, n, rub);
       force = force + push;
       moment = moment + cross(touch.arm, push);
       if constexpr (sums == ContactSums::loads) return;
-      damped -= (touch.normal - touch.conservative) * dot(n, v);
-      rubbed -= dot(rub, v);
+      damping_power -= (touch.normal - touch.conservative) * dot(n, v);
+      friction_power -= dot(rub, v);
     });
   }
   if constexpr (sums == ContactSums::none) return {};
-  const Four first = topple::sums(force.x, force.y, force.z, damped),
-             second = topple::sums(moment.x, moment.y, moment.z, rubbed);
+  const Four first = topple::sums(force.x, force.y, force.z, damping_power),
+             second = topple::sums(moment.x, moment.y, moment.z, friction_power);
   return {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}, first[3], second[3]};
 }
-template ContactLoads BodyContacts::press<false, ContactSums::none>(const PreparedLaw&, const BodyVelocity&,
-                                                                    double);
-template ContactLoads BodyContacts::press<false, ContactSums::loads>(const PreparedLaw&, const BodyVelocity&,
-                                                                     double);
-template ContactLoads BodyContacts::press<false>(const PreparedLaw&, const BodyVelocity&, double);
-template ContactLoads BodyContacts::press<true>(const PreparedLaw&, const BodyVelocity&, double);
+template ContactLoads BodyContacts::evaluate_forces<false, ContactSums::none>(const PreparedLaw&,
+                                                                              const BodyVelocity&, double);
+template ContactLoads BodyContacts::evaluate_forces<false, ContactSums::loads>(const PreparedLaw&,
+                                                                               const BodyVelocity&, double);
+template ContactLoads BodyContacts::evaluate_forces<false>(const PreparedLaw&, const BodyVelocity&, double);
+template ContactLoads BodyContacts::evaluate_forces<true>(const PreparedLaw&, const BodyVelocity&, double);
 
-void BodyContacts::press_modes(int modes, Amplitudes& load) const {
+void BodyContacts::modal_loads(int modes, Amplitudes& load) const {
   std::array<Four, k_modes> sum_of;
   sum_of.fill(Four(0));
   const Points* shape = shapes_.data();
@@ -336,21 +312,17 @@ void BodyContacts::press_modes(int modes, Amplitudes& load) const {
 }
 
 // Travel of the stick springs after slipping, m.
-[[gnu::always_inline]] inline BodyContacts::Points BodyContacts::held_stick(const ContactLaw& law,
+[[gnu::always_inline]] inline BodyContacts::Points BodyContacts::held_stick(const PreparedLaw& law,
                                                                             const Touch& touch) const {
-  if (law.kind != ContactLawKind::coulomb) return in_all_lanes(Vec3::Zero());
+  if (!law.in_packs) return in_all_lanes(Vec3::Zero());
   return with_normal(touch, [&](const auto& n) {
     const auto stick = tangential(n, touch.stick);
-    const Four limit = touch.limit / touch.stick_stiffness;
-    const Four size2 = dot(stick, stick);
-    const Four::Mask sticks = size2 <= limit * limit;
-    Four scale = Four(1);
-    if (bits(sticks | ~touch.touching) != k_all_lanes) scale = choose(sticks, scale, limit / sqrt(size2));
-    return in_space(choose(touch.touching, scale, Four(0)) * stick);
+    return in_space(held_share(touch.stick_stiffness, dot(stick, stick), touch.limit, touch.touching) *
+                    stick);
   });
 }
 
-void BodyContacts::keep_sticks(const ContactLaw& law, std::span<Vec3> stick) {
+void BodyContacts::keep_sticks(const PreparedLaw& law, std::span<Vec3> stick) {
   const Touch* still = now_.list().data();
   const Touch* const end = still + now_.count;
   for (const Touch& touch : now_.hash == start_.hash ? std::span<const Touch>() : start_.list()) {
@@ -378,27 +350,26 @@ double BodyContacts::energy(const ContactLaw& law) const {
   Four held = Four(0);
   for (const Touch& touch : now_.list()) {
     held += touch.stick_energy;
-    if (law.kind != ContactLawKind::printed)
-      held += 1 / (law.q + 1) * touch.conservative * side(touch).L * touch.depth;
+    if (traits(law).stores_energy) held += 1 / (law.q + 1) * touch.conservative * side(touch).L * touch.depth;
   }
   return sum(held);
 }
 
 void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r,
                                StepEnergy& booked) const {
-  Four damped = Four(0), rubbed = damped;
+  Four damping_power = Four(0), friction_power = damping_power;
   const auto book = [&](const Touch& touch, const Points& travel, double sign) {
-    damped -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
-    rubbed -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
+    damping_power -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
+    friction_power -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
   if (now_.hash == start_.hash) {
     const Touch* before = start_.list().data();
     for (const Touch& touch : now_.list()) {
       const Four lost = (before->normal - before->conservative) + (touch.normal - touch.conservative);
       with_normal(touch, [&](const auto& n) {
-        damped -= 0.5 * lost * dot(n, touch.travel);
-        rubbed -= 0.5 * dot(lying(n, before->tangential) + lying(n, touch.tangential), touch.travel) +
-                  (touch.stick_energy - before->stick_energy);
+        damping_power -= 0.5 * lost * dot(n, touch.travel);
+        friction_power -= 0.5 * dot(lying(n, before->tangential) + lying(n, touch.tangential), touch.travel) +
+                          (touch.stick_energy - before->stick_energy);
       });
       ++before;
     }
@@ -407,8 +378,8 @@ void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const Pack
       book(touch, in_all_lanes(shift) + (in_all_lanes(r) * place(s, groups_[touch.group]) - touch.arm), -1);
     for (const Touch& touch : now_.list()) book(touch, touch.travel, 1);
   }
-  booked.normal_damping += sum(damped);
-  booked.friction += sum(rubbed);
+  booked.normal_damping += sum(damping_power);
+  booked.friction += sum(friction_power);
 }
 
 void BodyContacts::book_law_change(const ContactLaw& before, const ContactLaw& after,

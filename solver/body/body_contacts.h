@@ -29,7 +29,8 @@ using PackMat3 = PackMatrix<double>;
 struct PreparedLaw : ContactLaw {
   double root_alpha, loss;  ///< normal_loss
   double bend;              ///< m/s, the least speed over which forces leave their tangent
-  bool plain;               ///< coulomb, linear in depth, one coefficient of friction
+  bool in_packs;            ///< ContactLawTraits
+  bool plain;               ///< in_packs, linear in depth, one coefficient of friction
   explicit PreparedLaw(const ContactLaw& law);
 };
 
@@ -42,7 +43,7 @@ struct BodyVelocity {
 /// friction and stick springs take.
 struct ContactLoads {
   PackVec3 force, moment;
-  double damped, rubbed;
+  double damping_power, friction_power;
 };
 /// What of them is summed up, the rest being undefined: nothing, force and moment, or all.
 enum class ContactSums { none, loads, all };
@@ -66,7 +67,7 @@ class BodyContacts {
     Four depth;
     Points arm;     // m, from the centre of gravity
     Points stick;   // m, travel since sticking began
-    Points travel;  // m, in the part of a step that led here
+    Points travel;  // m, in the substep that led here
     Four conservative, normal;
     Four limit;  // N, of the tangential force (coulomb law)
     Points tangential;
@@ -74,37 +75,37 @@ class BodyContacts {
     Four alpha;              // N, of the spring with what gives way behind it
     Four stick_stiffness;    // N/m, likewise
     Four stick_energy;
-    // N s/m, derivative of the force by the velocity: lead n n^T - across I, and `rest` where something slips
-    // or the law is not coulomb's.
-    Four lead, across;
-    bool has_rest;
-    PackMatrix<Four> rest;
+    // N s/m, derivative of the force by the velocity: tangent_nn n n^T - tangent_identity I, and
+    // `tangent_rest` where something slips or the law is not coulomb's.
+    Four tangent_nn, tangent_identity;
+    bool has_tangent_rest;
+    PackMatrix<Four> tangent_rest;
     Four drag;  // N s/m, of what sticks, less its derivative along the plane
   };
 
-  /// Room for what touched at the start of a part, by the number of pairs.
-  struct Room {
+  /// Memory for what touched at the start of a substep, by the number of pairs.
+  struct TouchBuffer {
     std::size_t pairs;
     std::unique_ptr<Touch[]> touches;
   };
-  /// Lends room to the parts of one body after the other. Each finds its contacts in the memory that the one
-  /// before has let go, which is in the cache, and leaves its own.
-  class Loan {
+  /// Lends room to the substeps of one body after the other. Each finds its contacts in the memory that the
+  /// one before has let go, which is in the cache, and leaves its own.
+  class ScratchLease {
    public:
-    Loan(BodyContacts& contacts, std::vector<Room>& rooms)
-        : own_(contacts.start_.all), lent_(room_for(contacts.pairs(), rooms)) {
+    ScratchLease(BodyContacts& contacts, std::vector<TouchBuffer>& buffers)
+        : own_(contacts.start_.all), lent_(buffer_for(contacts.pairs(), buffers)) {
       own_.swap(lent_);
     }
-    ~Loan() { own_.swap(lent_); }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
+    ~ScratchLease() { own_.swap(lent_); }
+    ScratchLease(const ScratchLease&) = delete;
+    ScratchLease& operator=(const ScratchLease&) = delete;
 
    private:
-    static std::unique_ptr<Touch[]>& room_for(std::size_t pairs, std::vector<Room>& rooms) {
-      for (Room& room : rooms)
+    static std::unique_ptr<Touch[]>& buffer_for(std::size_t pairs, std::vector<TouchBuffer>& buffers) {
+      for (TouchBuffer& room : buffers)
         if (room.pairs == pairs) return room.touches;
-      rooms.push_back({pairs, std::make_unique_for_overwrite<Touch[]>(pairs / 4)});
-      return rooms.back().touches;
+      buffers.push_back({pairs, std::make_unique_for_overwrite<Touch[]>(pairs / 4)});
+      return buffers.back().touches;
     }
 
     std::unique_ptr<Touch[]>&own_, &lent_;
@@ -112,36 +113,36 @@ class BodyContacts {
 
   BodyContacts(const Model& model, int body);
 
-  /// What touches becomes what touched at the start of a part, for which there is a Loan.
-  void begin_part() { std::swap(now_, start_); }
-  /// Undoes begin_part.
-  void give_up_part() { std::swap(now_, start_); }
+  /// What touches becomes what touched at the start of a substep, for which there is a ScratchLease.
+  void begin_substep() { std::swap(now_, start_); }
+  /// Undoes begin_substep.
+  void give_up_substep() { std::swap(now_, start_); }
   /// What touches at the pose of `s`, with rotation matrix `r` and stick springs of State::stick.
   void find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick);
   /// The springs follow the motion from `before`, with rotation matrix `r0`, to what find was given.
   void follow(const BodyState& before, const PackMat3& r0, const BodyState& s, const PackMat3& r);
   /// Forces of what touches. with_slope: slope and slope_of_modes give their derivatives along which the
-  /// place changes `lever` times as much as the velocity, s.
+  /// place changes `gamma_dt` times as much as the velocity, s.
   template <bool with_slope, ContactSums sums = ContactSums::all>
-  ContactLoads press(const PreparedLaw& law, const BodyVelocity& u, double lever);
+  ContactLoads evaluate_forces(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt);
   /// On the modes, N/sqrt(kg), with the forces found last.
-  void press_modes(int modes, Amplitudes& load) const;
+  void modal_loads(int modes, Amplitudes& load) const;
   ContactSlope slope() const;
   /// That of stick springs alone, with the forces found last with slopes.
   ContactSlope stick_slope() const;
   /// Adds `factor` times the derivatives that concern modes to rows and columns from the seventh on; six rows
   /// of the body, then the modes.
   void add_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;
-  /// Springs after slipping; those of the start of the part are let go.
-  void keep_sticks(const ContactLaw& law, std::span<Vec3> stick);
+  /// Springs after slipping; those of the start of the substep are let go.
+  void keep_sticks(const PreparedLaw& law, std::span<Vec3> stick);
 
   /// J, of springs.
   double energy(const ContactLaw& law) const;
-  /// J, what stick springs hold more than at the start of the part.
+  /// J, what stick springs hold more than at the start of the substep.
   double stick_energy_gained() const;
-  /// Work of damping and friction over a part, by the trapezoidal rule along the travel of the points.
+  /// Work of damping and friction over a substep, by the trapezoidal rule along the travel of the points.
   void book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r, StepEnergy& booked) const;
-  /// What a law that changed over a part put into springs.
+  /// What a law that changed over a substep put into springs.
   void book_law_change(const ContactLaw& before, const ContactLaw& after, StepEnergy& booked) const;
 
   /// When the next point comes to a plane, s from now, with the acceleration of this instant; infinite: not
@@ -225,7 +226,7 @@ class BodyContacts {
   };
 
   template <class F>
-  ContactSlope sum_slopes(F lead_and_across) const;
+  ContactSlope sum_slopes(F nn_and_identity) const;
   const Side& side(const Touch& touch) const { return sides_[touch.side]; }
   Points normal(const Touch& touch) const { return in_all_lanes(model_.planes[touch.plane].normal); }
   Points force(const Touch& touch) const { return mul_add(touch.normal, normal(touch), touch.tangential); }
@@ -242,14 +243,14 @@ class BodyContacts {
   void find_on(int plane, const Vec3& normal, double height, const BodyState& s, const PackMat3& r,
                std::span<const Vec3> stick);
   template <bool with_slope, bool plain, ContactSums sums>
-  ContactLoads press_all(const PreparedLaw& law, const BodyVelocity& u, double lever);
+  ContactLoads evaluate_all(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt);
   template <bool with_slope, bool plain, class Normal>
-  void respond(const PreparedLaw& law, const Normal& normal, const Points& velocity, double lever,
+  void respond(const PreparedLaw& law, const Normal& normal, const Points& velocity, double gamma_dt,
                Touch& touch) const;
   template <bool with_slope, bool plain, class Normal>
-  void respond_coulomb(const PreparedLaw& law, const Normal& normal, const Points& velocity, double lever,
+  void respond_coulomb(const PreparedLaw& law, const Normal& normal, const Points& velocity, double gamma_dt,
                        Touch& touch) const;
-  Points held_stick(const ContactLaw& law, const Touch& touch) const;
+  Points held_stick(const PreparedLaw& law, const Touch& touch) const;
   template <class F>
   void each_of(const Touches& touches, F f) const {
     for (const Touch& touch : touches.list())

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -16,7 +16,7 @@ double likely_travel(const Model& model, const State& state, double h) {
   double greatest = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
-    if (const BodyState& s = state.bodies[b]; s.rung != Rung::frame) {
+    if (const BodyState& s = state.bodies[b]; s.level != ModelLevel::frame) {
       const double reach = body.reach;
       greatest = std::max(greatest, h * (s.velocity.norm() + reach * s.angular_velocity.norm() +
                                          h / 2 * s.force.norm() / body.mass));
@@ -33,13 +33,13 @@ double greatest_travel(const Model& model, const State& from, const State& to) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (const BodyState& s = from.bodies[b], &e = to.bodies[b];
-        s.rung != Rung::frame && e.rung != Rung::frame) {
+        s.level != ModelLevel::frame && e.level != ModelLevel::frame) {
       greatest =
           std::max(greatest, (e.position - s.position).norm() +
                                  body.reach * log_quaternion(s.rotation.conjugate() * e.rotation).norm());
       continue;
     }
-    if (from.bodies[b].rung != to.bodies[b].rung) continue;  // where it changes nothing moves far
+    if (from.bodies[b].level != to.bodies[b].level) continue;  // where it changes nothing moves far
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
       greatest = std::max(greatest, (to.position[i] - from.position[i]).norm());
   }
@@ -47,10 +47,10 @@ double greatest_travel(const Model& model, const State& from, const State& to) {
 }
 
 void update_candidates(const Model& model, NearSearch& search, State& state, double travel) {
-  if (model.bodies.size() < 2 || state.near_slack > 2 * travel) return;
+  if (model.bodies.size() < 2 || state.candidate_margin > 2 * travel) return;
   place_nodes(model, state);
-  state.near_slack = std::max(k_margin, 4 * travel);
-  state.near = search.find(state.position, state.near_slack);
+  state.candidate_margin = std::max(k_margin, 4 * travel);
+  state.candidate_pairs = search.find(state.position, state.candidate_margin);
 }
 
 }  // namespace topple

@@ -13,7 +13,8 @@ double likely_travel(const Model& model, const State& state, double h);
 /// Greatest displacement of a node from one state to another, m.
 double greatest_travel(const Model& model, const State& from, const State& to);
 
-/// Searches for near elements again where State::near does not cover that every node moves by `travel`, m.
+/// Searches for near elements again where State::candidate_pairs does not cover that every node moves by
+/// `travel`, m.
 void update_candidates(const Model& model, NearSearch& search, State& state, double travel);
 
 }  // namespace topple

@@ -59,7 +59,7 @@ class PlaneSlope {
 }  // namespace
 
 template <class F>
-[[gnu::always_inline]] inline ContactSlope BodyContacts::sum_slopes(F lead_and_across) const {
+[[gnu::always_inline]] inline ContactSlope BodyContacts::sum_slopes(F nn_and_identity) const {
   const std::span<const Touch> all = now_.list();
   auto touch = all.begin();
   const auto of_next_plane = [&] {
@@ -67,7 +67,7 @@ template <class F>
     return with_normal(*touch, [&](const auto& n) {
       PlaneSlope sum;
       for (; touch != all.end() && touch->plane == plane; ++touch) {
-        const auto [lead, across] = lead_and_across(*touch);
+        const auto [lead, across] = nn_and_identity(*touch);
         sum.add(lead, across, n, touch->arm);
       }
       return sum.total(packed(model_.planes[plane].normal));
@@ -86,13 +86,14 @@ template <class F>
 }
 
 ContactSlope BodyContacts::slope() const {
-  ContactSlope total = sum_slopes([](const Touch& touch) { return std::pair(touch.lead, touch.across); });
+  ContactSlope total =
+      sum_slopes([](const Touch& touch) { return std::pair(touch.tangent_nn, touch.tangent_identity); });
   for (const Touch& touch : now_.list()) {
-    if (!touch.has_rest) continue;
-    const PackMatrix<Four> turned = times_skew(touch.rest, touch.arm);
-    total.force_linear = total.force_linear + sum(touch.rest);
+    if (!touch.has_tangent_rest) continue;
+    const PackMatrix<Four> turned = times_skew(touch.tangent_rest, touch.arm);
+    total.force_linear = total.force_linear + sum(touch.tangent_rest);
     total.force_angular = total.force_angular - sum(turned);
-    total.moment_linear = total.moment_linear + sum(skew_times(touch.arm, touch.rest));
+    total.moment_linear = total.moment_linear + sum(skew_times(touch.arm, touch.tangent_rest));
     total.moment_angular = total.moment_angular - sum(skew_times(touch.arm, turned));
   }
   return total;
@@ -105,8 +106,9 @@ ContactSlope BodyContacts::stick_slope() const {
 PackMatrix<Four> BodyContacts::slope(const Touch& touch) const {
   const Points n = normal(touch);
   const PackMatrix<Four> plain =
-      outer(touch.lead * n, n) - diagonal(Points{touch.across, touch.across, touch.across});
-  return touch.has_rest ? plain + touch.rest : plain;
+      outer(touch.tangent_nn * n, n) -
+      diagonal(Points{touch.tangent_identity, touch.tangent_identity, touch.tangent_identity});
+  return touch.has_tangent_rest ? plain + touch.tangent_rest : plain;
 }
 
 Mat3 BodyContacts::slope(const Touch& touch, int lane) const {

@@ -60,10 +60,9 @@ double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const
       const Four gap = dot(n, groups_[g].place) + height - side.gap;
       const Four closing = fall - dot(turn, groups_[g].place);
       for (int which = 0; which < groups_[g].size; ++which) {
-        if (gap[which] < 0)
-          stiffness += penalty_stiffness(law, -gap[which] / side.L[which], side.L[which]);
-        else
-          limit = std::min(limit, closing_limit(gap[which], closing[which], side.L[which]));
+        const ContactAhead ahead = contact_ahead(law, gap[which], closing[which], side.L[which]);
+        stiffness += ahead.stiffness;
+        limit = std::min(limit, ahead.limit);
       }
     }
   }

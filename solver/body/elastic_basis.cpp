@@ -72,15 +72,8 @@ BlockLu shifted_stiffness(const Model& model, const Body& body, double shift) {
                        model.elements[e].node[1] - body.first_node);
   BlockLu lu(body.node_count, edges);
   lu.set_zero();
-  BeamGradient gradient;
-  Mat12 tangent;
   for (int e = 0; e < body.element_count; ++e) {
-    const Element& element = model.elements[body.first_element + e];
-    const auto& x = model.node_position;
-    beam_tangent(
-        element, ElementState{},
-        beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
-        gradient, tangent);
+    const Mat12 tangent = beam_stiffness(model, model.elements[body.first_element + e]);
     const auto [i, j] = edges[e];
     lu.add(i, i, tangent.block<6, 6>(0, 0));
     lu.add(i, j, tangent.block<6, 6>(0, 6));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/frame/central_difference.h"
+#include "solver/frame/integrator.h"
 #include "solver/frame/settle.h"
 #include "solver/state/step_limits.h"
 
@@ -27,11 +27,9 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
     for (const Plane& plane : model.planes) {
       const double L = contact_length(point, plane);
       const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
-      const double depth = -gap / L, closing = -plane.normal.dot(state.velocity[point.node]);
-      if (depth > 0)
-        stiffness += penalty_stiffness(law, depth, L);
-      else
-        limit = std::min(limit, closing_limit(gap, closing, L));
+      const ContactAhead ahead = contact_ahead(law, gap, -plane.normal.dot(state.velocity[point.node]), L);
+      stiffness += ahead.stiffness;
+      limit = std::min(limit, ahead.limit);
     }
   }
   return std::min(limit, bounce_limit(body.mass, stiffness));
@@ -47,7 +45,7 @@ StepStatus FramePart::settle(const Parameters& parameters, State& state, PartScr
   return settle_system(system_, parameters, state, scratch.frame);
 }
 
-BodyEnergy FramePart::balance(const Parameters& parameters, const Instant& now,
+BodyEnergy FramePart::balance(const Parameters& parameters, const StepInputs& now,
                               const std::vector<char>& marked, State& state) {
   if (!has(marked)) return {};
   BodySystem& s = system_;
@@ -75,10 +73,8 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
   {
     const InPhase phase(w.profile, Phase::forces);
     outcome.status =
-        is_explicit(span.parameters.integrator)
-            ? advance_central_difference(system_, span.parameters, next, t, span.h, w, outcome.exchanged)
-            : advance_generalized_alpha(system_, span.parameters, next, t, span.h, span.halvings, w,
-                                        outcome.exchanged);
+        traits(span.parameters.integrator)
+            .advance(system_, span.parameters, next, t, span.h, span.halvings, w, outcome.exchanged);
   }
   if (!outcome.status.ok()) return;
   const InPhase phase(w.profile, Phase::energy);
@@ -96,7 +92,7 @@ double FramePart::time_limit(const Parameters& parameters, const State& state) {
   return limit;
 }
 
-void FramePart::list_forces(const Instant& now, const State& state, Forces& forces) {
+void FramePart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
   system_.load(state, motion_);
   system_.load_memory(state);
   system_.find_contacts(now.law, motion_, state.stick, motion_.position, contacts_);
@@ -104,7 +100,7 @@ void FramePart::list_forces(const Instant& now, const State& state, Forces& forc
     forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
   for (const MemberTouch& touch : contacts_.members.touches)
     forces.members.push_back(
-        {system_.near[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
+        {system_.candidate_pairs[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
 }
 
 HardestContact FramePart::hardest_contact(const HardestContact& hardest) {

@@ -11,19 +11,19 @@
 namespace topple {
 
 /// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
-/// whose nodes are all held, and those on other rungs, are in none.
+/// whose nodes are all held, and those on other levels, are in none.
 class Islands {
  public:
   explicit Islands(const Model& model);
-  /// Systems of the frames in `bodies` and of `near`, whose bodies are frames or held, in the order of their
-  /// first bodies; those that nothing changes are kept. False: nothing changes.
-  bool arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& near);
+  /// Systems of the frames in `bodies` and of `candidate_pairs`, whose bodies are frames or held, in the
+  /// order of their first bodies; those that nothing changes are kept. False: nothing changes.
+  bool arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& candidate_pairs);
   const std::vector<BodySystem*>& systems() const { return systems_; }
-  /// One body without the others, whatever its rung; nullptr: held.
+  /// One body without the others, whatever its level; nullptr: held.
   BodySystem* alone(int body);
 
  private:
-  BodySystem* joined(const std::vector<int>& bodies, std::vector<ElementPair> near);
+  BodySystem* joined(const std::vector<int>& bodies, std::vector<ElementPair> candidate_pairs);
 
   const Model& model_;
   std::vector<bool> held_;

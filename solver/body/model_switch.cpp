@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
-#include "solver/state/body_pose.h"
 
 namespace topple {
 namespace {
@@ -46,7 +46,7 @@ double strain_energy(const Model& model, int b, const std::vector<SectionForces>
 struct ModelSwitch::Switching {
   const Model& model;
   const Parameters& parameters;
-  const Instant& now;
+  const StepInputs& now;
   State& state;
   Parts& parts;
 };
@@ -56,23 +56,23 @@ ModelSwitch::ModelSwitch(const Model& model) : near_(model.bodies.size()), new_f
 void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   if (!base_.empty()) return;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    base_.push_back(base_rung(model, parameters, b));
+    base_.push_back(base_level(model, parameters, b));
 }
 
 void ModelSwitch::find_near(const Model& model, const State& state) {
   std::ranges::fill(near_, false);
-  for (const ElementPair& pair : state.near)
+  for (const ElementPair& pair : state.candidate_pairs)
     for (const int e : {pair.a, pair.b}) near_[model.members[model.elements[e].member].body] = true;
 }
 
 // At the state of `on`, where the contacts of those that are not frames have been found.
-RungChoice ModelSwitch::choose(const Switching& on, int b) {
+LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   const auto& [model, parameters, now, state, parts] = on;
   BodyState& s = state.bodies[b];
-  const RungChoice& base = base_[b];
-  if (base.rung == Rung::frame) return base;
-  if (near_[b]) return {Rung::frame, RungReason::near};
-  if (s.rung == Rung::frame) {
+  const LevelChoice& base = base_[b];
+  if (base.level == ModelLevel::frame) return base;
+  if (near_[b]) return {ModelLevel::frame, LevelReason::near};
+  if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
     const bool calm = !is_bent(model, state, b) &&
                       strain_energy(model, b, parts.sections) <
@@ -83,24 +83,25 @@ RungChoice ModelSwitch::choose(const Switching& on, int b) {
     else if (s.calm_since < 0)
       s.calm_since = state.time;
     else if (state.time - s.calm_since >= k_calm_for)
-      return {base.rung, RungReason::calm};
-    return {s.rung, s.reason};
+      return {base.level, LevelReason::calm};
+    return {s.level, s.reason};
   }
-  if (s.rung == Rung::elastic && parameters.models[b] == BodyModel::automatic) {
+  if (s.level == ModelLevel::elastic && parameters.models[b] == BodyModel::automatic) {
     ReducedBody& body = parts.reduced(state, b);
-    if (body.rotation_bound(s) > k_small_rotation) return {Rung::frame, RungReason::deformation};
+    if (body.rotation_bound(s) > k_small_rotation) return {ModelLevel::frame, LevelReason::deformation};
     if (body.yield_bound(s) > k_near_yield) {
       body.section_forces(s, parts.sections);
-      if (yield_ratio(model, b, parts.sections) > k_near_yield) return {Rung::frame, RungReason::yield};
+      if (yield_ratio(model, b, parts.sections) > k_near_yield)
+        return {ModelLevel::frame, LevelReason::yield};
     }
   }
-  return s.rung == base.rung ? RungChoice{s.rung, s.reason} : base;
+  return s.level == base.level ? LevelChoice{s.level, s.reason} : base;
 }
 
 // The contacts of the body's present model have been found.
-void ModelSwitch::change(const Switching& on, RungChoice choice, int b) {
+void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   const Model& model = on.model;
-  const Instant& now = on.now;
+  const StepInputs& now = on.now;
   State& state = on.state;
   Parts& parts = on.parts;
   BodyState& s = state.bodies[b];
@@ -113,22 +114,22 @@ void ModelSwitch::change(const Switching& on, RungChoice choice, int b) {
   };
   ReducedBody& body = parts.reduced(state, b);
   const double height = body_pose(model, state, b).centre.dot(on.parameters.gravity);
-  const double before = s.rung == Rung::frame ? of_frame() : body.energy(now.law, s).sum();
-  if (choice.rung == Rung::frame) {
+  const double before = s.level == ModelLevel::frame ? of_frame() : body.energy(now.law, s).sum();
+  if (choice.level == ModelLevel::frame) {
     place_nodes(model, state);
     body.add_residual(s, state);
     new_frames_[b] = true;
-  } else if (s.rung == Rung::frame) {
-    s = reduce(model, state, b, choice.rung);
-  } else if (choice.rung == Rung::rigid) {
+  } else if (s.level == ModelLevel::frame) {
+    s = reduce(model, state, b, choice.level);
+  } else if (choice.level == ModelLevel::rigid) {
     s.amplitude.setZero();
     s.rate.setZero();
   }
-  s.rung = choice.rung;
+  s.level = choice.level;
   s.reason = choice.reason;
   s.calm_since = -1;
   const double after =
-      s.rung == Rung::frame ? of_frame() : body.balance(on.parameters, now, s, state.stick).sum();
+      s.level == ModelLevel::frame ? of_frame() : body.balance(on.parameters, now, s, state.stick).sum();
   const double sunk = height - body_pose(model, state, b).centre.dot(on.parameters.gravity);
   state.energy.model_switch += after - before + model.bodies[b].mass * sunk;
   state.energy.gravity += model.bodies[b].mass * sunk;
@@ -138,18 +139,20 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
   find_base(model, parameters);
   find_near(model, state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    const RungChoice choice =
-        near_[b] && base_[b].rung != Rung::frame ? RungChoice{Rung::frame, RungReason::near} : base_[b];
+    const LevelChoice choice = near_[b] && base_[b].level != ModelLevel::frame
+                                   ? LevelChoice{ModelLevel::frame, LevelReason::near}
+                                   : base_[b];
     BodyState& s = state.bodies[b];
-    if (s.rung == Rung::frame && choice.rung != Rung::frame) s = reduce(model, state, b, choice.rung);
-    s.rung = choice.rung;
+    if (s.level == ModelLevel::frame && choice.level != ModelLevel::frame)
+      s = reduce(model, state, b, choice.level);
+    s.level = choice.level;
     s.reason = choice.reason;
   }
   parts.arrange(state);
 }
 
-bool ModelSwitch::update(const Model& model, const Parameters& parameters, const Instant& now, State& state,
-                         Parts& parts) {
+bool ModelSwitch::update(const Model& model, const Parameters& parameters, const StepInputs& now,
+                         State& state, Parts& parts) {
   const Switching on{model, parameters, now, state, parts};
   find_base(model, parameters);
   find_near(model, state);
@@ -157,14 +160,14 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   bool other_frames = false;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodyState& s = state.bodies[b];
-    const bool was_frame = s.rung == Rung::frame;
+    const bool was_frame = s.level == ModelLevel::frame;
     if (!was_frame) parts.reduced(state, b).find_contacts(now, s, state.stick);
-    const RungChoice choice = choose(on, b);
-    if (choice.rung == s.rung)
+    const LevelChoice choice = choose(on, b);
+    if (choice.level == s.level)
       s.reason = choice.reason;
     else
       change(on, choice, b);
-    other_frames = other_frames || was_frame != (s.rung == Rung::frame);
+    other_frames = other_frames || was_frame != (s.level == ModelLevel::frame);
   }
   parts.arrange(state);
   if (parts.moves_nodes()) parts.balance(parameters, now, new_frames_, state);

@@ -20,8 +20,8 @@ struct PartScratch {
 /// A step of size h, s, from `start` to `end`.
 struct StepSpan {
   const Parameters& parameters;
-  const Instant& start;
-  const Instant& end;
+  const StepInputs& start;
+  const StepInputs& end;
   double h;
   int halvings;  ///< the implicit methods halve it so often when Newton does not converge
 };
@@ -56,7 +56,7 @@ class Part {
   virtual StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) = 0;
   /// Accelerations and contacts from the balance of forces; of its bodies that are marked,
   /// and of those they may touch; returns what these hold.
-  virtual BodyEnergy balance(const Parameters& parameters, const Instant& now,
+  virtual BodyEnergy balance(const Parameters& parameters, const StepInputs& now,
                              const std::vector<char>& marked, State& state) = 0;
   /// `next`: the state at the start; becomes that at the end. After a failure the part's bodies are
   /// undefined.
@@ -64,7 +64,7 @@ class Part {
   /// Longest step that resolves how its bodies touch and turn, s.
   virtual double time_limit(const Parameters& parameters, const State& state) = 0;
   /// Appends its forces at `state`; those of the sections of bodies of few unknowns are found too.
-  virtual void list_forces(const Instant& now, const State& state, Forces& forces) = 0;
+  virtual void list_forces(const StepInputs& now, const State& state, Forces& forces) = 0;
   /// Of the newest step; `hardest` where none is harder.
   virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
   /// Keeps what touching members remember to itself until give_sticks, while parts advance side by side.

@@ -24,7 +24,7 @@ Parts::Parts(const Model& model)
       all_bodies_(model.bodies.size(), true) {}
 
 void Parts::arrange(const State& state) {
-  if (!islands_.arrange(state.bodies, state.near) && arranged_) return;
+  if (!islands_.arrange(state.bodies, state.candidate_pairs) && arranged_) return;
   arranged_ = true;
   parts_.clear();
   std::vector<ReducedPart::Member> some;
@@ -32,7 +32,7 @@ void Parts::arrange(const State& state) {
     if (!some.empty()) parts_.push_back(std::make_unique<ReducedPart>(std::exchange(some, {}), sections));
   };
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-    if (state.bodies[b].rung == Rung::frame) continue;
+    if (state.bodies[b].level == ModelLevel::frame) continue;
     some.push_back({b, &reduced(state, b)});
     if (some.size() == k_bodies_per_part) close_part();
   }
@@ -41,15 +41,15 @@ void Parts::arrange(const State& state) {
     parts_.push_back(std::make_unique<FramePart>(*system, sections));
 }
 
-BodyEnergy Parts::balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
-                          State& state) {
+BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now,
+                          const std::vector<char>& marked, State& state) {
   BodyEnergy held;
   for (const auto& part : parts_)
     if (part->has(marked)) held += part->balance(parameters, now, marked, state);
   return held;
 }
 
-BodyEnergy Parts::balance(const Parameters& parameters, const Instant& now, State& state) {
+BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now, State& state) {
   return balance(parameters, now, all_bodies_, state);
 }
 
@@ -61,13 +61,13 @@ double Parts::time_limit(const Parameters& parameters, const State& state) {
 
 std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state) {
   ContactLaw law = parameters.contact;
-  if (parameters.contact_passage.over > 0) {
+  if (parameters.contact_ramp.over > 0) {
     law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
     law.q = std::max(law.q, parameters.contact_before.q);
   }
   std::optional<ExplicitLimit> least;
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-    BodySystem* const system = state.bodies[b].rung == Rung::frame ? islands_.alone(b) : nullptr;
+    BodySystem* const system = state.bodies[b].level == ModelLevel::frame ? islands_.alone(b) : nullptr;
     if (!system) continue;
     int node = -1;
     const double step = topple::explicit_limit(*system, &law, damping_time(model_, parameters, b), &node);
@@ -91,7 +91,7 @@ double jump_floor(const Model& model, const Vec3& floor, State& state) {
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
-    if (state.bodies[b].rung != Rung::frame) {
+    if (state.bodies[b].level != ModelLevel::frame) {
       push(body.mass, state.bodies[b].velocity);
       continue;
     }

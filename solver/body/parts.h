@@ -28,9 +28,9 @@ class Parts {
   bool moves_nodes() const { return !islands_.systems().empty(); }
 
   /// Part::balance of those that are marked; of all.
-  BodyEnergy balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+  BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state);
-  BodyEnergy balance(const Parameters& parameters, const Instant& now, State& state);
+  BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);
   /// What the motion at `state` allows, s: look_ahead, T_contact/20 of a body that touches, the time to touch
   /// or L/(4 v) where a contact closes, 0.1/|omega|.
   double time_limit(const Parameters& parameters, const State& state);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/contact/contact_law.h"
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
@@ -16,15 +17,15 @@
 namespace topple {
 namespace {
 
-constexpr double k_stable_turn = 0.6;  // rad per part of a step, of the stiffest motion on contacts; limit 2
-constexpr double k_swing = 2.5;        // rad per part, of the highest mode
-constexpr double k_small_turn = 0.02;  // rad
-constexpr double k_least_part = 1. / 4096;  // of a step
+constexpr double k_stable_turn = 0.6;          // rad per substep, of the stiffest motion on contacts; limit 2
+constexpr double k_swing = 2.5;                // rad per substep, of the highest mode
+constexpr double k_small_turn = 0.02;          // rad
+constexpr double k_least_substep = 1. / 4096;  // of a step
 
 // Of a contact's springs, in any direction, over alpha/L.
 double greatest_stiffness(const ContactLaw& law) {
-  const double slope = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
-  return std::max(slope, law.kind == ContactLawKind::coulomb ? k_stick_stiffness : 0.);
+  const auto [normal, tangential] = stiffness_bound(law);
+  return std::max(normal, tangential);
 }
 
 // f(k) for the modes k .. k + 3 of Amplitudes, which Eigen would take one by one.
@@ -41,12 +42,12 @@ template <class F>
 
 }  // namespace
 
-Instant::Instant(const Parameters& parameters, double t)
+StepInputs::StepInputs(const Parameters& parameters, double t)
     : time(t), law(contact_law(parameters, t)), floor(floor_acceleration(parameters.shakes, t)) {}
 
-Instant::Instant(const Parameters& parameters, double t, const Instant& before)
+StepInputs::StepInputs(const Parameters& parameters, double t, const StepInputs& before)
     : time(t),
-      law(parameters.contact_passage.over > 0 ? PreparedLaw(contact_law(parameters, t)) : before.law),
+      law(parameters.contact_ramp.over > 0 ? PreparedLaw(contact_law(parameters, t)) : before.law),
       floor(floor_acceleration(parameters.shakes, t)) {}
 
 ReducedBody::ReducedBody(const Model& model, int body)
@@ -67,9 +68,9 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
 }
 
 void ReducedBody::find_swing(double h, double damping) {
-  if (swing_step_ == h && swing_damping_ == damping) return;
-  swing_step_ = h;
-  swing_damping_ = damping;
+  if (free_step_ == h && free_damping_ == damping) return;
+  free_step_ = h;
+  free_damping_ = damping;
   for (int k = 0; k < k_modes; ++k) {
     const double w = basis_->frequency[k], half = w * h / 2;
     cosine_[k] = elementary::cos(w * h);
@@ -94,7 +95,7 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   const PackQuaternion<double> turn = turn_of(spin), now = normalized(packed(s.rotation) * turn);
   s.rotation.coeffs() << now.v.x, now.v.y, now.v.z, now.w;
   s.angular_velocity = unpacked(inverse_inertia_ * rotate(conjugate(turn), momentum));
-  if (s.rung != Rung::elastic) return unpacked(spin);
+  if (s.level != ModelLevel::elastic) return unpacked(spin);
   each_four_modes([&](int k) {
     const Four q = load(&s.amplitude[k]), rate = load(&s.rate[k]), cosine = load(&cosine_[k]);
     store(&s.amplitude[k], cosine * q + load(&sine_[k]) * rate);
@@ -103,7 +104,7 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   return unpacked(spin);
 }
 
-// The longest part that is stable on what touches.
+// The longest substep that is stable on what touches.
 double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
   const int m = modes(s);
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
@@ -111,10 +112,10 @@ double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& 
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
-        known.kind == law.kind && known.rung == s.rung)
+        known.kind == law.kind && known.level == s.level)
       return known.step / parameters.finer_parts;
   const double step = find_stable_part(law, s, swing);
-  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.rung, step};
+  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
   return step / parameters.finer_parts;
 }
@@ -148,7 +149,7 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
   BodyEnergy out;
   const PackVec3 omega = packed(s.angular_velocity);
   out.kinetic = 0.5 * mass_ * s.velocity.squaredNorm() + 0.5 * dot(omega, inertia_ * omega);
-  if (s.rung == Rung::elastic) {
+  if (s.level == ModelLevel::elastic) {
     out.kinetic += 0.5 * s.rate.square().sum();
     out.strain = 0.5 * (basis_->frequency * s.amplitude).square().sum();
   }
@@ -161,24 +162,24 @@ BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const 
 template <ContactSums sums>
 ContactLoads ReducedBody::respond_at(const PreparedLaw& law, const BodyState& s) {
   Found& found = found_ ? *found_ : found_.emplace();
-  found.rung = s.rung;
+  found.level = s.level;
   found.rotation = s.rotation;
   found.position = s.position;
   found.velocity = s.velocity;
   found.angular_velocity = s.angular_velocity;
   found.law = static_cast<const ContactLaw&>(law);
-  if (s.rung == Rung::elastic) {
+  if (s.level == ModelLevel::elastic) {
     found.amplitude = s.amplitude;
     found.rate = s.rate;
   }
-  return contacts_.press<false, sums>(
+  return contacts_.evaluate_forces<false, sums>(
       law, {packed(s.velocity), rotate(packed(s.rotation), packed(s.angular_velocity)), s.rate}, 0);
 }
 template ContactLoads ReducedBody::respond_at<ContactSums::none>(const PreparedLaw&, const BodyState&);
 template ContactLoads ReducedBody::respond_at<ContactSums::loads>(const PreparedLaw&, const BodyState&);
 
-bool ReducedBody::known(const Instant& now, const BodyState& s) const {
-  if (!found_ || found_->rung != s.rung || !(found_->law == now.law)) return false;
+bool ReducedBody::known(const StepInputs& now, const BodyState& s) const {
+  if (!found_ || found_->level != s.level || !(found_->law == now.law)) return false;
   const Found& found = *found_;
   Four::Mask same = load(found.rotation.coeffs().data()) == load(s.rotation.coeffs().data());
   const auto look = [&](const Vec3& a, const Vec3& b) {
@@ -188,10 +189,11 @@ bool ReducedBody::known(const Instant& now, const BodyState& s) const {
   look(found.velocity, s.velocity);
   look(found.angular_velocity, s.angular_velocity);
   return bits(same) == k_all_lanes &&
-         (s.rung == Rung::rigid || ((found.amplitude == s.amplitude).all() && (found.rate == s.rate).all()));
+         (s.level == ModelLevel::rigid ||
+          ((found.amplitude == s.amplitude).all() && (found.rate == s.rate).all()));
 }
 
-void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::span<const Vec3> stick) {
+void ReducedBody::find_contacts(const StepInputs& now, const BodyState& s, std::span<const Vec3> stick) {
   if (!known(now, s)) {
     contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
     respond_at<ContactSums::none>(now.law, s);
@@ -199,66 +201,69 @@ void ReducedBody::find_contacts(const Instant& now, const BodyState& s, std::spa
   anchors_.find(s);
 }
 
-BodyEnergy ReducedBody::balance(const Parameters& parameters, const Instant& now, BodyState& s,
+BodyEnergy ReducedBody::balance(const Parameters& parameters, const StepInputs& now, BodyState& s,
                                 std::span<const Vec3> stick) {
   contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
   anchors_.find(s);
   const ContactLoads loads = respond_at<ContactSums::loads>(now.law, s);
   s.load.setZero();
-  contacts_.press_modes(modes(s), s.load);
+  contacts_.modal_loads(modes(s), s.load);
   s.force = mass_ * (parameters.gravity - now.floor) + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
   if (anchors_.any()) {
-    anchors_.press_modes(s, modes(s), s.load);
+    anchors_.modal_loads(s, modes(s), s.load);
     s.force += anchors_.force();
     s.moment += anchors_.moment();
   }
   return energy(now.law, s);
 }
 
-// False, and nothing is changed, when the velocity is not found, or when what touches at the end asks for
-// parts as short as `stable`; else that is h.
-bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start, const Instant& end, double h,
-                             BodyState& s, std::span<Vec3> stick, StepEnergy& booked, ReducedScratch& w,
-                             double& stable) {
-  stable = h;
-  const std::uint64_t touched = contacts_.hash();
-  contacts_.begin_part();
-  const BodyState before = s;
-  const auto give_up = [&] {
-    s = before;
-    contacts_.give_up_part();
-    return false;
-  };
-  const bool bends = s.rung == Rung::elastic;
-  if (bends) {
+// A substep, from its start to where it leads.
+struct ReducedBody::ExplicitSubstep {
+  const StepInputs &start, &end;
+  double h;
+  bool bends;
+  BodyState before;
+  Amplitudes rate0;  // of `before`, after damping
+  PackMat3 r0, r;    // rotation matrices at the start and the end
+  Vec3 spin, shift;  // rad, material axes; m
+};
+
+// Half an impulse of what acts at the start, and free motion.
+[[gnu::always_inline]] inline ReducedBody::ExplicitSubstep ReducedBody::move_freely(
+    const Parameters& parameters, const StepInputs& start, const StepInputs& end, double h, BodyState& s) {
+  ExplicitSubstep substep{start, end, h, s.level == ModelLevel::elastic, s, {}, {}, {}, {}, {}};
+  if (substep.bends) {
     find_swing(h, damping_time(model_, parameters, body_));
     each_four_modes([&](int k) { store(&s.rate[k], load(&s.rate[k]) * load(&damped_[k])); });
   }
-  const Amplitudes rate0 = s.rate;
-  const PackQuaternion<double> q0 = packed(before.rotation);
-  const PackMat3 r0 = rotation_matrix(q0);
-  const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(r0, packed(before.moment)));
+  substep.rate0 = s.rate;
+  substep.r0 = rotation_matrix(packed(s.rotation));
+  const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(substep.r0, packed(s.moment)));
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(kick0);
-  if (bends) add_product(h / 2, kick_, s.load, s.rate);
-  const Vec3 spin = drift(h, s);
+  if (substep.bends) add_product(h / 2, kick_, s.load, s.rate);
+  substep.spin = drift(h, s);
+  substep.r = rotation_matrix(packed(s.rotation));
+  substep.shift = s.position - substep.before.position;
+  return substep;
+}
 
-  const PackMat3 r = rotation_matrix(packed(s.rotation));
-  const Vec3 shift = s.position - before.position, field = parameters.gravity - end.floor;
-  contacts_.find(s, r, stick);
-  if (contacts_.hash() != touched) {
-    stable = std::min(h, stable_part(parameters, start.law, s));
-    if (stable < h) return give_up();
-  }
-  contacts_.follow(before, r0, s, r);
-  anchors_.find(s);
-  const bool tied = anchors_.any();
+// Half an impulse of what acts at the end, with contacts at the velocity that they leave. False: that is not
+// found.
+[[gnu::always_inline]] inline bool ReducedBody::push_at_end(const Parameters& parameters,
+                                                            const ExplicitSubstep& substep, BodyState& s,
+                                                            ReducedScratch& w) {
+  const double h = substep.h;
+  const PackMat3& r = substep.r;
+  const BodyState& before = substep.before;
+  const Vec3 field = parameters.gravity - substep.end.floor;
+  const bool bends = substep.bends, tied = anchors_.any();
   const Vec3 pull = anchors_.force(), twist = anchors_.moment();
   Amplitudes pressed;
   if (bends) {
     pressed.setZero();
-    anchors_.press_modes(s, modes(s), pressed);
+    anchors_.modal_loads(s, modes(s), pressed);
     s.load.setZero();
   }
   ContactLoads loads{{0, 0, 0}, {0, 0, 0}, 0, 0};
@@ -274,7 +279,8 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) add_product(h / 2, kick_, pressed, free.rate);
     }
-    if (!solve_velocity(parameters, end.law, r, h, free, u, loads, s.load, modes(s), w)) return give_up();
+    if (!solve_velocity(parameters, {substep.end.law, r, h, free, modes(s)}, u, loads, s.load, w))
+      return false;
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
@@ -286,66 +292,100 @@ bool ReducedBody::swing_part(const Parameters& parameters, const Instant& start,
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
   if (bends) add_product(h / 2, kick_, s.load, s.rate);
+  return true;
+}
 
-  // As book_work, and what the method itself takes out, from its own kinematics.
+// As book_work, and what the method itself takes out, from its own kinematics.
+[[gnu::always_inline]] inline void ReducedBody::book_swing(const Parameters& parameters,
+                                                           const ExplicitSubstep& substep, const BodyState& s,
+                                                           StepEnergy& booked) const {
+  const BodyState& before = substep.before;
+  const Vec3& shift = substep.shift;
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
-  booked.input -= mass_ * 0.5 * (start.floor + end.floor).dot(shift);
-  contacts_.book_travel(shift, s, r, booked);
+  booked.input -= mass_ * 0.5 * (substep.start.floor + substep.end.floor).dot(shift);
+  contacts_.book_travel(shift, s, substep.r, booked);
   const Vec3 faster = s.angular_velocity - before.angular_velocity;
   booked.numerical +=
       0.5 * (before.force + s.force).dot(shift) -
       0.5 * mass_ * (s.velocity + before.velocity).dot(s.velocity - before.velocity) +
-      0.5 * dot(packed(Vec3(before.moment + s.moment)), r0 * packed(spin)) -
+      0.5 * dot(packed(Vec3(before.moment + s.moment)), substep.r0 * packed(substep.spin)) -
       0.5 * dot(packed(Vec3(s.angular_velocity + before.angular_velocity)), inertia_ * packed(faster));
-  if (bends) {
-    Amplitudes damped, numerical;
+  if (substep.bends) {
+    Amplitudes damping_power, numerical;
     each_four_modes([&](int k) {
       const auto square = [](Four x) { return x * x; };
       const Four half = 0.5, a0 = load(&before.amplitude[k]), a = load(&s.amplitude[k]),
-                 square0 = square(load(&rate0[k]));
-      store(&damped[k], square(load(&before.rate[k])) - square0);
+                 square0 = square(load(&substep.rate0[k]));
+      store(&damping_power[k], square(load(&before.rate[k])) - square0);
       store(&numerical[k], half * (load(&before.load[k]) + load(&s.load[k])) * (a - a0) -
                                half * (square(load(&s.rate[k])) - square0) -
                                half * square(load(&basis_->frequency[k])) * (square(a) - square(a0)));
     });
-    booked.damping += 0.5 * damped.sum();
+    booked.damping += 0.5 * damping_power.sum();
     booked.numerical += numerical.sum();
   }
+}
+
+// too_long: what touches at the end asks for substeps as short as `stable`. unsolved: the velocity is not
+// found.
+ReducedBody::ExplicitOutcome ReducedBody::explicit_substep(const Parameters& parameters,
+                                                           const StepInputs& start, const StepInputs& end,
+                                                           double h, BodyState& s, std::span<Vec3> stick,
+                                                           StepEnergy& booked, ReducedScratch& w) {
+  const std::uint64_t touched = contacts_.hash();
+  contacts_.begin_substep();
+  const ExplicitSubstep substep = move_freely(parameters, start, end, h, s);
+  const auto give_up = [&](SubstepEnd how, double stable) {
+    s = substep.before;
+    contacts_.give_up_substep();
+    return ExplicitOutcome{how, stable};
+  };
+  contacts_.find(s, substep.r, stick);
+  if (contacts_.hash() != touched)
+    if (const double stable = stable_part(parameters, start.law, s); stable < h)
+      return give_up(SubstepEnd::too_long, stable);
+  contacts_.follow(substep.before, substep.r0, s, substep.r);
+  anchors_.find(s);
+  if (!push_at_end(parameters, substep, s, w)) return give_up(SubstepEnd::unsolved, h);
+  book_swing(parameters, substep, s, booked);
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
   respond_at<ContactSums::none>(end.law, s);
-  return true;
+  return {SubstepEnd::reached, h};
 }
 
-StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instant& start, const Instant& end,
-                                      double h, BodyState& s, std::span<Vec3> stick, StepEnergy& booked,
-                                      ReducedScratch& w) {
-  const BodyContacts::Loan loan(contacts_, w.rooms);
-  const bool touches = contacts_.any() || anchors_.any() || (s.rung == Rung::rigid && next_landing(s, h) < h);
+StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepInputs& start,
+                                      const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
+                                      StepEnergy& booked, ReducedScratch& w) {
+  const BodyContacts::ScratchLease loan(contacts_, w.buffers);
+  const bool touches =
+      contacts_.any() || anchors_.any() || (s.level == ModelLevel::rigid && next_landing(s, h) < h);
   const auto parts_of = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
   };
-  double size = !touches && s.rung == Rung::rigid ? h : parts_of(h, stable_part(parameters, start.law, s));
-  bool stiff = s.rung == Rung::rigid && touches && (parameters.adaptive || size < h);
+  double size =
+      !touches && s.level == ModelLevel::rigid ? h : parts_of(h, stable_part(parameters, start.law, s));
+  bool stiff = s.level == ModelLevel::rigid && touches && (parameters.adaptive || size < h);
   double left = h, most = h;
-  w.part = 0;
+  w.substep = 0;
   w.from.reset();
   while (!stiff) {
     const bool last = size >= left;
-    const Instant& from = w.from ? *w.from : start;
+    const StepInputs& from = w.from ? *w.from : start;
     if (!last) w.to.emplace(parameters, from.time + size, from);
-    double stable;
-    if (swing_part(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w, stable)) {
+    const ExplicitOutcome swung =
+        explicit_substep(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w);
+    if (swung.end == SubstepEnd::reached) {
       if (last) break;
       left -= size;
       w.from = w.to;
       size = std::min(parts_of(left, stable_part(parameters, w.from->law, s)), most);
-    } else if (stable < size) {
-      stiff = s.rung == Rung::rigid;
-      size = parts_of(size, stable);
+    } else if (swung.end == SubstepEnd::too_long) {
+      stiff = s.level == ModelLevel::rigid;
+      size = parts_of(size, swung.stable);
     } else {
       size = most = size / 2;
-      if (most < k_least_part * h) return StepStatus::Kind::newton_diverged;
+      if (most < k_least_substep * h) return StepStatus::Kind::newton_diverged;
     }
   }
   return stiff ? advance_stiffly(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
@@ -353,10 +393,10 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const Instan
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {
   double limit = k_longest_step;
-  if (s.rung == Rung::elastic) {
+  if (s.level == ModelLevel::elastic) {
     limit = contacts_.look_ahead(law, s);
   } else {
-    if ((contacts_.any() || anchors_.any()) && s.part > 0) limit = std::min(limit, s.part);
+    if ((contacts_.any() || anchors_.any()) && s.substep > 0) limit = std::min(limit, s.substep);
     if (const double landing = next_landing(s, limit); landing < limit)
       limit = std::max(landing, std::min(limit, first_part(law)));
   }
@@ -399,7 +439,7 @@ void add_columns(const Eigen::MatrixXd& matrix, int first, const double* factors
 
 void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>& sections) {
   const Body& body = model_.bodies[body_];
-  if (s.rung == Rung::rigid) {
+  if (s.level == ModelLevel::rigid) {
     std::fill_n(sections.begin() + body.first_element, body.element_count,
                 SectionForces{Vec3::Zero(), Vec3::Zero()});
     return;
@@ -416,7 +456,7 @@ void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>&
 }
 
 void ReducedBody::add_residual(const BodyState& s, State& state) const {
-  if (s.rung != Rung::elastic) return;
+  if (s.level != ModelLevel::elastic) return;
   const Body& body = model_.bodies[body_];
   Eigen::VectorXd u = Eigen::VectorXd::Zero(6 * body.node_count);
   each_force(s, [&](int node, const Vec3& f) { u += basis_->residual_shape.middleCols<3>(3 * node) * f; });

@@ -24,7 +24,7 @@ StepStatus ReducedPart::settle(const Parameters& parameters, State& state, PartS
   return status;
 }
 
-BodyEnergy ReducedPart::balance(const Parameters& parameters, const Instant& now,
+BodyEnergy ReducedPart::balance(const Parameters& parameters, const StepInputs& now,
                                 const std::vector<char>& marked, State& state) {
   BodyEnergy held;
   for (const auto& [index, body] : bodies_) {
@@ -61,7 +61,7 @@ double ReducedPart::time_limit(const Parameters& parameters, const State& state)
   return limit;
 }
 
-void ReducedPart::list_forces(const Instant& now, const State& state, Forces& forces) {
+void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
   for (const auto& [index, body] : bodies_) {
     body->remember(state.anchors);
     body->find_contacts(now, state.bodies[index], state.stick);

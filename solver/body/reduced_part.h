@@ -21,11 +21,11 @@ class ReducedPart final : public Part {
 
   bool has(const std::vector<char>& marked) const override;
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
-  BodyEnergy balance(const Parameters& parameters, const Instant& now, const std::vector<char>& marked,
+  BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
-  void list_forces(const Instant& now, const State& state, Forces& forces) override;
+  void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
 
  private:

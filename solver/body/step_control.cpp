@@ -20,25 +20,20 @@ constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy 
 // For the members of all bodies that are near each other.
 double member_limit(const Model& model, const ContactLaw& law, const State& state) {
   double limit = std::numeric_limits<double>::infinity();
-  if (state.near.empty()) return limit;
+  if (state.candidate_pairs.empty()) return limit;
   std::vector<double> stiffness(model.bodies.size(), 0.);
   const auto body_of = [&](int e) { return model.members[model.elements[e].member].body; };
-  for (const ElementPair& pair : state.near) {
+  for (const ElementPair& pair : state.candidate_pairs) {
     const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
     const auto& x = state.position;
     const auto& v = state.velocity;
     const NearestPoints at = nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]);
-    const double L = contact_length(model, pair), l = at.between.norm(), gap = l - L;
-    if (gap < 0) {
-      const double depth = -gap / L;
-      const double k = penalty_stiffness(law, depth, L, true);
-      stiffness[body_of(pair.a)] += k;
-      stiffness[body_of(pair.b)] += k;
-    } else {
-      const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
-      const double closing = -relative.dot(at.between) / l;
-      limit = std::min(limit, closing_limit(gap, closing, L));
-    }
+    const double L = contact_length(model, pair), l = at.between.norm();
+    const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
+    const ContactAhead ahead = contact_ahead(law, l - L, -relative.dot(at.between) / l, L, true);
+    stiffness[body_of(pair.a)] += ahead.stiffness;
+    stiffness[body_of(pair.b)] += ahead.stiffness;
+    limit = std::min(limit, ahead.limit);
   }
   for (std::size_t b = 0; b < stiffness.size(); ++b)
     limit = std::min(limit, bounce_limit(model.bodies[b].mass, stiffness[b]));
@@ -66,7 +61,7 @@ double step_error(const Model& model, const Parameters& parameters, const State&
   const double largest = std::max(after.energy.largest + total_mass * k_at_rest * k_at_rest, small_fall);
   const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (after.bodies[b].rung != Rung::frame) continue;
+    if (after.bodies[b].level != ModelLevel::frame) continue;
     const Body& body = model.bodies[b];
     double change = 0, speed = 0;
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
@@ -95,6 +90,8 @@ double next_kink(const Model& model, const Parameters& parameters, double t) {
   for (const Shake& shake : parameters.shakes) {
     meet(shake.start);
     meet(shake_end(shake));
+    if (shake.kind == Shake::Kind::pulse)
+      for (const double kink : traits(shake.shape).kinks) meet(shake.start + kink * shake.duration);
   }
   for (const Load& load : model.loads)
     for (const auto& [at, factor] : load.history) meet(at);

@@ -25,7 +25,7 @@ Edge edge_of_base(const Model& model, const Body& body, const Plane& floor, std:
   for (const int p : body.base_points) {
     const ContactPoint& point = model.contact_points[p];
     if (std::abs(inside(model.node_position[point.node])) > same_line) continue;
-    if (edge.points++ == 0) edge.width = (point.width + (floor.width > 0 ? floor.width : point.width)) / 2;
+    if (edge.points++ == 0) edge.width = contact_length(point, floor);
   }
   return edge;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact/coulomb.h"
 #include "solver/math/elementary.h"
 
 namespace topple {
@@ -38,14 +39,9 @@ double hardening_energy(double x) {
          hardening_slope(x) * beyond * beyond / 2;
 }
 
-struct Derivatives {
-  Mat3* by_position = nullptr;
-  Mat3* by_velocity = nullptr;
-};
-
-// -friction P v / sqrt(v^2 + eps^2)
+// -mu P v / sqrt(v^2 + eps^2), eps: slip_speed
 void add_drag(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
-              Derivatives derivatives) {
+              ContactDerivatives derivatives) {
   const double speed = std::sqrt(in.velocity.squaredNorm() + law.slip_speed * law.slip_speed);
   const Vec3 direction = in.velocity / speed;
   const Vec3 drag = -law.friction * p * direction;
@@ -65,97 +61,183 @@ struct Stick {
       : k(k_stick_stiffness * law.alpha / in.L), c(2 * k_stick_damping * std::sqrt(k * in.mass)) {}
 };
 
-Vec3 across(const Vec3& n, const Vec3& v) {
-  return v - n.dot(v) * n;
-}
-
-// -d mu/d v_t over v_t, s^2/m^2.
-double weakening(const ContactLaw& law, double speed2) {
-  const double scale = 1 / (law.slip_speed * law.slip_speed), share = 1 / (1 + speed2 * scale);
-  return 2 * law.excess() * scale * share * share;
-}
-
 // What is left of the spring's travel when its force is capped.
 void take_stick(double k, const Vec3& stick, double limit, ContactOutput& out) {
-  const double spring = k * stick.norm();
-  out.stick = spring <= limit ? stick : Vec3(limit / spring * stick);
-  out.stick_energy = 0.5 * k * out.stick.squaredNorm();
+  const double travel2 = stick.squaredNorm();
+  out.stick = held_share(k, travel2, limit, true) * stick;
+  out.stick_energy = stick_energy(k, travel2, limit);
 }
 
 void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
-             Derivatives derivatives) {
-  const Vec3& n = in.normal;
-  const double vn = n.dot(in.velocity);
-  const double m = normal_loss(law.restitution);
-  const double root = std::sqrt(vn * vn + law.normal_speed * law.normal_speed);
-  const double factor = 1 - m * vn / root;
-  out.conservative = p;
-  out.normal = p * factor;
-
+             ContactDerivatives derivatives) {
+  const PackVector<double> n = packed(in.normal);
   const auto [k, c] = Stick(law, in);
-  const Vec3 stick = across(n, in.stick);
-  const Vec3 slip = in.velocity - vn * n;
-  const Vec3 trial = k * stick + c * slip;
-  const double mu = friction_coefficient(law, slip.squaredNorm());
-  const double size = trial.norm(), limit = mu * out.normal;
-  const bool slips = !(size <= limit);  // a NaN must not pass for sticking
-  out.tangential = slips ? Vec3(-limit / size * trial) : Vec3(-trial);
-  take_stick(k, stick, limit, out);
+  const double loss = normal_loss(law.restitution);
+  const bool weakens = law.excess() > 0;
+  const auto f = coulomb_force(law, loss, weakens, n, packed(in.velocity), packed(in.stick), true, p, k, c);
+  out.conservative = p;
+  out.normal = f.normal;
+  out.tangential = unpacked(-f.scale * f.trial);
+  take_stick(k, unpacked(f.stick), f.limit, out);
   if (!derivatives.by_position) return;
-
-  const double dfactor = -m * law.normal_speed * law.normal_speed / (root * root * root);
-  const Mat3 tangent_plane = Mat3::Identity() - n * n.transpose();
-  *derivatives.by_position = dp * factor * n * n.transpose();
-  *derivatives.by_velocity = p * dfactor * n * n.transpose();
-  if (!slips) {
-    *derivatives.by_position -= k * tangent_plane;
-    *derivatives.by_velocity -= c * tangent_plane;
-    return;
-  }
-  const Vec3 direction = trial / size;
-  const Mat3 turning = limit / size * (tangent_plane - direction * direction.transpose());
-  *derivatives.by_position -= mu * dp * factor * direction * n.transpose() + k * turning;
-  *derivatives.by_velocity -= mu * p * dfactor * direction * n.transpose() + c * turning;
-  if (law.excess() > 0)
-    *derivatives.by_velocity +=
-        out.normal * weakening(law, slip.squaredNorm()) * direction * slip.transpose();
+  const auto derivative = [&](double normal, double spring, bool with_friction) -> Mat3 {
+    const double across = f.scale * spring;
+    Mat3 slope = (normal + across) * in.normal * in.normal.transpose() - across * Mat3::Identity();
+    if (f.slips) slope += unpacked(slip_slope(law, with_friction, f, n, normal, across));
+    return slope;
+  };
+  *derivatives.by_position = derivative(dp * f.factor, k, false);
+  *derivatives.by_velocity = derivative(normal_slope(law, loss, p, f.inverse), c, weakens);
 }
 
-ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, Derivatives derivatives) {
+// P n - mu P v/sqrt(v^2 + eps^2)
+void paper(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
+           ContactDerivatives derivatives) {
+  out.conservative = out.normal = p;
+  if (derivatives.by_position) {
+    *derivatives.by_position = dp * in.normal * in.normal.transpose();
+    derivatives.by_velocity->setZero();
+  }
+  add_drag(law, in, p, dp, out, derivatives);
+}
+
+// -P v_n/sqrt(v_n^2 + eps^2) n - mu P v/sqrt(v^2 + eps^2): Eq. 3 as it is printed
+void printed(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
+             ContactDerivatives derivatives) {
+  const Vec3& n = in.normal;
+  const double vn = n.dot(in.velocity), eps2 = law.slip_speed * law.slip_speed;
+  const double root = std::sqrt(vn * vn + eps2);
+  out.normal = -p * vn / root;
+  if (derivatives.by_position) {
+    *derivatives.by_position = -dp * vn / root * n * n.transpose();
+    *derivatives.by_velocity = -p * eps2 / (root * root * root) * n * n.transpose();
+  }
+  add_drag(law, in, p, dp, out, derivatives);
+}
+
+ContactOutput coulomb_at_new_velocity(const ContactLaw& law, ContactInput& in, double impedance,
+                                      const Vec3& free) {
+  const Vec3& n = in.normal;
+  ContactOutput out;
+  const double p = out.conservative = penalty_force(law, in.depth, in.between_members);
+  const double loss = p * normal_loss(law.restitution), eps2 = law.normal_speed * law.normal_speed;
+  const double free_n = n.dot(free);
+  double vn = n.dot(in.velocity);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const double inverse = 1 / std::sqrt(vn * vn + eps2), direction = vn * inverse;
+    const double step = (impedance * (vn - free_n) - p + loss * direction) /
+                        (impedance + loss * eps2 * inverse * inverse * inverse);
+    vn -= step;
+    // what is left after a step is its square over that of the smoothing
+    if (!(step * step > 1e-12 * (1 + std::abs(vn)) * law.normal_speed)) break;
+  }
+  out.normal = std::max(impedance * (vn - free_n), 0.);  // rounding may be more than is left of it
+
+  // sticking and slipping forces alike lie along k stick + c free
+  const auto [k, c] = Stick(law, in);
+  const Vec3 stick = in.stick - n.dot(in.stick) * n, free_t = free - free_n * n,
+             pull = k * stick + c * free_t;
+  const double size = pull.norm();
+  double limit = 0;
+  Vec3 slip = Vec3::Zero();  // static friction holds what was at rest
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    limit = friction_coefficient(law, slip.squaredNorm()) * out.normal;
+    const bool sticks = size * impedance <= limit * (impedance + c);
+    out.tangential = -(sticks ? impedance / (impedance + c) : limit / size) * pull;
+    const Vec3 before = slip;
+    slip = free_t + out.tangential / impedance;
+    if (law.excess() == 0 || !((slip - before).squaredNorm() > 1e-24 * (1 + slip.squaredNorm()))) break;
+  }
+  take_stick(k, stick, limit, out);
+  out.force = out.normal * n + out.tangential;
+  in.velocity = slip + vn * n;
+  return out;
+}
+
+NormalLoss by_restitution(const ContactLaw& law) {
+  return {normal_loss(law.restitution), law.normal_speed};
+}
+
+NormalLoss by_friction(const ContactLaw& law) {
+  return {law.friction, law.slip_speed};
+}
+
+constexpr ContactLawTraits k_laws[] = {
+    {.kind = ContactLawKind::coulomb,
+     .word = "coulomb",
+     .stores_energy = true,
+     .sticks = true,
+     .has_restitution = true,
+     .in_packs = true,
+     .evaluate = coulomb,
+     .at_new_velocity = coulomb_at_new_velocity,
+     .normal_loss = by_restitution,
+     .warning = nullptr},
+    {.kind = ContactLawKind::paper,
+     .word = "paper",
+     .stores_energy = true,
+     .sticks = false,
+     .has_restitution = false,
+     .in_packs = false,
+     .evaluate = paper,
+     .at_new_velocity = nullptr,
+     .normal_loss = by_friction,
+     .warning = nullptr},
+    {.kind = ContactLawKind::printed,
+     .word = "printed",
+     .stores_energy = false,
+     .sticks = false,
+     .has_restitution = false,
+     .in_packs = false,
+     .evaluate = printed,
+     .at_new_velocity = nullptr,
+     .normal_loss = by_friction,
+     .warning =
+         "holds bodies back where they part and lets them sink at rest: verdicts with it mean nothing; "
+         "\"coulomb\" and \"paper\" do neither"},
+};
+
+ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, ContactDerivatives derivatives) {
   ContactOutput out{};
   out.tangential.setZero();
   out.stick.setZero();
-  const Vec3& n = in.normal;
   const double p = penalty_force(law, in.depth, in.between_members);
   const double dp = derivatives.by_position ? -penalty_stiffness(law, in.depth, in.L, in.between_members) : 0;
-  if (law.kind == ContactLawKind::coulomb) {
-    coulomb(law, in, p, dp, out, derivatives);
-  } else if (law.kind == ContactLawKind::paper) {
-    out.conservative = out.normal = p;
-    if (derivatives.by_position) {
-      *derivatives.by_position = dp * n * n.transpose();
-      derivatives.by_velocity->setZero();
-    }
-    add_drag(law, in, p, dp, out, derivatives);
-  } else {
-    const double vn = n.dot(in.velocity), eps2 = law.slip_speed * law.slip_speed;
-    const double root = std::sqrt(vn * vn + eps2);
-    out.normal = -p * vn / root;
-    if (derivatives.by_position) {
-      *derivatives.by_position = -dp * vn / root * n * n.transpose();
-      *derivatives.by_velocity = -p * eps2 / (root * root * root) * n * n.transpose();
-    }
-    add_drag(law, in, p, dp, out, derivatives);
-  }
-  out.force = out.normal * n + out.tangential;
+  traits(law).evaluate(law, in, p, dp, out, derivatives);
+  out.force = out.normal * in.normal + out.tangential;
   return out;
 }
 
 }  // namespace
 
+std::span<const ContactLawTraits> contact_laws() {
+  return k_laws;
+}
+
+const ContactLawTraits& traits(ContactLawKind kind) {
+  return row_of(k_laws, kind);
+}
+
+ContactLaw law_at_rest(ContactLaw law) {
+  law.kind = ContactLawKind::coulomb;
+  law.restitution = 1;
+  return law;
+}
+
+Parameters at_rest(Parameters parameters) {
+  parameters.shakes.clear();
+  parameters.contact = law_at_rest(parameters.contact);
+  return parameters;
+}
+
+StiffnessBound stiffness_bound(const ContactLaw& law) {
+  const double normal = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
+  return {normal, traits(law).sticks ? k_stick_stiffness : 0};
+}
+
 ContactLaw contact_law(const Parameters& parameters, double t) {
   ContactLaw law = parameters.contact;
-  const double share = parameters.contact_passage.share(t);
+  const double share = parameters.contact_ramp.share(t);
   if (share == 1) return law;
   const ContactLaw& before = parameters.contact_before;
   const auto mix = [share](double a, double b) { return (1 - share) * a + share * b; };
@@ -201,43 +283,6 @@ ContactOutput contact_force(const ContactLaw& law, const ContactInput& input) {
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input, Mat3& by_position,
                             Mat3& by_velocity) {
   return evaluate(law, input, {&by_position, &by_velocity});
-}
-
-ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& in, double impedance, const Vec3& free) {
-  const Vec3& n = in.normal;
-  ContactOutput out;
-  const double p = out.conservative = penalty_force(law, in.depth, in.between_members);
-  const double loss = p * normal_loss(law.restitution), eps2 = law.normal_speed * law.normal_speed;
-  const double free_n = n.dot(free);
-  double vn = n.dot(in.velocity);
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    const double inverse = 1 / std::sqrt(vn * vn + eps2), direction = vn * inverse;
-    const double step = (impedance * (vn - free_n) - p + loss * direction) /
-                        (impedance + loss * eps2 * inverse * inverse * inverse);
-    vn -= step;
-    // what is left after a step is its square over that of the smoothing
-    if (!(step * step > 1e-12 * (1 + std::abs(vn)) * law.normal_speed)) break;
-  }
-  out.normal = std::max(impedance * (vn - free_n), 0.);  // rounding may be more than is left of it
-
-  // sticking and slipping forces alike lie along k stick + c free
-  const auto [k, c] = Stick(law, in);
-  const Vec3 stick = across(n, in.stick), free_t = free - free_n * n, pull = k * stick + c * free_t;
-  const double size = pull.norm();
-  double limit = 0;
-  Vec3 slip = Vec3::Zero();  // static friction holds what was at rest
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    limit = friction_coefficient(law, slip.squaredNorm()) * out.normal;
-    const bool sticks = size * impedance <= limit * (impedance + c);
-    out.tangential = -(sticks ? impedance / (impedance + c) : limit / size) * pull;
-    const Vec3 before = slip;
-    slip = free_t + out.tangential / impedance;
-    if (law.excess() == 0 || !((slip - before).squaredNorm() > 1e-24 * (1 + slip.squaredNorm()))) break;
-  }
-  take_stick(k, stick, limit, out);
-  out.force = out.normal * n + out.tangential;
-  in.velocity = slip + vn * n;
-  return out;
 }
 
 }  // namespace topple

@@ -1,8 +1,11 @@
 // Penalty forces at one contact, after Eqs. 2 and 3.
 #pragma once
 
+#include <span>
+
 #include "solver/math/types.h"
 #include "solver/model/parameters.h"
+#include "solver/model/table.h"
 
 namespace topple {
 
@@ -13,7 +16,7 @@ inline constexpr double k_stick_stiffness = 10;
 /// Damping ratio of a sticking contact that carries its share of the body's mass.
 inline constexpr double k_stick_damping = 0.2;
 
-/// The law at time t: between an edit's earlier and new numbers during its passage, alpha evenly in its
+/// The law at time t: between an edit's earlier and new numbers during its ramp, alpha evenly in its
 /// logarithm.
 ContactLaw contact_law(const Parameters& parameters, double t);
 
@@ -30,14 +33,6 @@ double penalty_stiffness(const ContactLaw& law, double depth, double L, bool bet
 
 /// Energy stored by penalty_force at `depth`, J: alpha L / (q + 1) depth^(q + 1), and that of the hardening.
 double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members = false);
-
-/// mu of the coulomb law at a slip speed whose square is `speed2`, m^2/s^2, between static and kinetic
-/// friction:
-///   mu + (mu_s - mu)/(1 + (v/slip_speed)^2)
-template <class T>
-T friction_coefficient(const ContactLaw& law, T speed2) {
-  return law.friction + law.excess() / (1 + speed2 * (1 / (law.slip_speed * law.slip_speed)));
-}
 
 /// m_n = (1 - e^2)/(1 + e^2): share of the normal force that depends on the direction of motion so that an
 /// impact returns with restitution e.
@@ -64,17 +59,66 @@ struct ContactOutput {
   double stick_energy;  ///< J
 };
 
-/// coulomb: N = P (1 - m_n v_n/sqrt(v_n^2 + eps_n^2)); stick spring with damping, capped at mu N, mu of
-/// friction_coefficient at the tangential velocity.
-/// paper:   P n - mu P v/sqrt(v^2 + eps^2).
-/// printed: -P v_n/sqrt(v_n^2 + eps^2) n - mu P v/sqrt(v^2 + eps^2).
+/// Derivatives of the force by the position and velocity of the point, N/m and N s/m; null: not asked for.
+struct ContactDerivatives {
+  Mat3* by_position = nullptr;
+  Mat3* by_velocity = nullptr;
+};
+
+/// How the normal force N depends on the speed v at which bodies part, v < 0 where they close:
+///   N/P = 1 - loss v/sqrt(v^2 + smoothing^2),  of laws that store energy
+struct NormalLoss {
+  double loss, smoothing;  ///< -, m/s
+};
+
+/// What a contact law is. A new one is a row of the table in contact_law.cpp, the function that it names, and
+/// a ContactLawKind.
+struct ContactLawTraits {
+  ContactLawKind kind;
+  const char* word;  ///< in scenes, tables and charts
+  /// What Eq. 2's spring takes in comes back; false: it is dissipated.
+  bool stores_energy;
+  /// A spring of k_stick_stiffness holds what does not slip; otherwise friction is smoothed over slip_speed.
+  bool sticks;
+  /// Takes restitution, normal_speed and friction_static of ContactLaw.
+  bool has_restitution;
+  /// BodyContacts computes it four contacts at a time.
+  bool in_packs;
+  /// The force where P and dP (its derivative by position along the normal) are Eq. 2's; not `force`, nor
+  /// what `stick` and `stick_energy` are where nothing sticks (0).
+  void (*evaluate)(const ContactLaw&, const ContactInput&, double p, double dp, ContactOutput&,
+                   ContactDerivatives);
+  /// Contact at the velocity v that it leaves a point which moves at `free` without it:
+  ///   impedance (v - free) = force,  impedance in kg/s.
+  /// The input's velocity is where the search begins, and then v. Null: no closed form.
+  ContactOutput (*at_new_velocity)(const ContactLaw&, ContactInput&, double impedance, const Vec3& free);
+  NormalLoss (*normal_loss)(const ContactLaw&);
+  /// What runs say of it whatever their numbers are, or null.
+  const char* warning;
+};
+
+/// All laws, in the order of scenes' words.
+std::span<const ContactLawTraits> contact_laws();
+const ContactLawTraits& traits(ContactLawKind kind);
+inline const ContactLawTraits& traits(const ContactLaw& law) {
+  return traits(law.kind);
+}
+
+/// `law` for bodies that come to rest: with its spring, no loss in the normal and no smoothed friction, which
+/// creeps.
+ContactLaw law_at_rest(ContactLaw law);
+/// `parameters` with that law, and a floor that stands still.
+Parameters at_rest(Parameters parameters);
+
+/// Greatest stiffness that a law's springs can have over alpha/L, along the normal and across it.
+struct StiffnessBound {
+  double normal, tangential;
+};
+StiffnessBound stiffness_bound(const ContactLaw& law);
+
+/// Force of the law (formulas: contact_law.cpp).
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input);
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input, Mat3& by_position,
                             Mat3& by_velocity);
-
-/// Contact of the coulomb law at the velocity v that it leaves a point which moves at `free` without it:
-///   impedance (v - free) = force,  impedance in kg/s.
-/// `input.velocity` is where the search begins, and then v.
-ContactOutput coulomb_contact(const ContactLaw& law, ContactInput& input, double impedance, const Vec3& free);
 
 }  // namespace topple

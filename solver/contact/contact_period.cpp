@@ -11,9 +11,8 @@ double contact_period(const Model& model, int index, const ContactLaw& law, cons
   const Body& body = model.bodies[index];
   if (model.planes.empty() || gravity.isZero(0) || body.contact_point_count == 0) return 0;
   const double points = static_cast<double>(std::max<std::size_t>(1, body.base_points.size()));
-  const ContactPoint& point = model.contact_points[body.first_contact_point];
-  const double width = model.planes.front().width > 0 ? model.planes.front().width : point.width;
-  const double L = (point.width + width) / 2, g = gravity.norm();
+  const double L = contact_length(model.contact_points[body.first_contact_point], model.planes.front()),
+               g = gravity.norm();
   const double depth = elementary::pow(body.mass * g / (points * law.alpha), 1 / law.q);
   return 2 * k_pi * std::sqrt(L * depth / (law.q * g));
 }

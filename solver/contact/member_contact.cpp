@@ -72,7 +72,7 @@ class PairFinder {
     if (kappa == 1) return;
     for (int place = 1; place < 5; ++place)
       add(place, nearest_at(place, x_), (1 - kappa) / 4, velocity, start);
-    if (kappa == 0 || law.kind == ContactLawKind::printed) return;
+    if (kappa == 0 || !traits(law).stores_energy) return;
     blend(lines, x, first);
   }
 
@@ -217,8 +217,7 @@ double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
                      std::span<const MemberPair> pairs) {
   double sum = 0;
   for (const MemberTouch& touch : contacts.touches) {
-    // the printed law has no spring: what it takes in is dissipated
-    if (law.kind != ContactLawKind::printed)
+    if (traits(law).stores_energy)
       sum += touch.weight * penalty_energy(law, touch.depth, pairs[touch.pair].L, true);
     sum += touch.out.stick_energy;
   }

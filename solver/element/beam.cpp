@@ -1,68 +1,54 @@
 #include "solver/element/beam.h"
 
 #include "solver/element/plasticity.h"
-#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {
 
-struct Kinematics {
-  double t;
-  Vec3 d;   // x2 - x1
-  Mat3 rs;  // axes of the integration point
-  BeamStrain strain;
-};
-
-Kinematics kinematics(const Element& element, double s, const BeamEnds& ends) {
-  Kinematics k;
-  k.t = (1 + s) / 2;
-  k.d = ends.x2 - ends.x1;
-  k.rs = ends.r1 * exp_quaternion(k.t * ends.psi).toRotationMatrix();
-  k.strain.gamma = k.rs.transpose() * k.d / element.length - Vec3::UnitX();
-  k.strain.kappa = ends.psi / element.length;
-  return k;
+BeamStrain strain_of(const PackStrain<double>& strain) {
+  return {unpacked(strain.gamma), unpacked(strain.kappa)};
 }
 
-// d/dpsi of (psi.v) psi - |psi|^2 v = [psi]^2 v
-Mat3 derivative_of_double_cross(const Vec3& psi, const Vec3& v) {
-  return psi.dot(v) * Mat3::Identity() + psi * v.transpose() - 2 * v * psi.transpose();
-}
-
-// d/dpsi of T(psi)^-T v with v held
-Mat3 derivative_of_inverse_transposed(const InverseJacobianCoefficient& c, const Vec3& psi, const Vec3& v) {
-  return -0.5 * skew(v) + c.g * derivative_of_double_cross(psi, v) +
-         2 * c.dg * psi.cross(psi.cross(v)) * psi.transpose();
-}
-
-// What a section adds in which stretch and shear flow along with curvature: `e` is dn / d(spin2 - spin1) by
-// the curvature, and its transpose the change of w by the stretch.
-void add_coupling(const Mat3& e, const Mat3& skew_d, const Mat3& b, Mat12& tangent) {
-  const auto block = [&](int i, int j) { return tangent.block<3, 3>(3 * i, 3 * j); };
-  const Mat3 x = skew_d * e, y = e.transpose() * skew_d;
-  const Mat3 m2_spin1 = b.transpose() * x + y * (Mat3::Identity() - b), m2_spin2 = y * b - b.transpose() * x;
-  block(0, 1) += e;
-  block(0, 3) -= e;
-  block(2, 1) -= e;
-  block(2, 3) += e;
-  block(3, 0) -= e.transpose();
-  block(3, 1) += m2_spin1;
-  block(3, 2) += e.transpose();
-  block(3, 3) += m2_spin2;
-  block(1, 0) += e.transpose();
-  block(1, 1) += x - m2_spin1;
-  block(1, 2) -= e.transpose();
-  block(1, 3) -= x + m2_spin2;
+Mat12 whole(const PackTangent<double>& t) {
+  Mat12 out;
+  const auto set = [&](int row, int column, const PackMatrix<double>& block) {
+    out.block<3, 3>(3 * row, 3 * column) = unpacked(block);
+  };
+  const auto set_row = [&](int row, const PackMatrix<double>& x2, const PackMatrix<double>& spin1,
+                           const PackMatrix<double>& spin2) {
+    set(row, 0, -x2);
+    set(row, 1, spin1);
+    set(row, 2, x2);
+    set(row, 3, spin2);
+  };
+  set_row(0, -t.force_x2, -t.force_spin1, -t.force_spin2);
+  set_row(1, t.moment1_x2, t.moment1_spin1, t.moment1_spin2);
+  set_row(2, t.force_x2, t.force_spin1, t.force_spin2);
+  set_row(3, t.moment2_x2, t.moment2_spin1, t.moment2_spin2);
+  return out;
 }
 
 }  // namespace
 
-BeamEnds beam_ends(const Element& element, const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2) {
-  return {x1, x2, q1.toRotationMatrix() * element.triad, q2.toRotationMatrix() * element.triad,
-          element.triad.transpose() * log_quaternion(q1.conjugate() * q2)};
+BeamEnds beam_ends(const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2) {
+  return {packed(x1), packed(x2), packed(q1), packed(q2)};
 }
 
-BeamStrain beam_strain(const Element& element, double s, const BeamEnds& ends) {
-  return kinematics(element, s, ends).strain;
+PackBeam<double> pack_beam(const Element& element) {
+  const PackVector<double> none{0, 0, 0};
+  return {packed(Quat(element.triad)),
+          packed(element.triad),
+          element.length,
+          1 / element.length,
+          (1 + element.s) / 2,
+          packed(element.normal_stiffness),
+          packed(element.bending_stiffness),
+          none,
+          none};
+}
+
+BeamStrain beam_strain(const Element& element, const BeamEnds& ends) {
+  return strain_of(pack_strain(pack_beam(element), ends));
 }
 
 BeamStrain elastic_strain(const ElementState& state, const BeamStrain& strain) {
@@ -83,75 +69,33 @@ void beam_tangent(const Element& element, const ElementState& state, const BeamE
     tangent.setZero();
     return;
   }
-  const Kinematics k = kinematics(element, element.s, ends);
-  const double t = k.t;
-  const Vec3& psi = ends.psi;
-  const SectionResponse response = respond(element, state, k.strain);
-  const Vec3 n = k.rs * response.forces.normal;
-  const Vec3& m0 = response.forces.moment;
-  const Vec3 p = n.cross(k.d);
+  const PackBeam<double> beam = pack_beam(element);
+  const PackStrain<double> strain = pack_strain(beam, ends);
+  const SectionResponse response = respond(element, state, strain_of(strain));
+  const PackSection<double> section{packed(response.forces.normal), packed(response.forces.moment)};
+  const PackGradient<double> g = pack_gradient(beam, strain, section);
+  gradient = {unpacked(-g.force2), unpacked(g.moment1), unpacked(g.force2), unpacked(g.moment2)};
+  const PackAngleSlope<double> slope = angle_slopes(strain.angle.x, beam.t);
+  if (response.flows) {
+    const SectionTangent flowing = section_tangent(element, state.hinge, response);
+    tangent =
+        whole(pack_tangent(beam, strain, section, g, slope,
+                           PackFlowing<double>{packed(flowing.normal_gamma), packed(flowing.normal_kappa),
+                                               packed(flowing.moment_kappa)}));
+  } else {
+    tangent = whole(pack_tangent(beam, strain, section, g, slope,
+                                 PackStiffness<double>{beam.normal_stiffness, beam.bending_stiffness}));
+  }
+}
 
-  const double x = psi.squaredNorm();
-  const InverseJacobianCoefficient c(x);
-  const Mat3 skew_psi = skew(psi);
-  const Mat3 skew_psi2 = skew_psi * skew_psi;
-  const Mat3 inverse = Mat3::Identity() - 0.5 * skew_psi + c.g * skew_psi2;
-  const ExpCoefficients f(t * t * x);
-  const Mat3 left = Mat3::Identity() + f.f1 * t * skew_psi + f.f2 * t * t * skew_psi2;
-
-  const Mat3 a = inverse * ends.r1.transpose();
-  const Mat3 b = ends.r1 * (t * left) * a;
-  const Vec3 p1 = ends.r1.transpose() * p;
-  const Vec3 q = t * left.transpose() * p1;
-  const Vec3 u = a.transpose() * q;
-  const Vec3 w = a.transpose() * m0;
-
-  gradient = {-n, p - u - w, n, u + w};
-
-  const Mat3 skew_d = skew(k.d);
-  SectionTangent section;
-  if (response.flows) section = section_tangent(element, state.hinge, response);
-  const Mat3 cs =
-      response.flows ? Mat3(k.rs * section.normal_gamma * k.rs.transpose() / element.length)
-                     : Mat3(k.rs * element.normal_stiffness.asDiagonal() * k.rs.transpose() / element.length);
-  const Mat3 n_spin = cs * skew_d - skew(n);  // dn / dspin of the integration point
-  const Mat3 p_spin = -skew_d * n_spin;       // dp / dspin of the integration point
-  const Mat3 p_d = n_spin.transpose();        // dp / dd
-
-  const Vec3 psi_p = psi.cross(p1);
-  const Mat3 dq = t * (t * f.f1 * skew(p1) - 2 * t * t * t * f.df1 * psi_p * psi.transpose() +
-                       t * t * f.f2 * derivative_of_double_cross(psi, p1) +
-                       2 * t * t * t * t * f.df2 * psi.cross(psi_p) * psi.transpose());
-  Mat3 h = derivative_of_inverse_transposed(c, psi, q + m0) + inverse.transpose() * dq;
-  if (response.flows)
-    h += inverse.transpose() * section.moment_kappa * (1 / element.length);
-  else
-    h += inverse.transpose() * element.bending_stiffness.asDiagonal() * (1 / element.length);
-  h = ends.r1 * h * a;  // d(u + w) / d(spin2 - spin1)
-
-  const Mat3 bt = b.transpose();
-  const Mat3 one_minus_b = Mat3::Identity() - b;
-  const Mat3 bt_p_d = bt * p_d;
-  const Mat3 bt_p_spin = bt * p_spin;
-  const Mat3 m2_spin1 = bt_p_spin * one_minus_b + bt * skew(p) - skew(u + w) - h;
-  const Mat3 m2_spin2 = bt_p_spin * b + h;
-
-  const auto block = [&](int i, int j) { return tangent.block<3, 3>(3 * i, 3 * j); };
-  block(2, 0) = -cs;
-  block(2, 1) = n_spin * one_minus_b;
-  block(2, 2) = cs;
-  block(2, 3) = n_spin * b;
-  block(3, 0) = -bt_p_d;
-  block(3, 1) = m2_spin1;
-  block(3, 2) = bt_p_d;
-  block(3, 3) = m2_spin2;
-  for (int j = 0; j < 4; ++j) block(0, j) = -block(2, j);
-  block(1, 0) = -p_d + bt_p_d;
-  block(1, 1) = p_spin * one_minus_b - m2_spin1;
-  block(1, 2) = p_d - bt_p_d;
-  block(1, 3) = p_spin * b - m2_spin2;
-  if (response.flows)
-    add_coupling(k.rs * section.normal_kappa * a * (1 / element.length), skew_d, b, tangent);
+Mat12 beam_stiffness(const Model& model, const Element& element) {
+  BeamGradient gradient;
+  Mat12 tangent;
+  beam_tangent(element, ElementState{},
+               beam_ends(model.node_position[element.node[0]], Quat::Identity(),
+                         model.node_position[element.node[1]], Quat::Identity()),
+               gradient, tangent);
+  return tangent;
 }
 
 }  // namespace topple

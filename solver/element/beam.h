@@ -1,23 +1,24 @@
-// The two-node linear Timoshenko element with one integration point, geometrically exact.
+// The two-node linear Timoshenko element with one integration point, geometrically exact: one element, by the
+// formulas of beam_kernel.h.
 #pragma once
 
+#include "solver/element/beam_kernel.h"
 #include "solver/element/element_state.h"
 #include "solver/math/types.h"
 #include "solver/model/model.h"
 
 namespace topple {
 
-/// Where an element is. Rotations take the element's reference triad to its ends' current axes.
-struct BeamEnds {
-  Vec3 x1, x2;  ///< m
-  Mat3 r1, r2;  ///< node rotation times reference triad
-  Vec3 psi;     ///< log(r1^T r2), |psi| < pi
-};
+using BeamEnds = PackEnds<double>;
 
-BeamEnds beam_ends(const Element& element, const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2);
+BeamEnds beam_ends(const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2);
 
-/// Gamma = Rs^T (x2-x1)/L - e1, K = psi/L, with Rs = r1 exp(t psi), t = (1+s)/2.
-BeamStrain beam_strain(const Element& element, double s, const BeamEnds& ends);
+/// One lane of a pack, elastic and without offset.
+PackBeam<double> pack_beam(const Element& element);
+
+/// Gamma = Rs^T (x2-x1)/L - e1, K = psi/L, with psi = log(R1^T R2), |psi| < pi, and Rs = R1 exp(t psi), t =
+/// (1+s)/2; R1, R2: rotations of the nodes times the element's reference triad.
+BeamStrain beam_strain(const Element& element, const BeamEnds& ends);
 
 /// Strain less the offset of `state`; zero when it is broken.
 BeamStrain elastic_strain(const ElementState& state, const BeamStrain& strain);
@@ -36,5 +37,7 @@ struct BeamGradient {
 using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
                   BeamGradient& gradient, Mat12& tangent);
+/// The tangent as built.
+Mat12 beam_stiffness(const Model& model, const Element& element);
 
 }  // namespace topple

@@ -1,4 +1,5 @@
-// The element of beam.h for a pack of elements at once: P is Four, or another type with its operations.
+// The element of beam.h for a pack of elements at once: P is Four, double for one element, or another type
+// with their operations.
 #pragma once
 
 #include "solver/math/elementary.h"
@@ -70,54 +71,92 @@ template <class P>
           polynomial(x, 1. / 720, 1. / 15120, 1. / 403200, 1. / 11975040)};
 }
 
-/// log_factor and small_angle lane by lane, for any angle below pi.
+/// log_factor, small_angle and small_angle_slope in closed form, for any angle below pi; not for none.
+inline double large_log_factor(const PackQuaternion<double>& q) {
+  const double s = std::sqrt(q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z);
+  return 2 * elementary::atan2(s, q.w) / s;
+}
+
+inline PackAngle<double> large_angle(double x, double t) {
+  const double half = t * std::sqrt(x) / 2;
+  const ExpCoefficients f(t * t * x);
+  return {x,        elementary::cos(half), half > 0 ? t / 2 * (elementary::sin(half) / half) : 0,
+          t * f.f1, t * t * f.f2,          InverseJacobianCoefficient(x).g};
+}
+
+inline PackAngleSlope<double> large_angle_slope(double x, double t) {
+  const double tt = t * t;
+  const ExpCoefficients f(tt * x);
+  return {tt * t * f.df1, tt * tt * f.df2, InverseJacobianCoefficient(x).dg};
+}
+
+/// The same for any angle below pi, lane by lane.
+inline double any_log_factor(const PackQuaternion<double>& q) {
+  const double s2 = q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z;
+  return s2 > k_small_angle / 4 * (q.w * q.w) ? large_log_factor(q) : log_factor(q);
+}
 inline Four any_log_factor(const PackQuaternion<Four>& q) {
   Four factor = log_factor(q);
   for (int k = 0; k < 4; ++k) {
-    const double s2 = q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k], s = std::sqrt(s2);
-    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k])) factor.set(k, 2 * elementary::atan2(s, q.w[k]) / s);
+    const double s2 = q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k];
+    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k]))
+      factor.set(k, large_log_factor({{q.v.x[k], q.v.y[k], q.v.z[k]}, q.w[k]}));
   }
   return factor;
 }
 
+inline PackAngle<double> any_angle(double x, double t) {
+  return x < k_small_angle ? small_angle(x, t) : large_angle(x, t);
+}
 inline PackAngle<Four> any_angle(Four x, Four t) {
   PackAngle<Four> out = small_angle(x, t);
   for (int k = 0; k < 4; ++k) {
     if (x[k] < k_small_angle) continue;
-    const double half = t[k] * std::sqrt(x[k]) / 2;
-    const ExpCoefficients f(t[k] * t[k] * x[k]);
-    out.cosine.set(k, elementary::cos(half));
-    out.sine.set(k, half > 0 ? t[k] / 2 * (elementary::sin(half) / half) : 0);
-    out.left1.set(k, t[k] * f.f1);
-    out.left2.set(k, t[k] * t[k] * f.f2);
-    out.g.set(k, InverseJacobianCoefficient(x[k]).g);
+    const PackAngle<double> one = large_angle(x[k], t[k]);
+    out.cosine.set(k, one.cosine);
+    out.sine.set(k, one.sine);
+    out.left1.set(k, one.left1);
+    out.left2.set(k, one.left2);
+    out.g.set(k, one.g);
   }
   return out;
 }
 
+inline PackAngleSlope<double> any_angle_slope(double x, double t) {
+  return x < k_small_angle ? small_angle_slope(x, t) : large_angle_slope(x, t);
+}
 inline PackAngleSlope<Four> any_angle_slope(Four x, Four t) {
   PackAngleSlope<Four> out = small_angle_slope(x, t);
   for (int k = 0; k < 4; ++k) {
     if (x[k] < k_small_angle) continue;
-    const double tt = t[k] * t[k];
-    const ExpCoefficients f(tt * x[k]);
-    out.left1.set(k, tt * t[k] * f.df1);
-    out.left2.set(k, tt * tt * f.df2);
-    out.g.set(k, InverseJacobianCoefficient(x[k]).dg);
+    const PackAngleSlope<double> one = large_angle_slope(x[k], t[k]);
+    out.left1.set(k, one.left1);
+    out.left2.set(k, one.left2);
+    out.g.set(k, one.g);
   }
   return out;
 }
 
-inline PackQuaternion<Four> exponential(const PackVector<Four>& psi) {
-  const Four x = dot(psi, psi);
-  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
+template <class P>
+[[gnu::always_inline]] inline PackAngle<P> angle_functions(P x, P t) {
+  return any_above(x, k_small_angle) ? any_angle(x, t) : small_angle(x, t);
+}
+template <class P>
+[[gnu::always_inline]] inline PackAngleSlope<P> angle_slopes(P x, P t) {
+  return any_above(x, k_small_angle) ? any_angle_slope(x, t) : small_angle_slope(x, t);
+}
+
+template <class P>
+PackQuaternion<P> exponential(const PackVector<P>& psi) {
+  const PackAngle<P> angle = angle_functions(dot(psi, psi), P(1));
   return {angle.sine * psi, angle.cosine};
 }
 
-inline PackMatrix<Four> inverse_left_jacobian(const PackVector<Four>& psi) {
-  const Four x = dot(psi, psi);
-  const PackAngle<Four> angle = any_above(x, k_small_angle) ? any_angle(x, Four(1)) : small_angle(x, Four(1));
-  return polynomial_of(psi, double_cross(psi), Four(1), Four(-0.5), angle.g);
+/// T(psi)^-1, where exp(psi + dpsi) = exp(T dpsi) exp(psi).
+template <class P>
+PackMatrix<P> inverse_left_jacobian(const PackVector<P>& psi) {
+  const PackAngle<P> angle = angle_functions(dot(psi, psi), P(1));
+  return polynomial_of(psi, double_cross(psi), P(1), P(-0.5), angle.g);
 }
 
 /// Strains of a pack and what forces need beside them.
@@ -235,13 +274,44 @@ struct PackTangent {
   PackMatrix<P> moment2_x2, moment2_spin1, moment2_spin2;
 };
 
-/// Of sections that do not flow. All in world axes, where [psi] and what is made of it need no rotation:
-///   b = t T(t psi) T(psi)^-1 = t (I + b1 [psi] + b2 [psi]^2)
+/// Derivatives of the section forces by the strains, of sections that do not flow: N and N m^2.
 template <class P>
+struct PackStiffness {
+  PackVector<P> normal_gamma, moment_kappa;  ///< diagonal
+};
+/// Of sections of which some flow (SectionTangent).
+template <class P>
+struct PackFlowing {
+  PackMatrix<P> normal_gamma, normal_kappa, moment_kappa;
+};
+
+/// What sections that flow add: stretch and shear along with curvature. `e` is dn / d(spin2 - spin1) by the
+/// curvature, and its transpose the change of r1 T(psi)^-T m0 by the stretch.
+template <class P>
+[[gnu::always_inline]] inline void add_coupling(const PackMatrix<P>& e, const PackVector<P>& d,
+                                                const PackMatrix<P>& b, PackTangent<P>& k) {
+  const PackMatrix<P> et = transposed(e), x = skew_times(d, e), y = times_skew(et, d);
+  const PackMatrix<P> bt_x = transposed(b) * x, y_b = y * b;
+  const PackMatrix<P> spin1 = bt_x + y - y_b, spin2 = y_b - bt_x;
+  k.force_spin1 = k.force_spin1 - e;
+  k.force_spin2 = k.force_spin2 + e;
+  k.moment2_x2 = k.moment2_x2 + et;
+  k.moment1_x2 = k.moment1_x2 - et;
+  k.moment2_spin1 = k.moment2_spin1 + spin1;
+  k.moment2_spin2 = k.moment2_spin2 + spin2;
+  k.moment1_spin1 = k.moment1_spin1 + (x - spin1);
+  k.moment1_spin2 = k.moment1_spin2 - (x + spin2);
+}
+
+/// `stiffness`: PackStiffness or PackFlowing. All in world axes, where [psi] and what is made of it need no
+/// rotation:
+///   b = t T(t psi) T(psi)^-1 = t (I + b1 [psi] + b2 [psi]^2)
+template <class P, template <class> class Stiffness>
 [[gnu::always_inline]] inline PackTangent<P> pack_tangent(const PackBeam<P>& beam, const PackStrain<P>& s,
                                                           const PackSection<P>& section,
                                                           const PackGradient<P>& gradient,
-                                                          const PackAngleSlope<P>& slope) {
+                                                          const PackAngleSlope<P>& slope,
+                                                          const Stiffness<P>& stiffness) {
   const P half(0.5), x = s.angle.x, t = beam.t, l1 = s.angle.left1, l2 = s.angle.left2, g = s.angle.g;
   const PackMatrix<P> r1 = rotation_matrix(s.e1);
   const PackVector<P> psi = r1 * s.psi, d = s.rs * s.d, n = gradient.force2, p = cross(n, d);
@@ -251,7 +321,7 @@ template <class P>
   const PackMatrix<P> b = polynomial_of(psi, square, t, b1, b2);
   const PackMatrix<P> inverse = polynomial_of(psi, square, P(1), -half, g);
 
-  const PackMatrix<P> cs = spread(s.rs, beam.inverse_length * beam.normal_stiffness);
+  const PackMatrix<P> cs = spread(s.rs, beam.inverse_length * stiffness.normal_gamma);
   const PackMatrix<P> n_spin = times_skew(cs, d) - skew(n);
   const PackMatrix<P> p_spin = -skew_times(d, n_spin);
 
@@ -265,7 +335,7 @@ template <class P>
   const PackMatrix<P> dv =
       g * derivative_of_double_cross(psi, v) - half * skew(v) + outer(two * slope.g * v2, psi);
   const PackMatrix<P> inverse_transposed = transposed(inverse);
-  const PackMatrix<P> bending = spread(r1, beam.inverse_length * beam.bending_stiffness);
+  const PackMatrix<P> bending = spread(r1, beam.inverse_length * stiffness.moment_kappa);
   const PackMatrix<P> h = (dv + inverse_transposed * (dq + bending)) * inverse;
 
   PackTangent<P> k;
@@ -280,6 +350,8 @@ template <class P>
   const PackMatrix<P> p_spin_b = p_spin * b;
   k.moment1_spin1 = p_spin - p_spin_b - k.moment2_spin1;
   k.moment1_spin2 = p_spin_b - k.moment2_spin2;
+  if constexpr (requires { stiffness.normal_kappa; })
+    add_coupling(s.rs * (beam.inverse_length * stiffness.normal_kappa) * transposed(r1) * inverse, d, b, k);
   return k;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
 
 namespace topple {
@@ -30,6 +31,19 @@ namespace {
   return {a.normal + b.normal, a.moment + b.moment};
 }
 
+void set_element(PackBeam<Four>& pack, int k, const PackBeam<double>& one) {
+  set_lane(pack.triad.v, k, unpacked(one.triad.v));
+  pack.triad.w.set(k, one.triad.w);
+  set_lane(pack.triad_matrix, k, unpacked(one.triad_matrix));
+  pack.length.set(k, one.length);
+  pack.inverse_length.set(k, one.inverse_length);
+  pack.t.set(k, one.t);
+  set_lane(pack.normal_stiffness, k, unpacked(one.normal_stiffness));
+  set_lane(pack.bending_stiffness, k, unpacked(one.bending_stiffness));
+  set_lane(pack.offset_gamma, k, unpacked(one.offset_gamma));
+  set_lane(pack.offset_kappa, k, unpacked(one.offset_kappa));
+}
+
 void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& bending) {
   set_lane(beam.normal_stiffness, k, normal);
   set_lane(beam.bending_stiffness, k, bending);
@@ -45,6 +59,14 @@ void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& 
     store(second.force, load(second.force) - force2[k]);
     store(second.moment, load(second.moment) - moment2[k]);
   }
+}
+
+[[gnu::always_inline]] inline void add(const PackTangent<Four>& t,
+                                       const std::array<std::array<int, 4>, 4>& block, BlockLu& lu) {
+  lu.add(block[0], t.force_x2, -t.force_spin1, -t.moment1_x2, t.moment1_spin1);
+  lu.add(block[1], -t.force_x2, -t.force_spin2, t.moment1_x2, t.moment1_spin2);
+  lu.add(block[2], -t.force_x2, t.force_spin1, -t.moment2_x2, t.moment2_spin1);
+  lu.add(block[3], t.force_x2, t.force_spin2, t.moment2_x2, t.moment2_spin2);
 }
 
 }  // namespace
@@ -66,18 +88,8 @@ BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const 
     pack.element[k] = real ? from.element : -1;
     pack.hinged = false;
     pack.damping.set(k, 0);
-    PackBeam<Four>& beam = pack.beam;
-    const Quat triad(element.triad);
-    set_lane(beam.triad.v, k, triad.vec());
-    beam.triad.w.set(k, triad.w());
-    set_lane(beam.triad_matrix, k, element.triad);
-    beam.length.set(k, element.length);
-    beam.inverse_length.set(k, 1 / element.length);
-    beam.t.set(k, (1 + element.s) / 2);
-    set_stiffness(beam, k, real ? element.normal_stiffness : Vec3::Zero(),
-                  real ? element.bending_stiffness : Vec3::Zero());
-    set_lane(beam.offset_gamma, k, Vec3::Zero());
-    set_lane(beam.offset_kappa, k, Vec3::Zero());
+    set_element(pack.beam, k, pack_beam(element));
+    if (!real) set_stiffness(pack.beam, k, Vec3::Zero(), Vec3::Zero());
   }
 }
 
@@ -159,52 +171,41 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const 
         pack_strain(pack.beam, ends_of(motion.position, motion.rotation, pack.i, pack.j));
     PackSection<Four> section = elastic_section(pack.beam, strain);
     if (pack.hinged) respond_to(elements, n, strain, section);
-    PackBeam<Four> beam = pack.beam;
+    PackStiffness<Four> stiffness{pack.beam.normal_stiffness, pack.beam.bending_stiffness};
     if (damped_) {
       section = sum_of(section, viscous(elements, motion, n, strain));
-      const Four stiffer = Four(1) + Four(velocity_factor) * pack.damping;
-      beam.normal_stiffness = stiffer * beam.normal_stiffness;
-      beam.bending_stiffness = stiffer * beam.bending_stiffness;
+      const Four stiffer = Four(1) + Four(velocity_factor) * damping(elements, n);
+      stiffness = {stiffer * stiffness.normal_gamma, stiffer * stiffness.moment_kappa};
     }
-    const PackGradient<Four> gradient = pack_gradient(beam, strain, section);
+    const PackGradient<Four> gradient = pack_gradient(pack.beam, strain, section);
     subtract(gradient, pack.i, pack.j, forces);
-    if (pack.hinged) {
-      add_hinged_tangent(elements, motion, velocity_factor, n, lu);
-      continue;
-    }
-    const PackAngleSlope<Four> slope = any_above(strain.angle.x, k_small_angle)
-                                           ? any_angle_slope(strain.angle.x, pack.beam.t)
-                                           : small_angle_slope(strain.angle.x, pack.beam.t);
-    const PackTangent<Four> t = pack_tangent(beam, strain, section, gradient, slope);
-    lu.add(pack.block[0], t.force_x2, -t.force_spin1, -t.moment1_x2, t.moment1_spin1);
-    lu.add(pack.block[1], -t.force_x2, -t.force_spin2, t.moment1_x2, t.moment1_spin2);
-    lu.add(pack.block[2], -t.force_x2, t.force_spin1, -t.moment2_x2, t.moment2_spin1);
-    lu.add(pack.block[3], t.force_x2, t.force_spin2, t.moment2_x2, t.moment2_spin2);
+    const PackAngleSlope<Four> slope = angle_slopes(strain.angle.x, pack.beam.t);
+    if (pack.hinged)
+      add_hinged_tangent(elements, n, strain, section, gradient, slope, stiffness, lu);
+    else
+      add(pack_tangent(pack.beam, strain, section, gradient, slope, stiffness), pack.block, lu);
   }
 }
 
-void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, const NodeMotion& motion,
-                                   double velocity_factor, std::size_t n, BlockLu& lu) const {
+// `stiffness` of those that do not flow.
+void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, std::size_t n,
+                                   const PackStrain<Four>& strain, const PackSection<Four>& section,
+                                   const PackGradient<Four>& gradient, const PackAngleSlope<Four>& slope,
+                                   const PackStiffness<Four>& stiffness, BlockLu& lu) const {
   const Pack& pack = packs_[n];
+  PackFlowing<Four> all{diagonal(stiffness.normal_gamma), in_all_lanes(packed(Mat3(Mat3::Zero()))),
+                        diagonal(stiffness.moment_kappa)};
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-    Element element = model_->elements[pack.element[k]];
-    if (elements[4 * n + k].hinge == Hinge::none) {
-      const double stiffer = 1 + velocity_factor * pack.damping[k];
-      element.normal_stiffness *= stiffer;
-      element.bending_stiffness *= stiffer;
-    }
-    const int i = pack.i[k], j = pack.j[k];
-    BeamGradient gradient;
-    Mat12 tangent;
-    beam_tangent(
-        element, elements[4 * n + k],
-        beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]),
-        gradient, tangent);
-    lu.add(i, i, tangent.block<6, 6>(0, 0));
-    lu.add(i, j, tangent.block<6, 6>(0, 6));
-    lu.add(j, i, tangent.block<6, 6>(6, 0));
-    lu.add(j, j, tangent.block<6, 6>(6, 6));
+    const Element& element = model_->elements[pack.element[k]];
+    const ElementState& state = elements[4 * n + k];
+    const SectionResponse response = respond(element, state, {lane(strain.gamma, k), lane(strain.kappa, k)});
+    if (!response.flows) continue;
+    const SectionTangent one = section_tangent(element, state.hinge, response);
+    set_lane(all.normal_gamma, k, one.normal_gamma);
+    set_lane(all.normal_kappa, k, one.normal_kappa);
+    set_lane(all.moment_kappa, k, one.moment_kappa);
   }
+  add(pack_tangent(pack.beam, strain, section, gradient, slope, all), pack.block, lu);
 }
 
 double BeamPacks::viscous_work(std::span<const ElementState> elements, const NodeMotion& start,

@@ -71,8 +71,10 @@ class BeamPacks {
   PackSection<Four> viscous(std::span<const ElementState> elements, const NodeMotion& motion,
                             std::size_t pack, const PackStrain<Four>& strain) const;
   Four damping(std::span<const ElementState> elements, std::size_t pack) const;
-  void add_hinged_tangent(std::span<const ElementState> elements, const NodeMotion& motion,
-                          double velocity_factor, std::size_t pack, BlockLu& lu) const;
+  void add_hinged_tangent(std::span<const ElementState> elements, std::size_t pack,
+                          const PackStrain<Four>& strain, const PackSection<Four>& section,
+                          const PackGradient<Four>& gradient, const PackAngleSlope<Four>& slope,
+                          const PackStiffness<Four>& stiffness, BlockLu& lu) const;
   static void store_sections(const Pack& pack, const PackSection<Four>& section,
                              std::vector<SectionForces>& sections);
 

@@ -7,6 +7,7 @@
 #include <new>
 #include <tuple>
 
+#include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/element/damping.h"
 #include "solver/model/excitation.h"
@@ -32,7 +33,7 @@ void BodyMotion::resize(int nodes) {
 
 namespace {
 
-// Those of pairs in `near` become those in `sticks`.
+// Those of pairs in `candidate_pairs` become those in `sticks`.
 void replace_sticks(const std::vector<ElementPair>& near, const std::vector<MemberStick>& sticks,
                     std::vector<MemberStick>& all) {
   const auto own = [&](const MemberStick& stick) {
@@ -52,7 +53,7 @@ BodySystem::BodySystem(const Model& whole, int body) : BodySystem(whole, std::ve
 BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<ElementPair> pairs)
     : model(whole),
       bodies(std::move(which)),
-      near(std::move(pairs)),
+      candidate_pairs(std::move(pairs)),
       index(bodies.front()),
       first(whole.bodies[index].first_node),
       count(0),
@@ -74,7 +75,7 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       yields = yields || std::isfinite(element.capacity[0]);
     }
   }
-  for (const ElementPair& pair : near) {
+  for (const ElementPair& pair : candidate_pairs) {
     member_pairs_.push_back(member_pair(pair));
     const auto& ends = member_pairs_.back().node;
     for (int i = 0; i < 4; ++i)
@@ -108,7 +109,7 @@ void BodySystem::add_nodes() {
       size = std::max(size, (model.node_position[i] - body.centre_of_gravity).norm());
     }
   }
-  for (const ElementPair& pair : near)
+  for (const ElementPair& pair : candidate_pairs)
     for (const int e : {pair.a, pair.b})
       for (const int i : model.elements[e].node)
         if (local(i) < 0) node.push_back(i);
@@ -147,9 +148,9 @@ void BodySystem::add_packs() {
       for (const Plane& plane : model.planes) {
         PlaneReach reach;
         for (int k = 0; k < 4; ++k) {
-          const double own = model.contact_points[std::min(p + k, end - 1)].width;
-          const double width = plane.width > 0 ? plane.width : own, L = (own + width) / 2;
-          reach.place.set(k, plane.normal.dot(plane.point) + L - width / 2);
+          const ContactPoint& point = model.contact_points[std::min(p + k, end - 1)];
+          const double L = contact_length(point, plane);
+          reach.place.set(k, plane.normal.dot(plane.point) + L - contact_width(point, plane) / 2);
           reach.L.set(k, L);
         }
         reaches_.push_back(reach);
@@ -341,7 +342,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   }
   for (const TouchingPair& pair : now.planes) {
     // the printed law has no spring: what it takes in is dissipated
-    if (law.kind != ContactLawKind::printed) sum.contact += penalty_energy(law, pair.depth, pair.L);
+    if (traits(law).stores_energy) sum.contact += penalty_energy(law, pair.depth, pair.L);
     sum.contact += pair.out.stick_energy;
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
@@ -400,7 +401,7 @@ void BodySystem::take_sticks(const State& state) {
 
 void BodySystem::give_sticks(State& state) {
   keeps_sticks_ = false;
-  replace_sticks(near, own_sticks_, state.member_sticks);
+  replace_sticks(candidate_pairs, own_sticks_, state.member_sticks);
 }
 
 void BodySystem::store_stick(const Contacts& now, State& state) {
@@ -411,12 +412,12 @@ void BodySystem::store_stick(const Contacts& now, State& state) {
                 Vec3::Zero());
   }
   for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
-  if (near.empty()) return;
+  if (candidate_pairs.empty()) return;
 
   new_sticks_.clear();
   for (const MemberTouch& touch : now.members.touches)
-    new_sticks_.push_back({near[touch.pair], touch.place, touch.out.stick});
-  replace_sticks(near, new_sticks_, keeps_sticks_ ? own_sticks_ : state.member_sticks);
+    new_sticks_.push_back({candidate_pairs[touch.pair], touch.place, touch.out.stick});
+  replace_sticks(candidate_pairs, new_sticks_, keeps_sticks_ ? own_sticks_ : state.member_sticks);
 }
 
 int BodySystem::element_at(int global) const {

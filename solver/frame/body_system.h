@@ -65,9 +65,9 @@ double load_factor(const Load& load, double t);
 class BodySystem {
  public:
   BodySystem(const Model& model, int body);
-  /// `near`: pairs of elements that may touch; of each at least one belongs to `bodies`, the other too or its
-  /// nodes are held.
-  BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> near);
+  /// `candidate_pairs`: pairs of elements that may touch; of each at least one belongs to `bodies`, the other
+  /// too or its nodes are held.
+  BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs);
 
   /// Applied minus internal force and moment (world axes) at time t: gravity, -m a(t), loads, beams,
   /// anchors, contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills
@@ -144,7 +144,7 @@ class BodySystem {
 
   const Model& model;
   const std::vector<int> bodies;
-  const std::vector<ElementPair> near;
+  const std::vector<ElementPair> candidate_pairs;
   const int index, first;  ///< of the first body: its number, its first node
   std::vector<int> node;   ///< per node of the system, index into the model
   int count;               ///< nodes
@@ -206,7 +206,7 @@ class BodySystem {
   std::vector<PointPack> point_packs_;
   std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
-  std::vector<MemberPair> member_pairs_;  // per pair in `near`
+  std::vector<MemberPair> member_pairs_;  // per pair in `candidate_pairs`
   std::vector<MemberStick> own_sticks_, new_sticks_;
   bool keeps_sticks_ = false;
   BeamPacks beams_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/work.h"
@@ -54,21 +55,20 @@ Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double
 // Of closed and sticking contacts, per node of the system.
 std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) {
   std::vector<Mat3> sum(s.count, Mat3::Zero());
-  const double slope = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
+  const auto [along, across] = stiffness_bound(law);
   for (const ContactPoint& point : s.model.contact_points) {
     const int i = s.local(point.node);
     if (i < 0) continue;
     for (const Plane& plane : s.model.planes) {
       const double L = contact_length(point, plane);
       const Mat3 normal = plane.normal * plane.normal.transpose();
-      sum[i] += law.alpha / L * (slope * normal + k_stick_stiffness * (Mat3::Identity() - normal));
+      sum[i] += law.alpha / L * (along * normal + across * (Mat3::Identity() - normal));
     }
   }
   if (s.model.bodies.size() < 2) return sum;
   for (const auto& own : s.own_elements) {
     const double L = contact_length(s.model, {own.element, own.element});
-    for (const int i : {own.i, own.j})
-      sum[i] += law.alpha / L * (slope + k_stick_stiffness) * Mat3::Identity();
+    for (const int i : {own.i, own.j}) sum[i] += law.alpha / L * (along + across) * Mat3::Identity();
   }
   return sum;
 }
@@ -126,6 +126,7 @@ void add_member_contacts(BodySystem& s, const ContactLaw& law, double h, Integra
 void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Vec3> stick, double h,
                         const IntegratorScratch& w) {
   std::vector<TouchingPair>& touching = s.contacts.planes;
+  const auto at_new_velocity = traits(law).at_new_velocity;
   for (std::size_t k = 0; k < touching.size();) {
     const int i = touching[k].node;
     const Vec3& half = w.trial.velocity[i];
@@ -134,9 +135,9 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Ve
     for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end)
       new (&inputs[end - k]) ContactInput(s.plane_contact(touching[end], w.trial, stick, w.start.position));
     const double mass = s.model.node_mass[s.node[i]], impedance = 2 * mass / h;
-    if (end - k == 1 && law.kind == ContactLawKind::coulomb && s.fixed[i] == 0) {
+    if (end - k == 1 && at_new_velocity && s.fixed[i] == 0) {
       new (&touching[k].out)
-          ContactOutput(coulomb_contact(law, inputs[0], impedance, half + s.force[i] / impedance));
+          ContactOutput(at_new_velocity(law, inputs[0], impedance, half + s.force[i] / impedance));
       s.force[i] = impedance * (inputs[0].velocity - half);
     } else {
       const std::span<TouchingPair> own(touching.data() + k, end - k);
@@ -221,7 +222,7 @@ StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State&
   while (update_hinges(s, w.trial, w.hinges));
   s.ends_here = true;
   s.find_plane_contacts(w.trial, s.contacts.planes);
-  if (!s.near.empty()) add_member_contacts(s, law, h, w);
+  if (!s.candidate_pairs.empty()) add_member_contacts(s, law, h, w);
   add_plane_contacts(s, law, stick, h, w);
   for (int i = 0; i < s.count; ++i)
     if (s.fixed[i]) clear_fixed(s, i, s.force[i], s.moment[i]);
@@ -244,15 +245,8 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
   const int n = s.count;
   const std::size_t count = s.own_elements.size();
   std::vector<Mat12> tangents(count);
-  for (std::size_t e = 0; e < count; ++e) {
-    const Element& element = s.model.elements[s.own_elements[e].element];
-    BeamGradient gradient;
-    const auto& x = s.model.node_position;
-    beam_tangent(
-        element, ElementState{},
-        beam_ends(element, x[element.node[0]], Quat::Identity(), x[element.node[1]], Quat::Identity()),
-        gradient, tangents[e]);
-  }
+  for (std::size_t e = 0; e < count; ++e)
+    tangents[e] = beam_stiffness(s.model, s.model.elements[s.own_elements[e].element]);
   const std::vector<Mat3> held = law ? contact_stiffness(s, *law) : std::vector<Mat3>(n, Mat3::Zero());
   std::vector<Mat3> inverse(n);
   for (int i = 0; i < n; ++i) inverse[i] = s.model.node_inertia[s.node[i]].inverse();

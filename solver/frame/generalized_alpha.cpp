@@ -269,7 +269,7 @@ Attempt ImplicitStep::solve_with_hinges() {
     attempt = solve();
     attempt.iterations += before;
   }
-  if (attempt.outcome != Outcome::converged || s_.near.empty()) return attempt;
+  if (attempt.outcome != Outcome::converged || s_.candidate_pairs.empty()) return attempt;
   const int passed =
       passed_unseen(s_.contacts.members, s_.member_pairs(), w_.start.position, w_.trial.position);
   if (passed >= 0) {

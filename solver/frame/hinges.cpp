@@ -17,8 +17,7 @@ constexpr double k_same = 1e-6;
 
 BeamEnds ends_at(const BodySystem& s, std::size_t k, const BodyMotion& motion) {
   const auto [e, i, j] = s.own_elements[k];
-  const Element& element = s.model.elements[e];
-  return beam_ends(element, motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
+  return beam_ends(motion.position[i], motion.rotation[i], motion.position[j], motion.rotation[j]);
 }
 
 bool yields(const Element& element) {
@@ -48,7 +47,7 @@ class Update {
  private:
   int count() const { return static_cast<int>(s_.elements.size()); }
   const Element& element(int k) const { return model_.elements[s_.own_elements[k].element]; }
-  BeamStrain strain(int k) const { return beam_strain(element(k), element(k).s, ends_at(s_, k, trial_)); }
+  BeamStrain strain(int k) const { return beam_strain(element(k), ends_at(s_, k, trial_)); }
   double loading(int k, const SectionForces& forces, double xi) const {
     return yield_function(element(k), forces_along(forces, element(k).length, element(k).s, xi));
   }
@@ -96,7 +95,7 @@ void Update::find_candidates() const {
   std::vector<HingeStep::Candidate>& found = step_.candidates;
   found.clear();
   found.reserve(2 * count());
-  const bool middle = model_.scheme == Scheme::midpoint;
+  const bool middle = !traits(model_.scheme).hinges_at_ends;
   s_.elastic_energy(trial_, step_.sections);
   for (int k = 0; k < count(); ++k) {
     if (!yields(element(k)) || s_.elements[k].hinge != Hinge::none || step_.formed[k]) continue;
@@ -112,7 +111,7 @@ void Update::find_candidates() const {
 }
 
 bool Update::form() {
-  const bool middle = model_.scheme == Scheme::midpoint;
+  const bool middle = !traits(model_.scheme).hinges_at_ends;
   double greatest = 0;
   std::vector<int>& nodes = step_.nodes;  // where hinges formed just now: what happens beside them shows when
   nodes.clear();                          // solved again
@@ -174,8 +173,8 @@ double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& e
     const Element& element = s.model.elements[e];
     ElementState &now = s.elements[k], &before = state.elements[e];
     if (before.hinge == Hinge::broken || now.hinge == Hinge::none) continue;
-    const BeamStrain strain0 = beam_strain(element, element.s, ends_at(s, k, start));
-    const BeamStrain strain1 = beam_strain(element, element.s, ends_at(s, k, end));
+    const BeamStrain strain0 = beam_strain(element, ends_at(s, k, start));
+    const BeamStrain strain1 = beam_strain(element, ends_at(s, k, end));
     const BeamStrain elastic0 = elastic_strain(before, strain0);
     const SectionForces forces0 = section_forces(element, elastic0);
     const SectionResponse response = respond(element, now, strain1);

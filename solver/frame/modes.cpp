@@ -29,15 +29,8 @@ class Pencil {
  public:
   Pencil(const Model& model, int body) : s_(model, body), tangents_(model.bodies[body].element_count) {
     const Body& b = model.bodies[body];
-    const auto& x = model.node_position;
-    BeamGradient gradient;
-    for (int e = 0; e < b.element_count; ++e) {
-      const Element& element = model.elements[b.first_element + e];
-      const int i = element.node[0], j = element.node[1];
-      beam_tangent(element, ElementState{},
-                   beam_ends(element, x[i], Quat::Identity(), x[j], Quat::Identity()), gradient,
-                   tangents_[e]);
-    }
+    for (int e = 0; e < b.element_count; ++e)
+      tangents_[e] = beam_stiffness(model, model.elements[b.first_element + e]);
     for (int i = 0; i < s_.count; ++i)
       for (int k = 0; k < 6; ++k)
         if (!(s_.fixed[i] >> k & 1)) free_.push_back(6 * i + k);

@@ -4,18 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/contact/contact_law.h"
+#include "solver/frame/find_rest.h"
 #include "solver/frame/hinges.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
 namespace {
-
-constexpr int k_most_rounds = 400;
-constexpr double k_first_sigma = 1e-3;  // s
-constexpr double k_last_sigma = 1e3;    // s
-constexpr double k_balance = 1e-10;     // of the body's weight, greatest force left on a node
-constexpr double k_furthest = 0.25;     // of the body's size: more is falling, not settling
 
 // Force that rounding of the coordinates makes in the stiffest element, N.
 double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
@@ -84,96 +80,120 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
   return !(growth < 1 + 1e-3);  // free sliding has a growth of one
 }
 
+// Of find_rest.
+class FrameRest {
+ public:
+  FrameRest(BodySystem& system, const Parameters& parameters, State& state, IntegratorScratch& scratch)
+      : size(system.size), s_(system), still_(at_rest(parameters)), state_(state), w_(scratch) {
+    s_.load(state, w_.start);
+    s_.load_memory(state);
+    std::fill(w_.start.velocity.begin(), w_.start.velocity.end(), Vec3::Zero());
+    std::fill(w_.start.angular_velocity.begin(), w_.start.angular_velocity.end(), Vec3::Zero());
+    before_ = w_.start;
+    w_.right_hand_side.resize(6 * s_.count);
+    balanced = k_balance * s_.mass * parameters.gravity.norm() + rounding(s_, before_.position);
+    status_.time = state.time;
+    status_.body = s_.index;
+    status_.kind = StepStatus::Kind::not_settled;
+  }
+
+  double unbalance() {
+    s_.lu.set_zero();
+    s_.evaluate_with_tangent(still_, 0, w_.start, state_.stick, w_.start.position, 0);
+    double left = 0;
+    for (int i = 0; i < s_.count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        w_.right_hand_side[6 * i + k] = s_.fixed[i] >> k & 1 ? 0 : s_.force[i][k];
+        w_.right_hand_side[6 * i + 3 + k] = s_.fixed[i] >> (3 + k) & 1 ? 0 : s_.moment[i][k];
+        left = std::max({left, std::abs(w_.right_hand_side[6 * i + k]),
+                         std::abs(w_.right_hand_side[6 * i + 3 + k]) / size});
+      }
+    }
+    s_.store_stick(s_.contacts, state_);
+    s_.load_sticks(state_);
+    return left;
+  }
+
+  Balance look() {
+    if (!s_.loads_grow && update_hinges(s_, w_.start, hinges_)) return Balance::yields;
+    return tips_over(s_, still_, state_, w_) ? Balance::tips_over : Balance::rest;
+  }
+
+  std::optional<RestStep> step(double sigma) {
+    add_mass(s_, sigma);
+    if (const int singular = s_.lu.factor(); singular >= 0) {
+      blame(singular);
+      return std::nullopt;
+    }
+    s_.lu.solve(w_.right_hand_side.data());
+    w_.trial = w_.start;
+    RestStep out{0, 0};
+    for (int i = 0; i < s_.count; ++i) {
+      const Vec3 shift(&w_.right_hand_side[6 * i]), spin(&w_.right_hand_side[6 * i + 3]);
+      w_.trial.position[i] += shift;
+      w_.trial.rotation[i] = exp_quaternion(spin) * w_.trial.rotation[i];
+      w_.trial.rotation[i].normalize();
+      out.length = std::max(out.length, shift.norm());
+      const double travel = (w_.trial.position[i] - before_.position[i]).norm();
+      if (!(travel <= out.furthest)) {
+        out.furthest = travel;
+        blame(i);
+      }
+      if (!std::isfinite(out.furthest + spin.sum())) return std::nullopt;
+    }
+    return out;
+  }
+
+  // Stick springs travel along: evaluates them from where they were.
+  void follow() {
+    s_.find_contacts(still_.contact, w_.trial, state_.stick, w_.start.position, s_.contacts);
+    s_.store_stick(s_.contacts, state_);
+    s_.load_sticks(state_);
+    std::swap(w_.start, w_.trial);
+  }
+
+  // Where it came to rest becomes the state.
+  StepStatus accept() {
+    if (!s_.loads_grow) commit_hinges(s_, before_, w_.start, state_);
+    for (int i = 0; i < s_.count; ++i) {
+      const int g = s_.node[i];
+      state_.position[g] = w_.start.position[i];
+      state_.rotation[g] = w_.start.rotation[i];
+      state_.velocity[g].setZero();
+      state_.angular_velocity[g].setZero();
+    }
+    StepStatus status;
+    status.time = state_.time;
+    return status;
+  }
+
+  // Without rest.
+  const StepStatus& status() const { return status_; }
+
+  const double size;
+  double balanced;
+
+ private:
+  void blame(int node) {
+    status_.node = s_.node[node];
+    status_.body = s_.model.node_body[status_.node];
+    status_.element = s_.element_at(status_.node);
+  }
+
+  BodySystem& s_;
+  const Parameters still_;
+  State& state_;
+  IntegratorScratch& w_;
+  BodyMotion before_;
+  HingeStep hinges_;
+  StepStatus status_;
+};
+
 }  // namespace
 
 StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
-  Parameters still = parameters;
-  still.shakes.clear();
-  still.contact.kind = ContactLawKind::coulomb;
-  still.contact.restitution = 1;  // the normal force of Eq. 2 alone
-  const int n = s.count;
-  s.load(state, w.start);
-  s.load_memory(state);
-  std::fill(w.start.velocity.begin(), w.start.velocity.end(), Vec3::Zero());
-  std::fill(w.start.angular_velocity.begin(), w.start.angular_velocity.end(), Vec3::Zero());
-  const BodyMotion before = w.start;
-  const std::vector<Vec3>& origin = before.position;
-  HingeStep hinges;
-  w.right_hand_side.resize(6 * n);
-  const double weight = s.mass * parameters.gravity.norm();
-  const double balanced = k_balance * weight + rounding(s, origin);
-  double sigma = k_first_sigma;
-  StepStatus status;
-  status.time = state.time;
-  status.body = s.index;
-  status.kind = StepStatus::Kind::not_settled;
-  const auto blame = [&](int node) {
-    status.node = s.node[node];
-    status.body = s.model.node_body[status.node];
-    status.element = s.element_at(status.node);
-  };
-  for (int round = 0; round < k_most_rounds; ++round) {
-    s.lu.set_zero();
-    s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
-    double left = 0;
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        w.right_hand_side[6 * i + k] = s.fixed[i] >> k & 1 ? 0 : s.force[i][k];
-        w.right_hand_side[6 * i + 3 + k] = s.fixed[i] >> (3 + k) & 1 ? 0 : s.moment[i][k];
-        left = std::max({left, std::abs(w.right_hand_side[6 * i + k]),
-                         std::abs(w.right_hand_side[6 * i + 3 + k]) / s.size});
-      }
-    }
-    add_mass(s, sigma);
-    s.store_stick(s.contacts, state);
-    s.load_sticks(state);
-    if (left < balanced && sigma > 1) {
-      if (!s.loads_grow && update_hinges(s, w.start, hinges)) {
-        sigma = k_first_sigma;
-        continue;
-      }
-      if (tips_over(s, still, state, w)) return status;
-      if (!s.loads_grow) commit_hinges(s, before, w.start, state);
-      for (int i = 0; i < n; ++i) {
-        const int g = s.node[i];
-        state.position[g] = w.start.position[i];
-        state.rotation[g] = w.start.rotation[i];
-        state.velocity[g].setZero();
-        state.angular_velocity[g].setZero();
-      }
-      status = {};
-      status.time = state.time;
-      return status;
-    }
-    if (const int singular = s.lu.factor(); singular >= 0) {
-      blame(singular);
-      return status;
-    }
-    s.lu.solve(w.right_hand_side.data());
-    w.trial = w.start;
-    double furthest = 0, step = 0;
-    for (int i = 0; i < n; ++i) {
-      const Vec3 shift(&w.right_hand_side[6 * i]), spin(&w.right_hand_side[6 * i + 3]);
-      w.trial.position[i] += shift;
-      w.trial.rotation[i] = exp_quaternion(spin) * w.trial.rotation[i];
-      w.trial.rotation[i].normalize();
-      step = std::max(step, shift.norm());
-      const double travel = (w.trial.position[i] - origin[i]).norm();
-      if (!(travel <= furthest)) {
-        furthest = travel;
-        blame(i);
-      }
-      if (!std::isfinite(furthest + spin.sum())) return status;
-    }
-    if (furthest > k_furthest * s.size) return status;
-    // stick springs travel along: evaluate them from where they were
-    s.find_contacts(still.contact, w.trial, state.stick, w.start.position, s.contacts);
-    s.store_stick(s.contacts, state);
-    s.load_sticks(state);
-    std::swap(w.start, w.trial);
-    sigma = std::clamp(sigma * (step < 0.01 * s.size ? 2 : 0.5), k_first_sigma / 16, k_last_sigma);
-  }
-  return status;
+  FrameRest body(s, parameters, state, w);
+  return find_rest(body) ? body.accept() : body.status();
 }
 
 }  // namespace topple

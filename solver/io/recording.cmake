@@ -16,6 +16,5 @@ target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/export/export_xdmf.cpp
   ${CMAKE_CURRENT_LIST_DIR}/export/exported_values.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recover.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/common/staged_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/rerun.cpp)
 target_link_libraries(topple_io PUBLIC PkgConfig::HDF5)

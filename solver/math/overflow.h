@@ -1,4 +1,5 @@
-// How numbers that are too large are found together with those that are none.
+// One test for both numbers above k_largest_number (types.h) and NaN or infinity: multiplied by k_overflow,
+// the former become infinite too, and an infinite or undefined term makes a whole sum so.
 #pragma once
 
 #include <limits>
@@ -7,7 +8,7 @@
 
 namespace topple {
 
-/// Times it, what is above k_largest_number is infinite.
+/// x * k_overflow is infinite for |x| > k_largest_number.
 inline constexpr double k_overflow = std::numeric_limits<double>::max() / k_largest_number;
 
 }  // namespace topple

@@ -27,6 +27,20 @@ namespace topple {
   return mul_add(-a, b, c);
 }
 
+/// As those of Four, of one number.
+[[gnu::always_inline]] inline bool any_above(double a, double b) {
+  return !(a <= b);
+}
+[[gnu::always_inline]] inline double with_sign_of(double a, double b) {
+  return std::copysign(a, b);
+}
+[[gnu::always_inline]] inline double choose(bool mask, double a, double b) {
+  return mask ? a : b;
+}
+[[gnu::always_inline]] inline bool holds_where(bool mask, bool where) {
+  return mask || !where;
+}
+
 using FourMask = long long __attribute__((vector_size(32)));  ///< per lane all bits or none
 
 /// Bit k: lane k is set.
@@ -38,6 +52,10 @@ using FourMask = long long __attribute__((vector_size(32)));  ///< per lane all 
 #endif
 }
 inline constexpr unsigned k_all_lanes = 15;
+/// `mask` is set in all lanes in which `where` is.
+[[gnu::always_inline]] inline bool holds_where(FourMask mask, FourMask where) {
+  return bits(mask | ~where) == k_all_lanes;
+}
 
 /// GNU vectors: the same operations in every build type and on every processor. Where compilers do not find
 /// the instruction for several lanes, it is named for AVX2 and FMA; the bits are the same.
@@ -262,6 +280,11 @@ template <class P>
   const P xy = dot(x, r.row[1]), xz = dot(x, r.row[2]), yz = dot(y, r.row[2]);
   return {{{dot(x, r.row[0]), xy, xz}, {xy, dot(y, r.row[1]), yz}, {xz, yz, dot(z, r.row[2])}}};
 }
+/// r m r^T
+template <class P>
+[[gnu::always_inline]] inline PackMatrix<P> spread(const PackMatrix<P>& r, const PackMatrix<P>& m) {
+  return r * m * transposed(r);
+}
 /// [v]^2
 template <class P>
 [[gnu::always_inline]] inline PackMatrix<P> double_cross(const PackVector<P>& v) {
@@ -400,6 +423,11 @@ template <class P, class... Rest>
 }
 [[gnu::always_inline]] inline Vec3 unpacked(const PackVector<double>& v) {
   return {v.x, v.y, v.z};
+}
+inline Mat3 unpacked(const PackMatrix<double>& m) {
+  Mat3 out;
+  for (int row = 0; row < 3; ++row) out.row(row) = unpacked(m.row[row]);
+  return out;
 }
 [[gnu::always_inline]] inline PackVector<Four> operator*(const Mat3& m, const PackVector<Four>& a) {
   const auto row = [&](int i) { return Four(m(i, 0)) * a.x + Four(m(i, 1)) * a.y + Four(m(i, 2)) * a.z; };

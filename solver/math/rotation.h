@@ -69,14 +69,8 @@ inline Vec3 log_quaternion(const Quat& rotation) {
   return 2 * elementary::atan2(s, q.w()) / s * q.vec();
 }
 
-/// Left Jacobian T: exp(psi + dpsi) = exp(T dpsi) exp(psi).  T = I + f1 [psi] + f2 [psi]^2.
-inline Mat3 left_jacobian(const Vec3& psi) {
-  const ExpCoefficients f(psi.squaredNorm());
-  const Mat3 k = skew(psi);
-  return Mat3::Identity() + f.f1 * k + f.f2 * k * k;
-}
-
-/// g of T^-1 = I - [psi]/2 + g [psi]^2 and its derivative by x = |psi|^2; |psi| < 2 pi.
+/// g of T^-1 = I - [psi]/2 + g [psi]^2, the inverse of T = I + f1 [psi] + f2 [psi]^2 in
+/// exp(psi + dpsi) = exp(T dpsi) exp(psi), and its derivative by x = |psi|^2; |psi| < 2 pi.
 ///   g = (1 - (a/2) cot(a/2)) / a^2, with (a/2) cot(a/2) = f0 / (2 f1).
 struct InverseJacobianCoefficient {
   double g, dg;
@@ -93,11 +87,5 @@ struct InverseJacobianCoefficient {
     }
   }
 };
-
-inline Mat3 inverse_left_jacobian(const Vec3& psi) {
-  const InverseJacobianCoefficient c(psi.squaredNorm());
-  const Mat3 k = skew(psi);
-  return Mat3::Identity() - 0.5 * k + c.g * k * k;
-}
 
 }  // namespace topple

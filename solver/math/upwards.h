@@ -1,5 +1,6 @@
-// The normal of a level plane, which the compiler knows: what lies across it has two parts. Written for any
-// normal, sums over contacts cost less where it is this one, and come out the same.
+// Vector operations with a unit normal n of a plane, once for any n and once for n = (0, 0, 1), the type
+// Upwards, where the compiler leaves out products with 0 and 1. A template over the type of the normal gives
+// the same bits with both.
 #pragma once
 
 #include "solver/math/pack.h"
@@ -59,7 +60,7 @@ template <class P>
   return mul_add(f, a, g * n);
 }
 
-/// What of v lies across n.
+/// v - (n . v) n
 template <class P>
 [[gnu::always_inline]] inline PackPlanar<P> tangential(Upwards, const PackVector<P>& v) {
   return {v.x, v.y};
@@ -68,7 +69,7 @@ template <class P>
 [[gnu::always_inline]] inline PackVector<P> tangential(const PackVector<P>& n, const PackVector<P>& v) {
   return mul_add(-dot(n, v), n, v);
 }
-/// v, of which nothing lies along n.
+/// v itself, given that n . v = 0.
 template <class P>
 [[gnu::always_inline]] inline PackPlanar<P> lying(Upwards, const PackVector<P>& v) {
   return {v.x, v.y};

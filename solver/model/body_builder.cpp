@@ -20,12 +20,6 @@ Mat3 member_triad(const Vec3& from, const Vec3& to, Vec3 up) {
   return triad;
 }
 
-// Integration point of element `e` of a member while it is elastic.
-double elastic_place(Scheme scheme, int e) {
-  if (scheme != Scheme::asi_gauss) return 0;
-  return e % 2 == 0 ? k_gauss_shift : -k_gauss_shift;
-}
-
 Eigen::Vector4d capacity(const Section& section, const Material& material) {
   if (!(section.zy > 0 && section.zz > 0 && section.zt > 0))
     throw BuildError("section", "section \"" + section.name + "\" of yielding material \"" + material.name +
@@ -117,7 +111,7 @@ std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, co
       element.node[0] = nodes[i];
       element.node[1] = nodes[i + 1];
       element.member = static_cast<int>(model_.members.size());
-      element.s = elastic_place(model_.scheme, e);
+      element.s = traits(model_.scheme).s[e % 2];
       model_.elements.push_back(element);
       ++body().element_count;
     }

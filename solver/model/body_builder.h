@@ -48,8 +48,4 @@ class BodyBuilder {
   std::map<std::tuple<long long, long long, long long>, int> places_;
 };
 
-/// Integration point of the first element of a subset: the member's stress points fall on its Gauss points,
-/// r = 1 - 2/sqrt(3) there, mirrored in the second.
-inline constexpr double k_gauss_shift = 0.15470053837925152;  // 2/sqrt(3) - 1
-
 }  // namespace topple

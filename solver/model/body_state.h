@@ -4,15 +4,29 @@
 #include <cstdint>
 
 #include "solver/math/types.h"
+#include "solver/model/table.h"
 
 namespace topple {
 
 /// rigid: six unknowns. elastic: rigid motion and the lowest modes of small deformations in the body's frame.
 /// frame: every node, with large rotations, hinges and fracture.
-enum class Rung : std::uint8_t { rigid, elastic, frame };
+enum class ModelLevel : std::uint8_t { rigid, elastic, frame };
 
-/// Why a body stands on its rung.
-enum class RungReason : std::uint8_t {
+struct LevelTraits {
+  ModelLevel kind;
+  const char* word;
+  bool has_modes, has_stresses;
+  bool moves_nodes;  ///< by themselves: they are what is computed
+};
+inline constexpr LevelTraits k_model_levels[] = {{ModelLevel::rigid, "rigid", false, false, false},
+                                                 {ModelLevel::elastic, "elastic", true, true, false},
+                                                 {ModelLevel::frame, "frame", false, true, true}};
+constexpr const LevelTraits& traits(ModelLevel level) {
+  return row_of(k_model_levels, level);
+}
+
+/// Why a body stands on its level.
+enum class LevelReason : std::uint8_t {
   asked,              ///< the scene or an edit names it
   motion,             ///< nothing but motion is asked for
   stress,             ///< stresses are asked for
@@ -23,15 +37,15 @@ enum class RungReason : std::uint8_t {
   calm                ///< nothing of that is left, and no hinge has formed
 };
 
-inline constexpr int k_modes = 12;  ///< of the rung elastic, at most
+inline constexpr int k_modes = 12;  ///< of the level elastic, at most
 using Amplitudes = Eigen::Array<double, k_modes, 1>;
 
-/// Part of State, one per body. On the rung `frame` the nodes hold the motion and only `rung` and `reason`
+/// Part of State, one per body. On the level `frame` the nodes hold the motion and only `level` and `reason`
 /// mean something; on the others they follow from this (place_nodes). Modes are those of ElasticBasis; zero
-/// on the rung rigid.
+/// on the level rigid.
 struct BodyState {
-  Rung rung = Rung::frame;
-  RungReason reason = RungReason::asked;
+  ModelLevel level = ModelLevel::frame;
+  LevelReason reason = LevelReason::asked;
   double calm_since = -1;                     ///< s, of a body that may come down soon; -1: it may not
   Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
   Quat rotation = Quat::Identity();           ///< reference to current
@@ -39,7 +53,7 @@ struct BodyState {
   Vec3 angular_velocity = Vec3::Zero();       ///< rad/s, material axes
   Amplitudes amplitude = Amplitudes::Zero();  ///< m sqrt(kg)
   Amplitudes rate = Amplitudes::Zero();       ///< m sqrt(kg)/s
-  double part = 0;  ///< s, of a step that the rung rigid tries next; 0: none was yet
+  double substep = 0;  ///< s, of a step that the level rigid tries next; 0: none was yet
   // What acts at this instant: gravity, floor and contacts.
   Vec3 force = Vec3::Zero();             ///< N
   Vec3 moment = Vec3::Zero();            ///< N m about the centre of gravity, floor's axes

@@ -10,57 +10,146 @@
 namespace topple {
 namespace {
 
-// Of amplitude 1.
-double sine(const Shake& shake, double t) {
+constexpr double k_record_period = 1;  // s, what a record is taken to have; it has none of its own
+constexpr double k_sweep = 10;         // s, of a sweep that was a sine, to ten times its frequency
+constexpr double k_highest = 1e3;      // Hz, legal
+
+constexpr PulseTraits k_shapes[] = {
+    {.kind = Shake::Shape::half_sine,
+     .word = "half-sine",
+     .value = [](double t, double T) { return elementary::sin(k_pi * t / T); },
+     .kinks = {},
+     .velocity = 2 / k_pi,
+     .cycles = 0.5},
+    {.kind = Shake::Shape::full_sine,
+     .word = "full-sine",
+     .value = [](double t, double T) { return elementary::sin(2 * k_pi * t / T); },
+     .kinks = {},
+     .velocity = 1 / k_pi,
+     .cycles = 1},
+    {.kind = Shake::Shape::rectangle,
+     .word = "rectangle",
+     .value = [](double, double) { return 1.; },
+     .kinks = {},
+     .velocity = 1,
+     .cycles = 0.5},
+};
+
+Vec3 periodic(const Shake& shake, double t) {
   const double turns = shake_turns(shake, t);
   const double cycles =
-      shake.kind == Shake::Kind::sweep ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
-  if (cycles > 0 && turns >= cycles) return 0;
+      traits(shake.kind).sweeps ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
+  if (cycles > 0 && turns >= cycles) return Vec3::Zero();
   double window = 1;
   if (shake.taper > 0) {
     const auto rise = [](double x) { return x >= 1 ? 1 : (1 - elementary::cos(k_pi * x)) / 2; };
     window = rise(turns / shake.taper);
     if (cycles > 0) window *= rise((cycles - turns) / shake.taper);
   }
-  return window * elementary::sin(2 * k_pi * turns);
+  return window * elementary::sin(2 * k_pi * turns) * shake_amplitude(shake, t);
 }
 
-double pulse(const Shake& shake, double tau) {
-  if (tau >= shake.duration) return 0;
-  switch (shake.shape) {
-    case Shake::Shape::half_sine:
-      return elementary::sin(k_pi * tau / shake.duration);
-    case Shake::Shape::full_sine:
-      return elementary::sin(2 * k_pi * tau / shake.duration);
-    case Shake::Shape::rectangle:
-      return 1;
-  }
-  return 0;
+Vec3 pulse(const Shake& shake, double t) {
+  const double since = t - shake.start;
+  if (since >= shake.duration) return Vec3::Zero();
+  return traits(shake.shape).value(since, shake.duration) * shake_amplitude(shake, t);
 }
+
+Vec3 recorded(const Shake& shake, double t) {
+  return shake_scale(shake, t) * acceleration(*shake.record, t - shake.start);
+}
+
+double end_of_sine(const Shake& shake) {
+  if (shake.cycles == 0) return std::numeric_limits<double>::infinity();
+  return shake.start + shake.turned + (shake.cycles - shake.turns) / shake.frequency;
+}
+
+double end_by_duration(const Shake& shake) {
+  return shake.start + shake.duration;
+}
+
+double period_now(const Shake& shake, double t) {
+  return 1 / shake_frequency(shake, t);
+}
+
+constexpr ShakeTraits k_kinds[] = {
+    {.kind = Shake::Kind::sine,
+     .word = "sine",
+     .has_amplitude = true,
+     .has_frequency = true,
+     .has_duration = false,
+     .sweeps = false,
+     .acceleration = periodic,
+     .end = end_of_sine,
+     .period = period_now,
+     .complete = nullptr},
+    {.kind = Shake::Kind::sweep,
+     .word = "sweep",
+     .has_amplitude = true,
+     .has_frequency = true,
+     .has_duration = true,
+     .sweeps = true,
+     .acceleration = periodic,
+     .end = end_by_duration,
+     .period = period_now,
+     .complete =
+         [](Shake& shake) {
+           shake.duration = k_sweep;
+           shake.last_frequency = std::min(10 * shake.frequency, k_highest);
+         }},
+    {.kind = Shake::Kind::pulse,
+     .word = "pulse",
+     .has_amplitude = true,
+     .has_frequency = false,
+     .has_duration = true,
+     .sweeps = false,
+     .acceleration = pulse,
+     .end = end_by_duration,
+     .period = [](const Shake& shake, double) { return shake.duration; },
+     .complete = [](Shake& shake) { shake.duration = 0.5 / shake.frequency; }},
+    {.kind = Shake::Kind::record,
+     .word = "record",
+     .has_amplitude = false,
+     .has_frequency = false,
+     .has_duration = false,
+     .sweeps = false,
+     .acceleration = recorded,
+     .end = [](const Shake& shake) { return shake.start + shake.record->duration; },
+     .period = [](const Shake&, double) { return k_record_period; },
+     .complete = nullptr},
+};
 
 }  // namespace
 
-double Passage::share(double t) const {
+std::span<const PulseTraits> pulse_shapes() {
+  return k_shapes;
+}
+
+std::span<const ShakeTraits> shake_kinds() {
+  return k_kinds;
+}
+
+double ParameterRamp::share(double t) const {
   if (t >= since + over) return 1;
   return (1 - elementary::cos(k_pi * std::max(t - since, 0.) / over)) / 2;
 }
 
 Vec3 shake_amplitude(const Shake& shake, double t) {
   Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
-  if (shake.passage.over == 0) return now;
-  const double share = shake.passage.share(t);
+  if (shake.ramp.over == 0) return now;
+  const double share = shake.ramp.share(t);
   return (1 - share) * shake.amplitude_before + share * now;
 }
 
 double shake_scale(const Shake& shake, double t) {
   const double now = shake.on ? shake.scale : 0;
-  if (shake.passage.over == 0) return now;
-  const double share = shake.passage.share(t);
+  if (shake.ramp.over == 0) return now;
+  const double share = shake.ramp.share(t);
   return (1 - share) * shake.scale_before + share * now;
 }
 
 double shake_turns(const Shake& shake, double t) {
-  if (shake.kind == Shake::Kind::sweep) {
+  if (traits(shake.kind).sweeps) {
     const double octaves = elementary::log(shake.last_frequency / shake.frequency);
     if (octaves == 0) return shake.frequency * (t - shake.start);
     return shake.frequency * shake.duration / octaves *
@@ -70,23 +159,13 @@ double shake_turns(const Shake& shake, double t) {
 }
 
 double shake_frequency(const Shake& shake, double t) {
-  if (shake.kind != Shake::Kind::sweep) return shake.frequency;
+  if (!traits(shake.kind).sweeps) return shake.frequency;
   const double share = std::clamp((t - shake.start) / shake.duration, 0., 1.);
   return shake.frequency * elementary::pow(shake.last_frequency / shake.frequency, share);
 }
 
 double shake_end(const Shake& shake) {
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-      if (shake.cycles == 0) return std::numeric_limits<double>::infinity();
-      return shake.start + shake.turned + (shake.cycles - shake.turns) / shake.frequency;
-    case Shake::Kind::sweep:
-    case Shake::Kind::pulse:
-      return shake.start + shake.duration;
-    case Shake::Kind::record:
-      return shake.start + shake.record->duration;
-  }
-  return 0;
+  return traits(shake.kind).end(shake);
 }
 
 double sample_interval(const std::vector<Shake>& shakes, double t) {
@@ -98,17 +177,7 @@ double sample_interval(const std::vector<Shake>& shakes, double t) {
 }
 
 Vec3 shake_acceleration(const Shake& shake, double t) {
-  if (t < shake.start) return Vec3::Zero();
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-    case Shake::Kind::sweep:
-      return sine(shake, t) * shake_amplitude(shake, t);
-    case Shake::Kind::pulse:
-      return pulse(shake, t - shake.start) * shake_amplitude(shake, t);
-    case Shake::Kind::record:
-      return shake_scale(shake, t) * acceleration(*shake.record, t - shake.start);
-  }
-  return Vec3::Zero();
+  return t < shake.start ? Vec3(Vec3::Zero()) : traits(shake.kind).acceleration(shake, t);
 }
 
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {

@@ -1,10 +1,44 @@
 // Motion of the floor.
 #pragma once
 
+#include <span>
+
 #include "solver/math/types.h"
 #include "solver/model/parameters.h"
+#include "solver/model/table.h"
 
 namespace topple {
+
+/// A form of pulse. A new one is a Shake::Shape and a row of the table in excitation.cpp.
+struct PulseTraits {
+  Shake::Shape kind;
+  const char* word;                     ///< in scenes
+  double (*value)(double t, double T);  ///< over the amplitude, at time t in 0..T of its duration T, s
+  std::span<const double> kinks;  ///< t/T within the pulse at which value or slope jump: steps end there
+  double velocity;                ///< greatest that it gives the floor, over amplitude and T
+  double cycles;                  ///< of a sine that pushes as long in one direction
+};
+std::span<const PulseTraits> pulse_shapes();
+inline const PulseTraits& traits(Shake::Shape shape) {
+  return row_of(pulse_shapes(), shape);
+}
+
+/// A kind of shake.
+struct ShakeTraits {
+  Shake::Kind kind;
+  const char* word;  ///< in scenes
+  // Which of its numbers it has; without amplitude and direction it is a record with a scale.
+  bool has_amplitude, has_frequency, has_duration;
+  bool sweeps;                                   ///< the frequency goes from `frequency` to `last_frequency`
+  Vec3 (*acceleration)(const Shake&, double t);  ///< m/s^2 from its start on
+  double (*end)(const Shake&);                   ///< s
+  double (*period)(const Shake&, double t);      ///< s, of its motion at time t
+  void (*complete)(Shake&);  ///< chooses what a sine lacks that becomes one; null: nothing
+};
+std::span<const ShakeTraits> shake_kinds();
+inline const ShakeTraits& traits(Shake::Kind kind) {
+  return row_of(shake_kinds(), kind);
+}
 
 /// Acceleration of one shake at time t, m/s^2, world axes: A sin(2 pi n) times a smooth taper, n =
 /// shake_turns; a pulse; or scale times a record (accelerogram.h). Allocates nothing.

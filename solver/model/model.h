@@ -10,6 +10,7 @@
 
 #include "solver/math/types.h"
 #include "solver/model/section.h"
+#include "solver/model/table.h"
 
 namespace topple {
 
@@ -74,7 +75,7 @@ struct Body {
   std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
   std::vector<std::array<int, 4>> panels;       ///< nodes of flat sheets, for pictures only
-  std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the rung elastic
+  std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the level elastic
   double first_frequency =
       0;                ///< rad/s, of its first elastic mode (damping.h); 0: not known, it has no damping
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
@@ -88,15 +89,42 @@ struct Plane {
   double width;  ///< m, contact width; 0: that of the touching member
 };
 
+/// Of a plane where `point` touches it, m.
+inline double contact_width(const ContactPoint& point, const Plane& plane) {
+  return plane.width > 0 ? plane.width : point.width;
+}
 /// L of Eq. 2 of a point and a plane: the mean of their contact widths, m.
 inline double contact_length(const ContactPoint& point, const Plane& plane) {
-  return (point.width + (plane.width > 0 ? plane.width : point.width)) / 2;
+  return (point.width + contact_width(point, plane)) / 2;
 }
 
-/// Where integration points stand (Eq. 1). asi_gauss: two by two elements have their stress points on the
-/// Gauss points of the pair, asi: in the middle; both have their hinges at the elements' ends (plasticity.h).
-/// midpoint: both in the middle.
 enum class Scheme { asi_gauss, asi, midpoint };
+
+/// Place s of the stress points that makes those of two elements the Gauss points of the pair: 2/sqrt(3) - 1
+/// (Eq. 1).
+inline constexpr double k_gauss_shift = 0.15470053837925152;
+
+/// Where integration points of a member's elements stand.
+struct SchemeTraits {
+  Scheme kind;
+  const char* word;     ///< in scenes
+  double s[2];          ///< elastic stress points of the first and second of each two elements, -1..1
+  bool hinges_at_ends;  ///< of the elements (plasticity.h), otherwise in the middle
+  const char* about;    ///< of its stresses and hinges, for legends
+};
+/// A new one is a Scheme and a row here.
+inline constexpr SchemeTraits k_schemes[] = {
+    {Scheme::asi_gauss,
+     "asi-gauss",
+     {k_gauss_shift, -k_gauss_shift},
+     true,
+     "ASI-Gauss: stresses at the Gauss points of two elements, hinges at ends"},
+    {Scheme::asi, "asi", {0, 0}, true, "ASI: stresses at midpoints, hinges at ends"},
+    {Scheme::midpoint, "midpoint", {0, 0}, false, "midpoint: stresses and hinges at midpoints"},
+};
+constexpr const SchemeTraits& traits(Scheme scheme) {
+  return row_of(k_schemes, scheme);
+}
 
 /// A spring along the line from a point fixed to the floor's frame to a point of a body (anchor.h).
 struct Anchor {

@@ -24,27 +24,27 @@ double sum_of(const ContactLaw& law) {
   return sum(alpha, q, friction, friction_static, restitution, normal_speed, slip_speed);
 }
 
-double sum_of(const Passage& passage) {
-  const auto& [since, over] = passage;
+double sum_of(const ParameterRamp& ramp) {
+  const auto& [since, over] = ramp;
   return sum(since, over);
 }
 
 double sum_of(const Shake& shake) {
   const auto& [kind, amplitude, frequency, last_frequency, direction, start, on, cycles, taper,
                initial_velocity, shape, duration, record, scale, turned, turns, amplitude_before,
-               scale_before, passage] = shake;
+               scale_before, ramp] = shake;
   return sum(amplitude, frequency, last_frequency, start, cycles, taper, duration, scale, turned, turns,
              scale_before) +
-         sum_of(direction) + sum_of(amplitude_before) + sum_of(passage);
+         sum_of(direction) + sum_of(amplitude_before) + sum_of(ramp);
 }
 
 }  // namespace
 
 bool is_finite(const Parameters& parameters) {
-  const auto& [contact, contact_before, contact_passage, shakes, models, damping, anchors, want_stress,
-               gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
-               finer_parts] = parameters;
-  double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_passage) + sum_of(gravity) +
+  const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, gravity,
+               integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance, finer_parts] =
+      parameters;
+  double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
                  sum(spectral_radius, beta, gamma, time_step, tolerance, finer_parts);
   for (const Shake& shake : shakes) total += sum_of(shake);
   for (const double ratio : damping) total += sum(ratio);

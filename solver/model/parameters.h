@@ -10,7 +10,8 @@ namespace topple {
 
 struct Accelerogram;
 
-enum class ContactLawKind { coulomb, paper, printed };
+/// Contact laws (method and traits: contact_law.h). Checkpoints hold these numbers.
+enum class ContactLawKind { coulomb = 0, paper = 1, printed = 2 };
 
 /// Penalty contact (Eqs. 2 and 3), see contact_law.h.
 struct ContactLaw {
@@ -30,12 +31,12 @@ struct ContactLaw {
 };
 
 /// The way from earlier values to those edited while it runs: what jumped would put energy in.
-struct Passage {
+struct ParameterRamp {
   double since = 0;  ///< s
-  double over = 0;   ///< s; 0: no passage
+  double over = 0;   ///< s; 0: no ramp
   /// Share of the new values at time t: 0..1, smooth.
   double share(double t) const;
-  bool operator==(const Passage&) const = default;
+  bool operator==(const ParameterRamp&) const = default;
 };
 
 /// One floor acceleration; several add up.
@@ -63,31 +64,22 @@ struct Shake {
   double turns = 0;                      ///< cycles passed by then
   Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, along its direction
   double scale_before = 1;
-  Passage passage;  ///< from them to `amplitude` along `direction` and to `scale`
+  ParameterRamp ramp;  ///< from them to `amplitude` along `direction` and to `scale`
   bool operator==(const Shake&) const = default;
 };
 
-/// What a body is computed as (method: ladder.h). automatic: the least that answers what is asked.
+/// What a body is computed as (method: model_level.h). automatic: the least that answers what is asked.
 enum class BodyModel { automatic, rigid, elastic, frame };
 
+/// Of frames (method: integrator.h).
 enum class Integrator { generalized_alpha, central_difference, newmark };
-
-/// Its steps have a limit of stability, and need no equations solved.
-inline bool is_explicit(Integrator integrator) {
-  return integrator == Integrator::central_difference;
-}
-
-/// Of the number of a choice of `run.integrator`, whose first is auto.
-inline Integrator chosen_integrator(int choice) {
-  return static_cast<Integrator>(choice > 0 ? choice - 1 : 0);
-}
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene/scene_keys.h, one table for scene
 /// files, sliders and fuzzers.
 struct Parameters {
   ContactLaw contact;
-  ContactLaw contact_before;  ///< until an edit
-  Passage contact_passage;    ///< from it to `contact`
+  ContactLaw contact_before;   ///< until an edit
+  ParameterRamp contact_ramp;  ///< from it to `contact`
   std::vector<Shake> shakes;
   std::vector<BodyModel> models;  ///< one per body; empty: all frame
   std::vector<double> damping;    ///< one per body: ratio to critical at its first elastic mode; empty: 0

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
+#include "solver/frame/integrator.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 
@@ -14,237 +15,219 @@ namespace {
 
 // Periods of the slowest bounce. Over a single one, an alpha made 25 times as great still lifts what stands
 // on the floor off it; over two, one made 100 times as great does not.
-constexpr double k_contact_passage = 2;
+constexpr double k_contact_ramp = 2;
 
-constexpr double k_sweep = 10;     // s, of a sweep that was a sine, to ten times its frequency
-constexpr double k_highest = 1e3;  // Hz, legal
-
-constexpr double k_record_period = 1;  // s, what a record is taken to have; it has none of its own
-
-double period(const Shake& shake, double t) {
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-    case Shake::Kind::sweep:
-      return 1 / shake_frequency(shake, t);
-    case Shake::Kind::pulse:
-      return shake.duration;
-    case Shake::Kind::record:
-      return k_record_period;
-  }
-  return 0;
-}
-
-void start_passage(Shake& shake, double t) {
+void start_ramp(Shake& shake, double t) {
   if (t <= shake.start) return;
   shake.amplitude_before = shake_amplitude(shake, t);
   shake.scale_before = shake_scale(shake, t);
-  shake.passage = {t, period(shake, t) / 4};
+  shake.ramp = {t, traits(shake.kind).period(shake, t) / 4};
 }
 
-void start_contact_passage(const ContactLaw& law, const Model& model, double t, Parameters& parameters) {
+void start_contact_ramp(const ContactLaw& law, const Model& model, double t, Parameters& parameters) {
   const ContactLaw before = contact_law(parameters, t);
   const double period = std::max(contact_period(model, before, parameters.gravity),
                                  contact_period(model, law, parameters.gravity));
   parameters.contact = law;
   parameters.contact_before = before;
-  parameters.contact_passage = {t, k_contact_passage * period};
+  parameters.contact_ramp = {t, k_contact_ramp * period};
+}
+
+void begin_anew(Shake& shake, double t) {
+  shake.start = t;
+  shake.turned = shake.turns = 0;
+  shake.ramp = {};
+  shake.initial_velocity = Shake::Start::rest;
+}
+
+Vec3 number(double x) {
+  return {x, 0, 0};
+}
+
+bool always(const Model&, const Parameters&, int) {
+  return true;
+}
+
+template <bool ShakeTraits::*has>
+bool of_shakes_with(const Model&, const Parameters& p, int index) {
+  return traits(p.shakes[index].kind).*has;
+}
+
+template <auto value>
+Vec3 of_shake(const Parameters& p, int index) {
+  return number(p.shakes[index].*value);
+}
+
+template <auto value>
+void set_through_ramp(const Edit& edit, const Model&, double t, Parameters& p) {
+  Shake& shake = p.shakes[edit.shake];
+  start_ramp(shake, t);
+  shake.*value = edit.value.x();
+}
+
+void set_type(const Edit& edit, const Model&, double t, Parameters& p) {
+  Shake& shake = p.shakes[edit.shake];
+  const ShakeTraits &before = traits(shake.kind), &after = shake_kinds()[static_cast<int>(edit.value.x())];
+  if (after.complete && before.has_frequency && !before.has_duration) after.complete(shake);
+  shake.kind = after.kind;
+  begin_anew(shake, t);
+}
+
+Vec3 frequencies(const Parameters& p, int index) {
+  const Shake& shake = p.shakes[index];
+  return {shake.frequency, traits(shake.kind).sweeps ? shake.last_frequency : 0, 0};
+}
+
+void set_frequency(const Edit& edit, const Model&, double t, Parameters& p) {
+  Shake& shake = p.shakes[edit.shake];
+  if (traits(shake.kind).sweeps) {
+    shake.last_frequency = edit.value.y();
+    begin_anew(shake, t);
+  } else if (t > shake.start) {
+    shake.turns = shake_turns(shake, t);
+    shake.turned = t - shake.start;
+  }
+  shake.frequency = edit.value.x();
+}
+
+void set_direction(const Edit& edit, const Model&, double t, Parameters& p) {
+  start_ramp(p.shakes[edit.shake], t);
+  p.shakes[edit.shake].direction = edit.value.stableNormalized();
+}
+
+bool has_restitution(const Model&, const Parameters& p, int) {
+  return traits(p.contact).has_restitution;
+}
+
+template <double ContactLaw::*value>
+Vec3 of_contact(const Parameters& p, int) {
+  return number(p.contact.*value);
+}
+
+template <double ContactLaw::*value>
+void set_contact(const Edit& edit, const Model& model, double t, Parameters& p) {
+  ContactLaw law = p.contact;
+  law.*value = edit.value.x();
+  start_contact_ramp(law, model, t, p);
+}
+
+using K = Edit::Key;
+using Of = Edit::Of;
+constexpr EditTraits k_edits[] = {
+    {K::on, Of::shake, "on", false, always, of_shake<&Shake::on>,
+     [](const Edit& edit, const Model&, double t, Parameters& p) {
+       start_ramp(p.shakes[edit.shake], t);
+       p.shakes[edit.shake].on = edit.value.x() != 0;
+     }},
+    {K::type, Of::shake, "type", false, of_shakes_with<&ShakeTraits::has_amplitude>,
+     [](const Parameters& p, int index) { return number(place_of(shake_kinds(), p.shakes[index].kind)); },
+     set_type},
+    {K::frequency, Of::shake, "frequency", false, of_shakes_with<&ShakeTraits::has_frequency>, frequencies,
+     set_frequency},
+    {K::amplitude, Of::shake, "amplitude", false, of_shakes_with<&ShakeTraits::has_amplitude>,
+     of_shake<&Shake::amplitude>, set_through_ramp<&Shake::amplitude>},
+    {K::direction, Of::shake, "direction", false, of_shakes_with<&ShakeTraits::has_amplitude>,
+     [](const Parameters& p, int index) { return p.shakes[index].direction; }, set_direction},
+    {K::duration, Of::shake, "duration", false, of_shakes_with<&ShakeTraits::has_duration>,
+     of_shake<&Shake::duration>,
+     [](const Edit& edit, const Model&, double, Parameters& p) {
+       p.shakes[edit.shake].duration = edit.value.x();
+     }},
+    {K::scale, Of::shake, "scale", false,
+     [](const Model&, const Parameters& p, int index) { return !traits(p.shakes[index].kind).has_amplitude; },
+     of_shake<&Shake::scale>, set_through_ramp<&Shake::scale>},
+    {K::law, Of::contact, "law", true, always,
+     [](const Parameters& p, int) { return number(place_of(contact_laws(), p.contact.kind)); },
+     [](const Edit& edit, const Model&, double, Parameters& p) {
+       p.contact.kind = p.contact_before.kind = contact_laws()[static_cast<int>(edit.value.x())].kind;
+     }},
+    {K::alpha, Of::contact, "alpha", false, always, of_contact<&ContactLaw::alpha>,
+     set_contact<&ContactLaw::alpha>},
+    {K::q, Of::contact, "q", false, always, of_contact<&ContactLaw::q>, set_contact<&ContactLaw::q>},
+    {K::friction, Of::contact, "friction", false, always, of_contact<&ContactLaw::friction>,
+     set_contact<&ContactLaw::friction>},
+    {K::friction_static, Of::contact, "friction_static", true, has_restitution,
+     [](const Parameters& p, int) { return number(p.contact.friction + p.contact.excess()); },
+     set_contact<&ContactLaw::friction_static>},
+    {K::restitution, Of::contact, "restitution", true, has_restitution, of_contact<&ContactLaw::restitution>,
+     set_contact<&ContactLaw::restitution>},
+    {K::model, Of::body, "model", true,
+     [](const Model& model, const Parameters&, int b) { return can_be(model, b, BodyModel::rigid); },
+     [](const Parameters& p, int b) {
+       return number(place_of(body_models(), p.models.empty() ? BodyModel::frame : p.models[b]));
+     },
+     [](const Edit& edit, const Model& model, double, Parameters& p) {
+       p.models.resize(model.bodies.size(), BodyModel::frame);
+       p.models[edit.shake] = body_models()[static_cast<int>(edit.value.x())].kind;
+     }},
+    {K::damping, Of::body, "damping", true,
+     [](const Model& model, const Parameters&, int b) { return model.bodies[b].first_frequency > 0; },
+     [](const Parameters& p, int b) { return number(p.damping.empty() ? 0 : p.damping[b]); },
+     [](const Edit& edit, const Model& model, double, Parameters& p) {
+       p.damping.resize(model.bodies.size(), 0);
+       p.damping[edit.shake] = edit.value.x();
+     }},
+    {K::anchor, Of::anchor, "on", false, always,
+     [](const Parameters& p, int index) { return number(p.anchors[index]); },
+     [](const Edit& edit, const Model&, double, Parameters& p) {
+       p.anchors[edit.shake] = edit.value.x() != 0;
+     }},
+    {K::integrator, Of::run, "integrator", true, always,
+     [](const Parameters& p, int) { return number(1 + place_of(integrators(), p.integrator)); },
+     [](const Edit& edit, const Model&, double, Parameters& p) {
+       p.integrator = chosen_integrator(static_cast<int>(edit.value.x()));
+     }},
+    {K::want, Of::run, "want", true, always, [](const Parameters& p, int) { return number(p.want_stress); },
+     [](const Edit& edit, const Model&, double, Parameters& p) { p.want_stress = edit.value.x() != 0; }},
+    {K::time_step, Of::run, "time_step", true, always,
+     [](const Parameters& p, int) { return number(p.time_step); },
+     [](const Edit& edit, const Model&, double, Parameters& p) {
+       p.time_step = edit.value.x();
+       p.adaptive = false;
+     }},
+};
+
+int count(Edit::Of of, const Model& model, const Parameters& parameters) {
+  switch (of) {
+    case Of::shake:
+      return static_cast<int>(parameters.shakes.size());
+    case Of::body:
+      return model.furniture_total();
+    case Of::anchor:
+      return static_cast<int>(parameters.anchors.size());
+    case Of::contact:
+    case Of::run:
+      break;
+  }
+  return 1;
 }
 
 }  // namespace
 
+std::span<const EditTraits> edits() {
+  return k_edits;
+}
+
 std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parameters& parameters) {
-  using K = Edit::Key;
-  std::vector<std::pair<K, int>> keys;
-  const auto add = [&](std::initializer_list<K> all, int index = 0) {
-    for (const K key : all) keys.emplace_back(key, index);
-  };
-  for (int i = 0; i < static_cast<int>(parameters.shakes.size()); ++i) {
-    add({K::on}, i);
-    switch (parameters.shakes[i].kind) {
-      case Shake::Kind::sine:
-        add({K::type, K::frequency, K::amplitude, K::direction}, i);
-        break;
-      case Shake::Kind::sweep:
-        add({K::type, K::frequency, K::amplitude, K::direction, K::duration}, i);
-        break;
-      case Shake::Kind::pulse:
-        add({K::type, K::amplitude, K::direction, K::duration}, i);
-        break;
-      case Shake::Kind::record:
-        add({K::scale}, i);
-        break;
-    }
+  std::vector<std::pair<Edit::Key, int>> keys;
+  const auto* const end = std::end(k_edits);
+  for (const auto* first = std::begin(k_edits); first != end;) {
+    const auto* const last =
+        std::find_if(first, end, [&](const EditTraits& row) { return row.of != first->of; });
+    for (int index = 0; index < count(first->of, model, parameters); ++index)
+      for (const EditTraits& row : std::span(first, last))
+        if (row.exists(model, parameters, index)) keys.emplace_back(row.kind, index);
+    first = last;
   }
-  add({K::law, K::alpha, K::q, K::friction});
-  if (parameters.contact.kind == ContactLawKind::coulomb) add({K::friction_static, K::restitution});
-  for (int b = 0; b < model.furniture_total(); ++b) {
-    if (can_be(model, b, BodyModel::rigid)) add({K::model}, b);
-    if (model.bodies[b].first_frequency > 0) add({K::damping}, b);
-  }
-  for (int i = 0; i < static_cast<int>(parameters.anchors.size()); ++i) add({K::anchor}, i);
-  add({K::integrator, K::want, K::time_step});
   return keys;
 }
 
-Vec3 edited_value(const Parameters& p, Edit::Key key, int index) {
-  const auto number = [](double x) { return Vec3(x, 0, 0); };
-  const auto choice = [&](auto x) { return number(static_cast<int>(x)); };
-  switch (key) {
-    case Edit::Key::on:
-      return choice(p.shakes[index].on);
-    case Edit::Key::type:
-      return choice(p.shakes[index].kind);
-    case Edit::Key::frequency:
-      if (p.shakes[index].kind == Shake::Kind::sweep)
-        return {p.shakes[index].frequency, p.shakes[index].last_frequency, 0};
-      return number(p.shakes[index].frequency);
-    case Edit::Key::amplitude:
-      return number(p.shakes[index].amplitude);
-    case Edit::Key::direction:
-      return p.shakes[index].direction;
-    case Edit::Key::duration:
-      return number(p.shakes[index].duration);
-    case Edit::Key::scale:
-      return number(p.shakes[index].scale);
-    case Edit::Key::law:
-      return choice(p.contact.kind);
-    case Edit::Key::alpha:
-      return number(p.contact.alpha);
-    case Edit::Key::q:
-      return number(p.contact.q);
-    case Edit::Key::friction:
-      return number(p.contact.friction);
-    case Edit::Key::friction_static:
-      return number(p.contact.friction + p.contact.excess());
-    case Edit::Key::restitution:
-      return number(p.contact.restitution);
-    case Edit::Key::model:
-      return choice(p.models.empty() ? BodyModel::frame : p.models[index]);
-    case Edit::Key::damping:
-      return number(p.damping.empty() ? 0 : p.damping[index]);
-    case Edit::Key::anchor:
-      return choice(static_cast<bool>(p.anchors[index]));
-    case Edit::Key::integrator:
-      return number(1 + static_cast<int>(p.integrator));
-    case Edit::Key::want:
-      return choice(p.want_stress);
-    case Edit::Key::time_step:
-      return number(p.time_step);
-  }
-  return Vec3::Zero();
+Vec3 edited_value(const Parameters& parameters, Edit::Key key, int index) {
+  return traits(key).get(parameters, index);
 }
 
-namespace {
-
-void apply_to_shake(const Edit& edit, double t, Shake& shake) {
-  const double value = edit.value.x();
-  const auto begin_anew = [&] {
-    shake.start = t;
-    shake.turned = shake.turns = 0;
-    shake.passage = {};
-    shake.initial_velocity = Shake::Start::rest;
-  };
-  switch (edit.key) {
-    case Edit::Key::type: {
-      const Shake::Kind kind = static_cast<Shake::Kind>(static_cast<int>(value));
-      if (shake.kind == Shake::Kind::sine && kind == Shake::Kind::pulse)
-        shake.duration = 0.5 / shake.frequency;
-      if (shake.kind == Shake::Kind::sine && kind == Shake::Kind::sweep) {
-        shake.duration = k_sweep;
-        shake.last_frequency = std::min(10 * shake.frequency, k_highest);
-      }
-      shake.kind = kind;
-      begin_anew();
-      break;
-    }
-    case Edit::Key::frequency:
-      if (shake.kind == Shake::Kind::sweep) {
-        shake.last_frequency = edit.value.y();
-        begin_anew();
-      } else if (t > shake.start) {
-        shake.turns = shake_turns(shake, t);
-        shake.turned = t - shake.start;
-      }
-      shake.frequency = value;
-      break;
-    case Edit::Key::duration:
-      shake.duration = value;
-      break;
-    case Edit::Key::on:
-      start_passage(shake, t);
-      shake.on = value != 0;
-      break;
-    case Edit::Key::amplitude:
-      start_passage(shake, t);
-      shake.amplitude = value;
-      break;
-    case Edit::Key::direction:
-      start_passage(shake, t);
-      shake.direction = edit.value.stableNormalized();
-      break;
-    default:
-      start_passage(shake, t);
-      shake.scale = value;
-  }
-}
-
-}  // namespace
-
-void apply(const Edit& edit, const Model& model, double t, Parameters& p) {
-  ContactLaw law = p.contact;
-  const double value = edit.value.x();
-  const int choice = static_cast<int>(value);
-  switch (edit.key) {
-    case Edit::Key::on:
-    case Edit::Key::type:
-    case Edit::Key::frequency:
-    case Edit::Key::amplitude:
-    case Edit::Key::direction:
-    case Edit::Key::duration:
-    case Edit::Key::scale:
-      apply_to_shake(edit, t, p.shakes[edit.shake]);
-      return;
-    case Edit::Key::model:
-      p.models.resize(model.bodies.size(), BodyModel::frame);
-      p.models[edit.shake] = static_cast<BodyModel>(choice);
-      return;
-    case Edit::Key::damping:
-      p.damping.resize(model.bodies.size(), 0);
-      p.damping[edit.shake] = value;
-      return;
-    case Edit::Key::anchor:
-      p.anchors[edit.shake] = value != 0;
-      return;
-    case Edit::Key::integrator:
-      p.integrator = chosen_integrator(choice);
-      return;
-    case Edit::Key::want:
-      p.want_stress = value != 0;
-      return;
-    case Edit::Key::time_step:
-      p.time_step = value;
-      p.adaptive = false;
-      return;
-    case Edit::Key::law:
-      p.contact.kind = p.contact_before.kind = static_cast<ContactLawKind>(choice);
-      return;
-    case Edit::Key::alpha:
-      law.alpha = value;
-      break;
-    case Edit::Key::q:
-      law.q = value;
-      break;
-    case Edit::Key::friction:
-      law.friction = value;
-      break;
-    case Edit::Key::friction_static:
-      law.friction_static = value;
-      break;
-    case Edit::Key::restitution:
-      law.restitution = value;
-      break;
-  }
-  start_contact_passage(law, model, t, p);
+void apply(const Edit& edit, const Model& model, double t, Parameters& parameters) {
+  traits(edit.key).set(edit, model, t, parameters);
 }
 
 }  // namespace topple

@@ -1,11 +1,13 @@
 // Changes of parameters while it runs.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
+#include "solver/model/table.h"
 
 namespace topple {
 
@@ -34,10 +36,29 @@ struct Edit {
     want,
     time_step
   };
+  /// What an edit is of, as tables of the scene are called; `contact` and `run` there are one of.
+  enum class Of { shake, contact, body, anchor, run };
   Key key;
-  int shake = 0;  ///< of on .. scale; of model and damping: the body's index; of anchor: its index
+  int shake = 0;  ///< index of the shake, body or anchor
   Vec3 value = Vec3::Zero();
 };
+
+/// A parameter that can be edited while it runs. A new one is an Edit::Key and a row of the table in
+/// edit.cpp, whose range, unit and words are those of the scene's key of the same name.
+struct EditTraits {
+  Edit::Key kind;
+  Edit::Of of;
+  const char* word;  ///< the key in the scene
+  bool dynamic;      ///< statics have no use for it
+  bool (*exists)(const Model&, const Parameters&, int index);
+  Vec3 (*get)(const Parameters&, int index);
+  void (*set)(const Edit&, const Model&, double t, Parameters&);  ///< from time t on, see apply()
+};
+/// In the order of lists; rows of one Edit::Of stand together.
+std::span<const EditTraits> edits();
+inline const EditTraits& traits(Edit::Key key) {
+  return row_of(edits(), key);
+}
 
 /// Every key, and shake, body or anchor that it is for, that can be edited.
 std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parameters& parameters);

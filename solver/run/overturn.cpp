@@ -140,9 +140,9 @@ void Outcome::carry(const Model& model, int e, double place, const Vec3& force) 
   }
 }
 
-void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
-                      const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
-                      const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+// What the sides of the bases carry.
+void Outcome::observe_forces(const Model& model, const std::vector<ContactForce>& forces,
+                             const std::vector<MemberForce>& between) {
   for (auto& sides : side_force_) std::fill(sides.begin(), sides.end(), 0.);
   std::fill(total_force_.begin(), total_force_.end(), 0.);
   for (const ContactForce& f : forces) {
@@ -161,71 +161,99 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
       pinch = std::max(pinch, f.depth);
     }
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    BodyOutcome& o = bodies_[b];
-    const Body& body = model.bodies[b];
-    if (body.ground) continue;
-    const BodyState& body_state = state.bodies[b];
-    o.always_rigid = o.always_rigid && body_state.rung == Rung::rigid;
-    const bool automatic = !parameters.models.empty() && parameters.models[b] == BodyModel::automatic;
-    if (o.rung != body_state.rung && (o.rung || automatic)) {
-      events.push_back({.kind = Event::Kind::model,
+}
+
+void Outcome::observe_rung(const Parameters& parameters, const State& state, std::size_t b,
+                           std::vector<Event>& events) {
+  BodyOutcome& o = bodies_[b];
+  const BodyState& now = state.bodies[b];
+  o.always_rigid = o.always_rigid && !traits(now.level).has_stresses;
+  const bool automatic = !parameters.models.empty() && parameters.models[b] == BodyModel::automatic;
+  if (o.level != now.level && (o.level || automatic)) {
+    events.push_back({.kind = Event::Kind::model,
+                      .step = state.step,
+                      .time = state.time,
+                      .body = static_cast<int>(b),
+                      .value = static_cast<double>(now.level),
+                      .reason = now.reason});
+    if (o.level_changes.size() < k_kept_impacts)
+      o.level_changes.push_back({state.time, now.level, now.reason});
+  }
+  o.level = now.level;
+}
+
+void Outcome::observe_pose(const Model& model, const State& state, std::size_t b,
+                           std::vector<Event>& events) {
+  BodyOutcome& o = bodies_[b];
+  const int body = static_cast<int>(b);
+  const BodyPose pose = body_pose(model, state, body);
+  const double before = o.tilt - o.critical, time_before = o.time;
+  o.time = state.time;
+  o.tilt = tilt(pose);
+  o.peak_tilt = std::max(o.peak_tilt, o.tilt);
+  if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
+  if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
+  o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
+  o.slide = topple::slide(model, body, pose);
+  o.peak_slide = std::max(o.peak_slide, o.slide);
+  o.critical = critical_angle(model, body, pose);
+  const double beyond = o.tilt - o.critical;
+  if (beyond > 0 && !o.beyond_since) {
+    const bool crossed = state.step > 0 && before < 0;
+    o.beyond_since =
+        crossed ? time_before + (state.time - time_before) * before / (before - beyond) : state.time;
+    events.push_back({.kind = Event::Kind::overturn,
+                      .step = state.step,
+                      .time = *o.beyond_since,
+                      .body = body,
+                      .value = o.tilt});
+  } else if (beyond <= 0) {
+    o.beyond_since.reset();
+  }
+  if (o.tilt <= k_fallen)
+    o.over_60_since.reset();
+  else if (!o.over_60_since)
+    o.over_60_since = state.time;
+}
+
+// What lifts off and lands.
+void Outcome::observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events) {
+  BodyOutcome& o = bodies_[b];
+  for (std::size_t side = 0; side < o.lifted.size(); ++side) {
+    const auto add = [&](Event::Kind kind) {
+      events.push_back({.kind = kind,
                         .step = state.step,
                         .time = state.time,
                         .body = static_cast<int>(b),
-                        .value = static_cast<double>(body_state.rung),
-                        .reason = body_state.reason});
-      if (o.rung_changes.size() < k_kept_impacts)
-        o.rung_changes.push_back({state.time, body_state.rung, body_state.reason});
-    }
-    o.rung = body_state.rung;
-    const BodyPose pose = body_pose(model, state, static_cast<int>(b));
-    const double before = o.tilt - o.critical, time_before = o.time;
-    o.time = state.time;
-    o.tilt = tilt(pose);
-    o.peak_tilt = std::max(o.peak_tilt, o.tilt);
-    if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
-    if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
-    o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
-    o.slide = topple::slide(model, static_cast<int>(b), pose);
-    o.peak_slide = std::max(o.peak_slide, o.slide);
-    o.critical = critical_angle(model, static_cast<int>(b), pose);
-    const double beyond = o.tilt - o.critical;
-    const auto add = [&](Event::Kind kind, double time, double value) {
-      events.push_back(
-          {.kind = kind, .step = state.step, .time = time, .body = static_cast<int>(b), .value = value});
+                        .value = static_cast<double>(side)});
     };
-    if (beyond > 0 && !o.beyond_since) {
-      const bool crossed = state.step > 0 && before < 0;
-      o.beyond_since =
-          crossed ? time_before + (state.time - time_before) * before / (before - beyond) : state.time;
-      add(Event::Kind::overturn, *o.beyond_since, o.tilt);
-    } else if (beyond <= 0) {
-      o.beyond_since.reset();
-    }
-    if (o.tilt <= k_fallen)
-      o.over_60_since.reset();
-    else if (!o.over_60_since)
-      o.over_60_since = state.time;
-
-    const double weight = body.mass * parameters.gravity.norm();
-    for (std::size_t side = 0; side < o.lifted.size(); ++side) {
-      const double carried = side_force_[b][side];
-      if (!o.lifted[side] && carried < k_uplift * weight && total_force_[b] > k_closing * weight) {
-        o.lifted[side] = true;
-        if (!o.first_uplift) o.first_uplift = state.time;
-        add(Event::Kind::uplift, state.time, static_cast<double>(side));
-      } else if (o.lifted[side] && carried > k_closing * weight) {
-        o.lifted[side] = false;
-        ++o.impacts;
-        if (!o.first_impact) o.first_impact = state.time;
-        if (o.impact_times.size() < k_kept_impacts) {
-          o.impact_times.push_back(state.time);
-          o.peak_tilts.push_back(o.tilt);
-        }
-        add(Event::Kind::impact, state.time, static_cast<double>(side));
+    const double carried = side_force_[b][side];
+    if (!o.lifted[side] && carried < k_uplift * weight && total_force_[b] > k_closing * weight) {
+      o.lifted[side] = true;
+      if (!o.first_uplift) o.first_uplift = state.time;
+      add(Event::Kind::uplift);
+    } else if (o.lifted[side] && carried > k_closing * weight) {
+      o.lifted[side] = false;
+      ++o.impacts;
+      if (!o.first_impact) o.first_impact = state.time;
+      if (o.impact_times.size() < k_kept_impacts) {
+        o.impact_times.push_back(state.time);
+        o.peak_tilts.push_back(o.tilt);
       }
+      add(Event::Kind::impact);
     }
+  }
+}
+
+void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
+                      const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
+                      const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+  observe_forces(model, forces, between);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (model.bodies[b].ground) continue;
+    observe_rung(parameters, state, b, events);
+    observe_pose(model, state, b, events);
+    observe_sides(state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
   observe_sections(model, state, sections, events);
   observe_anchors(model, state, events);
@@ -260,7 +288,7 @@ void Outcome::observe_sections(const Model& model, const State& state,
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
     const Member& member = model.members[element.member];
-    if (state.bodies[member.body].rung == Rung::rigid) continue;
+    if (!traits(state.bodies[member.body].level).has_stresses) continue;
     BodyOutcome& o = bodies_[member.body];
     const Eigen::Vector4d& stress = unit_stress_[member.section];
     double greatest = 0;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/body/body_pose.h"
 #include "solver/model/model.h"
-#include "solver/state/body_pose.h"
 #include "solver/state/state.h"
 #include "solver/state/step_result.h"
 
@@ -44,18 +44,18 @@ struct Event {
   std::int64_t step;
   double time;  ///< s
   int body;
-  double value;      ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge; model: Rung;
-                     ///< anchor: tension at which it broke, N
-  int element = -1;  ///< hinge, fracture: index into Model::elements
-  RungReason reason = RungReason::asked;  ///< model: why the body changed, or began there
-  int anchor = 0;                         ///< anchor: index into Model::anchors
+  double value;  ///< uplift, impact: index of the side; overturn: tilt, rad; hinge: Hinge; model: ModelLevel;
+                 ///< anchor: tension at which it broke, N
+  int element = -1;                         ///< hinge, fracture: index into Model::elements
+  LevelReason reason = LevelReason::asked;  ///< model: why the body changed, or began there
+  int anchor = 0;                           ///< anchor: index into Model::anchors
 };
 
-/// A body began on a rung, or came there.
-struct RungChange {
+/// A body began on a level, or came there.
+struct LevelChange {
   double time;  ///< s
-  Rung rung;
-  RungReason reason;
+  ModelLevel level;
+  LevelReason reason;
 };
 
 /// What happened to one body so far. Times in s, angles in rad, lengths in m.
@@ -80,11 +80,11 @@ struct BodyOutcome {
   double peak_penetration = 0;          ///< greatest 1 - l/L at planes
   double peak_pinch = 0;                ///< likewise between members, where 1 would be one through the other
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
-  std::optional<Rung> rung;             ///< at this observation
-  std::vector<RungChange> rung_changes;  ///< of a body that is `automatic`, the first one included; at most
-                                         ///< k_kept_impacts
-  std::vector<bool> lifted;              ///< per side of the support polygon
-  double time = 0;                       ///< of this observation
+  std::optional<ModelLevel> level;      ///< at this observation
+  std::vector<LevelChange> level_changes;  ///< of a body that is `automatic`, the first one included; at most
+                                           ///< k_kept_impacts
+  std::vector<bool> lifted;                ///< per side of the support polygon
+  double time = 0;                         ///< of this observation
 };
 
 /// What happened to one anchor so far.
@@ -113,6 +113,13 @@ class Outcome {
  private:
   /// What a force on a place of an element adds to what sides of the body's base carry.
   void carry(const Model& model, int element, double place, const Vec3& force);
+  void observe_forces(const Model& model, const std::vector<ContactForce>& forces,
+                      const std::vector<MemberForce>& between);
+  /// Of body b.
+  void observe_rung(const Parameters& parameters, const State& state, std::size_t b,
+                    std::vector<Event>& events);
+  void observe_pose(const Model& model, const State& state, std::size_t b, std::vector<Event>& events);
+  void observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);
 

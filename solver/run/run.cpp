@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"

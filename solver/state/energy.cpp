@@ -1,5 +1,7 @@
 #include "solver/state/energy.h"
 
+#include "solver/contact/contact_law.h"
+
 namespace topple {
 
 StepEnergy& StepEnergy::operator+=(const StepEnergy& other) {
@@ -35,7 +37,7 @@ void LawChange::book_end(double depth, double L, double stick_energy, double wei
 void LawChange::book(double weight, double depth, double L, bool between_members, double stick_energy,
                      double growth) {
   const auto held = [&](const ContactLaw& law) { return penalty_energy(law, depth, L, between_members); };
-  if (after_.kind != ContactLawKind::printed) energy_.input += 0.5 * weight * (held(after_) - held(before_));
+  if (traits(after_).stores_energy) energy_.input += 0.5 * weight * (held(after_) - held(before_));
   energy_.input += 0.5 * stick_energy * growth;
   energy_.friction += 0.5 * stick_energy * growth;
 }

@@ -5,7 +5,7 @@
 
 namespace topple {
 
-enum class Phase { other, search, ladder, reduced, forces, tangent, factor, solve, energy, observe, record };
+enum class Phase { other, search, models, reduced, forces, tangent, factor, solve, energy, observe, record };
 
 /// Sums of the time spent in each phase, for one thread. Without a clock nothing is measured.
 struct Profile {

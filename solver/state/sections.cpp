@@ -8,8 +8,7 @@ void section_forces(const Model& model, const State& state, std::vector<SectionF
     const Element& element = model.elements[e];
     const int i = element.node[0], j = element.node[1];
     const BeamStrain strain = beam_strain(
-        element, element.s,
-        beam_ends(element, state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
+        element, beam_ends(state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
     forces[e] = section_forces(element, elastic_strain(state.elements[e], strain));
   }
 }

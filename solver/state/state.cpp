@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "solver/contact/contact_law.h"
 #include "solver/math/copy_values.h"
 #include "solver/math/overflow.h"
 #include "solver/math/pack.h"
@@ -21,6 +22,13 @@ Choice as(double number, Choice last) {
   for (int k = 0; k <= static_cast<int>(last); ++k)
     if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(double(k)))
       return static_cast<Choice>(k);
+  throw std::invalid_argument("a checkpoint of another version");
+}
+
+ContactLawKind law_of(double number) {
+  for (const ContactLawTraits& law : contact_laws())
+    if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(static_cast<double>(law.kind)))
+      return law.kind;
   throw std::invalid_argument("a checkpoint of another version");
 }
 
@@ -51,15 +59,15 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
   for (auto& b : s.bodies) {
-    double rung = static_cast<double>(b.rung), reason = static_cast<double>(b.reason);
-    f(rung);
+    double level = static_cast<double>(b.level), reason = static_cast<double>(b.reason);
+    f(level);
     f(reason);
     if constexpr (!std::is_const_v<AnyState>) {
-      b.rung = as<Rung>(rung, Rung::frame);
-      b.reason = as<RungReason>(reason, RungReason::calm);
+      b.level = as<ModelLevel>(level, ModelLevel::frame);
+      b.reason = as<LevelReason>(reason, LevelReason::calm);
     }
     f(b.calm_since);
-    f(b.part);
+    f(b.substep);
     for (auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
       for (int k = 0; k < 3; ++k) f((*v)[k]);
     for (int k = 0; k < 4; ++k) f(b.rotation.coeffs()[k]);
@@ -77,10 +85,10 @@ void each_number(AnyState& s, F f) {
   for (int k = 0; k < 3; ++k) f(s.floor_velocity[k]);
   f(s.step_size);
   f(s.load_factor);
-  f(s.near_slack);
+  f(s.candidate_margin);
   double law = static_cast<double>(s.law);
   f(law);
-  if constexpr (!std::is_const_v<AnyState>) s.law = as<ContactLawKind>(law, ContactLawKind::printed);
+  if constexpr (!std::is_const_v<AnyState>) s.law = law_of(law);
   auto& e = s.energy;
   for (auto* number :
        {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction, &e.normal_damping, &e.numerical,
@@ -110,8 +118,8 @@ ElementPair as_pair(double number) {
 // Calls f on the counts and entries of what touches, which differ from state to state.
 template <class F>
 void each_touching(const State& s, F f) {
-  f(std::bit_cast<double>(static_cast<std::int64_t>(s.near.size())));
-  for (const ElementPair& pair : s.near) f(as_number(pair));
+  f(std::bit_cast<double>(static_cast<std::int64_t>(s.candidate_pairs.size())));
+  for (const ElementPair& pair : s.candidate_pairs) f(as_number(pair));
   f(std::bit_cast<double>(static_cast<std::int64_t>(s.member_sticks.size())));
   for (const MemberStick& stick : s.member_sticks) {
     f(as_number(stick.elements));
@@ -132,8 +140,8 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
     return fits ? static_cast<std::size_t>(count) : 0;
   };
   const auto is_element = [&](int e) { return e >= 0 && e < static_cast<int>(model.elements.size()); };
-  s.near.resize(read_count(1));
-  for (ElementPair& pair : s.near) {
+  s.candidate_pairs.resize(read_count(1));
+  for (ElementPair& pair : s.candidate_pairs) {
     pair = as_pair(read());
     if (!is_element(pair.a) || !is_element(pair.b)) return false;
   }
@@ -192,7 +200,7 @@ State start_state(const Model& model, const std::vector<BodyStart>& starts) {
 std::vector<double> pack(const State& state) {
   std::vector<double> numbers;
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
-                  (23 + 3 * k_modes) * state.bodies.size() + state.near.size() +
+                  (23 + 3 * k_modes) * state.bodies.size() + state.candidate_pairs.size() +
                   5 * state.member_sticks.size() + 2 * state.anchors.size() + 26);
   numbers.push_back(std::bit_cast<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
@@ -299,14 +307,14 @@ class Finiteness {
       look_at(load(b.load.data() + k), 3);
     }
     look_at(load(b.rotation.coeffs().data()), 0);
-    look_at(b.calm_since, b.part, total(b.position), total(b.velocity), 1);
+    look_at(b.calm_since, b.substep, total(b.position), total(b.velocity), 1);
     look_at(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
   }
   void look_at_rest(const State& s) {
     static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
     look(&s.energy.input, 15);
     look_at(total(s.floor_displacement), total(s.floor_velocity), s.time + s.step_size,
-            s.load_factor + s.near_slack, 0);
+            s.load_factor + s.candidate_margin, 0);
     for (const MemberStick& stick : s.member_sticks) look_at(Four(total(stick.stick)), 0);
     for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length), 0);
   }
@@ -345,7 +353,7 @@ bool is_finite(const State& s, bool nodes) {
 
 bool moves_finite(const State& s) {
   Finiteness found;
-  for (const BodyState& b : s.bodies) found.look(b, b.rung == Rung::elastic);
+  for (const BodyState& b : s.bodies) found.look(b, traits(b.level).has_modes);
   found.look_at_rest(s);
   return found.all();
 }
@@ -387,7 +395,7 @@ void each_moved_array(F f) {
   f(&State::bodies);
   f(&State::stick);
   f(&State::member_sticks);
-  f(&State::near);
+  f(&State::candidate_pairs);
   f(&State::anchors);
 }
 
@@ -410,7 +418,7 @@ template <class F>
 void each_moved_number(F f) {
   f(&State::time);
   f(&State::step);
-  f(&State::near_slack);
+  f(&State::candidate_margin);
   f(&State::floor_displacement);
   f(&State::floor_velocity);
   f(&State::step_size);

@@ -30,7 +30,7 @@ struct EnergyLedger {
   double numerical = 0;       ///< dissipated by the integrator, from its own kinematics
   double plastic = 0;         ///< dissipated by hinges; moves of stress points and fracture are in it
   double damping = 0;         ///< dissipated by viscous stresses (damping.h)
-  double model_switch = 0;    ///< came in when bodies changed their rung (ladder.h)
+  double model_switch = 0;    ///< came in when bodies changed their level (model_level.h)
   double anchor = 0;          ///< stored in anchors
   double released = 0;        ///< what anchors held when they broke or were taken away: went out
   double start_total = 0;     ///< kinetic + strain + contact + anchor at the start
@@ -49,8 +49,8 @@ struct EnergyLedger {
 };
 
 /// Motion of a run at one accepted step, in the floor's frame. Per-node arrays have Model::node_total()
-/// entries; those of bodies on the rungs rigid and elastic follow from `bodies` when place_nodes (ladder.h)
-/// was called, as Run::state() does.
+/// entries; those of bodies on the levels rigid and elastic follow from `bodies` when place_nodes
+/// (model_level.h) was called, as Run::state() does.
 struct State {
   double time = 0;                                     ///< s
   std::int64_t step = 0;                               ///< accepted steps; settling does not count
@@ -66,8 +66,9 @@ struct State {
   /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
   std::vector<Vec3> stick;
   std::vector<MemberStick> member_sticks;  ///< in the order of elements, then places
-  std::vector<ElementPair> near;           ///< that may touch before `near_slack` is used up, in order
-  double near_slack = 0;                   ///< m, that bodies may still approach each other
+  std::vector<ElementPair>
+      candidate_pairs;                     ///< that may touch before `candidate_margin` is used up, in order
+  double candidate_margin = 0;             ///< m, that bodies may still approach each other
   std::vector<ElementState> elements;      ///< index as Model::elements
   std::vector<AnchorState> anchors;        ///< index as Model::anchors
   Vec3 floor_displacement = Vec3::Zero();  ///< m, high-passed (method: excitation.h)

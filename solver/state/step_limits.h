@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/contact/contact_law.h"
 #include "solver/math/types.h"
 
 namespace topple {
@@ -29,6 +30,20 @@ inline double closing_limit(double gap, double closing, double L) {
 inline double bounce_limit(double mass, double stiffness) {
   return stiffness > 0 ? 2 * k_pi * std::sqrt(mass / stiffness) / k_contact_part
                        : std::numeric_limits<double>::infinity();
+}
+
+/// How one contact bounds a step: open, by the time that closing_limit leaves; closed, by the stiffness on
+/// which its bodies bounce (bounce_limit).
+struct ContactAhead {
+  double limit;      ///< s; infinite when it is closed
+  double stiffness;  ///< N/m; 0 when it is open
+};
+/// gap: m, < 0 when it is closed. closing: m/s.
+inline ContactAhead contact_ahead(const ContactLaw& law, double gap, double closing, double L,
+                                  bool between_members = false) {
+  if (gap < 0)
+    return {std::numeric_limits<double>::infinity(), penalty_stiffness(law, -gap / L, L, between_members)};
+  return {closing_limit(gap, closing, L), 0};
 }
 
 }  // namespace topple

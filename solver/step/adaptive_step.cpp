@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/body/step_control.h"
+#include "solver/frame/integrator.h"
 
 namespace topple {
 namespace {
@@ -31,7 +32,7 @@ double fit(double h, double left) {
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, const State& state,
                          Workspace::Impl& w, double until) {
-  if (is_explicit(parameters.integrator)) w.find_explicit_limit(parameters, state);
+  if (traits(parameters.integrator).is_explicit) w.find_explicit_limit(parameters, state);
   const bool by_limit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;

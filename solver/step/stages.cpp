@@ -7,6 +7,7 @@
 #include "solver/body/anchors.h"
 #include "solver/body/candidates.h"
 #include "solver/body/step_control.h"
+#include "solver/frame/integrator.h"
 #include "solver/model/excitation.h"
 
 namespace topple {
@@ -39,7 +40,7 @@ StepInProgress::StepInProgress(const Model& model_, const Parameters& parameters
       h(h_),
       halvings(halvings_),
       w(w_),
-      start(w.reached && w.reached->time == from.time ? *w.reached : Instant(parameters, from.time)) {
+      start(w.reached && w.reached->time == from.time ? *w.reached : StepInputs(parameters, from.time)) {
   w.reached.emplace(parameters, end(), start);
 }
 
@@ -50,7 +51,7 @@ void find_candidates(const StepInProgress& s, double travel) {
 }
 
 void switch_models(const StepInProgress& s) {
-  const InPhase phase(&s.w.profile, Phase::ladder);
+  const InPhase phase(&s.w.profile, Phase::models);
   if (s.w.models.update(s.model, s.parameters, s.start, s.w.next, s.w.parts)) s.w.explicit_limit.reset();
 }
 
@@ -71,7 +72,7 @@ void apply_events(StepInProgress& s) {
 
 StepStatus check_stability(const StepInProgress& s) {
   StepStatus status;
-  if (!is_explicit(s.parameters.integrator)) return status;
+  if (!traits(s.parameters.integrator).is_explicit) return status;
   const std::optional<ExplicitLimit>& limit = s.w.find_explicit_limit(s.parameters, s.w.next);
   if (!limit || s.h <= limit->step) return status;
   status.kind = StepStatus::Kind::step_too_long;
@@ -130,8 +131,8 @@ void close_ledger(const StepInProgress& s) {
 void check(const StepInProgress& s, StepStatus& status) {
   const State& next = s.w.next;
   // explicit methods have looked at the accelerations
-  const bool finite =
-      s.w.parts.moves_nodes() ? is_finite(next, !is_explicit(s.parameters.integrator)) : moves_finite(next);
+  const bool finite = s.w.parts.moves_nodes() ? is_finite(next, !traits(s.parameters.integrator).is_explicit)
+                                              : moves_finite(next);
   if (!finite) {
     status.kind = StepStatus::Kind::not_finite;
     status.time = next.time;

@@ -14,7 +14,7 @@ struct StepInProgress {
   double h;
   int halvings;  ///< the implicit methods halve it so often when Newton does not converge
   Workspace::Impl& w;
-  Instant start;
+  StepInputs start;
   StepEnergy exchanged = {};
   BodyEnergy held = {};
 

@@ -12,7 +12,7 @@ namespace {
 void start_models(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
   w.invalidate_caches(parameters);
   place_nodes(model, state);
-  state.near_slack = 0;
+  state.candidate_margin = 0;
   update_candidates(model, w.search, state, 0);
   w.models.start(model, parameters, state, w.parts);
   w.changed.assign(model.bodies.size(), false);
@@ -38,7 +38,7 @@ void prepare(const Model& model, const Parameters& parameters, State& state, Wor
   start_models(model, parameters, state, w);
   break_anchors(model, state, w.changed);
   state.energy.released = 0;  // what settling left in them was never in the run
-  const BodyEnergy held = w.parts.balance(parameters, Instant(parameters, state.time), state);
+  const BodyEnergy held = w.parts.balance(parameters, StepInputs(parameters, state.time), state);
   state.law = parameters.contact.kind;
   state.energy.open(held);
 }

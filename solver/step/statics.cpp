@@ -30,15 +30,6 @@ bool is_conservative(const BodySystem& s) {
                      [](const auto& own) { return own.load->moment.isZero(0); });
 }
 
-// The floor at rest and the normal force of Eq. 2 alone, as when settling.
-Parameters at_rest(const Parameters& parameters) {
-  Parameters still = parameters;
-  still.shakes.clear();
-  still.contact.kind = ContactLawKind::coulomb;
-  still.contact.restitution = 1;
-  return still;
-}
-
 // Weight of two elements of a member, held at its ends: half of it on each with the moments +-W L/12. The mid
 // node's 2/3 stand for the whole, and L is taken on either side of it, so that every derivative has a place.
 void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec3>& x) {
@@ -70,10 +61,67 @@ double control_spring(const BodySystem& s) {
   return element.normal_stiffness[0] / element.length;
 }
 
-void add_spring(BodySystem& s, int direction, double stiffness) {
-  Mat6 block = Mat6::Zero();
-  block(direction % 6, direction % 6) = stiffness;
-  s.lu.add(direction / 6, direction / 6, block);
+// The way of a controlled direction, 6 times its node and which of six. A spring keeps a mechanism from being
+// singular. What it would hold is put on as a load: so it does nothing to the solution, which moves the
+// direction by what is left of the way.
+class ControlledWay {
+ public:
+  ControlledWay(const BodySystem& s, int direction, double travel)
+      : direction_(direction), travel_(travel), spring_(control_spring(s)) {}
+
+  void add_spring(BodySystem& s) const {
+    Mat6 block = Mat6::Zero();
+    block(direction_ % 6, direction_ % 6) = spring_;
+    s.lu.add(direction_ / 6, direction_ / 6, block);
+  }
+  // `x`, the correction under constant loads, becomes that which goes what is left; `growth`: growing_loads.
+  // Returns the change of the load factor.
+  double go(BodySystem& s, const std::vector<double>& growth, std::vector<double>& x) {
+    by_factor_ = growth;
+    by_spring_.assign(x.size(), 0.);
+    by_spring_[direction_] = spring_ * left();
+    s.lu.solve(by_factor_.data());
+    s.lu.solve(by_spring_.data());
+    const double change = (left() - x[direction_] - by_spring_[direction_]) / by_factor_[direction_];
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + by_spring_[i];
+    moved_ += x[direction_];
+    return change;
+  }
+
+ private:
+  double left() const { return travel_ - moved_; }
+
+  int direction_;
+  double travel_, moved_ = 0, spring_;
+  std::vector<double> by_factor_, by_spring_;
+};
+
+// The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
+struct Correction {
+  double greatest = 0;
+  int node = 0;
+  bool too_far = false;
+};
+
+// Six numbers of `x` per node, onto the trial motion and the turns from the start.
+Correction correct(const BodySystem& s, const BodyMotion& start, const std::vector<double>& x,
+                   BodyMotion& trial, std::vector<Vec3>& turn) {
+  Correction out;
+  for (int i = 0; i < s.count; ++i) {
+    const Vec3 shift(&x[6 * i]), spin(&x[6 * i + 3]);
+    trial.position[i] += shift;
+    trial.rotation[i] = exp_quaternion(spin) * trial.rotation[i];
+    trial.rotation[i].normalize();
+    turn[i] += spin;
+    out.too_far = out.too_far || (trial.position[i] - start.position[i]).norm() > k_furthest * s.size ||
+                  turn[i].norm() > k_most_turn;
+    const double size = std::max(shift.norm(), s.size * spin.norm());
+    if (!(size <= out.greatest)) {
+      out.greatest = size;
+      out.node = i;
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -90,6 +138,11 @@ LoadPath::LoadPath(const Model& model, const StaticSettings& settings)
 
 int LoadPath::controlled_body() const {
   return settings_.control ? model_->node_body[settings_.control->node] : -1;
+}
+
+// Of six per node of that body.
+int LoadPath::controlled_direction() const {
+  return 6 * (settings_.control->node - systems_[controlled_body()]->first) + settings_.control->direction;
 }
 
 // Forces and tangent of the trial motion; fixed directions are out.
@@ -124,14 +177,14 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   StepStatus status;
   status.kind = StepStatus::Kind::no_equilibrium;
   status.body = s.index;
-  const int controlled = travel ? 6 * (settings_.control->node - s.first) + settings_.control->direction : 0;
+  std::optional<ControlledWay> way;
+  if (travel) way.emplace(s, controlled_direction(), *travel);
   const std::vector<double> growth = growing_loads(s);
-  std::vector<double> x(6 * s.count), by_factor, by_spring;
-  const double spring = travel ? control_spring(s) : 0;
+  std::vector<double> x(6 * s.count);
   HingeStep hinges;
   s.load_memory(state);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
-  double last = 0, moved = 0;
+  double last = 0;
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -141,42 +194,13 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
     evaluate(s, still, state, factor);
-    if (travel) add_spring(s, controlled, spring);
+    if (way) way->add_spring(s);
     if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
     for (int i = 0; i < s.count; ++i)
       for (int k = 0; k < 6; ++k) x[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
     s.lu.solve(x.data());
-    if (travel) {
-      // The spring keeps a mechanism from being singular. What it would hold is put on as a load: so it does
-      // nothing to the solution, which moves the controlled direction by what is left of the way.
-      const double left = *travel - moved;
-      by_factor = growth;
-      by_spring.assign(6 * s.count, 0.);
-      by_spring[controlled] = spring * left;
-      s.lu.solve(by_factor.data());
-      s.lu.solve(by_spring.data());
-      const double change = (left - x[controlled] - by_spring[controlled]) / by_factor[controlled];
-      for (int i = 0; i < 6 * s.count; ++i) x[i] += change * by_factor[i] + by_spring[i];
-      factor += change;
-      moved += x[controlled];
-    }
-    double greatest = 0;
-    int node = 0;
-    bool too_far = false;
-    for (int i = 0; i < s.count; ++i) {
-      const Vec3 shift(&x[6 * i]), spin(&x[6 * i + 3]);
-      trial.position[i] += shift;
-      trial.rotation[i] = exp_quaternion(spin) * trial.rotation[i];
-      trial.rotation[i].normalize();
-      turn[i] += spin;
-      too_far = too_far || (trial.position[i] - start.position[i]).norm() > k_furthest * s.size ||
-                turn[i].norm() > k_most_turn;
-      const double size = std::max(shift.norm(), s.size * spin.norm());
-      if (!(size <= greatest)) {
-        greatest = size;
-        node = i;
-      }
-    }
+    if (way) factor += way->go(s, growth, x);
+    const auto [greatest, node, too_far] = correct(s, start, x, trial, turn);
     if (too_far || !std::isfinite(greatest + factor)) return blame(node);
     const double rate = iteration > 1 ? greatest / last : 1;
     const double tolerance = k_convergence * s.size;
@@ -261,8 +285,7 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
   if (s.lu.factor() >= 0) return std::nullopt;
   std::vector<double> by_factor = growing_loads(s);
   s.lu.solve(by_factor.data());
-  const double travel = by_factor[6 * (settings_.control->node - s.first) + settings_.control->direction] /
-                        settings_.load_steps;
+  const double travel = by_factor[controlled_direction()] / settings_.load_steps;
   if (!(std::abs(travel) > k_convergence * s.size)) return std::nullopt;
   return travel;
 }

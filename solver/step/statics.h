@@ -58,6 +58,7 @@ class LoadPath {
   std::optional<double> first_travel(const Parameters& parameters, const State& state);
   void accept(const Parameters& parameters, double factor, State& state);
   int controlled_body() const;
+  int controlled_direction() const;
 
   const Model* model_;
   StaticSettings settings_;

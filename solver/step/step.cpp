@@ -44,8 +44,8 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     }
     if (!status.ok() || alone) return status;
     travel = greatest_travel(model, state, w.next);
-    if (2 * travel < w.next.near_slack) {
-      w.next.near_slack -= 2 * travel;
+    if (2 * travel < w.next.candidate_margin) {
+      w.next.candidate_margin -= 2 * travel;
       return status;
     }
   }
@@ -70,7 +70,7 @@ void accept(const Model& model, const Parameters& parameters, State& state, Work
   if (!model.anchors.empty()) {
     w.changed.assign(model.bodies.size(), false);
     if (break_anchors(model, w.next, w.changed))
-      w.parts.balance(parameters, Instant(parameters, w.next.time), w.changed, w.next);
+      w.parts.balance(parameters, StepInputs(parameters, w.next.time), w.changed, w.next);
   }
   take(w.next, state, w.moves_nodes(state));
 }

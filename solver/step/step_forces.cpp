@@ -13,7 +13,7 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
   w.forces.contacts.clear();
   w.forces.members.clear();
   w.parts.arrange(state);
-  const Instant now(parameters, state.time);
+  const StepInputs now(parameters, state.time);
   for (const auto& part : w.parts.all()) part->list_forces(now, state, w.forces);
   std::sort(w.forces.contacts.begin(), w.forces.contacts.end(),
             [](const ContactForce& a, const ContactForce& b) {

@@ -40,7 +40,7 @@ struct Workspace::Impl {
   std::vector<PartScratch> scratches{1};        // per worker
   std::vector<PartOutcome> outcomes;            // per part, of the newest step
   std::optional<Parameters> parameters;         // met last; for them hold:
-  std::optional<Instant> reached;               //   the end of the last step that was tried
+  std::optional<StepInputs> reached;            //   the end of the last step that was tried
   std::optional<ExplicitLimit> explicit_limit;  //   of the frames there are
   std::vector<char> changed;                    // per body: one of its anchors was switched or broke
   ParallelFor parallel;

@@ -102,7 +102,8 @@ struct ElementOperations {
     const PackGradient<Counted> gradient = pack_gradient(beam, strain, section);
     pack_energy(beam, strain, section);
     forces = Counted::operations + 12;  // added to the nodes
-    pack_tangent(beam, strain, section, gradient, small_angle_slope(strain.angle.x, beam.t));
+    pack_tangent(beam, strain, section, gradient, small_angle_slope(strain.angle.x, beam.t),
+                 PackStiffness<Counted>{beam.normal_stiffness, beam.bending_stiffness});
     tangent = Counted::operations + 12 + 144;
   }
 };

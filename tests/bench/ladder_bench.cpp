@@ -1,4 +1,4 @@
-// What the rungs of the model ladder cost, with their errors beside it.
+// What the model levels cost, with their errors beside it.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "solver/io/export/export_csv.h"
 
+#include <bit>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -8,8 +9,8 @@
 #include <optional>
 #include <system_error>
 
-#include "solver/io/common/staged_file.h"
 #include "solver/io/export/exported_values.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
 
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 /// A table that appears under its name when it is complete.
 class CsvFile {
  public:
-  CsvFile(const fs::path& path, const char* header) : staged_(path) {
+  CsvFile(const host::Target& target, const char* header) : staged_(target, host::FileKind::csv) {
     file_.reset(std::fopen(staged_.part().c_str(), "wb"));
     if (!file_) fail();
     buffer_ = header;
@@ -58,7 +59,7 @@ class CsvFile {
     write();
     if (std::fclose(file_.release()) != 0) fail();
   }
-  void publish() { staged_.publish(); }
+  void commit() { staged_.commit(); }
 
  private:
   CsvFile& field(std::string_view value) {
@@ -72,13 +73,14 @@ class CsvFile {
     buffer_.clear();
   }
   [[noreturn]] void fail() const {
-    throw WriteError(staged_.path().string() + ": " + std::generic_category().message(errno));
+    throw WriteError(staged_.path().string() +
+                     ": cannot be written: " + std::generic_category().message(errno));
   }
 
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  StagedFile staged_;
+  host::StagedFile staged_;
   std::unique_ptr<std::FILE, Close> file_;
   std::string buffer_;
   bool at_row_start_ = true;
@@ -86,9 +88,9 @@ class CsvFile {
 
 void bodies_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b) {
-    const double* values = row.body.data() + 11 * b;
-    csv.number(row.time).text(model.bodies[b].name).numbers(values, 7);
-    csv.number(values[7] * 180 / k_pi).numbers(values + 8, 2).end_row();
+    const BodyNumbers& body = row.body[b];
+    csv.number(row.time).text(model.bodies[b].name).numbers(std::bit_cast<BodyArray>(body).data(), 7);
+    csv.number(body.tilt * 180 / k_pi).number(body.slide).number(body.energy).end_row();
   }
 }
 
@@ -120,9 +122,10 @@ void energy_row(CsvFile& csv, const FrameRow& row) {
 
 void anchors_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   for (std::size_t k = 0; k < model.anchors.size(); ++k) {
-    const float* values = row.anchor.data() + 4 * k;
-    csv.number(row.time).text(model.anchors[k].name).numbers(values, 3);
-    csv.text(anchor_word(values[3])).end_row();
+    const AnchorNumbers& anchor = row.anchor[k];
+    csv.number(row.time).text(model.anchors[k].name);
+    csv.number(anchor.tension).number(anchor.energy).number(anchor.natural_length);
+    csv.text(anchor_word(anchor.state)).end_row();
   }
 }
 
@@ -132,24 +135,24 @@ void floor_row(CsvFile& csv, const FrameRow& row) {
 
 }  // namespace
 
-void write_csv(const Recording& recording, const Model& model, const std::string& folder) {
+void write_csv(const Recording& recording, const Model& model, const host::Target& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw WriteError(folder + ": " + error.message());
-  const fs::path base(folder);
-  CsvFile bodies(base / "bodies.csv", "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J");
-  CsvFile nodes(base / "nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
-  CsvFile elements(base / "elements.csv",
+  fs::create_directories(folder.path, error);
+  if (error) throw WriteError(folder.path.string() + ": cannot be created: " + error.message());
+  const auto within = [&](const char* name) { return host::Target(folder.path / name, folder.force); };
+  CsvFile bodies(within("bodies.csv"), "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J");
+  CsvFile nodes(within("nodes.csv"), "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
+  CsvFile elements(within("elements.csv"),
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
-  CsvFile floor(base / "floor.csv", "time_s,ax,ay,az,dx,dy,dz");
+  CsvFile floor(within("floor.csv"), "time_s,ax,ay,az,dx,dy,dz");
   const std::string energies =
       "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
       "plastic_J,damping_J,model_switch_J,balance_error";
-  CsvFile energy(base / "energy.csv",
+  CsvFile energy(within("energy.csv"),
                  (model.anchors.empty() ? energies : energies + ",anchor_J,released_J").c_str());
   std::optional<CsvFile> anchors;
   if (!model.anchors.empty())
-    anchors.emplace(base / "anchors.csv", "time_s,anchor,tension_N,energy_J,natural_length_m,state");
+    anchors.emplace(within("anchors.csv"), "time_s,anchor,tension_N,energy_J,natural_length_m,state");
   for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
     const FrameRow row = recording.frame(i);
     expect_same_model(model, row);
@@ -163,10 +166,10 @@ void write_csv(const Recording& recording, const Model& model, const std::string
   std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &floor, &energy};
   if (anchors) files.push_back(&*anchors);
   for (CsvFile* file : files) file->close();
-  for (CsvFile* file : files) file->publish();
+  for (CsvFile* file : files) file->commit();
 }
 
-void export_csv(const Recording& recording, const std::string& folder) {
+void export_csv(const Recording& recording, const host::Target& folder) {
   const Scene scene = recorded_scene(recording);
   write_csv(recording, scene.setup.model, folder);
 }

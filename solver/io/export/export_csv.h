@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::io {
@@ -10,11 +11,11 @@ namespace topple::io {
 /// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
 /// run), and anchors.csv where there are any, into `folder` (created when missing), of the way to the newest
 /// branch. Each file appears whole or not at all. Throws WriteError, InputError.
-void export_csv(const Recording& recording, const std::string& folder);
+void export_csv(const Recording& recording, const host::Target& folder);
 
 /// export_csv with the model given. `node` and `element` count from 0 within the body and within the member;
 /// numbers are the shortest that read back the same. Throws WriteError, InputError when the model is not that
 /// of the rows.
-void write_csv(const Recording& recording, const Model& model, const std::string& folder);
+void write_csv(const Recording& recording, const Model& model, const host::Target& folder);
 
 }  // namespace topple::io

@@ -1,29 +1,19 @@
 #include "solver/io/export/export_vtk.h"
 
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
-#include <system_error>
 #include <type_traits>
 
-#include "solver/io/common/staged_file.h"
 #include "solver/io/export/exported_values.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {
 namespace {
-
-void write(const StagedFile& staged, const std::string& text) {
-  std::ofstream file(staged.part(), std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw WriteError(staged.path().string() + ": " + std::generic_category().message(errno));
-}
 
 template <typename Number>
 constexpr const char* type_name() {
@@ -82,12 +72,14 @@ std::string frame_file(const Model& model, const ElementPlaces& places, const Fr
 
 }  // namespace
 
-void export_vtk(const Recording& recording, const std::string& folder) {
+void export_vtk(const Recording& recording, const host::Target& folder) {
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
   const ElementPlaces places(model);
-  const std::filesystem::path base(folder);
-  std::deque<StagedFile> files;
+  std::deque<host::StagedFile> files;
+  const auto write = [&](const char* name, const std::string& text) {
+    files.emplace_back(host::Target(folder.path / name, folder.force), host::FileKind::vtk).write(text);
+  };
   std::string list =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "<Collection>\n";
@@ -96,11 +88,11 @@ void export_vtk(const Recording& recording, const std::string& folder) {
     expect_same_model(model, row);
     char name[32];
     std::snprintf(name, sizeof name, "frame-%06zu.vtp", files.size());
-    write(files.emplace_back(base / name), frame_file(model, places, row));
+    write(name, frame_file(model, places, row));
     list += "<DataSet timestep=\"" + shortest(row.time) + "\" file=\"" + name + "\"/>\n";
   }
-  write(files.emplace_back(base / "frames.pvd"), list + "</Collection>\n</VTKFile>\n");
-  for (StagedFile& file : files) file.publish();
+  write("frames.pvd", list + "</Collection>\n</VTKFile>\n");
+  for (host::StagedFile& file : files) file.commit();
 }
 
 }  // namespace topple::io

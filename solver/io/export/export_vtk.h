@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::io {
@@ -11,6 +12,6 @@ namespace topple::io {
 /// raw binary data), and frames.pvd, which gives each its time. Lines are the elements between nodes, where
 /// the nodes are; fields are those of each_field() (exported_values.h), and on elements the numbers of body
 /// and member. They all appear whole or not at all. Throws WriteError, InputError.
-void export_vtk(const Recording& recording, const std::string& folder);
+void export_vtk(const Recording& recording, const host::Target& folder);
 
 }  // namespace topple::io

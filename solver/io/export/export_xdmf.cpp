@@ -1,13 +1,10 @@
 #include "solver/io/export/export_xdmf.h"
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
-#include "solver/io/common/staged_file.h"
 #include "solver/io/export/exported_values.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/hdf5_handle.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
@@ -48,7 +45,9 @@ NumberType number_type() {
 /// Both files while they are written: every array goes into the HDF5 file and is named in the XML.
 class XdmfFile {
  public:
-  explicit XdmfFile(const std::string& file) : xml_(file), data_(file + ".h5") {
+  explicit XdmfFile(const host::Target& target)
+      : xml_(target, host::FileKind::xdmf),
+        data_({target.path.string() + ".h5", target.force}, host::FileKind::hdf5) {
     guarded([this] {
       h5_ =
           Handle(H5Fcreate(data_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unbuffered_access()), H5Fclose);
@@ -81,15 +80,12 @@ class XdmfFile {
 
   void add(const std::string& xml) { text_ += xml; }
 
-  void publish() {
+  void commit() {
     guarded([this] { checked(h5_.reset()); });
     text_ += "</Grid>\n</Domain>\n</Xdmf>\n";
-    std::ofstream file(xml_.part(), std::ios::binary);
-    file << text_;
-    file.close();
-    if (!file) throw WriteError(xml_.path().string() + ": " + std::generic_category().message(errno));
-    data_.publish();
-    xml_.publish();
+    xml_.write(text_);
+    data_.commit();
+    xml_.commit();
   }
 
  private:
@@ -100,11 +96,11 @@ class XdmfFile {
       work();
     } catch (const Hdf5Error& error) {
       h5_.release();  // closing would write over caches that a failed write has left in no good state
-      throw WriteError(data_.path().string() + ": " + error.what());
+      throw WriteError(data_.path().string() + ": cannot be written: " + error.what());
     }
   }
 
-  StagedFile xml_, data_;
+  host::StagedFile xml_, data_;
   Handle h5_, link_, creation_;
   std::string text_;
 };
@@ -141,10 +137,10 @@ void add_frame(XdmfFile& file, const Model& model, const FrameRow& row, int numb
 
 }  // namespace
 
-void export_xdmf(const Recording& recording, const std::string& path) {
+void export_xdmf(const Recording& recording, const host::Target& target) {
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
-  XdmfFile file(path);
+  XdmfFile file(target);
   const std::string fixed = fixed_parts(file, model);
   int number = 0;
   for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
@@ -152,7 +148,7 @@ void export_xdmf(const Recording& recording, const std::string& path) {
     expect_same_model(model, row);
     add_frame(file, model, row, number++, fixed);
   }
-  file.publish();
+  file.commit();
 }
 
 }  // namespace topple::io

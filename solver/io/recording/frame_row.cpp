@@ -1,6 +1,7 @@
 #include "solver/io/recording/frame_row.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace topple::io {
@@ -18,14 +19,20 @@ bool all_finite(const Numbers& numbers) {
   return std::all_of(std::begin(numbers), std::end(numbers), [](auto x) { return std::isfinite(x); });
 }
 
+template <typename Array, typename Row>
+bool all_finite(const std::vector<Row>& rows) {
+  return std::ranges::all_of(rows, [](const Row& row) { return all_finite(std::bit_cast<Array>(row)); });
+}
+
 }  // namespace
 
 bool is_finite(const FrameRow& row) {
   return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
          all_finite(row.section_force) && all_finite(row.s) && all_finite(row.contact_depth) &&
          all_finite(row.contact_force) && all_finite(row.member_contact) && all_finite(row.energy) &&
-         all_finite(row.body) && all_finite(row.floor_acceleration) && all_finite(row.floor_displacement) &&
-         std::isfinite(row.load_factor) && all_finite(row.anchor);
+         all_finite<BodyArray>(row.body) && all_finite(row.floor_acceleration) &&
+         all_finite(row.floor_displacement) && std::isfinite(row.load_factor) &&
+         all_finite<AnchorArray>(row.anchor);
 }
 
 RowShape row_shape(const Model& model) {
@@ -47,10 +54,10 @@ FrameRow blank_row(const RowShape& shape) {
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
   row.member_contact.resize(4 * shape.touched);
-  row.energy.resize(shape.anchors > 0 ? 14 : 12);
-  row.body.resize(11 * shape.bodies);
-  row.rung.resize(shape.bodies);
-  row.anchor.resize(4 * shape.anchors);
+  row.energy.resize(shape.anchors > 0 ? k_released + 1 : k_anchor);
+  row.body.resize(shape.bodies);
+  row.level.resize(shape.bodies);
+  row.anchor.resize(shape.anchors);
   return row;
 }
 

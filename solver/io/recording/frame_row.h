@@ -1,6 +1,7 @@
 // One recorded instant.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,10 +12,55 @@ namespace topple::io {
 
 inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
 
-/// Of FrameRow::anchor. slack: in place, without force.
+/// AnchorNumbers::state. slack: in place, without force.
 inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
 /// "away", "slack", "holds", "broken".
 const char* anchor_word(float state);
+
+/// A body at one instant.
+struct BodyNumbers {
+  double x, y, z;         ///< m, centre of gravity, floor's frame
+  double qw, qx, qy, qz;  ///< rotation from the reference pose
+  double tilt, slide;     ///< rad, m
+  double energy;          ///< J, kinetic, strain and gravity
+  double critical_angle;  ///< rad, 0: none
+
+  bool operator==(const BodyNumbers&) const = default;
+  Vec3 centre() const { return {x, y, z}; }
+  Quat rotation() const { return Quat(qw, qx, qy, qz); }
+};
+/// Its numbers in their order.
+using BodyArray = std::array<double, 11>;
+static_assert(sizeof(BodyNumbers) == sizeof(BodyArray));
+
+/// An anchor at one instant.
+struct AnchorNumbers {
+  float tension;         ///< N, negative: it pushes
+  float energy;          ///< J
+  float natural_length;  ///< m
+  float state;           ///< k_anchor_away, ...
+  bool operator==(const AnchorNumbers&) const = default;
+};
+using AnchorArray = std::array<float, 4>;
+static_assert(sizeof(AnchorNumbers) == sizeof(AnchorArray));
+
+/// Columns of FrameRow::energy: J, but for the balance error, which is relative; the last two with anchors.
+enum EnergyColumn : std::size_t {
+  k_input,
+  k_kinetic,
+  k_strain,
+  k_gravity,
+  k_contact,
+  k_friction,
+  k_normal_damping,
+  k_numerical,
+  k_plastic,
+  k_damping,
+  k_model_switch,
+  k_balance_error,
+  k_anchor,
+  k_released
+};
 
 /// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies, a anchors,
 /// t elements that other bodies' members can touch: e, or 0 of a single body.
@@ -32,17 +78,13 @@ struct FrameRow {
   std::vector<float> contact_force;   ///< c x 3, N
   std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,
                                       ///< N, and where it acts, 0..1 from the first node to the second
-  std::vector<double> energy;         ///< input, kinetic, strain, gravity, contact, friction, normal damping,
-                                      ///< numerical, plastic, damping, model switch, balance error; with
-                                      ///< anchors also anchor, released; J, balance error -
-  std::vector<double> body;        ///< b x 11: centre x y z (m), quaternion w x y z, tilt (rad), slide (m),
-                                   ///< energy (J), critical angle (rad, 0: none)
-  std::vector<std::uint8_t> rung;  ///< b: 0 rigid, 1 elastic, 2 frame
+  std::vector<double> energy;         ///< EnergyColumn
+  std::vector<BodyNumbers> body;      ///< b
+  std::vector<std::uint8_t> level;    ///< b: 0 rigid, 1 elastic, 2 frame
   double floor_acceleration[3] = {};  ///< m/s^2
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs
-  std::vector<float> anchor;  ///< a x 4: tension (N, negative: pushes), energy (J), natural length (m),
-                              ///< state (k_anchor_away, ...)
+  std::vector<AnchorNumbers> anchor;  ///< a
 };
 
 /// No NaN, no infinity in it.

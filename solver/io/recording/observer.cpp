@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/body/anchors.h"
+#include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
 #include "solver/model/excitation.h"
-#include "solver/state/body_pose.h"
 
 namespace topple::io {
 namespace {
@@ -118,19 +118,20 @@ void fill_bodies(const Run& run, FrameRow& row) {
     const int index = static_cast<int>(b);
     const BodyPose pose = body_pose(model, run.state(), index);
     const double critical = critical_angle(model, index, pose);
-    const double values[11] = {pose.centre.x(),
-                               pose.centre.y(),
-                               pose.centre.z(),
-                               pose.rotation.w(),
-                               pose.rotation.x(),
-                               pose.rotation.y(),
-                               pose.rotation.z(),
-                               tilt(pose),
-                               slide(model, index, pose),
-                               body_energy(run, model.bodies[b]),
-                               std::isfinite(critical) ? critical : 0};
-    std::copy_n(values, 11, row.body.data() + 11 * b);
-    row.rung[b] = static_cast<std::uint8_t>(run.state().bodies[b].rung);
+    const Vec3& x = pose.centre;
+    const Quat& q = pose.rotation;
+    row.body[b] = {.x = x.x(),
+                   .y = x.y(),
+                   .z = x.z(),
+                   .qw = q.w(),
+                   .qx = q.x(),
+                   .qy = q.y(),
+                   .qz = q.z(),
+                   .tilt = tilt(pose),
+                   .slide = slide(model, index, pose),
+                   .energy = body_energy(run, model.bodies[b]),
+                   .critical_angle = std::isfinite(critical) ? critical : 0};
+    row.level[b] = static_cast<std::uint8_t>(run.state().bodies[b].level);
   }
 }
 
@@ -143,13 +144,14 @@ void fill_anchors(const Run& run, FrameRow& row) {
                        : anchor.hold == AnchorHold::broken ? k_anchor_broken
                        : forces[k].tension == 0            ? k_anchor_slack
                                                            : k_anchor_holds;
-    const double values[3] = {forces[k].tension, forces[k].energy, anchor.length};
-    for (int i = 0; i < 3; ++i) row.anchor[4 * k + i] = static_cast<float>(values[i]);
-    row.anchor[4 * k + 3] = look;
+    row.anchor[k] = {.tension = static_cast<float>(forces[k].tension),
+                     .energy = static_cast<float>(forces[k].energy),
+                     .natural_length = static_cast<float>(anchor.length),
+                     .state = look};
   }
   if (forces.empty()) return;
-  row.energy[12] = state.energy.anchor;
-  row.energy[13] = state.energy.released;
+  row.energy[k_anchor] = state.energy.anchor;
+  row.energy[k_released] = state.energy.released;
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ bool is_finite(const Checkpoint& checkpoint) {
 
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {
   const Body& body = model.bodies[static_cast<std::size_t>(index)];
-  double energy = row.body[11 * static_cast<std::size_t>(index) + 9];
+  double energy = row.body[static_cast<std::size_t>(index)].energy;
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Vec3 x(row.position[3 * k], row.position[3 * k + 1], row.position[3 * k + 2]);

@@ -6,10 +6,10 @@ struct Recorder::Impl {
   RecordingWriter writer;
 };
 
-Recorder::Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
+Recorder::Recorder(const host::Target& target, const std::string& scene_name, const std::string& scene_text,
                    const Model& model, const std::vector<SceneFile>& files, const std::string& arithmetic)
     : impl_(new Impl{
-          RecordingWriter(path, scene_name, scene_text, model, row_shape(model), files, arithmetic)}) {}
+          RecordingWriter(target, scene_name, scene_text, model, row_shape(model), files, arithmetic)}) {}
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;

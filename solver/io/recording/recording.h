@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/io/common/errors.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/math/elementary.h"
@@ -26,10 +27,10 @@ inline constexpr const char* k_system_arithmetic = "the system's functions";
 /// file again and every call throws the first WriteError.
 class Recorder {
  public:
-  /// Starts the recording in "PATH.part-PID"; the first flush with a frame renames it to `path`, so that a
-  /// start that fails leaves an older file there as it was. Writes branch 0. `arithmetic`: of the rows; of
+  /// Starts the recording beside the target; the first flush with a frame gives it its name, so that a start
+  /// that fails leaves an older file there as it was. Writes branch 0. `arithmetic`: of the rows; of
   /// another recording when it is gone on from. Throws WriteError.
-  Recorder(const std::string& path, const std::string& scene_name, const std::string& scene_text,
+  Recorder(const host::Target& target, const std::string& scene_name, const std::string& scene_text,
            const Model& model, const std::vector<SceneFile>& files = {},
            const std::string& arithmetic = topple::arithmetic());
   ~Recorder();
@@ -55,7 +56,7 @@ class Recorder {
 };
 
 /// What a frame shows or a checkpoint holds.
-struct Instant {
+struct FrameKey {
   std::int32_t branch;
   std::int64_t step;
   double time;  ///< s
@@ -93,7 +94,7 @@ class Recording {
   std::int64_t incomplete_frames() const;
   FrameRow frame(std::int64_t index) const;  ///< checks the block's checksum
   /// Of every frame, in the order in which they were written.
-  const std::vector<Instant>& index() const;
+  const std::vector<FrameKey>& index() const;
   /// Every branch comes after its parent, the root first; every row's branch is there. The values of edits
   /// are within their ranges; what the scene makes of them is checked by check_edit (edit_text.h).
   const History& history() const;
@@ -107,7 +108,7 @@ class Recording {
   std::vector<RecordedEvent> events_on_way_to(std::int32_t branch) const;
   std::int64_t checkpoint_count() const;
   Checkpoint checkpoint(std::int64_t index) const;
-  const std::vector<Instant>& checkpoint_index() const;
+  const std::vector<FrameKey>& checkpoint_index() const;
 
  private:
   struct Impl;

@@ -5,8 +5,6 @@
 namespace topple::io {
 namespace {
 
-constexpr std::size_t k_plastic = 8, k_damping = 9, k_model_switch = 10;  // columns of /frames/energy
-
 struct Column {
   const char* name;
   std::size_t offset;
@@ -195,7 +193,7 @@ std::size_t field_count(const RowShape& shape) {
 void expect_same_model(const Model& model, const FrameRow& row) {
   if (row.position.size() != 3 * model.node_position.size() || row.s.size() != model.elements.size() ||
       row.contact_depth.size() != model.contact_points.size() * model.planes.size() ||
-      row.rung.size() != model.bodies.size() || row.anchor.size() != 4 * model.anchors.size())
+      row.level.size() != model.bodies.size() || row.anchor.size() != model.anchors.size())
     throw InputError(k_another_model);
 }
 

@@ -157,7 +157,7 @@ auto field_bytes(Row& row) {
                                           bytes(row.member_contact),
                                           bytes(row.energy),
                                           bytes(row.body),
-                                          bytes(row.rung),
+                                          bytes(row.level),
                                           bytes(row.floor_acceleration),
                                           bytes(row.floor_displacement),
                                           bytes(std::span(&row.load_factor, 1)),

@@ -294,8 +294,8 @@ struct Recording::Impl {
   }
 
   template <typename Record>
-  static std::vector<Instant> instants(const std::vector<Record>& records) {
-    std::vector<Instant> result;
+  static std::vector<FrameKey> instants(const std::vector<Record>& records) {
+    std::vector<FrameKey> result;
     result.reserve(records.size());
     for (const Record& r : records) result.push_back({r.branch, r.step, r.time});
     return result;
@@ -378,7 +378,7 @@ struct Recording::Impl {
   std::vector<FrameRecord> frames;
   std::vector<CheckpointRecord> checkpoints;
   std::vector<EventRecord> recorded_events;
-  std::vector<Instant> frame_instants, checkpoint_instants;
+  std::vector<FrameKey> frame_instants, checkpoint_instants;
   History history;
 };
 
@@ -414,10 +414,10 @@ const std::string& Recording::status() const {
 const std::string& Recording::summary_json() const {
   return impl_->summary;
 }
-const std::vector<Instant>& Recording::index() const {
+const std::vector<FrameKey>& Recording::index() const {
   return impl_->frame_instants;
 }
-const std::vector<Instant>& Recording::checkpoint_index() const {
+const std::vector<FrameKey>& Recording::checkpoint_index() const {
   return impl_->checkpoint_instants;
 }
 const History& Recording::history() const {
@@ -460,7 +460,7 @@ std::vector<RecordedEvent> Recording::events() const {
                       .body = record.body,
                       .value = record.value[0],
                       .element = record.element,
-                      .reason = static_cast<RungReason>(record.value[1]),
+                      .reason = static_cast<LevelReason>(record.value[1]),
                       .anchor = static_cast<int>(record.value[2])};
     events.push_back({.branch = record.branch, .step = record.step, .time = record.time, .event = event});
   }
@@ -492,7 +492,7 @@ std::vector<std::int64_t> Recording::frames_on_way_to(std::int32_t branch) const
   std::vector<std::int64_t> found;
   for (const Stretch& stretch : impl_->history.way_to(branch))
     for (std::size_t i = 0; i < impl_->frame_instants.size(); ++i) {
-      const Instant& instant = impl_->frame_instants[i];
+      const FrameKey& instant = impl_->frame_instants[i];
       // the instant of the fork is the branch's own first frame
       if (instant.branch == stretch.branch && (stretch.branch == branch || instant.step < stretch.last_step))
         found.push_back(static_cast<std::int64_t>(i));

@@ -4,9 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <system_error>
 
 #include "solver/io/common/units.h"
 #include "solver/io/scene/edit_text.h"
@@ -14,27 +11,9 @@
 namespace topple::io {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Index chunks are rewritten at every flush while they fill, so they stay small.
 constexpr hsize_t k_index_chunk_rows = 64;
 constexpr hsize_t k_byte_chunk = 4096, k_number_chunk = 4096;
-
-std::string system_text(int error) {
-  return std::generic_category().message(error);
-}
-
-/// Where the recording really goes; refuses what a rename must not replace.
-fs::path destination(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) throw WriteError(path + ": is a folder");
-  if (!fs::exists(status)) return path;
-  if (!fs::is_regular_file(status)) throw WriteError(path + ": is not a regular file");
-  if (access(path.c_str(), W_OK) != 0) throw WriteError(path + ": " + system_text(errno));
-  const fs::path real = fs::canonical(path, error);  // a link stays a link, its target is replaced
-  return error ? fs::path(path) : real;
-}
 
 }  // namespace
 
@@ -86,24 +65,16 @@ void RowSet::describe(const char* units, const char* columns) {
   if (*columns != '\0') write_attribute(set_, "columns", columns);
 }
 
-RecordingWriter::RecordingWriter(const std::string& path, const std::string& scene_name,
+RecordingWriter::RecordingWriter(const host::Target& target, const std::string& scene_name,
                                  const std::string& scene_text, const Model& model, const RowShape& shape,
                                  const std::vector<SceneFile>& files, const std::string& arithmetic)
-    : path_(destination(path)), part_(path_), shown_path_(path) {
-  part_ += ".part-" + std::to_string(getpid());
-  std::error_code ignored;
-  fs::remove(part_, ignored);  // of a process that had the same number and died here
-  try {
-    guarded([&] {
-      descriptions_ = frame_fields(shape);
-      std::transform(descriptions_.begin(), descriptions_.end(), field_bytes_.begin(), row_bytes);
-      field_count_ = field_count(shape);
-      create(scene_name, scene_text, model, files, arithmetic);
-    });
-  } catch (const WriteError&) {
-    fs::remove(part_, ignored);
-    throw;
-  }
+    : staged_(target, host::FileKind::hdf5) {
+  guarded([&] {
+    descriptions_ = frame_fields(shape);
+    std::transform(descriptions_.begin(), descriptions_.end(), field_bytes_.begin(), row_bytes);
+    field_count_ = field_count(shape);
+    create(scene_name, scene_text, model, files, arithmetic);
+  });
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -115,8 +86,6 @@ RecordingWriter::~RecordingWriter() {
   } catch (const WriteError&) {
     // Nobody is left to tell; what was flushed stays readable.
   }
-  std::error_code ignored;
-  if (!renamed_) fs::remove(part_, ignored);
 }
 
 template <typename Work>
@@ -126,10 +95,13 @@ void RecordingWriter::guarded(Work&& work) {
   try {
     work();
   } catch (const Hdf5Error& error) {
-    failure_ = shown_path_ + ": cannot write the recording: " + error.what();
-    detach();
-    throw WriteError(*failure_);
+    failure_ = staged_.path().string() + ": cannot write the recording: " + error.what();
+  } catch (const WriteError& error) {
+    failure_ = error.what();
   }
+  if (!failure_) return;
+  detach();
+  throw WriteError(*failure_);
 }
 
 void RecordingWriter::create(const std::string& scene_name, const std::string& scene_text, const Model& model,
@@ -137,7 +109,7 @@ void RecordingWriter::create(const std::string& scene_name, const std::string& s
   const Handle access = unbuffered_access();
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
-  file_ = Handle(H5Fcreate(part_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access), H5Fclose);
+  file_ = Handle(H5Fcreate(staged_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
   void* descriptor = nullptr;
   checked(H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor));
   descriptor_ = *static_cast<int*>(descriptor);
@@ -197,8 +169,8 @@ void RecordingWriter::create_rows() {
 // What came before is kept, and the file can still be closed.
 void RecordingWriter::refuse(const std::string& what, double time) {
   flush();
-  throw WriteError(shown_path_ + ": cannot write the recording: " + what + " at " + short_number(time) +
-                   " s holds a number that is not finite");
+  throw WriteError(staged_.path().string() + ": cannot write the recording: " + what + " at " +
+                   short_number(time) + " s holds a number that is not finite");
 }
 
 void RecordingWriter::append(const FrameRow& row) {
@@ -297,12 +269,7 @@ void RecordingWriter::write_pending() {
 void RecordingWriter::flush() {
   guarded([this] {
     write_pending();
-    if (!renamed_ && frames_ > 0) {
-      std::error_code error;
-      fs::rename(part_, path_, error);
-      if (error) throw Hdf5Error(error.message());
-      renamed_ = true;
-    }
+    if (!staged_.committed() && frames_ > 0) staged_.commit();
   });
   last_flush_ = std::chrono::steady_clock::now();
 }

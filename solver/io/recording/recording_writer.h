@@ -3,11 +3,11 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording_format.h"
 
 namespace topple::io {
@@ -40,9 +40,9 @@ class RecordingWriter {
   /// A row stays in memory at most this long while flush_if_due is called often; half of the promised 100 ms.
   static constexpr std::chrono::milliseconds k_flush_interval{50};
 
-  /// Starts the recording as "PATH.part-PID" beside `path`. The first flush with a frame renames it to
-  /// `path`, so that a start that fails leaves an older file at `path` as it was. Throws WriteError.
-  RecordingWriter(const std::string& path, const std::string& scene_name, const std::string& scene_text,
+  /// Starts the recording beside the target. The first flush with a frame gives it its name, so that a start
+  /// that fails leaves an older file there as it was. Throws WriteError.
+  RecordingWriter(const host::Target& target, const std::string& scene_name, const std::string& scene_text,
                   const Model& model, const RowShape& shape, const std::vector<SceneFile>& files = {},
                   const std::string& arithmetic = topple::arithmetic());
   /// Closes; without finish() the recording reads as interrupted.
@@ -75,13 +75,12 @@ class RecordingWriter {
   void close();
   void detach() noexcept;
 
-  std::filesystem::path path_, part_;
-  std::string shown_path_;
+  host::StagedFile staged_;
   std::array<FrameField, k_field_count> descriptions_{};
   std::array<std::size_t, k_field_count> field_bytes_{};
   std::size_t field_count_ = 0;
   std::optional<std::string> failure_;
-  bool renamed_ = false, finished_ = false;
+  bool finished_ = false;
   std::chrono::steady_clock::time_point last_flush_{};  ///< long ago: the first frame is flushed at once
 
   Handle file_;

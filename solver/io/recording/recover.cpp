@@ -1,6 +1,6 @@
 #include "solver/io/recording/recover.h"
 
-#include "solver/io/common/staged_file.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/recording/recording_writer.h"
 #include "solver/io/scene/scene.h"
@@ -34,13 +34,13 @@ SoundRows sound_rows(const Recording& recording) {
   return rows;
 }
 
-void write_recovered(const Recording& recording, const SoundRows& rows, const std::string& path) {
+void write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target) {
   expect_to_go_on(recording);  // a copy of another format would hold what nobody recorded
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
   if (!rows.frames.empty()) expect_same_model(model, recording.frame(rows.frames.front()));
-  StagedFile staged(path);
-  RecordingWriter writer(staged.part().string(), recording.scene_name(), recording.scene_text(), model,
+  host::StagedFile staged(target, host::FileKind::hdf5);
+  RecordingWriter writer(staged.part(), recording.scene_name(), recording.scene_text(), model,
                          row_shape(model), recording.scene_files(), recording.arithmetic());
   for (const Branch& branch : recording.history().branches)
     if (branch.parent >= 0) writer.append(branch);  // a writer begins with the root
@@ -49,7 +49,7 @@ void write_recovered(const Recording& recording, const SoundRows& rows, const st
   for (const std::int64_t i : rows.checkpoints) writer.append(recording.checkpoint(i));
   for (const std::int64_t i : rows.frames) writer.append(recording.frame(i));
   writer.finish(recording.status(), recording.summary_json());
-  staged.publish();
+  staged.commit();
 }
 
 }  // namespace topple::io

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/io/host/staged_file.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::io {
@@ -18,8 +19,8 @@ struct SoundRows {
 SoundRows sound_rows(const Recording& recording);
 
 /// Writes a closed recording that holds these rows and all events, edits, branches and the result of
-/// `recording`. It appears at `path` whole or not at all. Throws WriteError, and InputError when the scene
+/// `recording`. It appears at `target` whole or not at all. Throws WriteError, and InputError when the scene
 /// gives another model now than the one that was recorded, or the format is one that no run goes on from.
-void write_recovered(const Recording& recording, const SoundRows& rows, const std::string& path);
+void write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target);
 
 }  // namespace topple::io

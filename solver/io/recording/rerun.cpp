@@ -23,7 +23,7 @@ State state_of(const Model& model, const Checkpoint& checkpoint) {
 /// The newest checkpoint that led to the fork of `branch`, or that of its parent at the fork itself.
 std::optional<Checkpoint> checkpoint_before(const Recording& recording, const Branch& branch) {
   std::optional<Checkpoint> newest;
-  const std::vector<Instant>& all = recording.checkpoint_index();
+  const std::vector<FrameKey>& all = recording.checkpoint_index();
   for (const Stretch& stretch : recording.history().way_to(branch.parent))
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all[i].branch == stretch.branch && all[i].step <= std::min(stretch.last_step, branch.fork_step))
@@ -108,7 +108,7 @@ std::optional<Difference> difference(const Model& model, const FrameRow& recorde
   return std::nullopt;
 }
 
-Difference difference(const Model& model, const Instant& at, const State& recorded, const State& again) {
+Difference difference(const Model& model, const FrameKey& at, const State& recorded, const State& again) {
   Difference out{at, "state"};
   const auto same = [](const auto& a, const auto& b) { return a == b; };
   for (int i = 0; i < model.node_total() && out.element < 0; ++i)
@@ -120,7 +120,7 @@ Difference difference(const Model& model, const Instant& at, const State& record
 }
 
 template <typename Row>
-Instant instant_of(const Row& row) {
+FrameKey instant_of(const Row& row) {
   return {row.branch, row.step, row.time};
 }
 
@@ -166,9 +166,9 @@ class Comparison {
     return !difference_;
   }
   bool compare_frames(std::int64_t last_step) {
-    const std::vector<Instant>& all = recording_.index();
+    const std::vector<FrameKey>& all = recording_.index();
     for (; next_frame_ < all.size() && !difference_; ++next_frame_) {
-      const Instant& at = all[next_frame_];
+      const FrameKey& at = all[next_frame_];
       if (at.branch != branch_.id) continue;
       if (at.step > last_step) return true;
       if (branch_.parent >= 0 && at.step == branch_.fork_step) continue;
@@ -200,7 +200,7 @@ Rerun rerun(const Recording& recording, const std::function<void(std::int64_t)>&
   const History& history = recording.history();
   check_edits(history, setup);
   if (recording.frame_count() > 0) expect_same_model(setup.model, recording.frame(0));
-  const std::vector<Instant>& all = recording.checkpoint_index();
+  const std::vector<FrameKey>& all = recording.checkpoint_index();
   Rerun result;
   result.damage = damage(recording);
   std::int64_t passed = 0;

@@ -16,7 +16,7 @@ void check_edits(const History& history, const Setup& setup);
 
 /// Where a recording is not what its second run gives.
 struct Difference {
-  Instant at;
+  FrameKey at;
   std::string what;  ///< "position", "hinge", "state", ...
   int element = -1;  ///< index into Model::elements, the first that it is about; -1: it is about none
 };

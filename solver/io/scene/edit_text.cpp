@@ -3,50 +3,33 @@
 #include <charconv>
 #include <cmath>
 
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
+#include "solver/contact/contact_law.h"
 #include "solver/io/common/errors.h"
+#include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {
 
-struct Name {
-  Edit::Key key;
-  const char *table, *name;
-};
-
-// In the order of Edit::Key. A body may be a frame or a copy of one: its edits say "body" and its number.
-constexpr Name k_names[] = {
-    {Edit::Key::on, "shake", "on"},
-    {Edit::Key::type, "shake", "type"},
-    {Edit::Key::frequency, "shake", "frequency"},
-    {Edit::Key::amplitude, "shake", "amplitude"},
-    {Edit::Key::direction, "shake", "direction"},
-    {Edit::Key::duration, "shake", "duration"},
-    {Edit::Key::scale, "shake", "scale"},
-    {Edit::Key::law, "contact", "law"},
-    {Edit::Key::alpha, "contact", "alpha"},
-    {Edit::Key::q, "contact", "q"},
-    {Edit::Key::friction, "contact", "friction"},
-    {Edit::Key::friction_static, "contact", "friction_static"},
-    {Edit::Key::restitution, "contact", "restitution"},
-    {Edit::Key::model, "body", "model"},
-    {Edit::Key::damping, "body", "damping"},
-    {Edit::Key::anchor, "anchor", "on"},
-    {Edit::Key::integrator, "run", "integrator"},
-    {Edit::Key::want, "run", "want"},
-    {Edit::Key::time_step, "run", "time_step"},
-};
-
-const Name& name_of(Edit::Key key) {
-  return k_names[static_cast<std::size_t>(key)];
+// The table of the scene's path. A body may be a frame or a copy of one: its edits say "body" and its number.
+std::string_view table_of(Edit::Of of) {
+  switch (of) {
+    case Edit::Of::shake:
+      return "shake";
+    case Edit::Of::contact:
+      return "contact";
+    case Edit::Of::body:
+      return "body";
+    case Edit::Of::anchor:
+      return "anchor";
+    case Edit::Of::run:
+      break;
+  }
+  return "run";
 }
 
-bool is_of(const char* table, Edit::Key key) {
-  return std::string_view(name_of(key).table) == table;
-}
-
-bool is_numbered(Edit::Key key) {
-  return is_of("shake", key) || is_of("body", key) || is_of("anchor", key);
+bool is_numbered(Edit::Of of) {
+  return of != Edit::Of::contact && of != Edit::Of::run;
 }
 
 // How many values an edit has.
@@ -58,15 +41,11 @@ int value_count(const Edit& edit, const Key& key) {
   throw InputError(edit_key(edit) + ": " + message);
 }
 
-/// Refuses the key of a choice that was not made; `chosen`: which of the choices of `key.of` was. `when`: the
-/// choices whose value can be edited.
-template <typename Choice>
-void expect_choice(const Edit& edit, Choice chosen, const std::vector<std::string_view>& when) {
+/// Refuses the key of a choice that was not made: `word` was, of the choices of `key.of`.
+void expect_choice(const Edit& edit, std::string_view word) {
   const Key& key = key_of(edit.key);
-  const Key& choice = *find_key(key.table, key.of);
-  const std::string_view word = choice.choices[static_cast<std::size_t>(chosen)];
   std::string words;
-  for (const std::string_view other : when) {
+  for (const std::string_view other : key.when) {
     if (other == word) return;
     words += (words.empty() ? "" : " or ") + std::string(other);
   }
@@ -77,14 +56,14 @@ void expect_choice(const Edit& edit, Choice chosen, const std::vector<std::strin
 }  // namespace
 
 const Key& key_of(Edit::Key key) {
-  const Name& name = name_of(key);
-  return *find_key(is_of("body", key) ? "cabinet" : name.table, name.name);
+  const EditTraits& row = traits(key);
+  return *find_key(row.of == Edit::Of::body ? "cabinet" : table_of(row.of), row.word);
 }
 
 std::string edit_key(const Edit& edit) {
-  const Name& name = name_of(edit.key);
-  const std::string number = is_numbered(edit.key) ? std::to_string(edit.shake + 1) + "." : "";
-  return std::string(name.table) + "." + number + name.name;
+  const EditTraits& row = traits(edit.key);
+  const std::string number = is_numbered(row.of) ? std::to_string(edit.shake + 1) + "." : "";
+  return std::string(table_of(row.of)) + "." + number + row.word;
 }
 
 std::optional<Edit> parse_edit_key(std::string_view text) {
@@ -92,8 +71,8 @@ std::optional<Edit> parse_edit_key(std::string_view text) {
   int number = 1;
   if (dot != std::string_view::npos)
     std::from_chars(text.data() + dot + 1, text.data() + text.size(), number);
-  for (const Name& name : k_names) {
-    const Edit edit{.key = name.key, .shake = is_numbered(name.key) ? number - 1 : 0};
+  for (const EditTraits& row : edits()) {
+    const Edit edit{.key = row.kind, .shake = is_numbered(row.of) ? number - 1 : 0};
     if (edit.shake >= 0 && edit_key(edit) == text) return edit;
   }
   return std::nullopt;
@@ -129,13 +108,13 @@ void expect_index(const Edit& edit, std::size_t count, const char* what) {
 void check_shake_edit(const Edit& edit, const Shake& shake) {
   if (edit.key == Edit::Key::on) return;
   if (edit.key == Edit::Key::type) {
-    const auto record = [](int kind) { return static_cast<Shake::Kind>(kind) == Shake::Kind::record; };
-    if (record(static_cast<int>(shake.kind)) || record(static_cast<int>(edit.value.x())))
+    const auto& asked = shake_kinds()[static_cast<std::size_t>(edit.value.x())];
+    if (!traits(shake.kind).has_amplitude || !asked.has_amplitude)
       fail(edit, "a record stays one, and nothing else becomes one");
     return;
   }
-  expect_choice(edit, shake.kind, key_of(edit.key).when);
-  if (edit.key == Edit::Key::frequency && shake.kind == Shake::Kind::sweep)
+  expect_choice(edit, traits(shake.kind).word);
+  if (edit.key == Edit::Key::frequency && traits(shake.kind).sweeps)
     check_edit_value({edit.key, edit.shake, Vec3(edit.value.y(), 0, 0)});
 }
 
@@ -145,7 +124,7 @@ void check_body_edit(const Edit& edit, const Model& model) {
     fail(edit, "\"" + body.name + "\" has no known elastic mode; give it a damping in the scene");
   if (edit.key == Edit::Key::model) {
     const int asked = static_cast<int>(edit.value.x());
-    if (can_be(model, edit.shake, static_cast<BodyModel>(asked))) return;
+    if (can_be(model, edit.shake, body_models()[static_cast<std::size_t>(asked)].kind)) return;
     const std::string word(key_of(edit.key).choices[static_cast<std::size_t>(asked)]);
     fail(edit, "\"" + body.name + "\" cannot be " + word +
                    "; supports and loads take a frame, elastic and auto a scene that says so");
@@ -155,14 +134,14 @@ void check_body_edit(const Edit& edit, const Model& model) {
 }  // namespace
 
 void check_edit(const Edit& edit, const Parameters& parameters, const Model& model) {
-  if (is_of("shake", edit.key)) expect_index(edit, parameters.shakes.size(), "shake");
-  if (is_of("anchor", edit.key)) expect_index(edit, model.anchors.size(), "anchor");
-  if (is_of("body", edit.key)) expect_index(edit, model.furniture_total(), "body");
+  const Edit::Of of = traits(edit.key).of;
+  if (of == Edit::Of::shake) expect_index(edit, parameters.shakes.size(), "shake");
+  if (of == Edit::Of::anchor) expect_index(edit, model.anchors.size(), "anchor");
+  if (of == Edit::Of::body) expect_index(edit, model.furniture_total(), "body");
   check_edit_value(edit);
-  if (is_of("shake", edit.key)) check_shake_edit(edit, parameters.shakes[edit.shake]);
-  if (is_of("body", edit.key)) check_body_edit(edit, model);
-  if (edit.key == Edit::Key::restitution || edit.key == Edit::Key::friction_static)
-    expect_choice(edit, parameters.contact.kind, key_of(edit.key).when);
+  if (of == Edit::Of::shake) check_shake_edit(edit, parameters.shakes[edit.shake]);
+  if (of == Edit::Of::body) check_body_edit(edit, model);
+  if (key_of(edit.key).of == "law") expect_choice(edit, traits(parameters.contact).word);
 }
 
 }  // namespace topple::io

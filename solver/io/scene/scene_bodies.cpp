@@ -4,7 +4,9 @@
 #include <set>
 
 #include "solver/body/elastic_basis.h"
+#include "solver/body/model_level.h"
 #include "solver/contact/proximity.h"
+#include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/model/cabinet.h"
@@ -309,13 +311,13 @@ void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const 
 // What the last `count` bodies are computed as.
 void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) {
   Model& model = setup.model;
-  BodyModel asked = entry.choice_as<BodyModel>("model");
+  BodyModel asked = body_models()[entry.choice("model")].kind;
   const Entry run = root.entry("run");
   const bool named = run.choice("integrator") != 0;
   if (asked == BodyModel::automatic && (named || setup.run.analysis != Analysis::dynamic))
     asked = BodyModel::frame;
   if (asked == BodyModel::rigid || asked == BodyModel::elastic) {
-    if (named && setup.parameters.integrator != Integrator::central_difference)
+    if (named && !traits(setup.parameters.integrator).is_explicit)
       entry.fail("model", "\"" + entry.text("model") +
                               "\" bodies take central differences: run.integrator = \"" +
                               run.text("integrator") + "\" is for frames");
@@ -331,7 +333,7 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
     setup.parameters.models.push_back(asked);
     setup.parameters.damping.push_back(damping);
     Body& body = model.bodies[b];
-    if (asked == BodyModel::automatic || asked == BodyModel::elastic) {
+    if (traits(asked).bends) {
       body.elastic = elastic_basis(model, b);
       if (asked == BodyModel::elastic && !body.elastic)
         entry.fail("model", "no elastic body: a part of it moves without strain or has no mass");

@@ -1,5 +1,7 @@
 #include "solver/io/scene/scene_difference.h"
 
+#include <utf8.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -76,10 +78,9 @@ std::optional<Value> fallback(const Key* key) {
 }
 
 std::string cut(const std::string& text) {
-  std::size_t bytes = k_longest;
-  if (text.size() <= bytes) return text;
-  while ((static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;  // no letter is split
-  return text.substr(0, bytes) + "…";
+  if (text.size() <= k_longest) return text;
+  const auto end = utf8::find_invalid(text.begin(), text.begin() + k_longest);  // no letter is split
+  return std::string(text.begin(), end) + "…";
 }
 
 class Comparison {

@@ -1,5 +1,7 @@
 #include "solver/io/scene/scene_document.h"
 
+#include <utf8.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -280,9 +282,9 @@ std::string shown(const Node& node) {
   if (node.kind != Node::Kind::text || node.text.size() <= k_longest) {
     return node.kind == Node::Kind::text ? '"' + node.text + '"' : written(node);
   }
-  std::size_t cut = k_longest;
-  while ((static_cast<unsigned char>(node.text[cut]) & 0xc0) == 0x80) --cut;
-  return '"' + node.text.substr(0, cut) + "...\"";
+  const auto end =
+      utf8::find_invalid(node.text.begin(), node.text.begin() + k_longest);  // no letter is split
+  return '"' + std::string(node.text.begin(), end) + "...\"";
 }
 
 }  // namespace topple::io

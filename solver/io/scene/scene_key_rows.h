@@ -33,9 +33,9 @@ class Row {
   Row& only_in(Words analyses) { return key_.analyses = std::move(analyses), *this; }
   /// Words that may stand instead of the numbers.
   Row& or_word(Words words) { return key_.choices = std::move(words), *this; }
-  /// One number is enough, also outside of a list.
-  /// Numbers of which the last ones may be left out.
+  /// The list may be shorter: its last numbers may be left out.
   Row& at_least(int count) { return key_.least_count = count, *this; }
+  /// One number is enough, also outside of a list.
   Row& or_one() { return key_.least_count = 1, *this; }
 
  private:

@@ -1,8 +1,11 @@
 #include "solver/io/scene/scene_keys.h"
 
+#include "solver/contact/contact_law.h"
+#include "solver/frame/integrator.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene/scene_key_rows.h"
 #include "solver/model/cabinet.h"
+#include "solver/model/excitation.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/run/run.h"
@@ -42,7 +45,9 @@ void add_run(std::vector<Key>& keys) {
   rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time")
       .absent(run.duration)
       .only_in({"dynamic"});
-  rows.word("integrator", {"auto", "generalized-alpha", "central-difference", "newmark"},
+  Words named = words_of(integrators());
+  named.insert(named.begin(), "auto");
+  rows.word("integrator", named,
             "of frames; auto is generalized-alpha. Rigid and elastic bodies take central differences")
       .absent(0)
       .only_in({"dynamic"});
@@ -76,9 +81,9 @@ void add_run(std::vector<Key>& keys) {
   rows.plain("control", T::table, "a node that moves in equal parts while the loads follow")
       .absent_means("the loads grow by themselves")
       .only("analysis", {"static"});
-  rows.word("elements", {"asi-gauss", "asi", "midpoint"},
+  rows.word("elements", words_of(k_schemes),
             "where the integration points stand; asi: in the middle while elastic; midpoint: always")
-      .absent(Scheme::asi_gauss);
+      .absent(place_of(k_schemes, Scheme::asi_gauss));
   rows.plain("settle", T::boolean,
              "start from rest under gravity and the loads at t = 0 (static: load factor 0)")
       .absent(run.settle);
@@ -110,34 +115,42 @@ void add_control(std::vector<Key>& keys) {
 void add_shake(std::vector<Key>& keys) {
   Rows rows(keys, "shake");
   const Shake shake{};
+  const auto kinds_with = [](bool ShakeTraits::*has) {
+    Words words;
+    for (const ShakeTraits& kind : shake_kinds())
+      if (kind.*has) words.emplace_back(kind.word);
+    return words;
+  };
+  const Words pushing = kinds_with(&ShakeTraits::has_amplitude);
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
-  rows.word("type", {"sine", "sweep", "pulse", "record"}, "form of the acceleration").absent(shake.kind);
+  rows.word("type", words_of(shake_kinds()), "form of the acceleration")
+      .absent(place_of(shake_kinds(), shake.kind));
   rows.numbers("frequency", 2, D::frequency, "Hz", 1e-3, 1e3,
                "frequency; of a sweep [first, last]: each octave takes as long")
       .or_one()
       .required()
-      .only("type", {"sine", "sweep"});
+      .only("type", kinds_with(&ShakeTraits::has_frequency));
   rows.number("amplitude", D::acceleration, "gal", 0, 1e3, "largest acceleration")
       .required()
-      .only("type", {"sine", "sweep", "pulse"});
+      .only("type", pushing);
   rows.numbers("direction", 3, -1e6, 1e6, "of the acceleration; made a unit vector")
       .absent(shake.direction)
-      .only("type", {"sine", "sweep", "pulse"});
+      .only("type", pushing);
   rows.number("start", D::time, "s", 0, 3600, "begin").absent(shake.start);
   rows.plain("on", T::boolean, "false: it does not shake the floor until switched on").absent(1);
   rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", {"sine"});
   rows.number("taper", 0, 1e6, "periods of smooth rise and fall")
       .absent(shake.taper)
-      .only("type", {"sine", "sweep"});
+      .only("type", kinds_with(&ShakeTraits::has_frequency));
   rows.word("initial_velocity", {"rest", "jump"}, "jump: the floor starts with the velocity of a pure sine")
       .absent(shake.initial_velocity)
       .only("type", {"sine"});
-  rows.word("shape", {"half-sine", "full-sine", "rectangle"}, "form of the pulse")
-      .absent(shake.shape)
+  rows.word("shape", words_of(pulse_shapes()), "form of the pulse")
+      .absent(place_of(pulse_shapes(), shake.shape))
       .only("type", {"pulse"});
   rows.number("duration", D::time, "s", 1e-6, 3600, "length of the pulse or sweep")
       .required()
-      .only("type", {"sweep", "pulse"});
+      .only("type", kinds_with(&ShakeTraits::has_duration));
   rows.texts("files", 3,
              "accelerograms: PEER AT2, K-NET or KiK-net ASCII, CSV (accelerogram_file.h), one to three "
              "components together, equally long; paths from the folder of the scene, or a built-in record")
@@ -168,7 +181,12 @@ void add_shake(std::vector<Key>& keys) {
 void add_contact(std::vector<Key>& keys) {
   Rows rows(keys, "contact");
   const ContactLaw law{};
-  rows.word("law", {"coulomb", "paper", "printed"}, "contact_law.h").absent(law.kind).only_in({"dynamic"});
+  Words with_restitution;
+  for (const ContactLawTraits& of : contact_laws())
+    if (of.has_restitution) with_restitution.emplace_back(of.word);
+  rows.word("law", words_of(contact_laws()), "contact_law.h")
+      .absent(place_of(contact_laws(), law.kind))
+      .only_in({"dynamic"});
   rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
               "penalty coefficient of Eq. 2")
       .absent(law.alpha)
@@ -181,20 +199,19 @@ void add_contact(std::vector<Key>& keys) {
               "coefficient of static friction, not below `friction`; falls to it with the slip speed "
               "(contact_law.h)")
       .absent_means("`friction`")
-      .only("law", {"coulomb"})
+      .only("law", with_restitution)
       .only_in({"dynamic"});
   rows.number("restitution", 0, 1, "coefficient of restitution")
       .absent(law.restitution)
-      .only("law", {"coulomb"})
+      .only("law", with_restitution)
       .only_in({"dynamic"});
   rows.number("normal_speed", D::velocity, "m/s", 1e-6, 10, "closing speed below which restitution fades")
       .absent(law.normal_speed)
-      .only("law", {"coulomb"})
+      .only("law", with_restitution)
       .only_in({"dynamic"});
-  rows.number(
-          "slip_speed", D::velocity, "m/s", 1e-6, 10,
-          "paper and printed law: smooths the direction of slip; coulomb law: half of the way from static to "
-          "kinetic friction")
+  rows.number("slip_speed", D::velocity, "m/s", 1e-6, 10,
+              "smooths the direction of slip; of a law that sticks: half of the way from static to kinetic "
+              "friction")
       .absent(law.slip_speed)
       .only_in({"dynamic"});
 }

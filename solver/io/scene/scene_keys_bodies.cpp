@@ -1,3 +1,4 @@
+#include "solver/body/model_level.h"
 #include "solver/io/scene/scene_key_rows.h"
 #include "solver/model/cabinet.h"
 #include "solver/model/parameters.h"
@@ -14,11 +15,11 @@ constexpr double k_large = 10;  // m
 constexpr double k_degree = k_pi / 180;
 
 void add_model(Rows& rows, BodyModel absent) {
-  rows.word("model", {"auto", "rigid", "elastic", "frame"},
+  rows.word("model", words_of(body_models()),
             "what the body is computed as; auto: the least that answers `run.want`, frame with an integrator "
             "that "
             "is named. A body is a frame while another is within 50 mm")
-      .absent(absent)
+      .absent(place_of(body_models(), absent))
       .only_in({"dynamic"});
 }
 

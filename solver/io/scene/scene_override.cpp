@@ -1,4 +1,6 @@
 // --set KEY=VALUE: changes of a scene's tree before it is checked.
+#include <utf8.h>
+
 #include "solver/io/common/errors.h"
 #include "solver/io/scene/scene_document.h"
 
@@ -41,15 +43,6 @@ Node parse_value(const std::string& text, const Place& place) {
   return value;
 }
 
-bool is_utf8(const std::string& text) {
-  try {
-    parse_toml("text = " + written_text(text), "");
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 // The entry whose label `rest` begins with, and the label's length; names may contain dots, so the longest
 // counts.
 Item* find_entry(Node& list, const std::string& rest, std::size_t& length) {
@@ -80,7 +73,7 @@ std::string labels(const Node& list) {
 
 void apply_override(Node& root, const std::string& override_text) {
   const Place place{0, 0, std::make_shared<const std::string>(override_text)};
-  if (!is_utf8(override_text)) fail("", place, "", "is not UTF-8");
+  if (!utf8::is_valid(override_text)) fail("", place, "", "is not UTF-8");
   const auto equals = override_text.find('=');
   std::string rest = trimmed(override_text.substr(0, equals));
   if (equals == std::string::npos || rest.empty()) {

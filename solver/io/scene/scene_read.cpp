@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "solver/contact/contact_default.h"
+#include "solver/contact/contact_law.h"
+#include "solver/frame/integrator.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {
@@ -111,7 +114,7 @@ void check_pointer(const Entry& entry, const std::string& pointer) {
 
 void read_run(const Entry& root, Setup& setup) {
   const Entry run = root.entry("run");
-  setup.model.scheme = run.choice_as<Scheme>("elements");
+  setup.model.scheme = k_schemes[run.choice("elements")].kind;
   setup.run.duration = run.number("duration");
   setup.run.settle = run.flag("settle");
   setup.run.output_rate = run.number("output_rate");
@@ -141,10 +144,18 @@ void read_run(const Entry& root, Setup& setup) {
   }
 }
 
+// "law = paper or printed"
+std::string laws_that_slide() {
+  std::string words;
+  for (const ContactLawTraits& law : contact_laws())
+    if (!law.sticks) words += (words.empty() ? "law = " : " or ") + std::string(law.word);
+  return words;
+}
+
 void read_contact(const Entry& root, Setup& setup) {
   const Entry contact = root.entry("contact");
   ContactLaw& law = setup.parameters.contact;
-  law.kind = contact.choice_as<ContactLawKind>("law");
+  law.kind = contact_laws()[contact.choice("law")].kind;
   law.alpha = contact.number("alpha");
   law.q = contact.number("q");
   law.friction = contact.number("friction");
@@ -155,8 +166,8 @@ void read_contact(const Entry& root, Setup& setup) {
                                           " is below contact.friction, which is " +
                                           short_number(law.friction));
   }
-  if (contact.has("slip_speed") && law.kind == ContactLawKind::coulomb && !contact.has("friction_static"))
-    contact.fail("slip_speed", "belongs to law = paper or printed, or to a friction_static");
+  if (contact.has("slip_speed") && traits(law).sticks && !contact.has("friction_static"))
+    contact.fail("slip_speed", "belongs to " + laws_that_slide() + ", or to a friction_static");
   law.restitution = contact.number("restitution");
   law.normal_speed = contact.number("normal_speed");
   law.slip_speed = contact.number("slip_speed");

@@ -1,5 +1,7 @@
 #include "solver/io/scene/scene_rewrite.h"
 
+#include <utf8.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -18,10 +20,10 @@ std::size_t offset_of(const std::string& text, const Place& place) {
     if (at == std::string::npos) throw std::logic_error("a place beyond the text");
     ++at;
   }
-  for (int column = 1; column < place.column && at < text.size(); ++column) do
-      ++at;
-    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80);
-  return at;
+  auto letter = text.begin() + static_cast<std::ptrdiff_t>(at);
+  for (int column = 1; column < place.column && letter != text.end(); ++column)
+    utf8::next(letter, text.end());
+  return static_cast<std::size_t>(letter - text.begin());
 }
 
 std::size_t end_of_text(const std::string& text, std::size_t at) {

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "solver/contact/contact_law.h"
+#include "solver/frame/integrator.h"
 #include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
@@ -39,7 +41,7 @@ std::string toml_of(const Edit& edit, const Parameters& now) {
       return "[" + every_digit(value.x()) + ", " + every_digit(value.y()) + ", " + every_digit(value.z()) +
              "]";
     case Edit::Key::frequency:
-      if (now.shakes[static_cast<std::size_t>(edit.shake)].kind == Shake::Kind::sweep)
+      if (traits(now.shakes[static_cast<std::size_t>(edit.shake)].kind).sweeps)
         // A sweep that does not change is refused; the number next to it is not.
         return "[" + number_text(key, value.x()) + ", " +
                number_text(key, value.y() == value.x() ? std::nextafter(value.y(), 1e9) : value.y()) + "]";
@@ -80,7 +82,7 @@ class Rewriting {
   Rewriting(const Scene& scene, const Parameters& now)
       : model_(scene.setup.model),
         now_(now),
-        analysis_(word(*find_key("run", "analysis"), static_cast<int>(scene.setup.run.analysis))) {
+        analysis_(find_key("run", "analysis")->choices[static_cast<std::size_t>(scene.setup.run.analysis)]) {
     saved_.text = scene.text;
   }
 
@@ -103,7 +105,7 @@ class Rewriting {
   std::vector<std::pair<Edit::Key, int>> different(const Parameters& read) const {
     std::vector<std::pair<Edit::Key, int>> keys;
     for (const auto& [key, index] : editable(model_, now_)) {
-      const bool retyped = shake_key(key) && kind(read, index) != kind(now_, index);
+      const bool retyped = is_of_shake(key) && kind(read, index) != kind(now_, index);
       const bool step = key == Edit::Key::time_step && read.adaptive != now_.adaptive;
       if (!retyped && !step && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
       if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
@@ -128,7 +130,8 @@ class Rewriting {
   void change(const Node& root, const Edit& edit) {
     std::string value = toml_of(edit, now_);
     if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
-    if (edit.key == Edit::Key::model || edit.key == Edit::Key::damping) {
+    const Edit::Of of = traits(edit.key).of;
+    if (of == Edit::Of::body) {
       const BodyEntry entry = entry_of_body(root, static_cast<std::size_t>(edit.shake));
       for (std::size_t b = entry.first_body; b < entry.first_body + entry.bodies; ++b)
         if (edited_value(now_, edit.key, static_cast<int>(b)) != edit.value)
@@ -138,7 +141,7 @@ class Rewriting {
       return;
     }
     const Key& key = key_of(edit.key);
-    if (shake_key(edit.key) || edit.key == Edit::Key::anchor)
+    if (of == Edit::Of::shake || of == Edit::Of::anchor)
       add({std::string(key.table), std::to_string(edit.shake + 1), std::string(key.name)}, value);
     else
       add({std::string(key.table), std::string(key.name)}, value);
@@ -156,36 +159,29 @@ class Rewriting {
     }
   }
 
-  static std::string_view word(const Key& key, int number) {
-    return key.choices[static_cast<std::size_t>(number)];
-  }
-
   void drop_foreign(const Node& root, std::size_t i) {
     const Shake& shake = now_.shakes[i];
     const Node* const list = root.find("shake");
     if (!list || i >= list->items.size()) return;
     const Node& entry = list->items[i].value;
     const std::string number = std::to_string(i + 1);
-    drop(entry, "shake", {"shake", number}, "type",
-         word(key_of(Edit::Key::type), static_cast<int>(shake.kind)));
-    const bool sweep = shake.kind == Shake::Kind::sweep;
-    if (sweep && entry.find("taper") && 2 * shake.taper > shake_turns(shake, shake.start + shake.duration))
+    drop(entry, "shake", {"shake", number}, "type", traits(shake.kind).word);
+    if (traits(shake.kind).sweeps && entry.find("taper") &&
+        2 * shake.taper > shake_turns(shake, shake.start + shake.duration))
       changes_.push_back({{"shake", number, "taper"}, std::nullopt});
   }
 
   void drop_foreign(const Node& root, const Parameters& read) {
     if (const Node* const contact = root.find("contact"))
-      drop(*contact, "contact", {"contact"}, "law",
-           word(key_of(Edit::Key::law), static_cast<int>(now_.contact.kind)));
+      drop(*contact, "contact", {"contact"}, "law", traits(now_.contact).word);
     const Node* const run = root.find("run");
     if (!run) return;
     if (frames_only() && read.integrator != now_.integrator)
-      drop(*run, "run", {"run"}, "integrator",
-           word(key_of(Edit::Key::integrator), 1 + static_cast<int>(now_.integrator)));
+      drop(*run, "run", {"run"}, "integrator", traits(now_.integrator).word);
     if (!now_.adaptive) drop(*run, "run", {"run"}, "time_step", "");
   }
 
-  static bool shake_key(Edit::Key key) { return key_of(key).table == "shake"; }
+  static bool is_of_shake(Edit::Key key) { return traits(key).of == Edit::Of::shake; }
   static Shake::Kind kind(const Parameters& p, int shake) {
     return p.shakes[static_cast<std::size_t>(shake)].kind;
   }

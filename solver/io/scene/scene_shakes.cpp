@@ -11,12 +11,21 @@
 namespace topple::io {
 namespace {
 
+void read_taper(const Entry& entry, Shake& shake) {
+  shake.taper = entry.number("taper");
+  const double cycles =
+      traits(shake.kind).sweeps ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
+  if (cycles > 0 && 2 * shake.taper > cycles)
+    entry.fail("taper", "rise and fall together are longer than the cycles");
+}
+
 void read_sine(const Entry& entry, Shake& shake) {
   const std::vector<double> frequency = entry.numbers("frequency");
   if (frequency.size() != 1) entry.fail("frequency", "a sine has one; a sweep goes from one to another");
   shake.frequency = frequency[0];
   if (entry.has("cycles")) shake.cycles = entry.number("cycles");
   shake.initial_velocity = entry.choice_as<Shake::Start>("initial_velocity");
+  read_taper(entry, shake);
 }
 
 void read_sweep(const Entry& entry, Shake& shake) {
@@ -26,13 +35,12 @@ void read_sweep(const Entry& entry, Shake& shake) {
   shake.frequency = frequency[0];
   shake.last_frequency = frequency[1];
   shake.duration = entry.number("duration");
+  read_taper(entry, shake);
 }
 
-void check_taper(const Entry& entry, const Shake& shake) {
-  const bool sweep = shake.kind == Shake::Kind::sweep;
-  const double cycles = sweep ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
-  if (cycles > 0 && 2 * shake.taper > cycles)
-    entry.fail("taper", "rise and fall together are longer than the cycles");
+void read_pulse(const Entry& entry, Shake& shake) {
+  shake.shape = pulse_shapes()[entry.choice("shape")].kind;
+  shake.duration = entry.number("duration");
 }
 
 const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
@@ -117,24 +125,26 @@ void read_record(const Entry& entry, const ReadSceneFile& read, Scene& scene, Sh
 void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene) {
   for (const Entry& entry : root.entries("shake")) {
     Shake shake;
-    shake.kind = entry.choice_as<Shake::Kind>("type");
+    shake.kind = shake_kinds()[entry.choice("type")].kind;
     shake.start = entry.number("start");
     shake.on = entry.flag("on");
-    if (shake.kind == Shake::Kind::record) {
-      read_record(entry, read, scene, shake);
-    } else {
+    if (traits(shake.kind).has_amplitude) {
       shake.amplitude = entry.number("amplitude");
       shake.direction = entry.direction("direction");
     }
-    if (shake.kind == Shake::Kind::sine) read_sine(entry, shake);
-    if (shake.kind == Shake::Kind::sweep) read_sweep(entry, shake);
-    if (shake.kind == Shake::Kind::sine || shake.kind == Shake::Kind::sweep) {
-      shake.taper = entry.number("taper");
-      check_taper(entry, shake);
-    }
-    if (shake.kind == Shake::Kind::pulse) {
-      shake.shape = entry.choice_as<Shake::Shape>("shape");
-      shake.duration = entry.number("duration");
+    switch (shake.kind) {
+      case Shake::Kind::sine:
+        read_sine(entry, shake);
+        break;
+      case Shake::Kind::sweep:
+        read_sweep(entry, shake);
+        break;
+      case Shake::Kind::pulse:
+        read_pulse(entry, shake);
+        break;
+      case Shake::Kind::record:
+        read_record(entry, read, scene, shake);
+        break;
     }
     scene.setup.parameters.shakes.push_back(std::move(shake));
   }

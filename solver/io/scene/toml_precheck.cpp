@@ -1,5 +1,8 @@
 #include "solver/io/scene/toml_precheck.h"
 
+#include <utf8.h>
+
+#include <algorithm>
 #include <utility>
 
 namespace topple::io {
@@ -106,14 +109,10 @@ class Scanner {
 
   TomlFault fault(std::string message) const {
     TomlFault result{at_, 1, 1, std::move(message)};
-    for (const char c : text_.substr(begin_, at_ - begin_)) {
-      if (c == '\n') {
-        ++result.line;
-        result.column = 1;
-      } else if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) {
-        ++result.column;
-      }
-    }
+    const std::string_view before = text_.substr(begin_, at_ - begin_);
+    result.line += static_cast<int>(std::ranges::count(before, '\n'));
+    const std::string line = utf8::replace_invalid(before.substr(before.rfind('\n') + 1));
+    result.column += static_cast<int>(utf8::distance(line.begin(), line.end()));
     return result;
   }
 

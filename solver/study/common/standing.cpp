@@ -154,10 +154,9 @@ Standing towards(const Model& model, const Parameters& parameters, int index, co
   for (const int point : body.base_points) {
     const ContactPoint& contact = model.contact_points[point];
     const Vec3& place = model.node_position[contact.node];
-    const double width = floor.width > 0 ? floor.width : contact.width;
     const double gap = floor.normal.dot(place - floor.point) - contact.width / 2;
     out.contacts.push_back(
-        {out.direction.dot(place - centre), axis.dot(place - centre), (contact.width + width) / 2, -gap});
+        {out.direction.dot(place - centre), axis.dot(place - centre), contact_length(contact, floor), -gap});
   }
   return out;
 }

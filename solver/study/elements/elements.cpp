@@ -21,7 +21,7 @@ constexpr int k_finest = 256;  // elements per member, of the references by extr
 
 io::Scene scene_with(const std::string& name, Scheme scheme, int elements_per_member) {
   const Model model = io::load_scene(name).setup.model;
-  std::vector<std::string> overrides{"run.elements=" + scheme_name(scheme)};
+  std::vector<std::string> overrides{std::string("run.elements=") + traits(scheme).word};
   for (std::size_t m = 1; m <= model.members.size(); ++m)
     overrides.push_back("frame." + model.bodies.front().name + ".members." + std::to_string(m) +
                         ".elements=" + std::to_string(elements_per_member));
@@ -155,10 +155,6 @@ ElementsRow row_of(const Solution& solution, const Benchmark& benchmark, std::si
 
 }  // namespace
 
-std::string scheme_name(Scheme scheme) {
-  return scheme == Scheme::asi_gauss ? "asi-gauss" : scheme == Scheme::asi ? "asi" : "midpoint";
-}
-
 std::vector<Benchmark> element_benchmarks() {
   return {theory_benchmark("elements/cantilever", "one load step",
                            {"cantilever", "Cantilever, tip deflection", "m", "P L³/3EI + P L/κGA", true, 2},
@@ -184,7 +180,8 @@ ElementsStudy study_elements(const ElementsSettings& settings,
   std::vector<Solution> solutions;
   for (const int n : k_elements_per_member)
     for (std::size_t b = 0; b < study.benchmarks.size(); ++b)
-      for (const Scheme scheme : k_schemes) solutions.push_back({b, scheme, n, 0, 0, false, {}, 0});
+      for (const SchemeTraits& scheme : k_schemes)
+        solutions.push_back({b, scheme.kind, n, 0, 0, false, {}, 0});
   study.of = static_cast<int>(solutions.size());
   for_each_case(
       study.of, settings.jobs,
@@ -194,9 +191,9 @@ ElementsStudy study_elements(const ElementsSettings& settings,
       [&](int done) { return go_on(done, study.of); });
   for (std::size_t b = 0; b < study.benchmarks.size(); ++b)
     for (std::size_t k = 0; k < study.benchmarks[b].quantities.size(); ++k)
-      for (const Scheme scheme : k_schemes)
+      for (const SchemeTraits& scheme : k_schemes)
         for (const Solution& solution : solutions)
-          if (solution.benchmark == b && solution.scheme == scheme)
+          if (solution.benchmark == b && solution.scheme == scheme.kind)
             study.rows.push_back(row_of(solution, study.benchmarks[b], k));
   for (const Solution& solution : solutions) study.solved += solution.run ? 1 : 0;
   return study;
@@ -206,7 +203,7 @@ ordered_json rows_as_json(const ElementsStudy& study) {
   ordered_json rows = ordered_json::array();
   for (const ElementsRow& row : study.rows)
     rows.push_back({{"case", row.quantity},
-                    {"scheme", scheme_name(row.scheme)},
+                    {"scheme", traits(row.scheme).word},
                     {"elements_per_member", row.elements_per_member},
                     {"elements", row.elements},
                     {"unknowns", row.unknowns},

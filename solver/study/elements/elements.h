@@ -13,11 +13,7 @@
 
 namespace topple::study {
 
-inline constexpr Scheme k_schemes[] = {Scheme::asi_gauss, Scheme::asi, Scheme::midpoint};
 inline constexpr int k_elements_per_member[] = {2, 4, 8, 16, 32, 64};
-
-/// A scheme as scenes call it: "asi-gauss".
-std::string scheme_name(Scheme scheme);
 
 /// A number that schemes are judged by, and what it should be.
 struct Quantity {

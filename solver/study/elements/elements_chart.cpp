@@ -18,14 +18,15 @@ constexpr int k_above = 66, k_below = 76, k_under = 20;  // titles, tics with th
 
 // Colours of Okabe and Ito, told apart with colour-blind eyes and in grey. Without hinges asi and midpoint
 // are the same: the thin dashes of asi lie on the broad line of midpoint.
-constexpr const char* k_style[] = {"lc rgb '#0072b2' lw 2.4 dt 1 pt 7 ps 1.25",
-                                   "lc rgb '#111111' lw 1.6 dt (6,5) pt 8 ps 1.7",
-                                   "lc rgb '#e69f00' lw 4.2 dt 1 pt 4 ps 2.1"};
-constexpr const char* k_guide = "lc rgb '#444444' lw 2 dt (2,5)";
-constexpr const char* k_meaning[] = {
-    "ASI-Gauss: stresses at the Gauss points of two elements, hinges at ends",
-    "ASI: stresses at midpoints, hinges at ends", "midpoint: stresses and hinges at midpoints"};
+constexpr const char* k_style[] = {
+    "lc rgb '#0072b2' lw 2.4 dt 1 pt 7 ps 1.25", "lc rgb '#111111' lw 1.6 dt (6,5) pt 8 ps 1.7",
+    "lc rgb '#e69f00' lw 4.2 dt 1 pt 4 ps 2.1", "lc rgb '#009e73' lw 5.4 dt 1 pt 9 ps 2.1",
+    "lc rgb '#cc79a7' lw 6.6 dt 1 pt 11 ps 2.1"};
+const char* style(std::size_t scheme) {
+  return k_style[scheme % std::size(k_style)];
+}
 
+constexpr const char* k_guide = "lc rgb '#444444' lw 2 dt (2,5)";
 double floored(double error) {
   return std::max(error, k_error_floor);
 }
@@ -79,8 +80,8 @@ std::string header(const std::string& origin) {
       "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
       "set key at graph 0,1 left top vertical maxrows 2 Left reverse samplen 4 spacing 1.25 width 2\nplot ";
   for (std::size_t s = 0; s < std::size(k_schemes); ++s)
-    out += fmt::format("NaN with linespoints {} title {} noenhanced, ", k_style[s],
-                       gnuplot_quoted(k_meaning[s]));
+    out += fmt::format("NaN with linespoints {} title {} noenhanced, ", style(s),
+                       gnuplot_quoted(k_schemes[s].about));
   return out + "NaN with lines " + k_guide + " title 'order of convergence in theory, of midpoint elements'" +
          "\nunset label\nunset key\nset border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4\n"
          "set grid xtics ytics lc rgb '#cccccc' lw 0.8 dt 1\nset logscale xy\n";
@@ -93,7 +94,7 @@ std::string data_blocks(const std::vector<ElementsRow>& rows) {
     out += fmt::format("$scheme{} << END\n", s);
     bool any = false;
     for (const ElementsRow& row : rows) {
-      if (row.scheme != k_schemes[s]) continue;
+      if (row.scheme != k_schemes[s].kind) continue;
       out += fmt::format("{} {} {}\n", row.elements_per_member, 1e3 * *row.cpu, floored(*row.error));
       any = true;
     }
@@ -102,11 +103,11 @@ std::string data_blocks(const std::vector<ElementsRow>& rows) {
   return out;
 }
 
-/// The broad line first, the thin dashed one last: both stay visible where curves coincide.
+/// Broad lines first: those under the thin ones stay visible where curves coincide.
 std::string curves(int column) {
   std::string out;
-  for (const int s : {2, 0, 1})
-    out += fmt::format(", $scheme{} using {}:3 with linespoints {} notitle", s, column, k_style[s]);
+  for (std::size_t s = std::size(k_schemes); s-- > 0;)
+    out += fmt::format(", $scheme{} using {}:3 with linespoints {} notitle", s, column, style(s));
   return out;
 }
 

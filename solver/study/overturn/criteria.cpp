@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "solver/math/elementary.h"
+#include "solver/model/excitation.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::study {
@@ -34,7 +35,6 @@ std::string why_none(const Setup& scene, const Axis& x, const Axis& y) {
 /// does not slip. x: value of the x axis in SI.
 struct Pulse {
   const char *name, *label, *about;
-  double (*velocity)(double x);  ///< s, greatest of the floor, of amplitude 1; one cycle: of the steady sine
   std::optional<double> (*least)(const Standing& body, double x, double most);  ///< m/s^2; `most`: over g
 };
 
@@ -48,47 +48,41 @@ std::optional<double> of_full_sine(const Standing& body, double circular_frequen
 constexpr Pulse k_one_cycle{
     "one-sine", "one cycle alone",
     "least single cycle that overturns a rigid block that does not slip, exact",
-    [](double x) { return 1 / (2 * k_pi * x); },
     [](const Standing& body, double x, double most) { return of_full_sine(body, 2 * k_pi * x, most); }};
-constexpr Pulse k_full_sine{
-    "one-sine", "exact", "least full sine that overturns a rigid block that does not slip",
-    [](double x) { return x / k_pi; },
-    [](const Standing& body, double x, double most) { return of_full_sine(body, 2 * k_pi / x, most); }};
-constexpr Pulse k_half_sine{"half-sine", "exact",
-                            "least half-sine that overturns a rigid block that does not slip",
-                            [](double x) { return 2 * x / k_pi; },
-                            [](const Standing& body, double x, double) -> std::optional<double> {
-                              const double ratio = k_pi / x / body.p();
-                              if (ratio < k_least_w_p) return std::nullopt;
-                              return body.gravity * least_half_sine(body, ratio);
-                            }};
-constexpr Pulse k_rectangle{"rectangle", "exact",
-                            "least rectangle that overturns a rigid block that does not slip",
-                            [](double x) { return x; },
-                            [](const Standing& body, double x, double) {
-                              return std::optional(body.gravity * least_rectangle(body, body.p() * x));
-                            }};
+
+/// Shapes of pulses with such a theory.
+struct KnownPulse : Pulse {
+  Shake::Shape kind;
+};
+constexpr KnownPulse k_known[] = {
+    {{"half-sine", "exact", "least half-sine that overturns a rigid block that does not slip",
+      [](const Standing& body, double x, double) -> std::optional<double> {
+        const double ratio = k_pi / x / body.p();
+        if (ratio < k_least_w_p) return std::nullopt;
+        return body.gravity * least_half_sine(body, ratio);
+      }},
+     Shake::Shape::half_sine},
+    {{"one-sine", "exact", "least full sine that overturns a rigid block that does not slip",
+      [](const Standing& body, double x, double most) { return of_full_sine(body, 2 * k_pi / x, most); }},
+     Shake::Shape::full_sine},
+    {{"rectangle", "exact", "least rectangle that overturns a rigid block that does not slip",
+      [](const Standing& body, double x, double) {
+        return std::optional(body.gravity * least_rectangle(body, body.p() * x));
+      }},
+     Shake::Shape::rectangle},
+};
 
 /// Null: no formula is known.
 const Pulse* pulse_of(const Shake& shake) {
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-      return &k_one_cycle;
-    case Shake::Kind::pulse:
-      switch (shake.shape) {
-        case Shake::Shape::half_sine:
-          return &k_half_sine;
-        case Shake::Shape::full_sine:
-          return &k_full_sine;
-        case Shake::Shape::rectangle:
-          return &k_rectangle;
-      }
-      break;
-    case Shake::Kind::sweep:
-    case Shake::Kind::record:
-      break;
-  }
-  return nullptr;
+  if (shake.kind == Shake::Kind::sine) return &k_one_cycle;
+  const auto* const known =
+      std::ranges::find(k_known, shake.shape, [](const KnownPulse& pulse) { return pulse.kind; });
+  return known == std::end(k_known) ? nullptr : known;
+}
+
+/// Greatest velocity of the floor, of amplitude 1, s; of one cycle that of the steady sine.
+double floor_velocity(const Shake& shake, double x) {
+  return shake.kind == Shake::Kind::sine ? 1 / (2 * k_pi * x) : traits(shake.shape).velocity * x;
 }
 
 Criterion curve(const std::string& name, const std::string& label, const std::string& about, const Axis& x,
@@ -146,13 +140,13 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   const Standing& body = out.body;
   out.list.push_back(curve("west", "West", "a = g b/h, above which it lifts", x, y,
                            [&](double) { return west_acceleration(body); }));
-  const Pulse* const pulse = pulse_of(shake);
-  if (!pulse) return out;
+  if (shake.kind != Shake::Kind::sine && shake.kind != Shake::Kind::pulse) return out;
   out.list.push_back(
       curve("ishiyama", "Ishiyama",
             "v = 0.4 (8 g R (1 - cos α)/(3 cos^2 α))^{1/2} of the floor; above it and West's it may overturn",
-            x, y, [&](double x_si) { return ishiyama_velocity(body) / pulse->velocity(x_si); }));
-  if (!symmetric) return out;
+            x, y, [&](double x_si) { return ishiyama_velocity(body) / floor_velocity(shake, x_si); }));
+  const Pulse* const pulse = pulse_of(shake);
+  if (!pulse || !symmetric) return out;
   const double most = 4 * y.in_si(y.count() - 1) / body.gravity;
   out.list.push_back(curve(pulse->name, pulse->label, pulse->about, x, y,
                            [&](double x_si) { return pulse->least(body, x_si, most); }));

@@ -1,5 +1,6 @@
 #include "solver/study/penalty/contact_trials.h"
-#include "solver/state/body_pose.h"
+#include "solver/body/body_pose.h"
+#include "solver/contact/contact_law.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,8 +47,7 @@ ContactTrial settled_frequency(const Setup& body, double expected) {
   constexpr double k_heavier = 1.05;
   Setup setup = body;
   Parameters& p = setup.parameters;
-  p.contact.kind = ContactLawKind::coulomb;
-  p.contact.restitution = 1;
+  p.contact = law_at_rest(p.contact);
   p.integrator = Integrator::generalized_alpha;
   p.spectral_radius = 1;
   p.adaptive = false;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/body_pose.h"
 #include "solver/contact/contact_law.h"
 #include "solver/model/body_builder.h"
-#include "solver/state/body_pose.h"
 #include "solver/step/step.h"
 
 namespace topple::study {
@@ -15,9 +15,7 @@ constexpr int k_nodes = 3;  // of one member
 
 /// f of the header: the normal force over P at the separating speed v.
 double share(const ContactLaw& law, double v) {
-  const bool coulomb = law.kind == ContactLawKind::coulomb;
-  const double loss = coulomb ? normal_loss(law.restitution) : law.friction;
-  const double smoothing = coulomb ? law.normal_speed : law.slip_speed;
+  const auto [loss, smoothing] = traits(law).normal_loss(law);
   return 1 - loss * v / std::hypot(v, smoothing);
 }
 
@@ -65,7 +63,7 @@ double contact_time(const ImpactMass& body, const ContactLaw& law, double speed)
 }  // namespace
 
 double restitution(const ContactLaw& law, double speed) {
-  if (law.kind == ContactLawKind::printed) return 0;
+  if (!traits(law).stores_energy) return 0;
   const double taken = exchanged(law, speed, -1);
   double low = 0, high = speed;
   while (high - low > 1e-10 * speed) {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/contact/contact_law.h"
+#include "solver/frame/integrator.h"
 #include "solver/frame/modes.h"
 #include "solver/study/common/alone.h"
-#include "solver/study/common/laws.h"
 #include "solver/study/common/parallel.h"
 #include "solver/study/penalty/contact_trials.h"
 #include "solver/study/penalty/impact.h"
@@ -86,7 +86,7 @@ std::vector<double> alphas_for(const std::vector<BodyGroup>& groups, double scen
 /// The scene's step, or a shorter one that resolves the bounce.
 void resolve(Setup& setup, double frequency) {
   Parameters& parameters = setup.parameters;
-  if (parameters.adaptive || parameters.integrator == Integrator::central_difference) return;
+  if (parameters.adaptive || traits(parameters.integrator).is_explicit) return;
   parameters.time_step = std::min(parameters.time_step, 1 / (k_period_steps * frequency));
 }
 
@@ -164,9 +164,9 @@ class Lister {
   void list_creep() {
     for (int g = 0; g < static_cast<int>(study_.groups.size()); ++g) {
       if (!study_.groups[g].obstacle.empty()) continue;
-      for (const ContactLawKind kind : k_laws) {
+      for (const ContactLawTraits& of : contact_laws()) {
         Setup body = alone(scene_, study_.groups[g].bodies.front(), true);
-        body.parameters.contact.kind = kind;
+        body.parameters.contact.kind = of.kind;
         PenaltyRow& row =
             add(Case::creep, g, body.parameters.contact, [body] { return creep(body, k_creep_time); });
         row.time_step = fixed_step(body);
@@ -179,10 +179,10 @@ class Lister {
                               return g.obstacle.empty();
                             })->theory;
     const ImpactMass mass{first.mass, static_cast<int>(first.contacts.size()), first.contacts.front().L};
-    for (const ContactLawKind kind : k_laws)
+    for (const ContactLawTraits& of : contact_laws())
       for (const double speed : k_speeds) {
         Parameters parameters = scene_.parameters;
-        parameters.contact.kind = kind;
+        parameters.contact.kind = of.kind;
         PenaltyRow& row =
             add(Case::restitution, -1, parameters.contact, [=] { return impact(mass, parameters, speed); });
         row.time_step = parameters.adaptive ? 0 : parameters.time_step;

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "solver/contact/contact_law.h"
 #include "solver/study/common/gnuplot.h"
-#include "solver/study/common/laws.h"
 #include "solver/study/penalty/impact.h"
 
 namespace topple::study {
@@ -25,16 +25,16 @@ constexpr int k_most_groups = 4;           // drawn; the table has all
 // Colours of Okabe and Ito, told apart with colour-blind eyes and, by marks and dashes, in grey.
 constexpr const char* k_colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9"};
 constexpr const char* k_dash[] = {"1", "(12,5)", "(4,4)", "(12,4,3,4)", "(8,3)"};
-constexpr int k_mark[] = {7, 5, 9, 13, 11};
+constexpr int k_mark[] = {7, 5, 9, 13, 11}, k_styles = std::size(k_mark);
 constexpr const char* k_grey = "textcolor rgb '#444444'";
 constexpr const char* k_bound_line = "lc rgb '#111111' lw 1.6 dt (3,4)";
 
 std::string line_style(int k, double width) {
-  return fmt::format("lc rgb '{}' lw {} dt {}", k_colour[k], width, k_dash[k]);
+  return fmt::format("lc rgb '{}' lw {} dt {}", k_colour[k % k_styles], width, k_dash[k % k_styles]);
 }
 
 std::string mark_style(int k) {
-  return fmt::format("lc rgb '{}' pt {} ps 1.3 lw 1.8", k_colour[k], k_mark[k]);
+  return fmt::format("lc rgb '{}' pt {} ps 1.3 lw 1.8", k_colour[k % k_styles], k_mark[k % k_styles]);
 }
 
 std::string both_style(int k) {
@@ -128,10 +128,10 @@ class Chart {
   std::string settings() const {
     const ContactLaw& law = study_.law;
     const std::string smoothing =
-        law.kind == ContactLawKind::coulomb
+        traits(law).has_restitution
             ? fmt::format("restitution {:g}, normal_speed {:g} m/s", law.restitution, law.normal_speed)
             : fmt::format("slip_speed {:g} m/s", law.slip_speed);
-    return fmt::format("Law {}, α = {}, q = {:g}, friction {:g}, {}, time_step {}", law_name(law.kind),
+    return fmt::format("Law {}, α = {}, q = {:g}, friction {:g}, {}, time_step {}", traits(law).word,
                        kgf_text(law.alpha), law.q, law.friction, smoothing,
                        study_.time_step > 0 ? fmt::format("{:.3g} ms", 1e3 * study_.time_step) : "auto");
   }
@@ -298,8 +298,9 @@ class Chart {
       plot += fmt::format("{}$creep{} with points {} title {}", k == 0 ? "" : ", ", k,
                           mark_style(static_cast<int>(k)), gnuplot_quoted(plain(group(drawn_[k]).names)));
     }
-    for (std::size_t law = 0; law < std::size(k_laws); ++law)
-      names += fmt::format("{}'{}' {}", law == 0 ? "" : ",", law_name(k_laws[law]), -static_cast<int>(law));
+    for (const ContactLawTraits& law : contact_laws())
+      names += fmt::format("{}'{}' {}", names.empty() ? "" : ",", law.word,
+                           -topple::place_of(contact_laws(), law.kind));
     return data +
            panel(2, "Creep at rest", fmt::format("greatest way of a node in {:g} s at rest", k_creep_time)) +
            "set logscale x\nset format x '10^{%T}'\nset yrange [-2.6:0.9]\nset key top left\n"
@@ -314,17 +315,16 @@ class Chart {
 
   /// Height of a law in the panel of creep; bodies side by side.
   double place_of(ContactLawKind kind, std::size_t k) const {
-    const auto at = std::find(std::begin(k_laws), std::end(k_laws), kind) - std::begin(k_laws);
-    return -static_cast<double>(at) -
+    return -static_cast<double>(topple::place_of(contact_laws(), kind)) -
            0.22 * (static_cast<double>(k) - (static_cast<double>(drawn_.size()) - 1) / 2);
   }
 
   std::string restitution() const {
     constexpr double k_slowest = 8e-4, k_fastest = 2.5;  // m/s
     std::string data, plot;
-    for (int k = 0; k < static_cast<int>(std::size(k_laws)); ++k) {
+    for (int k = 0; k < static_cast<int>(contact_laws().size()); ++k) {
       ContactLaw law = study_.law;
-      law.kind = k_laws[k];
+      law.kind = contact_laws()[k].kind;
       std::vector<Point> theory;
       for (int i = 0; i <= 100; ++i) {
         const double speed = k_slowest * std::pow(k_fastest / k_slowest, i / 100.);
@@ -358,15 +358,10 @@ class Chart {
   }
 
   static std::string in_words(const ContactLaw& law) {
-    switch (law.kind) {
-      case ContactLawKind::coulomb:
-        return fmt::format("coulomb, e = {:g}", law.restitution);
-      case ContactLawKind::paper:
-        return fmt::format("paper, µ = {:g}", law.friction);
-      case ContactLawKind::printed:
-        break;
-    }
-    return "printed: stays on the floor";
+    const ContactLawTraits& of = traits(law);
+    if (!of.stores_energy) return fmt::format("{}: stays on the floor", of.word);
+    return of.has_restitution ? fmt::format("{}, e = {:g}", of.word, law.restitution)
+                              : fmt::format("{}, µ = {:g}", of.word, law.friction);
   }
 
   std::string frequency() const {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "solver/study/common/laws.h"
+#include "solver/contact/contact_law.h"
 #include "solver/study/common/rows.h"
 #include "solver/study/penalty/penalty.h"
 
@@ -90,7 +90,7 @@ ordered_json rows_as_json(const PenaltyStudy& study) {
     rows.push_back(
         {{"case", what.name},
          {"body", row.group < 0 ? ordered_json(nullptr) : ordered_json(study.groups[row.group].names)},
-         {"law", law_name(row.law.kind)},
+         {"law", traits(row.law).word},
          {"alpha_N", row.law.alpha},
          {"q", row.law.q},
          {"time_step_s", positive_or_null(row.time_step)},

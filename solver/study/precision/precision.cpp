@@ -6,12 +6,12 @@
 #include <numeric>
 
 #include "solver/body/elastic_basis.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
+#include "solver/contact/contact_law.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/math/elementary.h"
 #include "solver/study/common/kept_rows.h"
-#include "solver/study/common/laws.h"
 #include "solver/study/common/measure.h"
 
 namespace topple::study {
@@ -74,10 +74,10 @@ std::vector<ContactLaw> laws_of(const Setup& setup) {
   if (setup.model.contact_points.empty() || (setup.model.planes.empty() && setup.model.bodies.size() < 2))
     return laws;
   const double most = io::find_key("contact", "alpha")->most;
-  for (const ContactLawKind kind : k_laws)
+  for (const ContactLawTraits& of : contact_laws())
     for (const double factor : k_alpha_factors) {
       ContactLaw law = own;
-      law.kind = kind;
+      law.kind = of.kind;
       law.alpha *= factor;
       if (law != own && law.alpha <= most) laws.push_back(law);
     }

@@ -124,8 +124,8 @@ struct PrecisionRow {
 
 /// The scene's own setting beside others that answer as much: where it gives stresses, those that do.
 struct DefaultPlace {
-  double dearer = 1;   ///< its cost over that of the cheapest setting that is no less exact
-  double coarser = 1;  ///< its error over that of the most exact setting that costs no more
+  double cost_ratio = 1;   ///< its cost over that of the cheapest setting that is no less exact
+  double error_ratio = 1;  ///< its error over that of the most exact setting that costs no more
 };
 
 struct PrecisionStudy {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact/contact_law.h"
 #include "solver/study/common/gnuplot.h"
-#include "solver/study/common/laws.h"
 
 namespace topple::study {
 namespace {
@@ -33,7 +33,7 @@ constexpr const char* k_style[k_methods] = {"",
                                             "lc rgb '#8c6d00' lw 2 dt 1 pt 11 ps 1.5",
                                             "lc rgb '#111111' lw 2 dt 1 pt 2 ps 1.4"};
 constexpr const char* k_front_style = "lc rgb '#f5d76e' lw 9 dt 1";
-constexpr const char* k_law_colour[] = {"#0072b2", "#d55e00", "#555555"};                // by kind
+constexpr const char* k_law_colour[] = {"#0072b2", "#d55e00", "#555555"};                // by law
 constexpr const char* k_alpha_look[] = {"dt 1 pt 7", "dt (8,4) pt 5", "dt (2,4) pt 9"};  // by factor
 
 constexpr const char* k_titles[k_measures] = {"Tilt", "Time of overturning", "Peak stress", "Energy balance"};
@@ -274,9 +274,10 @@ class Chart {
       if (lines.empty()) continue;
       const ContactLaw& of = plan_.laws[static_cast<std::size_t>(law)];
       data += fmt::format("$law{} << END\n{}END\n", law, lines);
-      plot += fmt::format(", $law{} with linespoints lc rgb '{}' lw 2 {} ps 1 title {}", law,
-                          k_law_colour[static_cast<int>(of.kind)], k_alpha_look[factor_of(of)],
-                          gnuplot_quoted(in_words(of)));
+      plot += fmt::format(
+          ", $law{} with linespoints lc rgb '{}' lw 2 {} ps 1 title {}", law,
+          k_law_colour[static_cast<std::size_t>(place_of(contact_laws(), of.kind)) % std::size(k_law_colour)],
+          k_alpha_look[factor_of(of)], gnuplot_quoted(in_words(of)));
     }
     if (plot.empty()) return "";
     box.high *= std::pow(box.high / box.low, 0.25);  // for the key

@@ -4,9 +4,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "solver/body/body_pose.h"
 #include "solver/math/rotation.h"
 #include "solver/run/overturn.h"
-#include "solver/state/body_pose.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
 
@@ -261,8 +261,8 @@ std::optional<DefaultPlace> place_of_default(const PrecisionPlan& plan, const Pr
     if (!row.cost || !row.errors[index(measure)]) continue;
     if (with_stress && !row.errors[index(Measure::peak_stress)]) continue;
     const double e = floored(study.references.front(), measure, *row.errors[index(measure)]);
-    if (e <= exact) place.dearer = std::max(place.dearer, *own.cost / *row.cost);
-    if (*row.cost <= *own.cost && e > 0) place.coarser = std::max(place.coarser, exact / e);
+    if (e <= exact) place.cost_ratio = std::max(place.cost_ratio, *own.cost / *row.cost);
+    if (*row.cost <= *own.cost && e > 0) place.error_ratio = std::max(place.error_ratio, exact / e);
   }
   return place;
 }

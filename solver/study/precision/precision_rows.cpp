@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "solver/study/common/laws.h"
+#include "solver/body/model_level.h"
+#include "solver/contact/contact_law.h"
+#include "solver/frame/integrator.h"
 #include "solver/study/common/rows.h"
 #include "solver/study/precision/precision.h"
 
@@ -73,12 +75,10 @@ std::string in_words(const PrecisionPlan& plan, int k) {
 }
 
 std::string in_words(const ContactLaw& law) {
-  return fmt::format("{}, {:.7g} kgf", law_name(law.kind), law.alpha / k_standard_gravity);
+  return fmt::format("{}, {:.7g} kgf", traits(law).word, law.alpha / k_standard_gravity);
 }
 
 ordered_json rows_as_json(const PrecisionPlan& plan, const PrecisionStudy& study) {
-  constexpr const char* k_models[] = {"auto", "rigid", "elastic", "frame"};
-  constexpr const char* k_integrators[] = {"generalized-alpha", "central-difference", "newmark"};
   ordered_json rows = ordered_json::array();
   for (int k = 0; k < plan.cases(); ++k) {
     const PrecisionRow& row = study.rows[static_cast<std::size_t>(k)];
@@ -89,12 +89,12 @@ ordered_json rows_as_json(const PrecisionPlan& plan, const PrecisionStudy& study
     const bool own = setting.method == Method::scene, frames = how.model == BodyModel::frame;
     const bool compared = row.errors[index(Measure::tilt)].has_value();
     rows.push_back(
-        {{"law", law_name(law.kind)},
+        {{"law", traits(law).word},
          {"alpha_N", law.alpha},
          {"method", how.name},
-         {"model", own ? ordered_json("scene") : ordered_json(k_models[static_cast<int>(how.model)])},
+         {"model", own ? ordered_json("scene") : ordered_json(traits(how.model).word)},
          {"integrator", own      ? ordered_json("scene")
-                        : frames ? ordered_json(k_integrators[static_cast<int>(how.integrator)])
+                        : frames ? ordered_json(traits(how.integrator).word)
                                  : ordered_json(nullptr)},
          {"time_step_s", setting.step > 0 ? ordered_json(setting.step) : ordered_json(nullptr)},
          {"tolerance", setting.tolerance > 0 ? ordered_json(setting.tolerance) : ordered_json(nullptr)},
@@ -130,7 +130,7 @@ ordered_json findings_as_json(const PrecisionPlan& plan, const PrecisionStudy& s
     const auto measure = static_cast<Measure>(m);
     const std::optional<DefaultPlace> place = place_of_default(plan, study, measure);
     places[name(measure)] =
-        place ? ordered_json{{"times_dearer", place->dearer}, {"times_coarser", place->coarser}}
+        place ? ordered_json{{"times_dearer", place->cost_ratio}, {"times_coarser", place->error_ratio}}
               : ordered_json(nullptr);
   }
   return {{"references", references}, {"fronts", fronts}, {"cheapest", levels}, {"scene_default", places}};

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/refinement.h"
@@ -56,7 +56,7 @@ std::vector<SteppingMethod> methods_for(const Setup& scene) {
              (m.integrator != Integrator::newmark || (m.beta == p.beta && m.gamma == p.gamma)) &&
              (m.integrator != Integrator::generalized_alpha || p.spectral_radius == m.spectral_radius);
   for (int b = 0; b < scene.model.furniture_total(); ++b)
-    known &= base_rung(scene.model, p, b).rung == Rung::frame;
+    known &= traits(base_level(scene.model, p, b).level).moves_nodes;
   if (!known) list.push_back({"scene", "As the scene has it", p.integrator});
   return list;
 }
@@ -226,7 +226,7 @@ Setup stepped_by(const StabilityPlan& plan, const SteppingMethod& method,
   return setup;
 }
 
-std::string run_stability_case(const StabilityPlan& plan, int k, const std::function<bool()>& give_up) {
+std::string run_case(const StabilityPlan& plan, int k, const std::function<bool()>& give_up) {
   const int first = plan.groups() * plan.references(), methods = static_cast<int>(plan.methods.size());
   const auto setup_of = [&] {
     if (k < first) return reference_setup(plan, k / plan.references(), k % plan.references());

@@ -66,7 +66,7 @@ Setup stepped_by(const StabilityPlan& plan, const SteppingMethod& method,
                  const std::vector<std::string>& changes);
 
 /// Runs case k: a row of JSON in one line. Empty: give_up() came true.
-std::string run_stability_case(const StabilityPlan& plan, int k, const std::function<bool()>& give_up);
+std::string run_case(const StabilityPlan& plan, int k, const std::function<bool()>& give_up);
 
 /// How a run ended, and what is judged.
 struct StabilityRun {

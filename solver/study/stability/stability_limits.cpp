@@ -5,9 +5,11 @@
 #include <functional>
 #include <limits>
 
+#include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
 #include "solver/element/damping.h"
 #include "solver/frame/central_difference.h"
+#include "solver/frame/integrator.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 
@@ -21,7 +23,7 @@ double positive_min(double a, double b) {
   return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b);
 }
 
-double contact_width(const Model& model, const Body& body, const Plane& plane) {
+double contact_length(const Model& model, const Body& body, const Plane& plane) {
   return contact_length(model.contact_points[body.first_contact_point], plane);
 }
 
@@ -56,7 +58,7 @@ void add_throw(const Setup& scene, int b, Demand& out) {
     gap = std::max(0., body.base_centre.z() - floor->point.z() -
                            model.contact_points[body.first_contact_point].width / 2);
   const double v2 = scene.starts[b].velocity.squaredNorm() + 2 * g * gap;
-  const double L = contact_width(model, body, model.planes.front());
+  const double L = contact_length(model, body, model.planes.front());
   if (!(v2 > 0)) return;
   out.landing = positive_min(out.landing, L / std::sqrt(v2));
   const double points = static_cast<double>(std::max<std::size_t>(1, body.base_points.size()));
@@ -183,13 +185,7 @@ double step_of_damping(double share, double gamma, double turning) {
 }
 
 double step_of_chatter(const ContactLaw& law, double gravity) {
-  switch (law.kind) {
-    case ContactLawKind::coulomb:
-      return 0;
-    case ContactLawKind::paper:
-    case ContactLawKind::printed:
-      break;
-  }
+  if (traits(law).sticks) return 0;
   const double deceleration = law.friction * gravity;
   return deceleration > 0 ? 2 * law.slip_speed / deceleration : 0;
 }
@@ -199,7 +195,7 @@ std::vector<StabilityLimit> stability_limits(const StabilityPlan& plan) {
   std::vector<const SteppingMethod*> damping;
   for (const SteppingMethod& m : plan.methods) {
     all.push_back(m.name);
-    if (m.of_scene() || m.integrator == Integrator::central_difference) continue;
+    if (m.of_scene() || traits(m.integrator).is_explicit) continue;
     implicit.push_back(m.name);
     if (m.integrator == Integrator::newmark && m.gamma > 0.5) damping.push_back(&m);
   }

@@ -68,13 +68,13 @@ supports = [{ node = 0, fix = ")" +
   /// Fails with exit 1, says `parts`, and leaves an older recording alone.
   void expect_no_start(const std::string& scene, const std::vector<std::string>& parts) {
     write_bytes("arm.toml", scene);
-    write_bytes("a.h5", "older");
+    write_bytes("a.h5", k_older_recording);
     const Ended ended = topple({"run", "arm.toml", "-o", "a.h5", "--json", "-", "--quiet"});
     EXPECT_EQ(ended.code, 1) << ended.err;
     for (const std::string& part : parts) EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
     EXPECT_NE(ended.err.find("body \"arm\", member \"member-0\" (element "), std::string::npos) << ended.err;
     EXPECT_EQ(Json::parse(ended.out)["status"], "diverged");
-    EXPECT_EQ(bytes_of("a.h5"), "older");
+    EXPECT_EQ(bytes_of("a.h5"), k_older_recording);
   }
 };
 

@@ -6,6 +6,8 @@
 namespace topple::app {
 namespace {
 
+constexpr const char* k_notes = "notes that nobody wants to lose\n";
+
 class BadOutputTest : public ProgramTest {
  protected:
   void SetUp() override {
@@ -83,6 +85,51 @@ TEST_F(BadOutputTest, what_is_being_read_is_not_replaced) {
   expect_one_line({"run", "s.toml", "-o", "b.h5", "--json", "./b.h5"}, 2, "is the recording");
   EXPECT_EQ(bytes_of("s.toml"), scene);
   EXPECT_EQ(bytes_of("a.h5"), recording);
+}
+
+TEST_F(BadOutputTest, a_file_of_another_kind_is_refused_also_through_a_link) {
+  write_bytes("notes.txt", k_notes);
+  std::filesystem::create_symlink("notes.txt", "link");
+  for (const std::string name : {"notes.txt", "link"}) {
+    const std::string found = name + ": holds text and is not replaced by ", how = " without --force\n";
+    expect_one_line({"run", "s.toml", "-o", name}, 2, found + "HDF5 data" + how);
+    expect_one_line({"run", "s.toml", "--json", name}, 2, found + "JSON" + how);
+    expect_one_line({"render", "s.toml", "--still", name, "--at", "0"}, 2, found + "a PNG picture" + how);
+    expect_one_line({"render", "a.h5", "--mp4", name}, 2, found + "an MP4 video" + how);
+    expect_one_line({"info", "a.h5", "--json", name}, 2, found + "JSON" + how);
+    expect_one_line({"export", "a.h5", "--xdmf", name}, 2, found + "an XDMF file" + how);
+    expect_one_line({"report", "s.toml", "-o", name}, 2, found + "an HTML page" + how);
+    expect_one_line({"view", "s.toml", "-o", name}, 2, found + "HDF5 data" + how);
+  }
+  EXPECT_EQ(bytes_of("notes.txt"), k_notes);
+}
+
+TEST_F(BadOutputTest, a_file_of_another_kind_in_a_folder_of_results_is_refused) {
+  std::filesystem::create_directory("out");
+  write_bytes("out/nodes.csv", k_notes);
+  write_bytes("out/frame-000001.png", k_notes);
+  write_bytes("out/frames.pvd", k_notes);
+  write_bytes("out/elements.json", k_notes);
+  const std::vector<std::string> before = files();
+  const std::string found = ": holds text and is not replaced by ";
+  expect_one_line({"export", "a.h5", "--csv", "out"}, 2, "out/nodes.csv" + found);
+  expect_one_line({"export", "a.h5", "--vtk", "out"}, 2, "out/frames.pvd" + found);
+  expect_one_line({"render", "a.h5", "--png", "out", "--size", "96x64"}, 2, "out/frame-000001.png" + found);
+  expect_one_line({"study", "elements", "-o", "out"}, 2, "out/elements.json" + found);
+  EXPECT_EQ(files(), before);
+  EXPECT_EQ(topple({"export", "a.h5", "--csv", "out", "--force"}).code, 0);
+  EXPECT_TRUE(bytes_of("out/nodes.csv").starts_with("time_s,"));
+}
+
+TEST_F(BadOutputTest, force_replaces_a_file_of_any_kind_and_a_link_stays_one) {
+  write_bytes("notes.txt", k_notes);
+  std::filesystem::create_symlink("notes.txt", "link");
+  EXPECT_EQ(topple({"run", "s.toml", "-o", "link", "--force"}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink("link"));
+  EXPECT_EQ(info("notes.txt")["status"], "completed");
+  EXPECT_EQ(topple({"info", "a.h5", "--json", "notes.txt", "--force"}).code, 0);
+  EXPECT_EQ(json_of(bytes_of("notes.txt"))["kind"], "recording");
+  expect_one_line({"run", "s.toml", "--json", "s.toml", "--force"}, 2, "is what is being read");
 }
 
 TEST_F(BadOutputTest, records_of_the_scene_are_not_replaced) {

@@ -90,7 +90,11 @@ TEST_F(BridgeTest, of_a_row_that_is_not_finite_nothing_is_drawn_but_the_floor) {
     each(&io::FrameRow::contact_force);
     each(&io::FrameRow::member_contact);
     each(&io::FrameRow::energy);
-    each(&io::FrameRow::body);
+    for (double io::BodyNumbers::*number : {&io::BodyNumbers::x, &io::BodyNumbers::tilt}) {
+      io::FrameRow row = end_;
+      row.body[0].*number = bad;
+      expect_clean(row);
+    }
     each(&io::FrameRow::floor_acceleration);
     each(&io::FrameRow::floor_displacement);
     for (double io::FrameRow::*number : {&io::FrameRow::time, &io::FrameRow::load_factor}) {
@@ -142,7 +146,7 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
   RunExtent extent;
   extent.add(model, scene.setup.parameters, row);
   const auto drawn = [&](float state) {
-    row.anchor[7] = state;
+    row.anchor[1].state = state;
     render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
     std::erase_if(frame.tubes,
                   [&](const render::Tube& tube) { return tube.member != model.members.size() + 1; });
@@ -175,8 +179,8 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
 
   EXPECT_EQ(drawn(io::k_anchor_away).tubes.size(), 1u);
   EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: taken away");
-  row.anchor[0] = 0.5f;
-  row.anchor[3] = io::k_anchor_holds;
+  row.anchor[0].tension = 0.5f;
+  row.anchor[0].state = io::k_anchor_holds;
   EXPECT_EQ(anchor_in_words(model, row, 0), "strap weak: pulls 0 N, 50 % of its strength");
   Model called_by_type = model;
   called_by_type.anchors[1].name = "strap";
@@ -258,9 +262,9 @@ TEST_F(BridgeTest, the_floor_moves_under_the_picture_with_its_displacement) {
 
 TEST_F(BridgeTest, captions_tell_a_tilt_from_the_critical_angle) {
   io::FrameRow row = end_;
-  row.body[7] = 34.8 / k_degrees;
-  row.body[8] = 0;
-  row.body[10] = 10.3 / k_degrees;
+  row.body[0].tilt = 34.8 / k_degrees;
+  row.body[0].slide = 0;
+  row.body[0].critical_angle = 10.3 / k_degrees;
   EXPECT_EQ(body_in_words(model(), row, 0), "free: toppling, tilt 34.8° (critical 10.3°)");
 }
 
@@ -312,12 +316,12 @@ TEST_F(BridgeTest, ranges_end_at_this_instant_at_the_run_or_at_a_number) {
     return bridge.frame(row, scene_.setup.parameters, settings).legend;
   };
   const auto end = [](double top) { return top > 0 ? std::max(top, 1e-3) : 1; };
-  for (std::size_t q = 0; q < k_beam_quantities; ++q) {
-    const auto quantity = static_cast<BeamQuantity>(q);
-    const double unit = name_of(quantity).per_unit;
-    SCOPED_TRACE(name_of(quantity).option);
-    PictureSettings settings{.colour = quantity, .range = RangePolicy::run};
-    EXPECT_FLOAT_EQ(legend(end_, settings).maximum, static_cast<float>(end(extent_.top(quantity) / unit)));
+  for (const BeamQuantityTraits& quantity : beam_quantities()) {
+    const double unit = quantity.per_unit;
+    SCOPED_TRACE(quantity.word);
+    PictureSettings settings{.colour = quantity.kind, .range = RangePolicy::run};
+    EXPECT_FLOAT_EQ(legend(end_, settings).maximum,
+                    static_cast<float>(end(extent_.top(quantity.kind) / unit)));
     EXPECT_EQ(legend(start_, settings).maximum, legend(end_, settings).maximum);
     settings.range = RangePolicy::instant;
     const render::SceneFrame frame = bridge.frame(end_, scene_.setup.parameters, settings);
@@ -328,8 +332,8 @@ TEST_F(BridgeTest, ranges_end_at_this_instant_at_the_run_or_at_a_number) {
     settings.range = RangePolicy::fixed;
     settings.maximum = 7.5;
     EXPECT_EQ(legend(end_, settings).maximum, 7.5f);
-    EXPECT_EQ(legend(end_, settings).minimum, name_of(quantity).is_signed ? -7.5f : 0.f);
-    EXPECT_EQ(legend(end_, settings).is_signed, name_of(quantity).is_signed);
+    EXPECT_EQ(legend(end_, settings).minimum, quantity.is_signed ? -7.5f : 0.f);
+    EXPECT_EQ(legend(end_, settings).is_signed, quantity.is_signed);
   }
 }
 
@@ -448,7 +452,7 @@ TEST_F(BridgeTest, trails_lead_to_the_centre_of_gravity_and_grow_stronger) {
   for (int i = 0; i <= 30; ++i) {
     rows.push_back(start_);
     rows.back().time = 0.1 * i;
-    rows.back().body[0] = 0.01 * i;
+    rows.back().body[0].x = 0.01 * i;
     extent.add(model(), scene_.setup.parameters, rows.back());
   }
   const Bridge bridge(scene_, extent);
@@ -457,7 +461,7 @@ TEST_F(BridgeTest, trails_lead_to_the_centre_of_gravity_and_grow_stronger) {
     ASSERT_EQ(frame.trails.size(), 2u);
     const render::Trail& centre = frame.trails[0];
     EXPECT_EQ(centre.points.size(), trails == Trails::second ? 11u : 21u);
-    EXPECT_LT(distance(centre.points.back(), Vec3(rows[20].body.data()) + Vec3(start_.floor_displacement)),
+    EXPECT_LT(distance(centre.points.back(), rows[20].body[0].centre() + Vec3(start_.floor_displacement)),
               1e-6);
     EXPECT_TRUE(std::ranges::is_sorted(centre.strength));
     EXPECT_EQ(centre.strength.back(), 1);

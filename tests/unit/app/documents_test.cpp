@@ -81,7 +81,8 @@ TEST(Documents, files_that_they_name_exist) {
   for (const std::string& name : documents()) {
     const std::string text = page(name);
     ASSERT_FALSE(text.empty());
-    for (const std::string& file : matches(text, R"([^/\w]((?:solver|render|app|assets|tests)/[\w/.-]*\w))"))
+    for (const std::string& file :
+         matches(text, R"([^/\w]((?:host|solver|render|app|assets|tests)/[\w/.-]*\w))"))
       EXPECT_TRUE(fs::exists(k_source / file)) << name << " names " << file;
   }
 }

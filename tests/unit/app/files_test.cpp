@@ -9,8 +9,8 @@ namespace {
 class FilesTest : public ProgramTest {};
 
 TEST_F(FilesTest, a_file_is_written_whole_and_replaces_an_older_one) {
-  write_whole_file("a.json", "one");
-  write_whole_file("a.json", "two");
+  write_whole_file("a.json", host::FileKind::any, "one");
+  write_whole_file("a.json", host::FileKind::any, "two");
   EXPECT_EQ(bytes_of("a.json"), "two");
   EXPECT_EQ(files(), std::vector<std::string>{"a.json"});
 }
@@ -18,14 +18,14 @@ TEST_F(FilesTest, a_file_is_written_whole_and_replaces_an_older_one) {
 TEST_F(FilesTest, a_link_stays_a_link) {
   write_bytes("target", "one");
   std::filesystem::create_symlink("target", "link");
-  write_whole_file("link", "two");
+  write_whole_file("link", host::FileKind::any, "two");
   EXPECT_TRUE(std::filesystem::is_symlink("link"));
   EXPECT_EQ(bytes_of("target"), "two");
 }
 
 TEST_F(FilesTest, a_failure_names_the_file_and_leaves_nothing) {
   try {
-    write_whole_file("none/a.json", "one");
+    write_whole_file("none/a.json", host::FileKind::any, "one");
     FAIL() << "written into a folder that does not exist";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "none/a.json: cannot be written: No such file or directory");

@@ -52,10 +52,10 @@ TEST_F(FullDiskTest, a_recording_that_cannot_be_begun_leaves_nothing) {
 TEST_F(FullDiskTest, pictures_appear_whole_or_not_at_all) {
   const Circumstances full{.most_bytes = 2000};
   expect_one_line({"render", "a.h5", "--still", "a.png", "--at", "0", "--size", "320x180"}, 1,
-                  "a.png: cannot write the picture: File too large", full);
+                  "a.png: cannot be written: File too large", full);
   EXPECT_FALSE(std::filesystem::exists("a.png"));
-  expect_one_line({"render", "a.h5", "--png", "pictures", "--size", "320x180"}, 1, "cannot write the picture",
-                  full);
+  expect_one_line({"render", "a.h5", "--png", "pictures", "--size", "320x180"}, 1,
+                  ".png: cannot be written: ", full);
   EXPECT_TRUE(std::filesystem::is_empty("pictures"));
   EXPECT_EQ(files().size(), 3u);
 }
@@ -67,24 +67,26 @@ TEST_F(FullDiskTest, a_video_appears_whole_or_not_at_all) {
 }
 
 TEST_F(FullDiskTest, tables_appear_whole_or_not_at_all) {
-  expect_one_line({"export", "a.h5", "--csv", "data"}, 1, ".csv: File too large", {.most_bytes = 2000});
+  expect_one_line({"export", "a.h5", "--csv", "data"}, 1, ".csv: cannot be written: File too large",
+                  {.most_bytes = 2000});
   EXPECT_TRUE(std::filesystem::is_empty("data"));
 }
 
 TEST_F(FullDiskTest, frames_for_vtk_appear_all_or_not_at_all) {
-  expect_one_line({"export", "a.h5", "--vtk", "data"}, 1, "data/frame-000000.vtp: File too large",
-                  {.most_bytes = 2000});
+  expect_one_line({"export", "a.h5", "--vtk", "data"}, 1,
+                  "data/frame-000000.vtp: cannot be written: File too large", {.most_bytes = 2000});
   EXPECT_TRUE(std::filesystem::is_empty("data"));
 }
 
 TEST_F(FullDiskTest, files_for_paraview_appear_whole_or_not_at_all) {
   const std::vector<std::string> before = files();
   for (const rlim_t bytes : {1000, 20'000, 100'000})
-    expect_one_line({"export", "a.h5", "--xdmf", "a.xdmf"}, 1, "a.xdmf.h5: File too large",
+    expect_one_line({"export", "a.h5", "--xdmf", "a.xdmf"}, 1, "a.xdmf.h5: cannot be written: File too large",
                     {.most_bytes = bytes});
   EXPECT_EQ(files(), before);
   if (!mount_disk("disk", "100k")) GTEST_SKIP() << "may not mount a disk";
-  expect_one_line({"export", "a.h5", "--xdmf", "disk/a.xdmf"}, 1, "disk/a.xdmf.h5: No space left on device");
+  expect_one_line({"export", "a.h5", "--xdmf", "disk/a.xdmf"}, 1,
+                  "disk/a.xdmf.h5: cannot be written: No space left on device");
   EXPECT_TRUE(std::filesystem::is_empty("disk"));
   unmount_disk("disk");
 }

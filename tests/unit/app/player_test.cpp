@@ -245,14 +245,14 @@ TEST_F(PlayerTest, an_anchor_is_taken_away_and_put_back_and_the_run_repeats) {
   player().edit({Edit::Key::anchor, 1, Vec3(0, 0, 0)});
   EXPECT_FALSE(player().parameters().anchors[1]);
   run_to(0.4);
-  EXPECT_EQ(player().row()->anchor[7], io::k_anchor_away);
+  EXPECT_EQ(player().row()->anchor[1].state, io::k_anchor_away);
   player().undo();
   EXPECT_TRUE(player().parameters().anchors[1]);
   run_to(0.6);
-  EXPECT_NE(player().row()->anchor[7], io::k_anchor_away);
+  EXPECT_NE(player().row()->anchor[1].state, io::k_anchor_away);
   player().scrub(0.3);
   EXPECT_FALSE(player().parameters().anchors[1]);
-  EXPECT_EQ(player().row()->anchor[7], io::k_anchor_away);
+  EXPECT_EQ(player().row()->anchor[1].state, io::k_anchor_away);
   run_->close("stopped");
   expect_repeatable("live.h5", 1);
 }

@@ -43,6 +43,9 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
+/// Begins as recordings do.
+inline const std::string k_older_recording = "\x89HDF\r\n\x1a\n older";
+
 class ProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {

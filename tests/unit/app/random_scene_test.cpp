@@ -337,7 +337,7 @@ std::string outcome(const std::string& text, unsigned seed, int most_steps) {
   EXPECT_TRUE(io::is_finite(io::frame_row(run)));
   const EnergyLedger& e = run.state().energy;
   const bool all = std::all_of(run.state().bodies.begin(), run.state().bodies.end(),
-                               [](const BodyState& b) { return b.rung != Rung::elastic; });
+                               [](const BodyState& b) { return b.level != ModelLevel::elastic; });
   if (run.step() > 0 && all) {
     // What the ledger added up step by step is what the state holds. Modes hold what nodes do not: not
     // elastic.

@@ -102,7 +102,7 @@ TEST_F(RecoverTest, whatever_a_killed_run_had_on_disk_is_kept_and_the_original_i
     const Ended again = topple({"recover", "k.recovered.h5"});
     EXPECT_EQ(again.code, 0);
     EXPECT_NE(again.out.find("nothing to recover"), std::string::npos) << again.out;
-    write_bytes("k.recovered.h5", "older");
+    write_bytes("k.recovered.h5", k_older_recording);
     EXPECT_EQ(topple({"recover", "k.h5"}).out, ended.out);
     EXPECT_EQ(io::Recording("k.recovered.h5").frame_count(), before.frame_count());
     std::filesystem::remove("k.h5");

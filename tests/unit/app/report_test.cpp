@@ -155,11 +155,11 @@ TEST_F(ReportTest, without_a_shake_there_is_no_intensity_and_no_probability) {
 
 TEST_F(ReportTest, a_run_that_fails_leaves_an_older_page) {
   write_bytes("beam.toml", k_beam);
-  write_bytes("r.html", "older");
+  write_bytes("r.html", "<!DOCTYPE html>older");
   expect_one_line(
       {"report", "beam.toml", "-o", "r.html", "--quiet", "--set", "run.integrator=central-difference"}, 1,
       "; r.html is not written");
-  EXPECT_EQ(bytes_of("r.html"), "older");
+  EXPECT_EQ(bytes_of("r.html"), "<!DOCTYPE html>older");
 }
 
 /// stdout and stderr of headless Chromium on the page; nothing when it is not installed.

@@ -447,6 +447,23 @@ TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
   EXPECT_EQ(files_like("view.mp4"), 0);
 }
 
+TEST_F(ExportDialogTest, a_job_tells_how_far_it_is) {
+  open_rocking();
+  run_to(0.5);
+  open_export(ExportDialog::What::video);
+  set_path("view.mp4");
+  dialog().rate = 240;
+  start();
+  ASSERT_EQ(dialog().refused(), "");
+  ASSERT_TRUE(until([&] { return !dialog().busy() || (dialog().job() && dialog().job()->part() > 0); }));
+  ASSERT_NE(dialog().job(), nullptr) << dialog().refused();
+  EXPECT_LE(dialog().job()->part(), 1);
+  EXPECT_NE(dialog().job()->progress().find(" pictures, "), std::string::npos) << dialog().job()->progress();
+  click("Cancel");
+  EXPECT_EQ(export_failure(), "");
+  EXPECT_EQ(files_like(".part"), 0);
+}
+
 TEST_F(ExportDialogTest, a_target_that_cannot_be_written_is_told_and_the_run_goes_on) {
   open_rocking();
   run_to(0.1);

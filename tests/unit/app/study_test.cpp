@@ -88,10 +88,10 @@ TEST_F(StudyTest, places_that_cannot_be_written_to_are_refused_before_anything_r
 
 TEST_F(StudyTest, a_table_that_may_not_grow_leaves_the_older_one) {
   std::filesystem::create_directory("out");
-  write_bytes("out/elements.csv", "older");
+  write_bytes("out/elements.csv", "older,table\n");
   expect_one_line({"study", "elements", "-o", "out", "--quick", "--jobs", "2", "--quiet"}, 1,
                   "out/elements.csv: cannot be written: File too large", {.most_bytes = 2000});
-  EXPECT_EQ(bytes_of("out/elements.csv"), "older");
+  EXPECT_EQ(bytes_of("out/elements.csv"), "older,table\n");
   EXPECT_EQ(files(), (std::vector<std::string>{"out", "out/elements.csv"}));
 }
 

@@ -158,7 +158,7 @@ TEST(Histories, follow_the_run_and_its_branches) {
     const std::vector<float>& tilt = histories.of(player, k_body, 0);
     ASSERT_EQ(tilt.size(), player.way().size());
     for (std::size_t i = 0; i < tilt.size(); ++i)
-      EXPECT_FLOAT_EQ(tilt[i], static_cast<float>(player.way()[i]->body[7] * 180 / k_pi));
+      EXPECT_FLOAT_EQ(tilt[i], static_cast<float>(player.way()[i]->body[0].tilt * 180 / k_pi));
   };
   expect_values();
   player.play();

@@ -188,5 +188,12 @@ TEST_F(SummaryTest, text_that_is_not_utf_8_does_not_spoil_the_json) {
   EXPECT_EQ(Json::parse(text)["scene"], "a\xef\xbf\xbd");
 }
 
+TEST(Letters, a_letter_of_several_bytes_is_one_and_so_is_a_byte_that_is_none) {
+  EXPECT_EQ(letters(""), 0u);
+  EXPECT_EQ(letters("caf\xc3\xa9"), 4u);
+  EXPECT_EQ(letters("\xe6\x9c\xac\xe6\xa3\x9a"), 2u);
+  EXPECT_EQ(letters("a\xff.toml"), 7u);
+}
+
 }  // namespace
 }  // namespace topple::app

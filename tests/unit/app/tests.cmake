@@ -19,6 +19,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/full_disk_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/image_files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interrupt_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/manual_test.cpp
@@ -26,6 +27,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/precision_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/present_studies_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/progress_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording_formats_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recover_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/render_test.cpp

@@ -208,6 +208,21 @@ TEST_F(UsageTest, reports_and_comparisons_that_cannot_be_are_refused) {
   expect_one_line({"compare", "s.toml", "s.toml", "--mp4", "none/a.mp4"}, 2, "there is no folder");
 }
 
+TEST_F(UsageTest, words_that_a_list_lacks_are_refused_with_the_list) {
+  const auto expect = [](const std::string& option, const std::string& word, const std::string& known) {
+    expect_one_line(
+        {"render", "s.toml", "--png", "p", option, word}, 2,
+        "topple: " + option + ": \"" + word + "\" is not one of " + known + " (topple render --help)\n");
+  };
+  for (const char* word : {"", "vulkan", "OSMESA", "0", "a not in {b}"})
+    expect("--renderer", word, "osmesa, egl");
+  for (const char* word : {"", "jet", "diverging", "1"}) expect("--map", word, "viridis, cividis");
+  for (const char* word : {"", "none", "2"}) expect("--trails", word, "second, run");
+  expect("--colour", "red", "stress, yield-ratio, axial, moment, torsion, displacement");
+  for (const char* word : {"", "de", "EN"}) expect("--lang", word, "en, ja");
+  expect_one_line({"view", "s.toml", "--lang", "de"}, 2, "--lang: \"de\" is not one of en, ja (topple view");
+}
+
 TEST_F(UsageTest, sizes_that_no_picture_has_are_refused) {
   for (const char* size : {"", "1", "0x0", "-320x180", "320x", "x180", "320x180x", "320x180p", "63x64",
                            "320X180", " 320x180", "320 x 180", "8193x64", "99999999999999x64", "1e3x64"})

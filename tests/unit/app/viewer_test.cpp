@@ -449,7 +449,7 @@ TEST_F(ViewerTest, keys_and_sliders_change_the_picture) {
   EXPECT_GT(viewer_->settings().exaggeration, 1);
   EXPECT_LE(viewer_->settings().exaggeration, k_most_exaggeration);
   expect_change();
-  for (std::size_t i = 1; i < k_beam_quantities; ++i) press('Q');
+  for (std::size_t i = 1; i < beam_quantities().size(); ++i) press('Q');
   EXPECT_EQ(viewer_->settings().colour, BeamQuantity::stress);
 }
 

@@ -14,6 +14,7 @@
 #include "app/panels/precision_words.h"
 #include "app/panels/teaching_words.h"
 #include "app/panels/theme.h"
+#include "app/picture/image_files.h"
 #include "app/picture/window_words.h"
 #include "app/window/shell.h"
 #include "app/window/viewer.h"
@@ -228,7 +229,7 @@ class WindowText : public ::testing::TestWithParam<Look> {
     frame();
     listening = false;
     if (const char* const folder = std::getenv("TOPPLE_LOOK"))
-      render::write_png(std::string(folder) + "/" + GetParam().name + "-" + what + ".png", shot());
+      write_png(std::string(folder) + "/" + GetParam().name + "-" + what + ".png", shot());
     mute = true;
     frame();
     mute = false;

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "solver/body/body_pose.h"
 #include "solver/contact/proximity.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
-#include "solver/state/body_pose.h"
 
 namespace topple::io {
 namespace {
@@ -85,9 +85,9 @@ TEST(Rooms, run_and_keep_their_energy) {
   EXPECT_LT(classroom.run.state().energy.balance_error(), k_balance);
   for (const char* name : {"bookshelf", "cabinet"}) {
     EXPECT_GT(classroom.body(name).tilt, classroom.body(name).critical) << name;
-    EXPECT_EQ(classroom.body(name).rung_changes.back().reason, RungReason::near) << name;
+    EXPECT_EQ(classroom.body(name).level_changes.back().reason, LevelReason::near) << name;
   }
-  EXPECT_EQ(classroom.body("desk-8").rung, Rung::elastic);
+  EXPECT_EQ(classroom.body("desk-8").level, ModelLevel::elastic);
   EXPECT_LT(classroom.body("locker").tilt, classroom.body("locker").critical);
 }
 

@@ -50,19 +50,20 @@ TEST_F(AnchorRecordingTest, forces_states_and_breaking_read_back_and_the_run_rep
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const FrameRow row = recording.frame(static_cast<std::int64_t>(i));
     ASSERT_TRUE(same(row, rows_[i])) << i;
-    ASSERT_EQ(row.anchor.size(), 8u);
+    ASSERT_EQ(row.anchor.size(), 2u);
     for (std::size_t k = 0; k < 2; ++k) {
-      states[k].insert(row.anchor[4 * k + 3]);
-      EXPECT_EQ(row.anchor[4 * k] != 0, row.anchor[4 * k + 3] == k_anchor_holds);
-      const double stretch = row.anchor[4 * k] / scene_.setup.model.anchors[k].stiffness;
-      EXPECT_NEAR(row.anchor[4 * k + 1], row.anchor[4 * k] * stretch / 2, 1e-6);
+      const AnchorNumbers& anchor = row.anchor[k];
+      states[k].insert(anchor.state);
+      EXPECT_EQ(anchor.tension != 0, anchor.state == k_anchor_holds);
+      const double stretch = anchor.tension / scene_.setup.model.anchors[k].stiffness;
+      EXPECT_NEAR(anchor.energy, anchor.tension * stretch / 2, 1e-6);
     }
-    EXPECT_NEAR(row.energy[12], double(row.anchor[1]) + double(row.anchor[5]), 1e-6);
+    EXPECT_NEAR(row.energy[k_anchor], double(row.anchor[0].energy) + double(row.anchor[1].energy), 1e-6);
   }
   EXPECT_EQ(states[0], (std::set<float>{k_anchor_slack, k_anchor_holds, k_anchor_broken}));
   EXPECT_EQ(states[1], (std::set<float>{k_anchor_away, k_anchor_slack, k_anchor_holds}));
   EXPECT_GT(energy_.released, 0);
-  EXPECT_EQ(rows_.back().energy[13], energy_.released);
+  EXPECT_EQ(rows_.back().energy[k_released], energy_.released);
 
   const auto broken = [](const auto& events) {
     return std::ranges::count_if(events, [](const Event& e) { return e.kind == Event::Kind::anchor; });

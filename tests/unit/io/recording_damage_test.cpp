@@ -151,8 +151,8 @@ TEST_F(RecordingTest, what_is_not_finite_is_not_written_and_what_came_before_is_
     frame([&](FrameRow& row) { row.s[1] = single; });
     frame([&](FrameRow& row) { row.contact_depth[3] = single; });
     frame([&](FrameRow& row) { row.contact_force[0] = single; });
-    frame([&](FrameRow& row) { row.energy[11] = bad; });
-    frame([&](FrameRow& row) { row.body[9] = bad; });
+    frame([&](FrameRow& row) { row.energy[k_balance_error] = bad; });
+    frame([&](FrameRow& row) { row.body[0].energy = bad; });
     frame([&](FrameRow& row) { row.floor_acceleration[2] = bad; });
     frame([&](FrameRow& row) { row.floor_displacement[0] = bad; });
     frame([&](FrameRow& row) { row.load_factor = bad; });

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -108,11 +109,19 @@ inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) 
   fill(row.contact_force);
   fill(row.member_contact);
   fill(row.energy);
-  fill(row.body);
-  fill(row.rung);
+  for (BodyNumbers& body : row.body) {
+    BodyArray numbers;
+    fill(numbers);
+    body = std::bit_cast<BodyNumbers>(numbers);
+  }
+  fill(row.level);
   fill(row.floor_acceleration);
   fill(row.floor_displacement);
-  fill(row.anchor);
+  for (AnchorNumbers& anchor : row.anchor) {
+    AnchorArray numbers;
+    fill(numbers);
+    anchor = std::bit_cast<AnchorNumbers>(numbers);
+  }
   row.load_factor = value + 0.37;
   return row;
 }

@@ -103,7 +103,7 @@ TEST_F(HistoryRecordingTest, the_way_to_a_branch_shows_each_instant_once) {
   const auto shown = [&](std::int32_t branch) {
     std::vector<std::pair<std::int32_t, std::int64_t>> out;
     for (const std::int64_t i : recording.frames_on_way_to(branch)) {
-      const Instant& instant = recording.index()[static_cast<std::size_t>(i)];
+      const FrameKey& instant = recording.index()[static_cast<std::size_t>(i)];
       out.emplace_back(instant.branch, instant.step);
       EXPECT_TRUE(same(recording.frame(i), row_of(instant.branch, instant.step)));
     }

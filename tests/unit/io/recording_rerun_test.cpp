@@ -322,7 +322,7 @@ TEST(Observer, gives_rows_at_the_output_rate_and_a_checkpoint_each_second_of_its
   }
   EXPECT_EQ(rows, 72);
   EXPECT_EQ(checkpoints, 1);
-  EXPECT_EQ(events, static_cast<int>(run.events().size()) - 1);  // but for the rung on which it began
+  EXPECT_EQ(events, static_cast<int>(run.events().size()) - 1);  // but for the level on which it began
   EXPECT_GT(events, 0);
 }
 

@@ -69,17 +69,19 @@ TEST_F(RecordingTest, a_row_of_another_size_is_refused) {
   EXPECT_THROW(writer.append(fake_row(k_cabinet, 0, 0)), std::invalid_argument);
 }
 
+const std::string k_old = "\x89HDF\r\n\x1a\n old";  // begins as recordings do
+
 TEST_F(RecordingTest, a_start_that_comes_to_nothing_leaves_the_old_file_alone) {
-  write_bytes(path("a.h5"), "old");
+  write_bytes(path("a.h5"), k_old);
   { RecordingWriter writer(path("a.h5"), "fake", k_text, small_model(), k_small); }
-  EXPECT_EQ(bytes_of(path("a.h5")), "old");
+  EXPECT_EQ(bytes_of(path("a.h5")), k_old);
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
 TEST_F(RecordingTest, the_first_frame_replaces_the_old_file_at_once) {
-  write_bytes(path("a.h5"), "old");
+  write_bytes(path("a.h5"), k_old);
   RecordingWriter writer(path("a.h5"), "fake", k_text, small_model(), k_small);
-  EXPECT_EQ(bytes_of(path("a.h5")), "old");
+  EXPECT_EQ(bytes_of(path("a.h5")), k_old);
   writer.append(fake_row(k_small, 0, 0));
   writer.flush_if_due();
   EXPECT_TRUE(is_recording(path("a.h5")));
@@ -87,7 +89,7 @@ TEST_F(RecordingTest, the_first_frame_replaces_the_old_file_at_once) {
 }
 
 TEST_F(RecordingTest, a_link_stays_a_link) {
-  write_bytes(path("real.h5"), "old");
+  write_bytes(path("real.h5"), k_old);
   std::filesystem::create_symlink(path("real.h5"), path("link.h5"));
   record_small(path("link.h5"), 3);
   EXPECT_TRUE(std::filesystem::is_symlink(path("link.h5")));
@@ -103,10 +105,9 @@ TEST_F(RecordingTest, impossible_destinations_are_named) {
     }
     return {};
   };
-  EXPECT_EQ(error(path("none/a.h5")),
-            path("none/a.h5") + ": cannot write the recording: No such file or directory");
-  EXPECT_EQ(error(folder_.string()), folder_.string() + ": is a folder");
-  EXPECT_EQ(error("/dev/null"), "/dev/null: is not a regular file");
+  EXPECT_EQ(error(path("none/a.h5")), path("none/a.h5") + ": cannot be written: No such file or directory");
+  EXPECT_EQ(error(folder_.string()), folder_.string() + ": cannot be written: is a folder");
+  EXPECT_EQ(error("/dev/null"), "/dev/null: cannot be written: is not an ordinary file");
 }
 
 TEST_F(RecordingTest, a_reader_follows_a_writer_in_another_process) {
@@ -168,8 +169,8 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
     row.section_force[0] = 1000;
     row.s[1] = -0.25f;
     row.hinge[1] = 2;
-    row.body[7] = k_pi / 2;
-    row.body[9] = 1.0 / 3;
+    row.body[0].tilt = k_pi / 2;
+    row.body[0].energy = 1.0 / 3;
     row.floor_acceleration[0] = 1.862;
     writer.append(row);
     writer.finish("completed", "{}");

@@ -31,6 +31,11 @@ TEST(TomlPrecheck, letters_beyond_ascii_stand_in_strings_and_comments) {
   expect_fault("a = \"open\né", 2, 1);
 }
 
+TEST(TomlPrecheck, columns_count_letters_and_bytes_that_are_none) {
+  expect_fault("a = 1\na = \"é\" é\n", 2, 9);
+  expect_fault("a = 1\na = \"\xff\" é\n", 2, 9);
+}
+
 TEST(TomlPrecheck, headers_begin_with_a_name) {
   for (const char* text :
        {"[a]", "[[a]]", "[ a ]", "[\"a\"]", "['a']", "[-]", "a = [\n[1], [.5],\n{ b = 1 }]"}) {

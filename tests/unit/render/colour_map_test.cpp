@@ -55,10 +55,5 @@ TEST(ColourMap, values_outside_the_range_take_the_nearest_end) {
   EXPECT_EQ(colour_position(1, 3, 3), 0);
 }
 
-TEST(ColourMap, names_are_known) {
-  EXPECT_EQ(colour_map_named("cividis"), ColourMap::cividis);
-  EXPECT_FALSE(colour_map_named("jet").has_value());
-}
-
 }  // namespace
 }  // namespace topple::render

@@ -1,6 +1,7 @@
 // Draws the synthetic cabinet into the PNG file named by its argument, in a process of its own: Mesa reads
 // the number of its threads once.
 #include "tests/unit/render/off_screen.h"
+#include "tests/unit/render/read_png.h"
 #include "tests/unit/render/synthetic_cabinet.h"
 
 int main(int argc, char** argv) {

@@ -1,6 +1,7 @@
 // Draws the stage off screen into the PNG file named by its argument: the test of the window, which may
 // not hold such a context, compares with it.
 #include "tests/unit/render/off_screen.h"
+#include "tests/unit/render/read_png.h"
 #include "tests/unit/render/staged.h"
 
 int main(int argc, char** argv) {

@@ -1,14 +1,21 @@
-// Reads pictures back with a decoder that shares nothing with the writer.
+// Pictures as files: written as they are, read back with a decoder that shares nothing with the writer.
 #pragma once
 
 #include <stb_image.h>
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 #include "render/output/image.h"
 
 namespace topple::render {
+
+inline void write_png(const std::filesystem::path& path, const Image& image) {
+  const std::vector<std::uint8_t> bytes = encode_png(image);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
 
 inline Image read_png(const std::filesystem::path& path) {
   Image image;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/unit/render/off_screen.h"
+#include "tests/unit/render/read_png.h"
 #include "tests/unit/render/scratch.h"
 #include "tests/unit/render/staged.h"
 

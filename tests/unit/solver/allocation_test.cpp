@@ -230,17 +230,17 @@ TEST(Allocation, bodies_that_lie_on_each_other_take_no_memory) {
   ASSERT_TRUE(sim.advance(1000));
   int steps = 0;
   for (int i = 0; i < 1000; ++i) {
-    const std::vector<ElementPair> near = sim.state.near;
+    const std::vector<ElementPair> near = sim.state.candidate_pairs;
     const long before = allocations;
     ASSERT_TRUE(sim.advance().ok());
-    if (near.empty() || sim.state.near != near) continue;
+    if (near.empty() || sim.state.candidate_pairs != near) continue;
     ASSERT_EQ(allocations, before) << "step " << i;
     ++steps;
   }
   EXPECT_GT(steps, 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rungs, RockingAllocation,
+INSTANTIATE_TEST_SUITE_P(Levels, RockingAllocation,
                          ::testing::Combine(::testing::Values(BodyModel::rigid, BodyModel::elastic,
                                                               BodyModel::frame),
                                             ::testing::Bool()),

@@ -1,13 +1,13 @@
-// Anchors against theory, on every rung and with every integrator.
+// Anchors against theory, on every level and with every integrator.
 #include "solver/contact/anchor.h"
 
 #include <thread>
 
 #include "solver/body/anchors.h"
+#include "solver/body/body_pose.h"
 #include "solver/body/elastic_basis.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
-#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -97,15 +97,15 @@ TEST(Anchor, force_is_the_gradient_of_its_energy_and_the_tangent_that_of_the_for
       const Mat6 slope = anchor_slope(anchor_tangent(a, state, node + arm), arm, now.force);
       for (int k = 0; k < 6; ++k) {
         const auto at = [&](double h) {
-          Vec3 turn = Vec3::Zero(), lever = arm, x = node;
+          Vec3 turn = Vec3::Zero(), gamma_dt = arm, x = node;
           if (k < 3)
             x[k] += h;
           else
             turn[k - 3] = h;
-          lever = exp_quaternion(turn) * arm;
-          const AnchorForce f = anchor_force(a, state, x + lever);
+          gamma_dt = exp_quaternion(turn) * arm;
+          const AnchorForce f = anchor_force(a, state, x + gamma_dt);
           Vec6 both;
-          both << f.force, lever.cross(f.force);
+          both << f.force, gamma_dt.cross(f.force);
           return std::pair(both, f.energy);
         };
         const auto [ahead, more] = at(k_step);

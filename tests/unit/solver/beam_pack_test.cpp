@@ -70,7 +70,7 @@ Scalar element_by_element(const MemberPose& pose) {
   for (std::size_t e = 0; e < pose.model.elements.size(); ++e) {
     const Element& element = pose.model.elements[e];
     const int i = element.node[0], j = element.node[1];
-    const BeamEnds ends = beam_ends(element, m.position[i], m.rotation[i], m.position[j], m.rotation[j]);
+    const BeamEnds ends = beam_ends(m.position[i], m.rotation[i], m.position[j], m.rotation[j]);
     BeamGradient g;
     Mat12 k;
     beam_tangent(element, pose.memory[e], ends, g, k);
@@ -81,7 +81,7 @@ Scalar element_by_element(const MemberPose& pose) {
     out.gradient.segment<3>(6 * i + 3) += g.moment1;
     out.gradient.segment<3>(6 * j) += g.force2;
     out.gradient.segment<3>(6 * j + 3) += g.moment2;
-    const BeamStrain elastic = elastic_strain(pose.memory[e], beam_strain(element, element.s, ends));
+    const BeamStrain elastic = elastic_strain(pose.memory[e], beam_strain(element, ends));
     out.energy += beam_energy(element, elastic);
     out.sections.push_back(section_forces(element, elastic));
   }

@@ -149,22 +149,23 @@ Pose moved(Pose p, int direction, double h) {
   return p;
 }
 
-BeamEnds ends_of(const Element& e, const Pose& p) {
-  return beam_ends(e, p.x1, p.q1, p.x2, p.q2);
+BeamEnds ends_of(const Pose& p) {
+  return beam_ends(p.x1, p.q1, p.x2, p.q2);
 }
 double energy_of(const Element& e, const Pose& p) {
-  return beam_energy(e, beam_strain(e, e.s, ends_of(e, p)));
+  return beam_energy(e, beam_strain(e, ends_of(p)));
 }
 Eigen::Matrix<double, 12, 1> gradient_of(const Element& e, const Pose& p) {
-  const BeamGradient g = beam_gradient(e, {}, ends_of(e, p));
+  const BeamGradient g = beam_gradient(e, {}, ends_of(p));
   Eigen::Matrix<double, 12, 1> v;
   v << g.force1, g.moment1, g.force2, g.moment2;
   return v;
 }
 
 const double k_places[] = {0, k_gauss_shift, -k_gauss_shift, 1, -1};
-// Both switches of the coefficients lie at 0.3, of |psi| and of t |psi|.
-const double k_turns[] = {0, 1e-6, 0.1, 0.2999, 0.3001, 0.3 * 2 / (1 + k_gauss_shift), 0.7, 1.5, 2.5};
+// Series end at |psi| = 0.2, others at 0.3 of |psi| and of t |psi|.
+const double k_turns[] = {0,   1e-6, 0.1, 0.1999, 0.2001, 0.2999, 0.3001, 0.3 * 2 / (1 + k_gauss_shift),
+                          0.7, 1.5,  2.5};
 
 TEST(Beam, rigid_motion_is_free_of_strain) {
   std::mt19937 rng(12);
@@ -173,9 +174,26 @@ TEST(Beam, rigid_motion_is_free_of_strain) {
       const Element e = random_element(rng, s);
       const Quat turn = random_rotation(rng);
       const Vec3 x1 = random_vector(rng), d = e.length * e.triad.col(0);
-      const BeamStrain strain = beam_strain(e, s, beam_ends(e, x1, turn, x1 + turn * d, turn));
+      const BeamStrain strain = beam_strain(e, beam_ends(x1, turn, x1 + turn * d, turn));
       EXPECT_LT(strain.gamma.norm(), 1e-14) << turn.coeffs().transpose();
       EXPECT_LT(strain.kappa.norm(), 1e-14) << turn.coeffs().transpose();
+    }
+}
+
+TEST(Beam, strains_are_those_of_their_definition) {
+  std::mt19937 rng(18);
+  for (double s : k_places)
+    for (double angle : k_turns) {
+      SCOPED_TRACE(testing::Message() << "s " << s << ", turn " << angle);
+      const Element e = random_element(rng, s);
+      const Pose p = random_pose(rng, e, angle);
+      const Mat3 r1 = p.q1.toRotationMatrix() * e.triad, r2 = p.q2.toRotationMatrix() * e.triad;
+      const Vec3 psi = log_quaternion(Quat(Mat3(r1.transpose() * r2)));
+      const Mat3 rs = r1 * exp_quaternion((1 + s) / 2 * psi).toRotationMatrix();
+      const BeamStrain strain = beam_strain(e, ends_of(p));
+      EXPECT_LT((strain.gamma - (rs.transpose() * (p.x2 - p.x1) / e.length - Vec3::UnitX())).norm(), 1e-14);
+      // rounding of a logarithm of 2.5 rad over the length
+      EXPECT_LT((strain.kappa - psi / e.length).norm(), 2e-14);
     }
 }
 
@@ -189,7 +207,7 @@ TEST(Beam, strains_do_not_see_a_rigid_motion_on_top_of_a_deformation) {
       const Quat turn = random_rotation(rng);
       const Vec3 shift = random_vector(rng);
       const Pose after{turn * p.x1 + shift, turn * p.x2 + shift, turn * p.q1, turn * p.q2};
-      const BeamStrain a = beam_strain(e, s, ends_of(e, p)), b = beam_strain(e, s, ends_of(e, after));
+      const BeamStrain a = beam_strain(e, ends_of(p)), b = beam_strain(e, ends_of(after));
       EXPECT_LT((a.gamma - b.gamma).norm(), 1e-14);
       // rounding of a logarithm of 2.5 rad over the length
       EXPECT_LT((a.kappa - b.kappa).norm(), 2e-14);
@@ -226,7 +244,7 @@ TEST(Beam, gradient_balances_forces_and_moments) {
     for (double angle : k_turns) {
       const Element e = random_element(rng, s);
       const Pose p = random_pose(rng, e, angle);
-      const BeamGradient g = beam_gradient(e, {}, ends_of(e, p));
+      const BeamGradient g = beam_gradient(e, {}, ends_of(p));
       EXPECT_LT((g.force1 + g.force2).norm(), 1e-15);
       const Vec3 moments = g.moment1 + g.moment2 + (p.x2 - p.x1).cross(g.force2);
       EXPECT_LT(moments.norm(), 1e-14) << "s " << s << ", turn " << angle;
@@ -242,7 +260,7 @@ TEST(Beam, tangent_is_the_derivative_of_the_gradient) {
       const Pose p = random_pose(rng, e, angle);
       BeamGradient g;
       Mat12 tangent;
-      beam_tangent(e, {}, ends_of(e, p), g, tangent);
+      beam_tangent(e, {}, ends_of(p), g, tangent);
       const auto alone = gradient_of(e, p);
       Eigen::Matrix<double, 12, 1> both;
       both << g.force1, g.moment1, g.force2, g.moment2;
@@ -267,13 +285,13 @@ TEST(Beam, tangent_is_continuous_where_series_and_closed_forms_meet) {
   for (double s : k_places) {
     const Element e = random_element(rng, s);
     const double t = (1 + s) / 2;
-    for (double edge : {0.3, t > 0.1 ? 0.3 / t : 0.3}) {
+    for (double edge : {0.2, 0.3, t > 0.1 ? 0.3 / t : 0.3}) {
       const std::uint32_t seed = rng();
       Mat12 tangent[2];
       for (int side = 0; side < 2; ++side) {
         std::mt19937 same(seed);
         BeamGradient g;
-        beam_tangent(e, {}, ends_of(e, random_pose(same, e, edge * (1 + (side == 0 ? -1e-12 : 1e-12)))), g,
+        beam_tangent(e, {}, ends_of(random_pose(same, e, edge * (1 + (side == 0 ? -1e-12 : 1e-12)))), g,
                      tangent[side]);
       }
       // the closed forms of the second derivatives cancel to 3e-11 at 0.3 (rotation_test)

@@ -14,7 +14,7 @@ namespace {
 
 const Vec3 k_tilted = Vec3(0.2, -0.3, 1).normalized();
 
-/// A cabinet in any pose, pressed into a floor; on the rung elastic with its modes at work.
+/// A cabinet in any pose, pressed into a floor; on the level elastic with its modes at work.
 struct Pressed {
   Model model = steel_model();
   BodyState state;
@@ -24,13 +24,13 @@ struct Pressed {
   BodyVelocity velocity;
   int modes = 0;
 
-  explicit Pressed(std::mt19937& rng, const Vec3& normal = k_tilted, Rung rung = Rung::elastic) {
+  explicit Pressed(std::mt19937& rng, const Vec3& normal = k_tilted, ModelLevel level = ModelLevel::elastic) {
     add_cabinet(model, tall_cabinet());
     Body& body = model.bodies[0];
     body.elastic = elastic_basis(model, 0);
-    modes = rung == Rung::elastic ? body.elastic->modes : 0;
+    modes = level == ModelLevel::elastic ? body.elastic->modes : 0;
     model.planes.push_back({"floor", Vec3(0.1, 0.2, 0), normal, 0.09});
-    state.rung = rung;
+    state.level = level;
     state.rotation = random_rotation(rng);
     for (int k = 0; k < modes; ++k) state.amplitude[k] = 1e-3 * random_vector(rng)[0];
     // so deep that some points touch and others do not
@@ -50,9 +50,9 @@ Loads loads_at(BodyContacts& contacts, const Pressed& at, int direction, double 
   BodyVelocity u = at.velocity;
   double* const of[6] = {&u.linear.x, &u.linear.y, &u.linear.z, &u.angular.x, &u.angular.y, &u.angular.z};
   (direction < 6 ? *of[direction] : u.rate[direction - 6]) += step;
-  const ContactLoads loads = contacts.press<false>(at.law, u, 0);
+  const ContactLoads loads = contacts.evaluate_forces<false>(at.law, u, 0);
   Amplitudes on_modes = Amplitudes::Zero();
-  contacts.press_modes(at.modes, on_modes);
+  contacts.modal_loads(at.modes, on_modes);
   Loads all;
   all << unpacked(loads.force), unpacked(loads.moment), on_modes.matrix();
   return all;
@@ -62,11 +62,11 @@ TEST(BodyContacts, slopes_are_the_derivatives_of_the_loads_by_the_velocity) {
   std::mt19937 rng(11);
   for (int trial = 0; trial < 20; ++trial) {
     const Pressed at(rng, trial % 2 == 0 ? k_tilted : Vec3::UnitZ(),
-                     trial % 4 < 2 ? Rung::elastic : Rung::rigid);
+                     trial % 4 < 2 ? ModelLevel::elastic : ModelLevel::rigid);
     BodyContacts contacts(at.model, 0);
     contacts.find(at.state, at.rotation, at.stick);
     ASSERT_TRUE(contacts.any());
-    contacts.press<true>(at.law, at.velocity, 0);
+    contacts.evaluate_forces<true>(at.law, at.velocity, 0);
     ModeMatrix matrix{};
     contacts.add_slope_of_modes(1, at.modes, matrix);
     const ContactSlope slope = contacts.slope();
@@ -120,7 +120,7 @@ TEST(BodyContacts, alpha_is_that_of_both_springs_at_a_quarter_of_the_weight) {
     BodyContacts contacts(at.model, 0);
     contacts.find(at.state, at.rotation, at.stick);
     ASSERT_TRUE(contacts.any());
-    contacts.press<false>(at.law, at.velocity, 0);
+    contacts.evaluate_forces<false>(at.law, at.velocity, 0);
     const double share = at.model.bodies[0].mass * k_g / 4;
     double low = 0, high = 10;  // of the depth, by bisection
     while (high - low > 1e-14) (penalty_force(law, (low + high) / 2) < share ? low : high) = (low + high) / 2;
@@ -152,7 +152,7 @@ TEST(BodyContacts, no_point_below_a_face_is_overlooked_in_any_pose) {
   const std::vector<Vec3> stick(model.contact_points.size(), Vec3::Zero());
   for (int trial = 0; trial < 200; ++trial) {
     BodyState s;
-    s.rung = Rung::rigid;
+    s.level = ModelLevel::rigid;
     s.rotation = random_rotation(rng);
     double lowest = 1e300;
     const auto height = [&](const ContactPoint& point) {
@@ -179,7 +179,7 @@ TEST(BodyContacts, each_plane_has_its_own_width_and_springs) {
   const std::size_t planes = model.planes.size();
   const std::vector<Vec3> stick(model.contact_points.size() * planes, Vec3::Zero());
   BodyState s;
-  s.rung = Rung::rigid;
+  s.level = ModelLevel::rigid;
   s.position = model.bodies[0].centre_of_gravity - Vec3::Constant(3);  // all points beyond all faces
   contacts.find(s, rotation_matrix(packed(s.rotation)), stick);
   std::vector<int> met(stick.size(), 0);
@@ -222,7 +222,7 @@ TEST(BodyContacts, landing_is_foreseen_by_the_parabola_of_the_lowest_point) {
         if (g == 0 && fall <= 0) continue;
         SCOPED_TRACE(testing::Message() << gap << " m, " << fall << " m/s, " << g << " m/s^2");
         BodyState s;
-        s.rung = Rung::rigid;
+        s.level = ModelLevel::rigid;
         s.position = model.bodies[0].centre_of_gravity + Vec3(0, 0, gap - lowest);
         s.velocity = Vec3(0.3, 0.1, -fall);
         const double exact = g == 0 ? gap / fall : (-fall + std::sqrt(fall * fall + 2 * g * gap)) / g;
@@ -237,7 +237,7 @@ struct Spinning {
   Model model = lopsided();
   BodyState state;
   Spinning() {
-    state.rung = Rung::rigid;
+    state.level = ModelLevel::rigid;
     state.angular_velocity = Vec3(2.5, 1.5, 3);
   }
   double lowest() const {
@@ -278,25 +278,25 @@ TEST(BodyContacts, landing_of_a_spinning_body_is_foreseen_to_the_third_order) {
     law.alpha = 1e9;  // so that nothing but the landing decides
     const Parameters still = weightless();
     const std::vector<Vec3> stick(now.model.contact_points.size(), Vec3::Zero());
-    body.balance(still, Instant(still, 0), now.state, stick);
+    body.balance(still, StepInputs(still, 0), now.state, stick);
     error[k] = std::abs(body.look_ahead(law, now.state) - t);
     EXPECT_LT(error[k], 0.01 * t);  // (4 rad/s t)^2/6
   }
   EXPECT_LT(error[1], error[0] / 5);
 }
 
-TEST(BodyContacts, resting_body_goes_on_with_its_part) {
+TEST(BodyContacts, resting_body_goes_on_with_its_substep) {
   Model model = lopsided();
   ReducedBody body(model, 0);
   BodyState s;
-  s.rung = Rung::rigid;
+  s.level = ModelLevel::rigid;
   s.position = model.bodies[0].centre_of_gravity;
   const Parameters p;
   const std::vector<Vec3> stick(model.contact_points.size(), Vec3::Zero());
-  body.balance(p, Instant(p, 0), s, stick);
-  s.part = 0;
+  body.balance(p, StepInputs(p, 0), s, stick);
+  s.substep = 0;
   EXPECT_GT(body.look_ahead(p.contact, s), 2e-3);  // none was yet: no limit
-  s.part = 1e-3;
+  s.substep = 1e-3;
   EXPECT_EQ(body.look_ahead(p.contact, s), 1e-3);
 }
 

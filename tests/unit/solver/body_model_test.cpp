@@ -1,7 +1,7 @@
 // Rigid, reduced and elastic bodies beside the frame that they stand for.
 #include "body_models.h"
+#include "solver/body/body_pose.h"
 #include "solver/frame/modes.h"
-#include "solver/state/body_pose.h"
 #include "solver/state/sections.h"
 
 namespace topple::test {

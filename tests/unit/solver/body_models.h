@@ -1,9 +1,9 @@
-// Cabinets computed as rigid, elastic or frame, which the tests of the model ladder share.
+// Cabinets computed as rigid, elastic or frame, which the tests of model levels share.
 #pragma once
 
+#include "solver/body/body_pose.h"
 #include "solver/body/elastic_basis.h"
-#include "solver/body/ladder.h"
-#include "solver/state/body_pose.h"
+#include "solver/body/model_level.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -1,4 +1,5 @@
 #include "solver/frame/central_difference.h"
+#include "solver/contact/contact_law.h"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +12,28 @@ namespace topple::test {
 namespace {
 
 // 2 over the highest frequency of M^-1 K in the reference pose, by a dense symmetric eigenvalue solve.
-double dense_limit(const Model& model, int index) {
+// `law`: with the springs that contact_force has at 1 - l/L = 1, at rest, where contact points lie on planes.
+double dense_limit(const Model& model, int index, const ContactLaw* law = nullptr) {
   const Body& body = model.bodies[index];
   const int n = body.node_count;
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(6 * n, 6 * n), root = k;
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[e];
-    BeamGradient g;
-    Mat12 tangent;
-    beam_tangent(element, {},
-                 beam_ends(element, model.node_position[element.node[0]], Quat::Identity(),
-                           model.node_position[element.node[1]], Quat::Identity()),
-                 g, tangent);
+    const Mat12 tangent = beam_stiffness(model, element);
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b)
         k.block<6, 6>(6 * (element.node[a] - body.first_node), 6 * (element.node[b] - body.first_node)) +=
             tangent.block<6, 6>(6 * a, 6 * b);
   }
+  for (int c = body.first_contact_point; law && c < body.first_contact_point + body.contact_point_count; ++c)
+    for (const Plane& plane : model.planes) {
+      const ContactPoint& point = model.contact_points[c];
+      Mat3 by_position, by_velocity;
+      contact_force(*law, {plane.normal, 1, contact_length(point, plane), Vec3::Zero(), Vec3::Zero(), 1},
+                    by_position, by_velocity);
+      const int i = 6 * (point.node - body.first_node);
+      k.block<3, 3>(i, i) -= by_position;
+    }
   for (int i = 0; i < n; ++i) {
     const int g = body.first_node + i;
     root.block<3, 3>(6 * i, 6 * i) = Mat3::Identity() / std::sqrt(model.node_mass[g]);
@@ -67,6 +73,23 @@ TEST(CentralDifference, limit_is_2_over_the_highest_frequency) {
     // more than a growth of 1e-3 h w per step
     EXPECT_GE(found, exact * (1 - 1e-9));
     EXPECT_LE(found, exact * (1 + 1e-3));
+  }
+}
+
+TEST(CentralDifference, limit_counts_the_springs_that_a_law_has_and_no_others) {
+  Model model = cabinet_model();
+  model.planes.push_back({"floor", Vec3::Zero(), Vec3::UnitZ(), 0});
+  BodySystem system(model, 0);
+  for (const ContactLawTraits& traits : contact_laws()) {
+    if (!traits.stores_energy) continue;  // no spring at rest: explicit_limit has that of a body that moves
+    for (const double q : {1., 2.}) {
+      SCOPED_TRACE(testing::Message() << "law " << traits.word << ", q " << q);
+      ContactLaw law{.kind = traits.kind, .alpha = 1e9, .q = q};  // stiffer than the beams
+      const double exact = dense_limit(model, 0, &law), found = explicit_limit(system, &law);
+      EXPECT_LT(exact, 0.9 * dense_limit(model, 0));
+      EXPECT_GE(found, exact * (1 - 1e-9));  // as in the test above
+      EXPECT_LE(found, exact * (1 + 1e-3));
+    }
   }
 }
 

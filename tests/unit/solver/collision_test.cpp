@@ -41,7 +41,7 @@ class Sides {
   bool follow(const Model& model, const State& state) {
     std::vector<std::pair<ElementPair, bool>> now;
     bool kept = true;
-    for (const ElementPair& pair : state.near) {
+    for (const ElementPair& pair : state.candidate_pairs) {
       const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
       const Vec3 &a0 = state.position[m[0]], &b0 = state.position[n[0]];
       const Vec3 u = state.position[m[1]] - a0, v = state.position[n[1]] - b0, across = u.cross(v);

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "solver/body/elastic_basis.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/element/damping.h"
 #include "solver/frame/modes.h"
 #include "solver/model/accelerogram.h"
@@ -186,7 +186,7 @@ TEST(Containment, no_bad_number_in_the_state_of_bodies_that_touch_or_broke_is_st
     SCOPED_TRACE(way.name);
     const topple::Setup setup = touching_tripods(way);
     State state = after_steps(setup);
-    EXPECT_FALSE(state.near.empty());
+    EXPECT_FALSE(state.candidate_pairs.empty());
     EXPECT_FALSE(state.member_sticks.empty());
     state.elements[0].hinge = Hinge::broken;
     state.elements[3].hinge = Hinge::first;
@@ -268,7 +268,7 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
     };
     [[maybe_unused]] const auto& [kind, amplitude, frequency, last_frequency, direction, start, on, cycles,
                                   taper, initial_velocity, shape, duration, record, scale, turned, turns,
-                                  amplitude_before, scale_before, passage] = all.shakes[i];
+                                  amplitude_before, scale_before, ramp] = all.shakes[i];
     add("amplitude", &Shake::amplitude);
     add("frequency", &Shake::frequency);
     add("last_frequency", &Shake::last_frequency);
@@ -288,14 +288,14 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
         return p.shakes[i].amplitude_before[k];
       };
     }
-    out[name + "passage.since"] = [i](Parameters& p) -> double& { return p.shakes[i].passage.since; };
-    out[name + "passage.over"] = [i](Parameters& p) -> double& { return p.shakes[i].passage.over; };
+    out[name + "passage.since"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.since; };
+    out[name + "passage.over"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.over; };
   }
-  [[maybe_unused]] const auto& [contact, contact_before, contact_passage, shakes, models, damping, anchors,
+  [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
                                 want_stress, gravity, integrator, spectral_radius, beta, gamma, time_step,
                                 adaptive, tolerance, finer_parts] = all;
-  out["contact_passage.since"] = [](Parameters& p) -> double& { return p.contact_passage.since; };
-  out["contact_passage.over"] = [](Parameters& p) -> double& { return p.contact_passage.over; };
+  out["contact_ramp.since"] = [](Parameters& p) -> double& { return p.contact_ramp.since; };
+  out["contact_ramp.over"] = [](Parameters& p) -> double& { return p.contact_ramp.over; };
   for (std::size_t b = 0; b < all.damping.size(); ++b)
     out["damping " + std::to_string(b)] = [b](Parameters& p) -> double& { return p.damping[b]; };
   for (int k = 0; k < 3; ++k)
@@ -320,8 +320,8 @@ TEST(Containment, no_bad_number_in_the_parameters_is_stepped_with) {
     for (const bool passing : {false, true}) {
       Parameters parameters = setup.parameters;
       if (passing) {
-        parameters.contact_passage = {good.time, 0.1};
-        for (Shake& shake : parameters.shakes) shake.passage = {good.time, 0.1};
+        parameters.contact_ramp = {good.time, 0.1};
+        for (Shake& shake : parameters.shakes) shake.ramp = {good.time, 0.1};
       }
       ASSERT_TRUE(stepped(setup, parameters, good).status.ok());
       for (const auto& [name, number] : numbers_of(parameters))

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/body/elastic_basis.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/frame/central_difference.h"
 #include "unit/solver/fixtures.h"
 
@@ -16,8 +16,8 @@ Eigen::VectorXd strains(const Model& model, const BodyMotion& m) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Element& element = model.elements[e];
     const int i = element.node[0], j = element.node[1];
-    const BeamStrain strain = beam_strain(
-        element, element.s, beam_ends(element, m.position[i], m.rotation[i], m.position[j], m.rotation[j]));
+    const BeamStrain strain =
+        beam_strain(element, beam_ends(m.position[i], m.rotation[i], m.position[j], m.rotation[j]));
     all.segment<6>(6 * static_cast<int>(e)) << strain.gamma, strain.kappa;
   }
   return all;

@@ -4,13 +4,13 @@
 
 #include <set>
 
+#include "solver/body/body_pose.h"
 #include "solver/body/elastic_basis.h"
-#include "solver/body/ladder.h"
+#include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
-#include "solver/state/body_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -133,7 +133,7 @@ TEST(Edit, of_the_scale_of_a_record_takes_a_quarter_of_a_second_without_a_jump) 
   EXPECT_EQ(floor_acceleration(p.shakes, 2.25).x(), -1);
   // the share's slope is at most pi/2 over its length
   EXPECT_LT(roughest(p, 1.9, 2.4), 1.01 * 4 * k_pi / 2 / 0.25 * 1e-6);
-  // from within the passage
+  // from within the ramp
   apply(set(Edit::Key::scale, 1), {}, 2.3, p);
   apply(set(Edit::Key::scale, 2), {}, 2.425, p);
   EXPECT_NEAR(floor_acceleration(p.shakes, 2.425).x(), 0.5, 1e-13);
@@ -295,15 +295,15 @@ TEST(Edit, of_model_law_and_integrator_keeps_the_energy_in_the_middle_of_a_run) 
       ASSERT_LT(run.state().energy.balance_error(), 2e-3);
     }
   };
-  const auto rung = [&] { return run.state().bodies[0].rung; };
+  const auto level = [&] { return run.state().bodies[0].level; };
   go_on(Edit::Key::law, static_cast<int>(ContactLawKind::paper));
   EXPECT_EQ(run.state().law, ContactLawKind::paper);
   go_on(Edit::Key::law, static_cast<int>(ContactLawKind::coulomb));
-  EXPECT_EQ(rung(), Rung::rigid);
+  EXPECT_EQ(level(), ModelLevel::rigid);
   go_on(Edit::Key::model, static_cast<int>(BodyModel::elastic));
-  EXPECT_EQ(rung(), Rung::elastic);
+  EXPECT_EQ(level(), ModelLevel::elastic);
   go_on(Edit::Key::model, static_cast<int>(BodyModel::frame));
-  EXPECT_EQ(rung(), Rung::frame);
+  EXPECT_EQ(level(), ModelLevel::frame);
   go_on(Edit::Key::integrator, 3);  // newmark
   go_on(Edit::Key::law, static_cast<int>(ContactLawKind::printed));
 }
@@ -330,7 +330,7 @@ TEST(Edit, depends_on_its_arguments_only) {
     apply(set(Edit::Key::amplitude, 3), model, second, p);
     const ContactLaw law = contact_law(p, second + 0.01);
     const Vec3 floor = floor_acceleration(p.shakes, second + 0.01);
-    return std::vector<double>{law.alpha, law.q, floor.x(), p.shakes[0].turns, p.contact_passage.over};
+    return std::vector<double>{law.alpha, law.q, floor.x(), p.shakes[0].turns, p.contact_ramp.over};
   };
   EXPECT_EQ(law_and_floor(0.7, 0.75), law_and_floor(0.7, 0.75));
 }

@@ -133,7 +133,7 @@ class EditedRunTest : public ::testing::Test {
 };
 
 TEST_F(EditedRunTest, repeats_bit_for_bit_from_start_points_and_checkpoints) {
-  // at an edit, within its passage, between, and after the last one
+  // at an edit, within its ramp, between, and after the last one
   for (const std::int64_t step : {0, 59, 60, 61, 75, 110, 151, 230, 260, 301, 350}) {
     expect_same(topple::Run(setup_, point(step)));
     expect_same(from_checkpoint(step));

@@ -46,9 +46,8 @@ class PlasticPath {
   double stored() const {
     double sum = 0;
     for (std::size_t e = 0; e < model.elements.size(); ++e)
-      sum += beam_energy(
-          model.elements[e],
-          elastic_strain(state.elements[e], beam_strain(model.elements[e], model.elements[e].s, ends(e))));
+      sum += beam_energy(model.elements[e],
+                         elastic_strain(state.elements[e], beam_strain(model.elements[e], ends(e))));
     return sum;
   }
 
@@ -60,10 +59,8 @@ class PlasticPath {
 
  private:
   BeamEnds ends(std::size_t e) const {
-    const Element& element = model.elements[e];
-    const int i = element.node[0], j = element.node[1];
-    return beam_ends(element, motion_.position[i], motion_.rotation[i], motion_.position[j],
-                     motion_.rotation[j]);
+    const auto [i, j] = model.elements[e].node;
+    return beam_ends(motion_.position[i], motion_.rotation[i], motion_.position[j], motion_.rotation[j]);
   }
 
   // Newton on (unknowns, factor) with the prescribed displacement as the last equation: regular at collapse.

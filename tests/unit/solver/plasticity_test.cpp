@@ -119,8 +119,8 @@ Pose moved(Pose p, int direction, double h) {
   return p;
 }
 
-BeamEnds ends_of(const Element& e, const Pose& p) {
-  return beam_ends(e, p.x1, p.q1, p.x2, p.q2);
+BeamEnds ends_of(const Pose& p) {
+  return beam_ends(p.x1, p.q1, p.x2, p.q2);
 }
 
 Eigen::Matrix<double, 12, 1> stacked(const BeamGradient& g) {
@@ -140,16 +140,16 @@ TEST(Plasticity, beam_tangent_is_the_derivative_of_the_gradient_while_a_hinge_fl
       const Element e = element_that_yields(rng, k_places[sample % 3]);
       const ElementState state{hinge, random_strain(rng, 0.1)};
       const Pose pose = random_pose(rng, e.length);
-      if (!respond(e, state, beam_strain(e, e.s, ends_of(e, pose))).flows) continue;
+      if (!respond(e, state, beam_strain(e, ends_of(pose))).flows) continue;
       ++flowing;
       SCOPED_TRACE(testing::Message() << sample << ", hinge " << static_cast<int>(hinge));
       BeamGradient g;
       Mat12 tangent, difference;
-      beam_tangent(e, state, ends_of(e, pose), g, tangent);
+      beam_tangent(e, state, ends_of(pose), g, tangent);
       constexpr double k_step = 1e-5;
       for (int k = 0; k < 12; ++k)
-        difference.col(k) = (stacked(beam_gradient(e, state, ends_of(e, moved(pose, k, k_step)))) -
-                             stacked(beam_gradient(e, state, ends_of(e, moved(pose, k, -k_step))))) /
+        difference.col(k) = (stacked(beam_gradient(e, state, ends_of(moved(pose, k, k_step)))) -
+                             stacked(beam_gradient(e, state, ends_of(moved(pose, k, -k_step))))) /
                             (2 * k_step);
       EXPECT_LT((difference - tangent).norm(), 1e-6 * (1 + tangent.norm()));
     }
@@ -163,9 +163,9 @@ TEST(Plasticity, forces_are_the_gradient_of_the_energy_with_offsets) {
     const ElementState state{Hinge::none, random_strain(rng, 0.3)};
     const Pose pose = random_pose(rng, e.length);
     const auto energy = [&](const Pose& p) {
-      return beam_energy(e, elastic_strain(state, beam_strain(e, e.s, ends_of(e, p))));
+      return beam_energy(e, elastic_strain(state, beam_strain(e, ends_of(p))));
     };
-    const auto gradient = stacked(beam_gradient(e, state, ends_of(e, pose)));
+    const auto gradient = stacked(beam_gradient(e, state, ends_of(pose)));
     constexpr double k_step = 1e-5;
     for (int k = 0; k < 12; ++k)
       EXPECT_NEAR((energy(moved(pose, k, k_step)) - energy(moved(pose, k, -k_step))) / (2 * k_step),
@@ -209,15 +209,15 @@ TEST(Plasticity, element_turns_about_its_hinge_without_any_change_of_forces) {
     const Pose bent{Vec3::Zero(), e.length * (e.triad * Vec3::UnitX()),
                     exp_quaternion(e.triad * Vec3(0, 1e-5, 0)), Quat::Identity()};
     ElementState state{Hinge::first, {Vec3::Zero(), Vec3::Zero()}};
-    const SectionResponse response = respond(e, state, beam_strain(e, e.s, ends_of(e, bent)));
+    const SectionResponse response = respond(e, state, beam_strain(e, ends_of(bent)));
     ASSERT_TRUE(response.flows);
     take_flow(e, response, state);
-    const auto before = stacked(beam_gradient(e, state, ends_of(e, bent)));
+    const auto before = stacked(beam_gradient(e, state, ends_of(bent)));
     Pose turned = bent;
     turned.q1 = exp_quaternion(e.triad * Vec3(0, turn, 0)) * turned.q1;
-    const auto after = stacked(beam_gradient(e, state, ends_of(e, turned)));
+    const auto after = stacked(beam_gradient(e, state, ends_of(turned)));
     state.hinge = Hinge::none;
-    const auto elastic = stacked(beam_gradient(e, state, ends_of(e, turned)));
+    const auto elastic = stacked(beam_gradient(e, state, ends_of(turned)));
     EXPECT_LT((after - before).norm(), 1e-3 * (elastic - before).norm()) << "s " << s;
   }
 }

@@ -26,11 +26,11 @@ Simulation rocking(Integrator integrator = Integrator::generalized_alpha) {
   return Simulation(model, {start}, p);
 }
 
-/// Where a checkpoint holds the rung of the first body, its reason, the hinges and the contact law.
+/// Where a checkpoint holds the level of the first body, its reason, the hinges and the contact law.
 std::vector<std::size_t> places_of_choices(State state) {
   const std::vector<double> numbers = pack(state);
-  state.bodies[0].rung = Rung::elastic;
-  state.bodies[0].reason = RungReason::stress;
+  state.bodies[0].level = ModelLevel::elastic;
+  state.bodies[0].reason = LevelReason::stress;
   for (ElementState& element : state.elements) element.hinge = Hinge::first;
   state.law = ContactLawKind::paper;
   const std::vector<double> other = pack(state);

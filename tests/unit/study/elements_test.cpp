@@ -48,7 +48,7 @@ TEST(ElementsStudy, every_solution_is_found) {
   EXPECT_EQ(solved().solved, solved().of);
   EXPECT_EQ(solved().rows.size(), 10u * 3 * 6);
   for (const ElementsRow& found : solved().rows) {
-    SCOPED_TRACE(found.quantity + " " + scheme_name(found.scheme));
+    SCOPED_TRACE(found.quantity + " " + traits(found.scheme).word);
     EXPECT_EQ(found.status, "completed");
     EXPECT_TRUE(found.computed && found.error && found.cpu);
     EXPECT_GE(found.elements, found.elements_per_member);
@@ -69,7 +69,7 @@ TEST(ElementsStudy, asi_gauss_is_exact_where_loads_act_on_member_ends) {
 TEST(ElementsStudy, hinges_at_element_ends_give_exact_collapse_loads) {
   for (const Scheme scheme : {Scheme::asi_gauss, Scheme::asi})
     for (const int n : k_elements_per_member) {
-      SCOPED_TRACE(scheme_name(scheme) + " " + std::to_string(n));
+      SCOPED_TRACE(traits(scheme).word + (" " + std::to_string(n)));
       EXPECT_LT(error("beam-collapse", scheme, n), 1e-9);
       // 2e-6 is the change of shape. One load step of the portal of two asi elements stands out by 2e-5.
       const bool stands_out = scheme == Scheme::asi && n == 2;

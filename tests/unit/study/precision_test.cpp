@@ -138,8 +138,8 @@ TEST(Precision, the_default_is_placed_beside_the_front) {
   EXPECT_EQ(cheapest(plan, study, 0, Measure::tilt, 1e-4), check);
   EXPECT_EQ(cheapest(plan, study, 0, Measure::tilt, 1e-6), std::nullopt);  // the reference cannot tell
   const DefaultPlace place = place_of_default(plan, study, Measure::tilt).value();
-  EXPECT_NEAR(place.dearer, 4, 1e-9);
-  EXPECT_NEAR(place.coarser, 8, 1e-4);
+  EXPECT_NEAR(place.cost_ratio, 4, 1e-9);
+  EXPECT_NEAR(place.error_ratio, 8, 1e-4);
 }
 
 /// A cabinet that tumbles in free flight: smooth, so that orders are those of theory.

@@ -202,7 +202,7 @@ TEST(Stability, central_differences_are_refused_right_of_their_line) {
 
 std::vector<std::string> run_all(const StabilityPlan& plan) {
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
-  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = run_stability_case(plan, k, never);
+  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = run_case(plan, k, never);
   return rows;
 }
 
@@ -239,7 +239,7 @@ TEST(Stability, what_was_not_run_is_open_in_every_result) {
   const StabilityPlan plan = small_plan();
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   const std::size_t last = rows.size() - 1;
-  rows[last] = run_stability_case(plan, static_cast<int>(last), never);
+  rows[last] = run_case(plan, static_cast<int>(last), never);
   const StabilityMap map = gather(plan, rows);
   EXPECT_EQ(map.run, 1);
   EXPECT_EQ(map.cells.back().front().fate, Fate::not_computed);

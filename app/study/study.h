@@ -1,0 +1,82 @@
+// The studies of `topple study`, each a row of one table.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/study/broadcast_scene.h"
+#include "app/study/study_options.h"
+#include "app/study/sweep.h"
+#include "solver/io/scene/scene.h"
+#include "solver/study/common/chart.h"
+
+namespace topple::app {
+
+/// What a study found out.
+struct Findings {
+  std::string title;
+  nlohmann::ordered_json units, settings;  ///< besides those that every study has
+  nlohmann::ordered_json entries;          ///< the rest of its JSON; "rows" is its table
+  /// gnuplot script. `origin`: version and machine.
+  std::function<std::string(const std::string& origin, study::ChartFormat format)> chart;
+  std::string text;                          ///< for a person
+  int run = 0, of = 0;                       ///< of a study that is no sweep
+  std::string each = {};                     ///< what each run of a sweep is: " of 0.3 s"
+  std::string pace = {};                     ///< behind its runs per second
+  std::shared_ptr<const void> results = {};  ///< what `chart` reads
+};
+
+/// The cases of a study, as they are worked off one by one, resumed, and shared among ranks.
+struct Sweep {
+  std::function<SweepPlan()> cases;  ///< but for kind, stem and start
+  std::function<Findings(const std::vector<std::string>& rows)> gather;
+  /// What rank 0 finds out before the cases, and how the others hear of it. Absent: nothing.
+  std::function<std::string()> prepare = {};
+  std::function<void(const std::string& prepared)> hear = {};
+};
+
+/// A study that is not shared among ranks. go_on(done, of) as for_each_case (parallel.h).
+using Solve = std::function<Findings(const std::function<bool(int done, int of)>& go_on)>;
+
+struct Study {
+  const char *name, *about;
+  const char *x = nullptr, *y = nullptr;  ///< its usual axes, in words; null: it has none
+  bool takes_scene = true, takes_ensemble = false;
+  bool timed = false;  ///< CPU times count: one run at a time unless more are asked for
+  const char* runs = "runs";
+  const char* left_out = "the finest";  ///< by --quick
+  // One of the two. They throw io::InputError or BadInput on what cannot be studied.
+  Sweep (*sweep)(io::Scene scene, const StudyOptions& options) = nullptr;
+  Solve (*solve)(io::Scene scene, const StudyOptions& options) = nullptr;
+};
+
+// In NAME_study.cpp.
+extern const Study k_overturn_study, k_stability_study, k_precision_study, k_elements_study, k_penalty_study;
+/// In the order of --help.
+inline constexpr const Study* k_studies[] = {&k_overturn_study, &k_stability_study, &k_precision_study,
+                                             &k_elements_study, &k_penalty_study};
+
+/// The sweep of a plan with settings_of(), case_order() and gather(), of which `find` makes findings.
+template <class Plan, class Results>
+Sweep sweep_of(const std::shared_ptr<Plan>& plan, const MakeWork& make,
+               Findings (*find)(const Plan& plan, const Results& results)) {
+  return {.cases =
+              [plan, make] {
+                return SweepPlan{.settings = settings_of(*plan),
+                                 .order = case_order(*plan),
+                                 .told = told(plan->scene),
+                                 .make = make};
+              },
+          .gather =
+              [plan, find](const std::vector<std::string>& rows) {
+                const auto results = std::make_shared<const Results>(gather(*plan, rows));
+                Findings findings = find(*plan, *results);
+                findings.results = results;
+                return findings;
+              }};
+}
+
+}  // namespace topple::app

@@ -1,0 +1,178 @@
+// The velocity that contact forces leave in an explicit substep of ReducedBody.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "solver/body/reduced_body.h"
+#include "solver/body/rigid_solver.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_insertion_error = 1e-5;  // of the speed; of adaptive runs in this share of the tolerance:
+constexpr double k_insertion_share = 0.01;
+constexpr double k_contracts = 0.5;  // from one fixed-point iteration to the next, at least
+constexpr int k_most_insertions = 3;
+constexpr double k_velocity_error = 1e-7;  // of the speed, by Newton
+constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
+constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
+constexpr int k_most_iterations = 20;
+
+// In place. Damping makes the matrix more than M, so that nothing needs a pivot.
+void factor(ModeMatrix& a, int n) {
+  for (int k = 0; k < n; ++k) {
+    a[k][k] = 1 / a[k][k];
+    for (int i = k + 1; i < n; ++i) {
+      const double factor = a[i][k] *= a[k][k];
+#pragma GCC unroll 6
+      for (int j = k + 1; j < n; ++j) a[i][j] -= factor * a[k][j];
+    }
+  }
+}
+
+void solve(const ModeMatrix& a, double* x, int n) {
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= a[i][j] * x[j];
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = i + 1; j < n; ++j) x[i] -= a[i][j] * x[j];
+    x[i] *= a[i][i];
+  }
+}
+
+void set_block(ModeMatrix& a, int row, int column, const PackMat3& block) {
+  for (int i = 0; i < 3; ++i) {
+    a[row + i][column] = block.row[i].x;
+    a[row + i][column + 1] = block.row[i].y;
+    a[row + i][column + 2] = block.row[i].z;
+  }
+}
+
+// m/s, of a linear and an angular velocity.
+double size_of(double reach, const PackVec3& x, const PackVec3& y) {
+  const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  return sum_of(x) + reach * sum_of(y);
+}
+
+double speed_of(double reach, const BodyVelocity& u) {
+  return k_slow + size_of(reach, u.linear, u.angular);
+}
+
+}  // namespace
+
+// By fixed-point iteration, to `error` of the speed; false: that does not contract.
+[[gnu::always_inline]] inline bool ReducedBody::insert_velocity(const ContactImpulse& impulse, double error,
+                                                                BodyVelocity& u, ContactLoads& loads,
+                                                                Amplitudes& load) {
+  const auto& [law, r, h, free, m] = impulse;
+  const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
+  double last = 0;
+  for (int pass = 0; pass < k_most_insertions; ++pass) {
+    const ContactLoads now = contacts_.evaluate_forces<false, ContactSums::loads>(law, u, 0);
+    BodyVelocity next{mul_add(h / 2 / mass_, now.force, free.linear),
+                      free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * now.moment)),
+                      {}};
+    double size = size_of(reach_, u.linear - next.linear, u.angular - next.angular);
+    if (m > 0) contacts_.modal_loads(m, load);
+    for (int k = 0; k < m; ++k) {
+      next.rate[k] = free.rate[k] + h / 2 * kick_[k] * load[k];
+      size += per_root_mass * std::abs(u.rate[k] - next.rate[k]);
+    }
+    // what is left is a geometric series
+    const double rate = last > 0 ? size / last : k_contracts;
+    if (size * rate <= (1 - rate) * error * speed_of(reach_, u)) {
+      loads = now;
+      return true;
+    }
+    if (rate > k_contracts) break;
+    u.linear = next.linear;
+    u.angular = next.angular;
+    for (int k = 0; k < m; ++k) u.rate[k] = next.rate[k];
+    last = size;
+  }
+  return false;
+}
+
+// Factors of Newton's matrix for the forces found last with slopes.
+void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat3& inertia,
+                                    ReducedScratch& w) const {
+  const double h = impulse.h;
+  const int m = impulse.modes;
+  const ContactSlope slope = contacts_.slope();
+  const PackVec3 mass{mass_, mass_, mass_};
+  set_block(w.matrix, 0, 0, diagonal(mass) - h / 2 * slope.force_linear);
+  set_block(w.matrix, 0, 3, -h / 2 * slope.force_angular);
+  set_block(w.matrix, 3, 0, -h / 2 * slope.moment_linear);
+  set_block(w.matrix, 3, 3, inertia - h / 2 * slope.moment_angular);
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) w.matrix[i][6 + k] = w.matrix[6 + k][i] = 0;
+    for (int i = 0; i < m; ++i) w.matrix[6 + i][6 + k] = 0;
+    w.matrix[6 + k][6 + k] = 1 / kick_[k];
+  }
+  contacts_.add_slope_of_modes(-h / 2, m, w.matrix);
+  factor(w.matrix, 6 + m);
+  w.substep = h;
+  w.touching = contacts_.hash();
+}
+
+// By Newton, with an old matrix while that serves.
+[[gnu::always_inline]] inline bool ReducedBody::correct_velocity(const ContactImpulse& impulse,
+                                                                 BodyVelocity& u, ContactLoads& loads,
+                                                                 Amplitudes& load, ReducedScratch& w) {
+  const auto& [law, r, h, free, m] = impulse;
+  const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
+  const PackMat3 inertia = inertia_at(r);
+  std::optional<RigidSolver> rigid;
+  bool fresh = m == 0 || w.substep != h || w.touching != contacts_.hash();
+  double last = 0;
+  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+    loads = fresh ? contacts_.evaluate_forces<true>(law, u, 0)
+                  : contacts_.evaluate_forces<false, ContactSums::loads>(law, u, 0);
+    PackVec3 x = mass_ * (u.linear - free.linear) - h / 2 * loads.force,
+             y = inertia * (u.angular - free.angular) - h / 2 * loads.moment;
+    double size = 0;
+    if (m == 0) {
+      if (fresh) rigid.emplace(mass_, inertia, h / 2, contacts_.slope());
+      rigid->solve(x, y);
+    } else {
+      if (fresh) factor_with_modes(impulse, inertia, w);
+      contacts_.modal_loads(m, load);
+      double* const side = w.side;
+      side[0] = x.x, side[1] = x.y, side[2] = x.z, side[3] = y.x, side[4] = y.y, side[5] = y.z;
+      for (int k = 0; k < m; ++k) side[6 + k] = (u.rate[k] - free.rate[k]) / kick_[k] - h / 2 * load[k];
+      solve(w.matrix, side, 6 + m);
+      x = {side[0], side[1], side[2]};
+      y = {side[3], side[4], side[5]};
+      for (int k = 0; k < m; ++k) {
+        u.rate[k] -= side[6 + k];
+        size += per_root_mass * std::abs(side[6 + k]);
+      }
+    }
+    u.linear = u.linear - x;
+    u.angular = u.angular - y;
+    size += size_of(reach_, x, y);
+    // what is left after the correction: its rate, or its square over that of the smoothing
+    const double rate = fresh ? std::min(1., size / law.bend) : last > 0 ? size / last : 1;
+    if (size * rate <= k_velocity_error * speed_of(reach_, u)) {
+      loads.force = 2 / h * mass_ * (u.linear - free.linear);
+      loads.moment = 2 / h * (inertia * (u.angular - free.angular));
+      for (int k = 0; k < m; ++k) load[k] = 2 / h / kick_[k] * (u.rate[k] - free.rate[k]);
+      return true;
+    }
+    fresh = iteration > 0 && rate > k_good_rate;
+    last = size;
+  }
+  return false;
+}
+
+// The velocity u that half a step of the contact forces at it leaves, and these forces:
+//   u = free + (h/2) M^-1 F(u)
+// Begins with the u that is expected; by fixed-point iteration where that contracts, else by Newton.
+bool ReducedBody::solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
+                                 ContactLoads& loads, Amplitudes& load, ReducedScratch& w) {
+  const double error = parameters.adaptive
+                           ? std::min(k_insertion_error, k_insertion_share * parameters.tolerance)
+                           : k_insertion_error;
+  return insert_velocity(impulse, error, u, loads, load) || correct_velocity(impulse, u, loads, load, w);
+}
+
+}  // namespace topple

@@ -1,0 +1,149 @@
+#include "solver/body/model_level.h"
+
+#include <algorithm>
+
+#include "solver/body/body_pose.h"
+#include "solver/body/elastic_basis.h"
+#include "solver/contact/contact_period.h"
+#include "solver/math/rotation.h"
+
+namespace topple {
+namespace {
+
+// Of supports and loads: such a body is a frame.
+bool bears_on_nodes(const Model& model, int body) {
+  const auto its = [&](const auto& at) { return model.node_body[at.node] == body; };
+  return std::any_of(model.supports.begin(), model.supports.end(), its) ||
+         std::any_of(model.loads.begin(), model.loads.end(), its);
+}
+
+template <ModelLevel level>
+LevelChoice asked(const Model&, const Parameters&, int) {
+  return {level, LevelReason::asked};
+}
+
+LevelChoice least_that_answers(const Model& model, const Parameters& parameters, int body) {
+  if (parameters.want_stress) return {ModelLevel::elastic, LevelReason::stress};
+  const double period = contact_period(model, body, parameters.contact, parameters.gravity);
+  if (period > 0 && 2 * k_pi / period > k_slow_contact * model.bodies[body].elastic->frequency[0])
+    return {ModelLevel::elastic, LevelReason::contact_frequency};
+  return {ModelLevel::rigid, LevelReason::motion};
+}
+
+constexpr BodyModelTraits k_models[] = {
+    {BodyModel::automatic, "auto", true, least_that_answers},
+    {BodyModel::rigid, "rigid", false, asked<ModelLevel::rigid>},
+    {BodyModel::elastic, "elastic", true, asked<ModelLevel::elastic>},
+    {BodyModel::frame, "frame", false, asked<ModelLevel::frame>},
+};
+
+}  // namespace
+
+const char* name(LevelReason reason) {
+  switch (reason) {
+    case LevelReason::asked:
+      return "asked for";
+    case LevelReason::motion:
+      return "only motion is wanted";
+    case LevelReason::stress:
+      return "stresses are wanted";
+    case LevelReason::contact_frequency:
+      return "contacts are nearly as stiff as the body";
+    case LevelReason::yield:
+      return "a section is near yield";
+    case LevelReason::deformation:
+      return "deformations are no longer small";
+    case LevelReason::near:
+      return "another body is near";
+    case LevelReason::calm:
+      return "calm again";
+  }
+  return "";
+}
+
+std::span<const BodyModelTraits> body_models() {
+  return k_models;
+}
+
+bool can_be(const Model& model, int body, BodyModel asked) {
+  if (asked == BodyModel::frame) return true;
+  if (bears_on_nodes(model, body)) return false;
+  return !traits(asked).bends || model.bodies[body].elastic;
+}
+
+LevelChoice base_level(const Model& model, const Parameters& parameters, int body) {
+  const BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
+  if (model.bodies[body].ground || !can_be(model, body, asked))
+    return {ModelLevel::frame, LevelReason::asked};
+  return traits(asked).choose(model, parameters, body);
+}
+
+void place_nodes(const Model& model, State& state) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyState& s = state.bodies[b];
+    if (s.level == ModelLevel::frame) continue;
+    const Body& body = model.bodies[b];
+    const Mat3 r = s.rotation.toRotationMatrix();
+    const bool bends = s.level == ModelLevel::elastic;
+    Eigen::VectorXd shift, rate;
+    if (bends) {
+      const int modes = body.elastic->modes;
+      shift = body.elastic->shape * s.amplitude.head(modes).matrix();
+      rate = body.elastic->shape * s.rate.head(modes).matrix();
+    }
+    for (int i = 0; i < body.node_count; ++i) {
+      const int g = body.first_node + i;
+      Vec3 arm = model.node_position[g] - body.centre_of_gravity;
+      state.rotation[g] = s.rotation;
+      state.angular_velocity[g] = s.angular_velocity;
+      Vec3 relative = Vec3::Zero();
+      if (bends) {
+        arm += shift.segment<3>(6 * i);
+        relative = rate.segment<3>(6 * i);
+        const Quat turn = exp_quaternion(shift.segment<3>(6 * i + 3));
+        state.rotation[g] = s.rotation * turn;
+        state.angular_velocity[g] = turn.conjugate() * (s.angular_velocity + rate.segment<3>(6 * i + 3));
+      }
+      state.position[g] = s.position + r * arm;
+      state.velocity[g] = s.velocity + r * (s.angular_velocity.cross(arm) + relative);
+      state.acceleration[g].setZero();
+      state.angular_acceleration[g].setZero();
+      state.algorithmic_acceleration[g].setZero();
+      state.algorithmic_angular_acceleration[g].setZero();
+    }
+  }
+}
+
+BodyState reduce(const Model& model, const State& state, int index, ModelLevel level) {
+  const Body& body = model.bodies[index];
+  const BodyPose pose = body_pose(model, state, index);
+  const BodyMomentum momentum = body_momentum(model, state, index);
+  BodyState s = state.bodies[index];
+  s.level = level;
+  s.position = pose.centre;
+  s.rotation = pose.rotation;
+  s.velocity = momentum.velocity;
+  s.angular_velocity = body.inertia.inverse() * (pose.rotation.conjugate() * momentum.angular_momentum);
+  s.amplitude.setZero();
+  s.rate.setZero();
+  if (level == ModelLevel::rigid) return s;
+  const ElasticBasis& basis = *body.elastic;
+  Eigen::VectorXd shift(6 * body.node_count), rate(6 * body.node_count);
+  for (int i = 0; i < body.node_count; ++i) {
+    const int g = body.first_node + i;
+    const double m = model.node_mass[g];
+    const Mat3& j = model.node_inertia[g];
+    const Vec3 arm = pose.rotation.conjugate() * (state.position[g] - pose.centre);
+    const Quat turn = pose.rotation.conjugate() * state.rotation[g];
+    shift.segment<3>(6 * i) = m * (arm - (model.node_position[g] - body.centre_of_gravity));
+    shift.segment<3>(6 * i + 3) = j * log_quaternion(turn);
+    rate.segment<3>(6 * i) = m * (pose.rotation.conjugate() * (state.velocity[g] - momentum.velocity) -
+                                  s.angular_velocity.cross(arm));
+    rate.segment<3>(6 * i + 3) = j * (turn * state.angular_velocity[g] - s.angular_velocity);
+  }
+  s.amplitude.head(basis.modes) = (basis.shape.transpose() * shift).array();
+  s.rate.head(basis.modes) = (basis.shape.transpose() * rate).array();
+  return s;
+}
+
+}  // namespace topple

@@ -1,0 +1,69 @@
+// Model levels: what each body is computed as, and how it changes in the middle of a run.
+//
+// A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
+// for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
+// elastic. Every body is a frame while another is near (State::candidate_pairs), and an automatic one too
+// once
+//   - a section could have sqrt(f + 1) > k_near_yield,
+//   - a node could turn by more than k_small_rotation relative to the body.
+// It comes down when none of that held for k_calm_for, no hinge ever formed in it, and its strain energy is
+// below k_negligible m g reach.
+//
+// Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the rigid
+// motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is left.
+// Linear momentum stays to rounding, angular momentum to the square of the deformation over the body's size;
+// the change of energy is booked as EnergyLedger::model_switch.
+#pragma once
+
+#include <span>
+
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
+#include "solver/model/table.h"
+#include "solver/state/state.h"
+
+namespace topple {
+
+inline constexpr double k_slow_contact = 0.5;
+inline constexpr double k_near_yield = 0.9;
+inline constexpr double k_small_rotation = 0.02;  ///< rad
+inline constexpr double k_calm_yield = 0.45;
+inline constexpr double k_calm_for = 0.2;  ///< s
+inline constexpr double k_negligible = 1e-4;
+
+/// A few words: "a section is near yield".
+const char* name(LevelReason reason);
+
+/// The level on which a body begins, and to which it comes back.
+struct LevelChoice {
+  ModelLevel level;
+  LevelReason reason;
+};
+
+/// What a scene asks for.
+struct BodyModelTraits {
+  BodyModel kind;
+  const char* word;  ///< in scenes
+  bool bends;        ///< needs Body::elastic
+  /// Of a body that bears neither supports nor loads and has, if it bends, Body::elastic.
+  LevelChoice (*choose)(const Model&, const Parameters&, int body);
+};
+std::span<const BodyModelTraits> body_models();
+inline const BodyModelTraits& traits(BodyModel model) {
+  return row_of(body_models(), model);
+}
+
+/// Whether a body can be computed as `model`: rigid and frame always, but for one that stands on supports or
+/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
+bool can_be(const Model& model, int body, BodyModel asked);
+
+/// The choice of the traits; a frame where there is none.
+LevelChoice base_level(const Model& model, const Parameters& parameters, int body);
+
+/// Positions, rotations and velocities of the nodes of all bodies that are not frames, from State::bodies.
+void place_nodes(const Model& model, State& state);
+
+/// BodyState of the nodes of a body, for `level`, which must not be frame.
+BodyState reduce(const Model& model, const State& state, int body, ModelLevel level);
+
+}  // namespace topple
