@@ -179,7 +179,7 @@ std::string event_text(const Player& player, const io::RecordedEvent& event) {
   const std::string words =
       event.event.kind == Event::Kind::model
           ? say(k_computed_as, say(k_levels[static_cast<std::size_t>(event.event.value)]),
-                say(k_rung_reasons[static_cast<std::size_t>(event.event.reason)]))
+                say(k_level_reasons[static_cast<std::size_t>(event.event.reason)]))
           : say(what);
   const Model& model = player.scene().setup.model;
   return say(k_event, when(player, event.step, event.time),

@@ -141,7 +141,7 @@ inline constexpr Phrase k_breaks{"breaks a member", "部材破断"};
 inline constexpr Phrase k_passes{"passes its critical angle", "転倒限界角を超過"};
 inline constexpr Phrase k_computed_as{"is computed as {0} ({1})", "計算モデル {0}（{1}）に変更"};
 inline constexpr Phrase k_levels[] = {{"rigid", "剛体"}, {"elastic", "弾性"}, {"frame", "骨組"}};
-inline constexpr Phrase k_rung_reasons[] = {
+inline constexpr Phrase k_level_reasons[] = {
     {"asked for", "指定による"},
     {"only motion is wanted", "運動のみ必要"},
     {"stresses are wanted", "応力が必要"},

@@ -88,7 +88,7 @@ class BodyContacts {
     std::size_t pairs;
     std::unique_ptr<Touch[]> touches;
   };
-  /// Lends room to the substeps of one body after the other. Each finds its contacts in the memory that the
+  /// Lends memory to the substeps of one body after the other. Each finds its contacts in the memory that the
   /// one before has let go, which is in the cache, and leaves its own.
   class ScratchLease {
    public:
@@ -102,8 +102,8 @@ class BodyContacts {
 
    private:
     static std::unique_ptr<Touch[]>& buffer_for(std::size_t pairs, std::vector<TouchBuffer>& buffers) {
-      for (TouchBuffer& room : buffers)
-        if (room.pairs == pairs) return room.touches;
+      for (TouchBuffer& buffer : buffers)
+        if (buffer.pairs == pairs) return buffer.touches;
       buffers.push_back({pairs, std::make_unique_for_overwrite<Touch[]>(pairs / 4)});
       return buffers.back().touches;
     }

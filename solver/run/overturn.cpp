@@ -163,8 +163,8 @@ void Outcome::observe_forces(const Model& model, const std::vector<ContactForce>
   }
 }
 
-void Outcome::observe_rung(const Parameters& parameters, const State& state, std::size_t b,
-                           std::vector<Event>& events) {
+void Outcome::observe_level(const Parameters& parameters, const State& state, std::size_t b,
+                            std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   const BodyState& now = state.bodies[b];
   o.always_rigid = o.always_rigid && !traits(now.level).has_stresses;
@@ -251,7 +251,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
   observe_forces(model, forces, between);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (model.bodies[b].ground) continue;
-    observe_rung(parameters, state, b, events);
+    observe_level(parameters, state, b, events);
     observe_pose(model, state, b, events);
     observe_sides(state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }

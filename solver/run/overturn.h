@@ -116,8 +116,8 @@ class Outcome {
   void observe_forces(const Model& model, const std::vector<ContactForce>& forces,
                       const std::vector<MemberForce>& between);
   /// Of body b.
-  void observe_rung(const Parameters& parameters, const State& state, std::size_t b,
-                    std::vector<Event>& events);
+  void observe_level(const Parameters& parameters, const State& state, std::size_t b,
+                     std::vector<Event>& events);
   void observe_pose(const Model& model, const State& state, std::size_t b, std::vector<Event>& events);
   void observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
