@@ -1,0 +1,199 @@
+#include "app/batch/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SummaryTest : public ::testing::Test {
+ protected:
+  SummaryTest() : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup) {
+    for (int i = 0; i < 50; ++i) EXPECT_TRUE(run_.advance().ok());
+  }
+  io::Scene scene_;
+  topple::Run run_;
+};
+
+TEST_F(SummaryTest, numbers_are_those_of_the_run) {
+  const Json s = summary(scene_, run_, "interrupted", 0.5);
+  EXPECT_EQ(s["status"], "interrupted");
+  EXPECT_EQ(s["simulated_s"], run_.state().time);
+  EXPECT_EQ(s["wall_s"], 0.5);
+  EXPECT_DOUBLE_EQ(s["realtime_factor"], run_.state().time / 0.5);
+  EXPECT_EQ(s["steps"], 50);
+  const EnergyLedger& e = run_.state().energy;
+  EXPECT_EQ(s["energy"]["dissipated_J"], e.dissipated());
+  const BodyOutcome& body = run_.outcome().bodies()[0];
+  EXPECT_DOUBLE_EQ(s["bodies"][0]["peak_tilt_deg"], body.peak_tilt * 180 / k_pi);
+  EXPECT_EQ(s["bodies"][0]["peak_stress_Pa"], body.peak_stress);
+  EXPECT_EQ(s["probes"][0]["final"]["displacement_m"][0], run_.probes()[0].displacement.x());
+  EXPECT_FALSE(s.contains("message"));
+}
+
+TEST_F(SummaryTest, energies_add_up_to_the_balance_error) {
+  const Json s = summary(scene_, run_, "completed", 1);
+  const auto energy = [&](const char* key) { return s["energy"][key].get<double>(); };
+  const EnergyLedger& e = run_.state().energy;
+  const double unexplained = energy("kinetic_J") + energy("strain_J") + energy("contact_J") +
+                             energy("gravity_J") + energy("dissipated_J") - energy("input_J") - e.start_total;
+  EXPECT_NEAR(std::abs(unexplained), energy("balance_error") * e.largest, 1e-9 * e.largest);
+}
+
+TEST(Summary, anchors_say_what_they_held_and_whether_they_broke) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  topple::Run run(scene.setup);
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(run.advance().ok());
+  const Json s = summary(scene, run, "interrupted", 0.5);
+  ASSERT_EQ(s["anchors"].size(), 2u);
+  const Json &weak = s["anchors"][0], &strong = s["anchors"][1];
+  EXPECT_EQ(weak["name"], "weak");
+  EXPECT_EQ(weak["body"], "free");
+  EXPECT_EQ(weak["type"], "strap");
+  EXPECT_EQ(weak["strength_N"], 1);
+  EXPECT_EQ(weak["broke"], true);
+  EXPECT_EQ(weak["in_place"], false);
+  EXPECT_GT(weak["peak_force_N"], 1);
+  EXPECT_EQ(weak["final_force_N"], 0);
+  EXPECT_EQ(weak["break_time_s"], *run.outcome().anchors()[0].broke);
+  EXPECT_TRUE(strong["strength_N"].is_null());
+  EXPECT_TRUE(strong["break_time_s"].is_null());
+  EXPECT_EQ(strong["broke"], false);
+  EXPECT_GT(strong["peak_force_N"], 1);
+  EXPECT_EQ(s["energy"]["anchor_J"], run.state().energy.anchor);
+  EXPECT_EQ(s["energy"]["released_J"], run.state().energy.released);
+  const std::string table = summary_table(s);
+  EXPECT_NE(table.find("anchor weak: greatest force"), std::string::npos) << table;
+  EXPECT_NE(table.find("broke at"), std::string::npos) << table;
+}
+
+TEST_F(SummaryTest, what_does_not_exist_is_null) {
+  Json s = summary(scene_, run_, "completed", 0);
+  EXPECT_TRUE(s["realtime_factor"].is_null());
+  EXPECT_TRUE(s["bodies"][0]["overturn_time_s"].is_null());
+  EXPECT_TRUE(summary(scene_, run_, "completed", NAN)["wall_s"].is_null());
+  s["bodies"][0]["peak_stress_Pa"] = nullptr;  // of a rigid body
+  s["energy"]["balance_error"] = nullptr;
+  EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
+}
+
+TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
+  io::Scene strong =
+      io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});
+  strong.setup.run.duration = 2;
+  topple::Run falls(strong.setup);
+  while (!falls.over()) ASSERT_TRUE(falls.advance().ok());
+  ASSERT_TRUE(falls.outcome().bodies()[0].beyond_since);
+  Json s = summary(scene_, run_, "completed", 0.5);
+  s["error_estimate"] = error_estimate(scene_.setup, run_.outcome(), falls.outcome());
+  const Json& e = s["error_estimate"];
+  for (const char* key : {"overturn_time_s", "peak_tilt_deg", "peak_slide_m", "peak_stress_Pa"})
+    EXPECT_TRUE(e[key].is_null() && e["bodies"][0][key].is_null()) << key;
+  ASSERT_EQ(e["disagreements"].size(), 1u);
+  const std::string words = e["disagreements"][0];
+  EXPECT_TRUE(words.starts_with("free does not overturn, but at ")) << words;
+  EXPECT_NE(summary_table(s).find("error (step halved): the verdict itself is open: " + words + "\n"),
+            std::string::npos);
+  EXPECT_EQ(error_estimate(scene_.setup, falls.outcome(), run_.outcome())["disagreements"][0]
+                .get<std::string>()
+                .find("free overturns at "),
+            0u);
+}
+
+TEST_F(SummaryTest, bodies_that_may_meet_have_a_speed_up_to_which_no_step_is_cut) {
+  EXPECT_TRUE(summary(scene_, run_, "completed", 1)["safe_closing_speed_m_s"].is_null());
+  const io::Scene two = io::load_scene("paper-a");
+  topple::Run run(two.setup);
+  double thinnest = 1e300;
+  for (const Member& member : two.setup.model.members)
+    thinnest = std::min(thinnest, two.setup.model.sections[member.section].width);
+  EXPECT_DOUBLE_EQ(summary(two, run, "completed", 1)["safe_closing_speed_m_s"], thinnest / 2 / 1e-3);
+}
+
+TEST(Summary, a_step_longer_than_the_samples_of_a_record_is_told) {
+  const auto warnings = [](const char* step) {
+    const io::Scene scene = io::load_scene("near-fault", {step});
+    topple::Run run(scene.setup);
+    EXPECT_TRUE(run.advance().ok());
+    return summary(scene, run, "stopped", 0.5)["warnings"].dump();
+  };
+  EXPECT_NE(warnings("run.time_step=25 ms").find("time_step 25 ms is longer than the 10 ms"),
+            std::string::npos)
+      << warnings("run.time_step=25 ms");
+  EXPECT_EQ(warnings("run.time_step=10 ms").find("time_step"), std::string::npos);
+  EXPECT_EQ(warnings("run.time_step=auto").find("time_step"), std::string::npos);
+}
+
+TEST(Summary, what_no_material_and_no_floor_does_is_told) {
+  const auto warnings = [](const char* scene_name, std::vector<std::string> changes) {
+    const io::Scene scene = io::load_scene(scene_name, changes);
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return summary(scene, run, "completed", 0.5)["warnings"].dump();
+  };
+  // it lands at 4.4 s with more than 1 % of Young's modulus
+  const std::string landed = warnings("near-fault", {"run.duration=5 s"});
+  EXPECT_NE(landed.find("the stress in body \\\"free\\\", "), std::string::npos) << landed;
+  EXPECT_EQ(warnings("near-fault", {"run.duration=1 s"}), "[]");
+  const std::string bare = warnings("paper-a", {"shake.1.amplitude=190", "run.duration=10 ms"});
+  EXPECT_NE(bare.find("shake 1 has 1.9e+04 gal, 19.4 times gravity; a number without a unit is in m/s^2"),
+            std::string::npos)
+      << bare;
+}
+
+TEST(Summary, the_method_of_what_was_computed_is_named) {
+  const auto head = [](const char* model) {
+    const io::Scene scene = io::load_scene("paper-a", {"cabinet.free.model=" + std::string(model),
+                                                       "cabinet.walled.model=rigid", "run.duration=10 ms"});
+    topple::Run run(scene.setup);
+    return summary_table(summary(scene, run, "completed", 0.5));
+  };
+  EXPECT_NE(head("rigid").find("\ncentral differences, step 0.001 s"), std::string::npos) << head("rigid");
+  EXPECT_NE(head("frame").find("\ngeneralized-alpha (frames), central differences, step"), std::string::npos)
+      << head("frame");
+}
+
+TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
+  const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
+  EXPECT_NE(table.find("\nfree "), std::string::npos) << table;
+  EXPECT_NE(table.find("\nprobe middle: "), std::string::npos) << table;
+}
+
+TEST_F(SummaryTest, plastic_energy_is_told_where_steel_flowed) {
+  Json s = summary(scene_, run_, "completed", 0.5);
+  EXPECT_EQ(summary_table(s).find("plastic"), std::string::npos);
+  s["energy"]["plastic_J"] = 12.5;
+  EXPECT_NE(summary_table(s).find("J dissipated (12.5 J of it by plastic flow), balance error"),
+            std::string::npos);
+}
+
+TEST_F(SummaryTest, columns_stay_in_line_under_long_names) {
+  Json s = summary(scene_, run_, "completed", 0.5);
+  s["bodies"][0]["name"] = "a cabinet with a grown-up näme";
+  s["probes"] = Json::array();
+  const std::string table = summary_table(s), header = table.substr(table.find("\nbody") + 1);
+  const std::string row = header.substr(header.find("a cabinet"));
+  EXPECT_EQ(header.find('\n') + 1, row.find('\n')) << table;  // one byte more for the umlaut
+}
+
+TEST_F(SummaryTest, text_that_is_not_utf_8_does_not_spoil_the_json) {
+  scene_.name = "a\xff";
+  const std::string text = json_text(summary(scene_, run_, "completed", 1), 2);
+  EXPECT_EQ(Json::parse(text)["scene"], "a\xef\xbf\xbd");
+}
+
+TEST(Letters, a_letter_of_several_bytes_is_one_and_so_is_a_byte_that_is_none) {
+  EXPECT_EQ(letters(""), 0u);
+  EXPECT_EQ(letters("caf\xc3\xa9"), 4u);
+  EXPECT_EQ(letters("\xe6\x9c\xac\xe6\xa3\x9a"), 2u);
+  EXPECT_EQ(letters("a\xff.toml"), 7u);
+}
+
+}  // namespace
+}  // namespace topple::app

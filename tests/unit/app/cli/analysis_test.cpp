@@ -1,0 +1,150 @@
+// Static runs and natural modes from the command line.
+#include "unit/app/program.h"
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class AnalysisTest : public ProgramTest {
+ protected:
+  // A post of 30 mm under a tip load in N.
+  static std::string loaded(double force, const std::string& run = "") {
+    return "topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\n" + run + k_library + R"(
+[[frame]]
+name = "beam"
+nodes = [[0, 0, 0], [0, 0, 1]]
+members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 8 }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 1, force = [0, 0, )" +
+           std::to_string(force) + "] }]\n";
+  }
+};
+
+TEST_F(AnalysisTest, static_run_reports_and_records_each_load_step) {
+  write_bytes("push.toml", loaded(-1e3, "load_steps = 4\n"));
+  const Ended ended = topple({"run", "push.toml", "-o", "push.h5", "--json", "-", "--quiet"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json s = Json::parse(ended.out);
+  EXPECT_EQ(s["status"], "completed");
+  ASSERT_EQ(s["static"].size(), 4u);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(s["static"][k]["factor"], (k + 1) / 4.);
+    EXPECT_EQ(s["static"][k]["converged"], true);
+  }
+  const Json r = Json::parse(topple({"info", "push.h5", "--json", "-"}).out);
+  EXPECT_EQ(r["frames"], 5);  // the unloaded one first
+}
+
+TEST_F(AnalysisTest, static_run_without_equilibrium_fails_and_keeps_what_converged) {
+  write_bytes("pull.toml", loaded(-1e5));  // far beyond Euler's load, 8.2 kN
+  const Ended ended = topple({"run", "pull.toml", "-o", "pull.h5", "--json", "-", "--quiet"});
+  EXPECT_EQ(ended.code, 1);
+  const Json s = Json::parse(ended.out);
+  EXPECT_EQ(s["status"], "diverged");
+  ASSERT_FALSE(s["static"].empty());
+  EXPECT_EQ(s["static"].back()["converged"], false);
+  for (const char* part : {"body \"beam\"", "element ", "load factor ", "pull.h5 holds everything"})
+    EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+  EXPECT_EQ(topple({"info", "pull.h5", "--verify"}).code, 0);
+}
+
+class FailureTest : public AnalysisTest {
+ protected:
+  /// An arm of steel that yields at 235 MPa, its first node held in `fix`, `mass` at the other.
+  static std::string arm(const std::string& run, const std::string& fix, const std::string& mass) {
+    std::string library = k_library;
+    library.insert(library.find("[[section]]"), "yield = \"235 MPa\"\n");
+    return "topple = 1\n[run]\n" + run + library + R"(
+[[frame]]
+name = "arm"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "post", material = "steel" }]
+supports = [{ node = 0, fix = ")" +
+           fix + "\" }]\nmasses = [{ node = 1, mass = \"" + mass +
+           "\" }]\nloads = [{ node = 1, force = [0, 0, -10] }]\n";
+  }
+  /// Fails with exit 1, says `parts`, and leaves an older recording alone.
+  void expect_no_start(const std::string& scene, const std::vector<std::string>& parts) {
+    write_bytes("arm.toml", scene);
+    write_bytes("a.h5", k_older_recording);
+    const Ended ended = topple({"run", "arm.toml", "-o", "a.h5", "--json", "-", "--quiet"});
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    for (const std::string& part : parts) EXPECT_NE(ended.err.find(part), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("body \"arm\", member \"member-0\" (element "), std::string::npos) << ended.err;
+    EXPECT_EQ(Json::parse(ended.out)["status"], "diverged");
+    EXPECT_EQ(bytes_of("a.h5"), k_older_recording);
+  }
+};
+
+TEST_F(FailureTest, yield_stress_of_zero_is_bad_input) {
+  for (const char* zero : {"yield = 0", "yield = \"0 MPa\""}) {
+    std::string text = arm("duration = 0.1\n", "xyzXYZ", "1 kg");
+    text.replace(text.find("yield = \"235 MPa\""), 17, zero);
+    write_bytes("arm.toml", text);
+    expect_one_line({"run", "arm.toml"}, 2, "material.steel.yield: ");
+    expect_one_line({"check", "arm.toml"}, 2, " is outside 1e-06..1e+07 MPa");
+  }
+}
+
+TEST_F(FailureTest, a_mechanism_in_a_static_run_is_told) {
+  expect_no_start(arm("analysis = \"static\"\ngravity = [0, 0, 0]\n", "xyz", "1 kg"),
+                  {"no stable equilibrium was found at load factor 0", "a mechanism"});
+  expect_no_start(arm("analysis = \"static\"\n", "xyz", "1 kg"),
+                  {"before the first step, at 0 s", "does not come to rest under gravity"});
+}
+
+TEST_F(FailureTest, a_scene_that_collapses_under_its_own_weight_is_told) {
+  expect_no_start(arm("analysis = \"static\"\n", "xyzXYZ", "100 kg"),
+                  {"no stable equilibrium was found at load factor 0", "beyond what it carries"});
+  expect_no_start(arm("duration = 0.1\n", "xyzXYZ", "100 kg"),
+                  {"before the first step, at 0 s", "does not come to rest under gravity"});
+}
+
+TEST_F(FailureTest, a_step_a_hundred_times_too_long_is_told_and_what_converged_stays_readable) {
+  const Ended ended = topple({"run", "yielding", "--set", "run.time_step=0.05", "--set",
+                              "cabinet.heavy.model=frame", "-o", "a.h5", "--json", "-", "--quiet"});
+  EXPECT_EQ(ended.code, 1);
+  const std::string message = Json::parse(ended.out)["message"];
+  for (const char* part : {"more than a tenth of the energy is unaccounted for after the step at 1.7",
+                           " s: body \"heavy\", member \"", "(element ", "try a smaller time_step"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_NE(ended.err.find("a.h5 holds everything up to 1."), std::string::npos) << ended.err;
+  EXPECT_EQ(topple({"info", "a.h5", "--verify"}).code, 0);
+}
+
+TEST_F(AnalysisTest, modes_of_a_free_cabinet_begin_with_six_rigid_ones) {
+  write_bytes("s.toml", k_shaken);
+  const Ended ended = topple({"modes", "s.toml", "--count", "8", "--json", "-"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json body = Json::parse(ended.out)["bodies"][0];
+  ASSERT_EQ(body["modes"].size(), 8u);
+  for (int k = 0; k < 8; ++k) EXPECT_EQ(body["modes"][k]["frequency_Hz"] == 0, k < 6);
+  EXPECT_NE(topple({"modes", "s.toml"}).out.find("rigid"), std::string::npos);
+  expect_one_line({"modes", "s.toml", "--count", "0"}, 2, "--count: \"0\" is not a whole number in 1..1000");
+}
+
+TEST_F(AnalysisTest, scene_that_asks_for_modes_is_not_recorded) {
+  write_bytes("s.toml", loaded(0));
+  expect_one_line({"run", "s.toml", "--set", "run.analysis=modes", "-o", "a.h5"}, 2,
+                  "modes are not recorded");
+  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.analysis=modes"}).code, 0);
+}
+
+TEST_F(AnalysisTest, adaptive_and_newmark_runs_say_so) {
+  write_bytes("beam.toml", k_beam);
+  const Ended automatic = topple({"run", "beam.toml", "--set", "run.time_step=auto", "--json", "-"});
+  ASSERT_EQ(automatic.code, 0) << automatic.err;
+  EXPECT_EQ(Json::parse(automatic.out)["adaptive"], true);
+  const Ended newmark = topple({"run", "beam.toml", "--set", "run.integrator=newmark", "--json", "-"});
+  EXPECT_EQ(Json::parse(newmark.out)["integrator"], "newmark");
+  const Ended explicit_run = topple({"run", "beam.toml", "--set", "run.integrator=central-difference",
+                                     "--set", "run.time_step=auto", "--json", "-"});
+  const Json s = Json::parse(explicit_run.out);
+  EXPECT_NEAR(s["time_step_s"], 0.9 * s["explicit_limit_s"].get<double>(),
+              0.01 * s["explicit_limit_s"].get<double>());  // the last step is a part of one
+}
+
+}  // namespace
+}  // namespace topple::app

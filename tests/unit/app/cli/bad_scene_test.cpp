@@ -1,0 +1,130 @@
+// Scenes that are wrong: one line that says where, exit code 2, nothing on disk.
+#include "unit/app/program.h"
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+class BadSceneTest : public ProgramTest {
+ protected:
+  /// Every command that takes a scene refuses it in the same words.
+  static void expect_refused(const std::string& name, const std::string& part) {
+    const std::vector<std::string> before = files();
+    expect_one_line({"run", name, "-o", "a.h5"}, 2, part);
+    expect_one_line({"run", name, "--json", "a.json"}, 2, part);
+    expect_one_line({"run", name, "--json", "-"}, 2, part);
+    expect_one_line({"render", name, "--png", "pictures"}, 2, part);
+    expect_one_line({"render", name, "--still", "a.png", "--at", "0"}, 2, part);
+    expect_one_line({"check", name}, 2, part);
+    expect_one_line({"info", name}, 2, part);
+    EXPECT_EQ(files(), before);
+  }
+  static void expect_text_refused(const std::string& text, const std::string& part) {
+    write_bytes("s.toml", text);
+    expect_refused("s.toml", "s.toml:");
+    expect_one_line({"check", "s.toml"}, 2, part);
+  }
+  /// The shaken cabinet with `from` replaced.
+  static std::string changed(const std::string& from, const std::string& to) {
+    std::string text = k_shaken;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+  static std::string frame(const std::string& nodes, const std::string& members) {
+    return "topple = 1\n" + k_library + "[[frame]]\nname = \"f\"\nnodes = " + nodes +
+           "\nmembers = " + members;
+  }
+};
+
+TEST_F(BadSceneTest, a_missing_file) {
+  expect_refused("none.toml", "none.toml: no such file or built-in scene; built-in: ");
+}
+
+TEST_F(BadSceneTest, a_folder) {
+  std::filesystem::create_directory("folder");
+  expect_refused("folder", "folder: is a folder");
+}
+
+TEST_F(BadSceneTest, broken_toml) {
+  expect_text_refused("topple = 1\n[run\n", "s.toml:2:");
+  expect_text_refused("hello\n", "s.toml:1:");
+  expect_text_refused(std::string("\x89\xff\0\1", 4), "s.toml:1:1: ");
+  expect_text_refused("", "topple: missing");
+}
+
+TEST_F(BadSceneTest, an_accelerogram_that_is_missing_or_wrong) {
+  const std::string record =
+      changed("frequency = \"2 Hz\"\namplitude = \"400 gal\"", "type = \"record\"\nfiles = [\"ns.csv\"]");
+  expect_text_refused(record, "s.toml:8:10: shake.table.files.1: ns.csv: no such file; built-in records: ");
+  write_bytes("ns.csv", "time_s,ax_g\n0,0.1\n0.01,300\n");
+  expect_text_refused(record, "ns.csv:3: peak: 300 g is above 5 g; is the unit right?");
+  write_bytes("ns.csv", std::string("\0\1\2", 3));
+  expect_text_refused(record, "ns.csv:1: is not text");
+  std::filesystem::remove("ns.csv");
+  std::filesystem::create_directory("ns.csv");
+  expect_text_refused(record, "shake.table.files.1: ns.csv: is a folder");
+}
+
+TEST_F(BadSceneTest, an_unknown_key) {
+  expect_text_refused(changed("duration", "length"), "s.toml:4:1: run.length: unknown key; known: ");
+}
+
+TEST_F(BadSceneTest, a_wrong_unit) {
+  expect_text_refused(changed("0.3 s", "0.3 kg"),
+                      "s.toml:4:12: run.duration: \"0.3 kg\" is a mass, expected a time");
+  expect_text_refused(changed("0.3 s", "0.3 fortnights"), "unknown unit \"fortnights\"");
+}
+
+TEST_F(BadSceneTest, a_negative_mass) {
+  expect_text_refused(changed("40 kg", "-40 kg"), "cabinet.free.mass: \"-40 kg\" is outside ");
+}
+
+TEST_F(BadSceneTest, an_impossible_centre_of_gravity) {
+  expect_text_refused(changed("mass = ", "cg_height = 1.7\nmass = "),
+                      "cabinet.free.cg_height: 1.7 m cannot be reached with positive densities");
+  expect_text_refused(changed("mass = ", "cg_height = 2.5\nmass = "), "cabinet.free.cg_height: ");
+}
+
+TEST_F(BadSceneTest, a_member_of_zero_length) {
+  expect_text_refused(
+      frame("[[0, 0, 0], [1, 0, 0]]", R"([{ nodes = [1, 1], section = "post", material = "steel" }])"),
+      "no length");
+}
+
+TEST_F(BadSceneTest, two_nodes_in_one_place) {
+  expect_text_refused(frame("[[0, 0, 0], [1, 0, 0], [1, 0, 0]]",
+                            R"([{ nodes = [0, 1], section = "post", material = "steel" },
+                                { nodes = [0, 2], section = "post", material = "steel" }])"),
+                      "nodes 1 and 2 are in one place");
+}
+
+TEST_F(BadSceneTest, a_name_used_twice) {
+  expect_text_refused(k_shaken + k_cabinet, "\"free\" is used twice, first in line ");
+}
+
+TEST_F(BadSceneTest, a_scene_without_bodies) {
+  expect_text_refused("topple = 1\n", "there are no bodies");
+}
+
+TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
+  write_bytes("s.toml", k_shaken);
+  write_bytes("bad.toml", "hello\n");
+  const Ended ended = topple({"check", "s.toml", "none.toml", "bad.toml"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_EQ(ended.out, "s.toml: ok\n");
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 2) << ended.err;
+}
+
+TEST_F(BadSceneTest, the_built_in_scenes_are_good_and_listed) {
+  const Ended list = topple({"scenes"});
+  EXPECT_EQ(list.code, 0);
+  std::vector<std::string> names{"check"};
+  for (std::size_t at = 0; at < list.out.size(); at = list.out.find('\n', at) + 1)
+    names.push_back(list.out.substr(at, list.out.find(' ', at) - at));
+  EXPECT_GE(names.size(), 3u);
+  EXPECT_EQ(topple(names).code, 0);
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,83 @@
+// topple compare: what differs, in what is said and in what happens.
+#include "unit/app/program.h"
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class CompareTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_bytes("s.toml", k_shaken);
+  }
+  static void record(const std::string& name, const std::string& change) {
+    EXPECT_EQ(topple({"run", "s.toml", "--set", change, "-o", name, "--quiet"}).code, 0);
+  }
+};
+
+TEST_F(CompareTest, a_scene_does_not_differ_from_its_recording) {
+  record("a.h5", "run.duration=0.3 s");
+  const Ended ended = topple({"compare", "s.toml", "a.h5", "--json", "-"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const Json result = json_of(ended.out);
+  EXPECT_TRUE(result["parameters"].empty()) << result["parameters"];
+  ASSERT_EQ(result["bodies"].size(), 1u);
+  EXPECT_EQ(result["bodies"][0]["a"], result["bodies"][0]["b"]);
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "s.toml"}));
+}
+
+TEST_F(CompareTest, what_differs_stands_with_both_values_and_units) {
+  record("weak.h5", "shake.table.amplitude=0.1 g");
+  const Ended ended = topple({"compare", "s.toml", "weak.h5", "--json", "both.json"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const Json result = json_of(bytes_of("both.json"));
+  ASSERT_EQ(result["parameters"].size(), 1u) << result["parameters"];
+  EXPECT_EQ(result["parameters"][0]["key"], "shake.table.amplitude");
+  EXPECT_EQ(result["parameters"][0]["a"], "400 gal");
+  EXPECT_EQ(result["parameters"][0]["b"], "98.0665 gal");
+  const Json &a = result["bodies"][0]["a"], &b = result["bodies"][0]["b"];
+  EXPECT_GT(a["peak_tilt_deg"], b["peak_tilt_deg"]);
+  EXPECT_EQ(a["peak_tilt_deg"],
+            json_of(topple({"run", "s.toml", "--json", "-"}).out)["bodies"][0]["peak_tilt_deg"]);
+  for (const char* part : {"shake.table.amplitude  400 gal", "A: s.toml", "B: weak.h5",
+                           "free: peak tilt, deg", "free: overturns at, s   no", "free: peak stress, MPa"})
+    EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
+}
+
+TEST_F(CompareTest, bodies_of_one_side_have_a_dash_on_the_other) {
+  const Ended ended = topple({"compare", "s.toml", "free-rocking", "--json", "-"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const Json result = json_of(ended.out);
+  ASSERT_EQ(result["bodies"].size(), 2u);
+  EXPECT_EQ(result["bodies"][0]["name"], "free");
+  EXPECT_TRUE(result["bodies"][0]["b"].is_null());
+  EXPECT_TRUE(result["bodies"][1]["a"].is_null());
+}
+
+TEST_F(CompareTest, the_video_holds_both_until_the_longer_one_ends) {
+  record("short.h5", "run.duration=0.1 s");
+  const Ended ended = topple({"compare", "s.toml", "short.h5", "--mp4", "both.mp4", "--quiet"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.out.ends_with("\nvideo: both.mp4\n")) << ended.out;
+  EXPECT_EQ(bytes_of("both.mp4").substr(4, 4), "ftyp");
+  EXPECT_EQ(files(), (std::vector<std::string>{"both.mp4", "s.toml", "short.h5"}));
+  if (std::system("command -v ffprobe >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffprobe is not installed";
+  ASSERT_EQ(std::system(
+                "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 both.mp4 >n"),
+            0);
+  EXPECT_EQ(std::stoi(bytes_of("n")), 10);  // 0.3 s at 30 a second, both ends
+}
+
+TEST_F(CompareTest, without_ffmpeg_there_is_no_video_and_one_line) {
+  const Ended ended =
+      topple({"compare", "s.toml", "s.toml", "--mp4", "both.mp4", "--quiet"}, {.set = {{"PATH", "/none"}}});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_NE(ended.err.find("ffmpeg"), std::string::npos) << ended.err;
+  EXPECT_EQ(files(), std::vector<std::string>{"s.toml"});
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,180 @@
+// What is to be known of members, bodies and anchors.
+#include "app/panels/subject.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/picture/annotations.h"
+#include "app/picture/row.h"
+#include "solver/run/overturn.h"
+#include "unit/app/live.h"
+
+namespace topple::app {
+namespace {
+
+double value(const Instant& now, const Subject& subject, const std::string& name) {
+  for (const SubjectValue& v : values_of(subject.kind))
+    if (name == v.name.english) return v.at(now, subject.index);
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+const Subject k_member{Subject::Kind::member, 0}, k_body{Subject::Kind::body, 0};
+
+/// A cantilever of 1 m under 10 N downwards and 20 N of pull at its tip.
+struct Cantilever {
+  Cantilever()
+      : scene(io::parse_scene(R"(topple = 1
+[run]
+analysis = "static"
+gravity = [0, 0, 0]
+)" + k_library + R"(
+[[frame]]
+name = "beam"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "post", material = "steel" }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 1, force = ["20 N", 0, "-10 N"] }]
+)",
+                              "beam.toml")) {
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    row = io::frame_row(run);
+  }
+  io::Scene scene;
+  io::FrameRow row;
+};
+
+// P L at the clamp, nothing at the tip; P and N all along. The tip turns by 1.5 mrad: 2e-3 of P more in N.
+TEST(Subject, section_forces_of_a_cantilever_are_those_of_theory) {
+  const Cantilever beam;
+  const Instant now{beam.scene.setup.model, beam.scene.setup.parameters.gravity, beam.row};
+  EXPECT_NEAR(std::abs(value(now, k_member, "My")), 10, 0.02);
+  EXPECT_NEAR(std::abs(value(now, k_member, "Vz")), 10, 0.04);
+  EXPECT_NEAR(value(now, k_member, "N"), 20, 0.04);
+  EXPECT_NEAR(value(now, k_member, "Mz"), 0, 1e-6);
+  const Section& section = beam.scene.setup.model.sections[0];
+  const double stress = 20 / section.area + 10 * section.fibre_z() / section.iy;
+  EXPECT_NEAR(value(now, k_member, "stress"), stress / 1e6, 3e-3 * stress / 1e6);
+  EXPECT_TRUE(std::isnan(value(now, k_member, "yield ratio")));  // it has no yield stress
+  EXPECT_TRUE(std::isnan(value(now, k_body, "left to overturn")));
+}
+
+TEST(Subject, a_diagram_stands_on_the_side_that_its_moment_stretches) {
+  const Cantilever beam;
+  render::SceneFrame frame;
+  add_diagram(beam.scene.setup.model, beam.row, {0, std::nullopt}, frame);
+  ASSERT_EQ(frame.bands.size(), 1u);  // no change of sign
+  const render::Band& band = frame.bands[0];
+  // Loaded downwards, it is stretched above: highest at the clamp, a fifth of its length, and linear.
+  EXPECT_NEAR(band.edge.front()[2] - band.base.front()[2], 0.2, 1e-3);
+  const std::size_t middle = band.base.size() / 2;
+  EXPECT_NEAR(band.edge[middle][2] - band.base[middle][2], 0.2 * (1 - band.base[middle][0]), 2e-3);
+  EXPECT_NEAR(band.edge.back()[2] - band.base.back()[2], 0, 1e-3);
+  ASSERT_EQ(frame.labels.size(), 2u);
+  EXPECT_TRUE(frame.labels[0].words.starts_with("My ")) << frame.labels[0].words;
+}
+
+TEST(Subject, a_diagram_is_cut_where_it_changes_its_sign) {
+  Cantilever beam;
+  // Moments of opposite sign at the two stress points, no shear: two steps along the member.
+  for (std::size_t e = 0; e < 2; ++e) {
+    for (int k = 0; k < 6; ++k) beam.row.section_force[6 * e + k] = 0;
+    beam.row.section_force[6 * e + 5] = e == 0 ? 3.f : -1.f;
+  }
+  render::SceneFrame frame;
+  add_diagram(beam.scene.setup.model, beam.row, {0, std::nullopt}, frame);
+  ASSERT_EQ(frame.bands.size(), 2u);
+  EXPECT_NE(frame.bands[0].colour, frame.bands[1].colour);
+  EXPECT_EQ(frame.bands[0].edge.back(), frame.bands[0].base.back());
+  EXPECT_EQ(frame.bands[1].edge.front(), frame.bands[1].base.front());
+}
+
+// Angular velocity is the mean between two rows 2 ms apart, of a motion whose acceleration is 2 rad/s^2 or so
+// and changes little; energies go by the rounding of rows.
+TEST(Subject, a_body_has_the_energy_and_the_angular_velocity_of_its_state) {
+  for (const char* model_of_body : {"rigid", "elastic", "frame"}) {
+    SCOPED_TRACE(model_of_body);
+    const io::Scene scene =
+        io::parse_scene(k_shaken, "s.toml", {std::string("cabinet.free.model=") + model_of_body});
+    topple::Run run(scene.setup);
+    std::vector<io::FrameRow> rows;
+    Vec3 spin = Vec3::Zero();
+    double kinetic = 0;
+    for (int i = 0; i < 160; ++i) {
+      ASSERT_TRUE(run.advance().ok());
+      if (i >= 157) rows.push_back(io::frame_row(run));
+      if (i != 158) continue;
+      const BodyMomentum momentum = body_momentum(scene.setup.model, run.state(), 0);
+      const Mat3 r = body_pose(scene.setup.model, run.state(), 0).rotation.toRotationMatrix();
+      spin = (r * scene.setup.model.bodies[0].inertia * r.transpose()).inverse() * momentum.angular_momentum;
+      kinetic = run.state().energy.kinetic;
+    }
+    const Instant now{scene.setup.model, scene.setup.parameters.gravity, rows[1], &rows[0], &rows[2]};
+    EXPECT_GT(kinetic, 0.01);
+    EXPECT_NEAR(value(now, k_body, "kinetic energy"), kinetic, 1e-3 + 1e-3 * kinetic);
+    EXPECT_NEAR(value(now, k_body, "angular velocity"), spin.norm(), 0.02 * spin.norm() + 1e-3);
+    const double left = value(now, k_body, "left to overturn"), share = value(now, k_body, "share left");
+    EXPECT_GT(left, 0);
+    EXPECT_LT(share, 100);
+  }
+}
+
+TEST(Subject, contacts_in_the_middle_of_a_member_are_told) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  const Model& model = scene.setup.model;
+  const io::FrameRow row = io::frame_row(topple::Run(scene.setup));
+  int approximate = 0;
+  for (std::size_t m = 0; m < model.members.size(); ++m) {
+    const bool on_floor =
+        model.members[m].name.starts_with("bottom") || model.members[m].name.starts_with("brace-bottom");
+    EXPECT_EQ(is_approximate(model, row, m), on_floor) << model.members[m].name;
+    approximate += is_approximate(model, row, m);
+  }
+  EXPECT_GE(approximate, 4);
+}
+
+TEST(Subject, names_are_found_and_others_refused_with_what_there_is) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  const Model& model = scene.setup.model;
+  EXPECT_EQ(subject_named(model, "free"), k_body);
+  const Subject post = subject_named(model, "free/post-2");
+  EXPECT_EQ(post.kind, Subject::Kind::member);
+  EXPECT_EQ(name_of(model, post), "free/post-2");
+  for (const char* name : {"fre", "free/", "free/post-9", ""}) {
+    SCOPED_TRACE(name);
+    EXPECT_THROW(subject_named(model, name), io::InputError);
+  }
+}
+
+TEST(Histories, follow_the_run_and_its_branches) {
+  LiveRun run({.scene = live_scene(), .recording = {}, .output = {}});
+  Player player(live_scene(), run);
+  Histories histories;
+  const auto until = [&](auto done) { return eventually([&] { player.update(0.01); }, done); };
+  ASSERT_TRUE(until([&] { return player.can_edit(); }));
+  const auto expect_values = [&] {
+    const std::vector<float>& tilt = histories.of(player, k_body, 0);
+    ASSERT_EQ(tilt.size(), player.way().size());
+    for (std::size_t i = 0; i < tilt.size(); ++i)
+      EXPECT_FLOAT_EQ(tilt[i], static_cast<float>(player.way()[i]->body[0].tilt * 180 / k_pi));
+  };
+  expect_values();
+  player.play();
+  ASSERT_TRUE(until([&] { return player.time() > 0.4; }));
+  expect_values();
+  ASSERT_TRUE(until([&] { return player.status().kind == LiveStatus::Kind::over; }));
+  expect_values();
+  player.scrub(0.5);
+  player.continue_from_here();
+  ASSERT_TRUE(until([&] { return player.can_edit() && player.history().branches.size() == 2; }));
+  // As many instants as before, and other ones.
+  player.edit({Edit::Key::amplitude, 0, Vec3(100 * k_gal, 0, 0)});
+  player.play();
+  ASSERT_TRUE(until([&] { return player.status().kind == LiveStatus::Kind::over; }));
+  expect_values();
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,192 @@
+// topple report: what the page says, and that it is one file a browser shows.
+#include "app/report/report.h"
+
+#include <cmath>
+
+#include "app/batch/summary.h"
+#include "app/report/svg_chart.h"
+#include "unit/app/program.h"
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// The page of a run of k_shaken, made without pictures and trials.
+class ReportPageTest : public ::testing::Test {
+ protected:
+  ReportPageTest() : scene_(io::parse_scene(k_shaken, "s.toml")) {
+    topple::Run run(scene_.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    report_.scene = &scene_;
+    report_.command = "topple report s.toml";
+    report_.summary = summary(scene_, run, "completed", 1);
+    report_.summary["error_estimate"] = error_estimate(scene_.setup, run.outcome(), run.outcome());
+    report_.motion = study::floor_motion(scene_.setup.parameters.shakes, 0.3);
+    report_.tilts = {{.time = {0, 0.3}, .tilt = {0, 1}, .critical = 10.3}};
+    report_.spread = 0.05;
+  }
+  std::string page(Language language = Language::english) const { return report_page(report_, language); }
+
+  io::Scene scene_;
+  Report report_;
+};
+
+TEST_F(ReportPageTest, names_are_text_and_never_markup) {
+  scene_.title = "<script>alert('x')</script> & \"more\"";
+  report_.summary["bodies"][0]["name"] = "<b>bold</b>";
+  const std::string html = page();
+  EXPECT_FALSE(holds(html, "<script"));
+  EXPECT_FALSE(holds(html, "<b>bold"));
+  EXPECT_TRUE(holds(html, "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;more&quot;"));
+  EXPECT_EQ(escaped("a\x01\xff"
+                    "b"),
+            "a\uFFFDb");
+}
+
+TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
+  EXPECT_FALSE(holds(page(), "With and without anchors"));
+  EXPECT_TRUE(holds(page(), "3. How certain this is"));
+  EXPECT_TRUE(holds(page(), "No anchor, strap or pole holds the furniture"));
+  report_.anchors = 2;
+  report_.without_anchors = report_.summary;
+  (*report_.without_anchors)["bodies"][0]["overturned"] = true;
+  (*report_.without_anchors)["bodies"][0]["overturn_time_s"] = 0.25;
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "3. With and without anchors"));
+  EXPECT_TRUE(holds(html, "4. How certain this is"));
+  EXPECT_TRUE(holds(html, "<td>0.25</td>"));
+  EXPECT_FALSE(holds(html, "No anchor, strap or pole"));
+  EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
+}
+
+TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
+  for (int k = 0; k < 21; ++k)
+    report_.trials.push_back({.factor = 0.95 + 0.005 * k, .finished = true, .overturned = {k >= 13}});
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "8 of 21 runs"));
+  EXPECT_TRUE(holds(html, "<td>38 %</td><td>21\u201359 %</td>"));  // Wilson: 0.2075 to 0.5912
+  EXPECT_TRUE(holds(html, "turns on small differences in the shaking"));
+  EXPECT_TRUE(holds(page(Language::japanese), "21回中8回"));
+  report_.trials[0].finished = false;
+  EXPECT_TRUE(holds(page(), "1 of 21 runs failed and are left out."));
+  EXPECT_TRUE(holds(page(), "8 of 20 runs"));
+}
+
+TEST_F(ReportPageTest, an_open_verdict_is_said_at_the_top_and_has_no_number) {
+  Json& e = report_.summary["error_estimate"];
+  e["disagreements"] = {"free does not overturn, but at 0.2 s when refined"};
+  e["bodies"][0] = {{"name", "free"},           {"same_verdict", false},   {"overturn_time_s", nullptr},
+                    {"peak_tilt_deg", nullptr}, {"peak_slide_m", nullptr}, {"peak_stress_Pa", nullptr}};
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "A finer computation gives another verdict (section 3)"));
+  EXPECT_TRUE(holds(html, "“free” stays standing, but overturns in the finer run"));
+  EXPECT_FALSE(holds(html, " ± 0"));
+}
+
+/// What the base64 of a picture happens to spell says nothing.
+std::string without_pictures(std::string html) {
+  const std::string begin = "base64,";
+  for (std::size_t at = 0; (at = html.find(begin, at)) != std::string::npos; ++at)
+    html.erase(at, html.find('"', at) - at);
+  return html;
+}
+
+class ReportTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_bytes("s.toml", k_shaken);
+  }
+  static std::string made(const std::vector<std::string>& more) {
+    std::vector<std::string> call{"report", "s.toml", "-o", "r.html", "--quiet"};
+    call.insert(call.end(), more.begin(), more.end());
+    const Ended ended = topple(call);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.out, "report: r.html\n");
+    return bytes_of("r.html");
+  }
+};
+
+TEST_F(ReportTest, the_page_is_one_file_that_refers_to_nothing) {
+  const std::string html = made({});
+  EXPECT_EQ(files(), (std::vector<std::string>{"r.html", "s.toml"}));
+  const std::string plain = without_pictures(html);
+  for (const char* part : {"http", "//", "<script", "<iframe", "url(", "@import", "srcset"})
+    EXPECT_FALSE(holds(plain, part)) << part;
+  for (const char* attribute : {"src=\"", "href=\""})
+    for (std::size_t at = plain.find(attribute); at != std::string::npos; at = plain.find(attribute, at + 1))
+      EXPECT_EQ(plain.compare(plain.find('"', at) + 1, 5, "data:"), 0) << plain.substr(at, 40);
+  for (const char* part :
+       {"A cabinet for tests", "400 gal", "JMA ", "instrumental intensity", "critical angle", "0 of 21 runs",
+        "95 % interval (Wilson)", "half the step (0.5 ms)", "Not validated against experiment",
+        "50 kgf (490.33 N)", "topple " TOPPLE_VERSION, "generalized-alpha",
+        "data:image/png;base64,iVBORw0KGgo"})
+    EXPECT_TRUE(holds(html, part)) << part;
+}
+
+TEST_F(ReportTest, the_same_scene_gives_the_same_page) {
+  EXPECT_EQ(made({"--jobs", "1"}), made({"--jobs", "2"}));
+}
+
+TEST_F(ReportTest, japanese_pages_are_japanese) {
+  const std::string html = made({"--lang", "ja", "--set", "shake.1.amplitude=300 gal"});
+  for (const char* part : {"<html lang=\"ja\">", "計測震度相当値", "震度", "信頼区間（Wilson法）",
+                           "実験による妥当性確認は行っていない", "shake.1.amplitude=300 gal", "300 gal"})
+    EXPECT_TRUE(holds(html, part)) << part;
+  for (const char* part : {"How the floor shakes", "overturns", "peak tilt", "friction coefficient"})
+    EXPECT_FALSE(holds(html, part)) << part;
+}
+
+TEST_F(ReportTest, without_a_shake_there_is_no_intensity_and_no_probability) {
+  const Ended ended = topple({"report", "free-rocking", "--set", "run.duration=0.5 s", "--quiet"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out, "report: free-rocking-report.html\n");
+  const std::string html = bytes_of("free-rocking-report.html");
+  EXPECT_TRUE(holds(html, "The floor does not shake."));
+  EXPECT_TRUE(holds(html, "no probability is given"));
+  EXPECT_FALSE(holds(html, "JMA scale"));
+}
+
+TEST_F(ReportTest, a_run_that_fails_leaves_an_older_page) {
+  write_bytes("beam.toml", k_beam);
+  write_bytes("r.html", "<!DOCTYPE html>older");
+  expect_one_line(
+      {"report", "beam.toml", "-o", "r.html", "--quiet", "--set", "run.integrator=central-difference"}, 1,
+      "; r.html is not written");
+  EXPECT_EQ(bytes_of("r.html"), "<!DOCTYPE html>older");
+}
+
+/// stdout and stderr of headless Chromium on the page; nothing when it is not installed.
+std::optional<std::pair<std::string, std::string>> in_chromium(const std::string& page) {
+  if (std::system("command -v chromium >/dev/null 2>&1") != 0) return std::nullopt;
+  const std::string call =
+      "timeout 60 chromium --headless --no-sandbox --disable-gpu --user-data-dir=profile "
+      "--enable-logging=stderr "
+      "--host-resolver-rules='MAP * ~NOTFOUND' --dump-dom file://\"$PWD\"/" +
+      page + " >dom 2>log";
+  EXPECT_EQ(std::system(call.c_str()), 0) << bytes_of("log");
+  return std::pair(bytes_of("dom"), bytes_of("log"));
+}
+
+TEST_F(ReportTest, a_browser_shows_it_without_complaint) {
+  for (const char* language : {"en", "ja"}) {
+    made({"--lang", language});
+    const auto shown = in_chromium("r.html");
+    if (!shown)
+      GTEST_SKIP() << "chromium is not installed (Debian package chromium): the page was not opened";
+    const auto& [dom, log] = *shown;
+    EXPECT_TRUE(holds(dom, "<footer>")) << language;
+    EXPECT_TRUE(holds(dom, "<polyline")) << language;
+    EXPECT_TRUE(holds(dom, "src=\"data:image/png;base64,")) << language;
+    EXPECT_FALSE(holds(log, "CONSOLE")) << log;
+  }
+}
+
+}  // namespace
+}  // namespace topple::app

@@ -1,0 +1,497 @@
+// Choosing, opening, saving and exporting, off screen, with mouse and keyboard fed by hand.
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/io/recording/recording.h"
+#include "unit/app/shell_fixture.h"
+#include "unit/app/small_disk.h"
+
+namespace topple::app {
+namespace {
+
+constexpr const char* k_at2 =
+    "PEER NGA STRONG MOTION DATABASE RECORD\nSomewhere\nACCELERATION TIME SERIES IN UNITS OF G\n"
+    "NPTS= 6, DT= .02000 SEC\n 0.0 0.1 0.2 0.1 0.0 -0.1\n";
+
+TEST_F(ShellTest, typing_filters_the_scenes_and_enter_opens_the_one_selected) {
+  shell_->choose_scene();
+  frame();
+  EXPECT_GT(shell_->chooser().shown().size(), 20u);
+  type("PAPER-");
+  EXPECT_EQ(shell_->chooser().shown(), (std::vector<std::string>{"paper-a", "paper-b"}));
+  press(render::key::right);
+  EXPECT_EQ(shell_->chooser().selected(), "paper-b");
+  press(render::key::enter);
+  ASSERT_TRUE(until([&] { return ready(); }));
+  EXPECT_EQ(shell_->title(), "topple: paper-b");
+  EXPECT_FALSE(shell_->chooser().is_open());
+}
+
+TEST_F(ShellTest, thumbnails_fill_in_and_are_kept) {
+  shell_->choose_scene();
+  const auto kept = [&] {
+    std::error_code none;
+    return !fs::is_empty(scratch_ / "cache/topple", none) && !none;
+  };
+  ASSERT_TRUE(until(kept));
+  const auto image = render::load_png(fs::directory_iterator(scratch_ / "cache/topple")->path());
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->width, k_thumbnail_width);
+  std::vector<std::uint8_t> row(image->rgba.begin() + 4 * 320 * 100, image->rgba.begin() + 4 * 320 * 101);
+  EXPECT_TRUE(std::ranges::any_of(row, [](std::uint8_t byte) { return byte < 100; }));  // a body
+}
+
+TEST_F(ShellTest, files_that_were_opened_come_first_and_missing_ones_cannot_be_chosen) {
+  const std::string a = write("a.toml", k_rocking), b = write("b.toml", k_rocking);
+  for (const std::string& path : {a, b, a}) {
+    shell_->open(path);
+    ASSERT_TRUE(
+        until([&] { return ready() && shell_->title() == "topple: " + fs::path(path).stem().string(); }));
+  }
+  EXPECT_EQ(recent_files(), (std::vector<std::string>{a, b}));
+  fs::remove(a);
+  press('O', true);
+  ASSERT_TRUE(shell_->chooser().is_open());
+  type(a);
+  EXPECT_EQ(shell_->chooser().selected(), a);
+  press(render::key::enter);
+  EXPECT_FALSE(shell_->opening());
+  EXPECT_TRUE(shell_->chooser().is_open());
+  press(render::key::escape);
+  EXPECT_FALSE(shell_->chooser().is_open());
+  for (int i = 0; i < 20; ++i) remember_recent((scratch_ / std::to_string(i).c_str()).string());
+  EXPECT_EQ(recent_files().size(), k_most_recent);
+  EXPECT_EQ(recent_files().front(), (scratch_ / "19").string());
+}
+
+TEST_F(ShellTest, another_scene_closes_the_recording_of_the_one_that_runs) {
+  open_rocking();
+  run_to(0.1);
+  for (int i = 0; i < 4; ++i) player().slower();  // it is under way when the other one is there
+  player().play();
+  const std::string recording = shell_->session()->recording();
+  ASSERT_FALSE(recording.empty());
+  shell_->drop({write("other.toml", k_rocking)});
+  ASSERT_TRUE(until([&] { return ready() && shell_->title() == "topple: other"; }));
+  EXPECT_EQ(player().time(), 0);
+  EXPECT_NE(shell_->session()->recording(), recording);
+  ASSERT_TRUE(until([&] { return io::Recording(recording).status() == "stopped"; }));
+  EXPECT_GT(io::Recording(recording).frame_count(), 5);
+  shell_->drop({recording});
+  ASSERT_TRUE(until([&] { return player().replay() && !player().way().empty(); }));
+  EXPECT_EQ(shell_->session()->recording(), recording);
+}
+
+TEST_F(ShellTest, a_broken_scene_is_explained_as_on_the_command_line_and_what_was_open_stays) {
+  open_rocking();
+  run_to(0.1);
+  const double time = player().time();
+  std::string text = k_rocking;
+  text.replace(text.find("300 gal"), 7, "300 kg");
+  const std::string broken = write("broken.toml", text);
+  std::string expected;
+  try {
+    io::load_scene(broken);
+  } catch (const io::InputError& error) {
+    expected = error.what();
+  }
+  ASSERT_NE(expected.find("broken.toml:8:"), std::string::npos) << expected;
+  shell_->drop({broken});
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_EQ(shell_->message()->text, expected);
+  click("Copy");
+  EXPECT_EQ(std::string(ImGui::GetClipboardText()), expected);
+  click("Close");
+  EXPECT_FALSE(shell_->message().has_value());
+  EXPECT_EQ(shell_->title(), "topple: rocking");
+  EXPECT_EQ(player().time(), time);
+  EXPECT_TRUE(player().can_edit());
+  run_to(time + 0.05);
+}
+
+TEST_F(ShellTest, damaged_recordings_and_files_of_other_kinds_are_refused_with_their_reason) {
+  const std::string damaged = write("damaged.h5", "\x89HDF\r\n\x1a\nand nothing more");
+  for (const std::string& path :
+       {damaged, write("notes.txt", "not an accelerogram"), (scratch_ / "").string()}) {
+    shell_->drop({path});
+    ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+    EXPECT_NE(shell_->message()->text.find(path), std::string::npos) << shell_->message()->text;
+    EXPECT_EQ(shell_->message()->text.find('\n'), std::string::npos);
+    press(render::key::escape);
+    EXPECT_EQ(shell_->session(), nullptr);
+  }
+}
+
+TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  run_to(0.1);
+  shell_->close("stopped");
+  const std::string other = (scratch_ / "other.h5").string();
+  fs::copy_file(scratch_ / "a.h5", other);
+  {
+    const hid_t file = H5Fopen(other.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
+    const int later = 8;
+    ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &later), 0);
+    H5Aclose(version);
+    H5Fclose(file);
+  }
+  open_rocking();
+  shell_->drop({other});
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_EQ(shell_->message()->text,
+            other + ": recording format 8 is not supported by this version, which reads formats 1 to 7");
+  press(render::key::escape);
+  EXPECT_EQ(shell_->title(), "topple: rocking");
+  run_to(0.1);
+}
+
+TEST_F(ShellTest, a_guided_demo_opens_its_own_scene_and_what_was_open_stays_recorded) {
+  open_rocking();
+  run_to(0.1);
+  const std::string recording = shell_->session()->recording();
+  shell_->session()->viewer().show(Viewer::Tab::teach);
+  click(std::string(demos()[0].name.english) + "##demo0", "side/content");
+  const auto begun = [&] { return shell_->session()->viewer().teaching().guide.has_value(); };
+  ASSERT_TRUE(until(begun));
+  EXPECT_EQ(shell_->title(), "topple: paper-a");
+  EXPECT_EQ(player().parameters().shakes[0].frequency, demos()[0].frequency);
+  ASSERT_TRUE(until([&] { return io::Recording(recording).status() == "stopped"; }));
+}
+
+TEST_F(ShellTest, an_accelerogram_becomes_the_first_shake_of_a_copy_that_starts_anew) {
+  open_rocking();
+  run_to(0.1);
+  const std::string record = write("quake.AT2", k_at2);
+  shell_->drop({record});
+  ASSERT_TRUE(until([&] { return ready() && player().parameters().shakes[0].kind == Shake::Kind::record; }));
+  EXPECT_EQ(player().time(), 0);
+  EXPECT_EQ(shell_->session()->scene().setup.model.bodies.size(), 1u);
+  ASSERT_EQ(shell_->session()->scene().files.size(), 1u);
+  EXPECT_EQ(shell_->session()->scene().files[0].bytes, k_at2);
+
+  shell_->drop({write("gap.AT2", std::string(k_at2) + "0.3")});
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_NE(shell_->message()->text.find("gap.AT2"), std::string::npos);
+  EXPECT_EQ(player().parameters().shakes[0].kind, Shake::Kind::record);
+}
+
+TEST_F(ShellTest, without_a_place_for_recordings_the_run_goes_on_and_says_so) {
+  setenv("XDG_STATE_HOME", "/dev/null/nowhere", 1);
+  open_rocking();
+  ASSERT_TRUE(shell_->message().has_value());
+  EXPECT_NE(shell_->message()->text.find("XDG_STATE_HOME"), std::string::npos);
+  press(render::key::escape);
+  run_to(0.1);
+  EXPECT_TRUE(shell_->session()->recording().empty());
+}
+
+TEST_F(ShellTest, a_read_only_place_for_recordings_is_explained) {
+  const std::string disk = (scratch_ / "disk").string();
+  if (!mount_disk(disk, "400k", true)) GTEST_SKIP() << "mounting is not allowed";
+  setenv("XDG_STATE_HOME", disk.c_str(), 1);
+  open_rocking();
+  EXPECT_TRUE(until([&] { return shell_->message().has_value(); }));
+  press(render::key::escape);
+  run_to(0.1);
+  unmount_disk(disk);
+}
+
+TEST_F(ShellTest, a_full_disk_ends_the_recording_and_not_the_run) {
+  const std::string disk = (scratch_ / "disk").string();
+  if (!mount_disk(disk, "300k")) GTEST_SKIP() << "mounting is not allowed";
+  setenv("XDG_STATE_HOME", disk.c_str(), 1);
+  open_rocking();
+  const std::string recording = shell_->session()->recording();
+  player().play();
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_NE(shell_->message()->text.find(recording), std::string::npos) << shell_->message()->text;
+  const double time = player().time();
+  press(render::key::escape);
+  EXPECT_FALSE(shell_->message().has_value());
+  EXPECT_TRUE(until([&] { return player().time() > time || !player().playing(); }));
+  for (int i = 0; i < 5; ++i) frame();
+  EXPECT_FALSE(shell_->message().has_value());  // told once
+  const std::vector<LiveStatus> ends = shell_->close("stopped");
+  EXPECT_FALSE(ends.back().record_failure.empty());
+  unmount_disk(disk);
+}
+
+TEST_F(ShellTest, a_step_that_fails_offers_half_of_it) {
+  shell_->show(
+      {.scene = live_scene(k_rocking, {"run.integrator=central-difference", "cabinet.free.model=frame"}),
+       .recording = {},
+       .output = (scratch_ / "d.h5").string()},
+      "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  player().play();
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  EXPECT_NE(shell_->message()->text.find("central-difference"), std::string::npos) << shell_->message()->text;
+  ASSERT_TRUE(shell_->message()->may_halve_step);
+  EXPECT_FALSE(player().playing());
+  EXPECT_GE(player().status().element, 0);
+  const auto last_good = player().row();
+  ASSERT_TRUE(last_good.has_value());
+  EXPECT_TRUE(std::ranges::all_of(last_good->position, [](float x) { return std::isfinite(x); }));
+  const double step = player().parameters().time_step;
+  click("Halve the step and retry");
+  EXPECT_DOUBLE_EQ(player().parameters().time_step, step / 2);
+}
+
+TEST_F(ShellTest, where_a_step_failed_is_marked_in_the_picture) {
+  shell_->show({.scene = live_scene(k_rocking, {"run.integrator=central-difference"})}, "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  const auto scene = [&] {  // without words and panels
+    press(render::key::escape);
+    for (int i = 0; i < 60; ++i) frame();  // until it is drawn at its best
+    const render::Image image = stage_.shot(shell_->surface(), *ImGui::GetDrawData());
+    std::vector<std::uint8_t> pixels;
+    for (std::size_t y = 100; y < 450; ++y)
+      pixels.insert(pixels.end(), &image.rgba[4 * (1280 * y + 200)], &image.rgba[4 * (1280 * y + 750)]);
+    return pixels;
+  };
+  const std::vector<std::uint8_t> before = scene();
+  player().play();
+  ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
+  ASSERT_EQ(player().time(), 0);
+  EXPECT_NE(scene(), before);
+}
+
+TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unasked) {
+  open_rocking();
+  run_to(0.1);
+  player().begin_edit();
+  player().edit({Edit::Key::friction, 0, Vec3(0.321, 0, 0)});
+  const std::string path = (scratch_ / "kept.toml").string();
+  save_as(path);
+  EXPECT_FALSE(shell_->save_dialog().is_open());
+  const io::Scene saved = io::load_scene(path);
+  EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
+  EXPECT_EQ(saved.title, "A rocking cabinet for tests");
+
+  const std::string other = write("other.toml", "mine");
+  save_as(other);
+  press(render::key::enter);
+  EXPECT_TRUE(shell_->save_dialog().is_open());
+  EXPECT_EQ(read(other), "mine");
+  click("Replace it");
+  EXPECT_FALSE(shell_->save_dialog().is_open());
+  EXPECT_EQ(io::load_scene(other).setup.parameters.contact.friction, 0.321);
+  EXPECT_EQ(files_like(".part"), 0);
+}
+
+TEST_F(ShellTest, what_cannot_be_saved_is_explained_in_the_dialog_which_stays) {
+  open_rocking();
+  const std::pair<std::string, std::string> targets[] = {{"/proc/nothing.toml", "/proc/nothing.toml"},
+                                                         {(scratch_ / "no/such.toml").string(), "no folder"}};
+  for (const auto& [target, reason] : targets) {
+    save_as(target);
+    EXPECT_TRUE(shell_->save_dialog().is_open());
+    EXPECT_NE(shell_->save_dialog().refused().find(reason), std::string::npos)
+        << shell_->save_dialog().refused();
+    press(render::key::escape);
+  }
+  const std::string good = (scratch_ / "good.toml").string();
+  save_as(good);
+  EXPECT_TRUE(fs::exists(good));
+  run_to(0.1);
+}
+
+TEST_F(ShellTest, accelerograms_are_saved_beside_the_scene) {
+  open_rocking();
+  shell_->drop({write("quake.AT2", k_at2)});
+  ASSERT_TRUE(until([&] { return ready() && player().parameters().shakes[0].record; }));
+  const io::Scene& absolute = shell_->session()->scene();
+  const io::Scene relative =
+      io::parse_scene(k_rocking.substr(0, k_rocking.find("[[shake]]")) +
+                          "[[shake]]\ntype = \"record\"\nfiles = [\"quake.AT2\"]\n" +
+                          k_rocking.substr(k_rocking.find("[contact]")),
+                      "r.toml", {}, [](const std::string&) { return std::string(k_at2); });
+  fs::create_directory(scratch_ / "far");
+  const std::string path = (scratch_ / "far/kept.toml").string();
+  save_scene(relative, relative.setup.parameters, path, false);
+  EXPECT_EQ(read((scratch_ / "far/quake.AT2").string()), k_at2);
+  EXPECT_EQ(io::load_scene(path).files.size(), 1u);
+  std::ofstream(scratch_ / "far/quake.AT2") << "another";
+  const std::string second = (scratch_ / "far/second.toml").string();
+  EXPECT_THROW(save_scene(relative, relative.setup.parameters, second, false), std::runtime_error);
+  EXPECT_FALSE(fs::exists(second));
+  save_scene(absolute, absolute.setup.parameters, second, false);  // names the file where it is
+  EXPECT_EQ(io::load_scene(second).files[0].bytes, k_at2);
+  EXPECT_EQ(read((scratch_ / "far/quake.AT2").string()), "another");
+}
+
+class ExportDialogTest : public ShellTest {
+ protected:
+  void set_path(const std::string& name) {
+    const std::string path = (scratch_ / name.c_str()).string();
+    path.copy(dialog().path, path.size());
+    dialog().path[path.size()] = '\0';
+  }
+  ExportDialog& dialog() { return shell_->export_dialog(); }
+  void start() { dialog().start(player(), shell_->session()->viewer(), shell_->session()->recording()); }
+  void open_export(ExportDialog::What what) {
+    press('E', true);
+    ASSERT_TRUE(dialog().is_open());
+    dialog().what = what;
+  }
+  std::string export_failure() {
+    if (!until([&] { return !dialog().busy(); })) return "it did not end";
+    return dialog().refused();
+  }
+};
+
+TEST_F(ExportDialogTest, a_picture_has_the_size_that_was_asked_for) {
+  open_rocking();
+  run_to(0.2);
+  open_export(ExportDialog::What::picture);
+  set_path("view.png");
+  dialog().size[0] = 400;
+  dialog().size[1] = 300;
+  start();
+  EXPECT_EQ(export_failure(), "");
+  EXPECT_FALSE(dialog().is_open());
+  const auto image = render::load_png(scratch_ / "view.png");
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(std::pair(image->width, image->height), std::pair(400, 300));
+  open_export(ExportDialog::What::picture);
+  set_path("view.png");
+  start();
+  EXPECT_NE(dialog().refused().find("view.png"), std::string::npos);  // it is there already
+}
+
+TEST_F(ExportDialogTest, before_there_is_an_instant_nothing_is_exported) {
+  shell_->show({.scene = live_scene(), .recording = {}, .output = (scratch_ / "a.h5").string()}, "");
+  ASSERT_TRUE(player().way().empty());
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    dialog().what = what;
+    set_path("early");
+    start();
+    EXPECT_NE(dialog().refused().find("no instant yet"), std::string::npos) << dialog().refused();
+    EXPECT_FALSE(dialog().busy());
+  }
+}
+
+TEST_F(ExportDialogTest, a_picture_is_seen_from_where_the_window_sees_it) {
+  open_rocking();
+  run_to(0.2);
+  std::vector<std::vector<std::uint8_t>> pictures;
+  for (const auto& [key, name] : {std::pair{'1', "front.png"}, {'3', "top.png"}, {'1', "again.png"}}) {
+    press(key);
+    for (int i = 0; i < 30; ++i) frame();  // the camera has arrived
+    open_export(ExportDialog::What::picture);
+    set_path(name);
+    dialog().size[0] = 200;
+    dialog().size[1] = 150;
+    start();
+    EXPECT_EQ(export_failure(), "");
+    const auto image = render::load_png(scratch_ / name);
+    ASSERT_TRUE(image.has_value());
+    pictures.push_back(image->rgba);
+  }
+  EXPECT_NE(pictures[0], pictures[1]);
+  EXPECT_EQ(pictures[0], pictures[2]);
+}
+
+TEST_F(ExportDialogTest, a_camera_that_follows_is_where_the_window_has_it) {
+  open_rocking();
+  press('T');
+  run_to(0.3);
+  player().scrub(0.25);  // a recorded instant
+  frame();
+  std::vector<std::vector<std::uint8_t>> pictures;
+  for (const char* name : {"follows.png", "stays.png"}) {
+    open_export(ExportDialog::What::picture);
+    set_path(name);
+    start();
+    EXPECT_EQ(export_failure(), "");
+    pictures.push_back(render::load_png(scratch_ / name).value().rgba);
+    press('T');  // lets go
+  }
+  ASSERT_EQ(pictures[0].size(), pictures[1].size());
+  int different = 0;  // a byte here and there, by rounding, on edges; most of the body, had it moved
+  for (std::size_t i = 0; i < pictures[0].size(); ++i)
+    different += std::abs(pictures[0][i] - pictures[1][i]) > 30;
+  EXPECT_LT(different, 100);
+}
+
+TEST_F(ExportDialogTest, tables_appear_as_a_whole_folder) {
+  open_rocking();
+  run_to(0.2);
+  open_export(ExportDialog::What::tables);
+  set_path("tables");
+  start();
+  EXPECT_EQ(export_failure(), "");
+  EXPECT_TRUE(fs::exists(scratch_ / "tables/bodies.csv"));
+  EXPECT_EQ(files_like(".part"), 0);
+}
+
+TEST_F(ExportDialogTest, a_video_that_is_cancelled_leaves_nothing) {
+  open_rocking();
+  run_to(0.5);
+  open_export(ExportDialog::What::video);
+  set_path("view.mp4");
+  dialog().rate = 240;
+  start();
+  ASSERT_EQ(dialog().refused(), "");
+  ASSERT_TRUE(until([&] { return !dialog().busy() || (dialog().job() && dialog().job()->part() > 0); }));
+  ASSERT_NE(dialog().job(), nullptr) << dialog().refused();
+  click("Cancel");
+  EXPECT_EQ(export_failure(), "");
+  EXPECT_EQ(files_like("view.mp4"), 0);
+}
+
+TEST_F(ExportDialogTest, a_job_tells_how_far_it_is) {
+  open_rocking();
+  run_to(0.5);
+  open_export(ExportDialog::What::video);
+  set_path("view.mp4");
+  dialog().rate = 240;
+  start();
+  ASSERT_EQ(dialog().refused(), "");
+  ASSERT_TRUE(until([&] { return !dialog().busy() || (dialog().job() && dialog().job()->part() > 0); }));
+  ASSERT_NE(dialog().job(), nullptr) << dialog().refused();
+  EXPECT_LE(dialog().job()->part(), 1);
+  EXPECT_NE(dialog().job()->progress().find(" pictures, "), std::string::npos) << dialog().job()->progress();
+  click("Cancel");
+  EXPECT_EQ(export_failure(), "");
+  EXPECT_EQ(files_like(".part"), 0);
+}
+
+TEST_F(ExportDialogTest, a_target_that_cannot_be_written_is_told_and_the_run_goes_on) {
+  open_rocking();
+  run_to(0.1);
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    open_export(what);
+    std::string("/proc/out.png").copy(dialog().path, 14);
+    dialog().path[13] = '\0';
+    start();
+    EXPECT_NE(export_failure().find("/proc/out.png"), std::string::npos) << dialog().refused();
+    EXPECT_TRUE(dialog().is_open());
+    press(render::key::escape);
+  }
+  run_to(player().time() + 0.05);
+}
+
+TEST_F(ExportDialogTest, a_failure_is_told_with_its_reason) {
+  open_rocking();
+  run_to(0.1);
+  open_export(ExportDialog::What::picture);
+  set_path("no/such/folder.png");
+  start();
+  EXPECT_NE(dialog().refused().find("no folder"), std::string::npos) << dialog().refused();
+  ExportJob job(TOPPLE_PROGRAM, {"render", "nonsense", "--at", "0", "--still", (scratch_ / "x.png").string()},
+                (scratch_ / "x.png").string());
+  ASSERT_TRUE(eventually([&] { job.update(); }, [&] { return job.done(); }));
+  EXPECT_NE(job.failure().find("no such file or built-in scene"), std::string::npos) << job.failure();
+}
+
+}  // namespace
+}  // namespace topple::app

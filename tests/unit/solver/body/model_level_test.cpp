@@ -1,0 +1,264 @@
+// Model levels: which level a body stands on, and switches within a run.
+#include "solver/body/model_level.h"
+
+#include "solver/body/body_pose.h"
+#include "solver/frame/modes.h"
+#include "unit/solver/body_models.h"
+
+namespace topple::test {
+namespace {
+
+struct Snapshot {
+  Vec3 centre, velocity, spin;
+  Quat rotation;
+};
+
+Snapshot snapshot(const Simulation& sim) {
+  const BodyPose pose = body_pose(sim.model, sim.state, 0);
+  const BodyMomentum momentum = body_momentum(sim.model, sim.state, 0);
+  return {pose.centre, momentum.velocity, momentum.angular_momentum, pose.rotation};
+}
+
+/// Of the body's own nodes.
+Snapshot of_nodes(const Simulation& sim) {
+  State state = placed(sim);
+  state.bodies[0].level = ModelLevel::frame;
+  const BodyPose pose = body_pose(sim.model, state, 0);
+  const BodyMomentum momentum = body_momentum(sim.model, state, 0);
+  return {pose.centre, momentum.velocity, momentum.angular_momentum, pose.rotation};
+}
+
+// Whatever its level, a body has its momentum and its place, and a switch explains what energy it changes.
+TEST(ModelLevel, goes_up_and_down_in_mid_flight) {
+  topple::Setup setup = thrown(BodyModel::frame);
+  Simulation sim = simulate(setup);
+  ASSERT_TRUE(sim.advance(100));
+  const Vec3 spin = body_momentum(sim.model, sim.state, 0).angular_momentum;
+  for (const BodyModel model : {BodyModel::elastic, BodyModel::frame, BodyModel::rigid, BodyModel::elastic,
+                                BodyModel::rigid, BodyModel::frame}) {
+    const Snapshot before = snapshot(sim);
+    const double booked = sim.state.energy.model_switch, unexplained = sim.state.energy.unexplained();
+    sim.parameters.models[0] = model;
+    ASSERT_TRUE(sim.advance(1));
+    const double h = sim.parameters.time_step;
+    const Snapshot after = snapshot(sim);
+    // a step of free flight: its exact travel, whatever computes it
+    const Vec3 g(0, 0, -k_g);
+    EXPECT_LT((after.centre - before.centre - h * before.velocity - h * h / 2 * g).norm(), 1e-8);
+    EXPECT_LT((after.velocity - before.velocity - h * g).norm(), 1e-9);
+    EXPECT_LT((after.spin - spin).norm(), 1e-4 * spin.norm());
+    EXPECT_NEAR(before.rotation.angularDistance(after.rotation), h * 2.7, h * 0.3);
+    // the mean motion that the nodes have is that of the body
+    const Snapshot nodes = of_nodes(sim);
+    EXPECT_LT((nodes.centre - after.centre).norm(), 1e-9);
+    EXPECT_LT((nodes.velocity - after.velocity).norm(), 1e-9);
+    EXPECT_LT((nodes.spin - after.spin).norm(), 1e-4 * spin.norm());
+    EXPECT_LT(std::abs(sim.state.energy.model_switch - booked), 0.01);        // of 230 J
+    EXPECT_LT(std::abs(sim.state.energy.unexplained() - unexplained), 5e-4);  // 2e-6 of it
+    ASSERT_TRUE(sim.advance(100));
+  }
+  EXPECT_EQ(sim.state.bodies[0].level, ModelLevel::frame);
+  EXPECT_LT(sim.state.energy.balance_error(), 1e-5);
+}
+
+// In contact too: it goes on as the frame does that never switched, to what the levels differ by.
+TEST(ModelLevel, goes_up_and_down_in_contact) {
+  Simulation frame = simulate(paper_cabinet(BodyModel::frame, 4 / k_degrees)),
+             sim = simulate(paper_cabinet(BodyModel::frame, 4 / k_degrees));
+  const BodyModel models[] = {BodyModel::elastic, BodyModel::rigid,   BodyModel::frame,
+                              BodyModel::rigid,   BodyModel::elastic, BodyModel::frame};
+  double furthest = 0;
+  for (int i = 0; i < 1200; ++i) {
+    if (i % 150 == 149) {
+      const Snapshot before = snapshot(sim);
+      const double unexplained = sim.state.energy.unexplained();
+      EXPECT_FALSE(sim.contacts().empty());
+      sim.parameters.models[0] = models[i / 150 % 6];
+      ASSERT_TRUE(sim.advance(1) && frame.advance(1));
+      const Snapshot after = snapshot(sim);
+      // what the contacts do within a millisecond, g/2 h^2 and g h
+      EXPECT_LT((after.centre - before.centre - 1e-3 * before.velocity).norm(), 1e-5);
+      EXPECT_LT((after.velocity - before.velocity).norm(), 2e-2);
+      EXPECT_LT(std::abs(sim.state.energy.unexplained() - unexplained), 2e-3);
+      continue;
+    }
+    ASSERT_TRUE(sim.advance(1) && frame.advance(1));
+    furthest = std::max(furthest, std::abs(tilt_of(sim) - tilt_of(frame)));
+  }
+  EXPECT_LT(furthest, 0.1);
+  EXPECT_NE(sim.state.energy.model_switch, 0);
+  EXPECT_LT(std::abs(sim.state.energy.model_switch), 0.05);  // J, of 5 that it rocks with
+  EXPECT_LT(sim.state.energy.balance_error(), 2e-3);
+}
+
+TEST(ModelLevel, begins_with_the_least_that_answers) {
+  topple::Setup setup = paper_cabinet(BodyModel::automatic);
+  Parameters& p = setup.parameters;
+  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::elastic);
+  EXPECT_EQ(base_level(setup.model, p, 0).reason, LevelReason::stress);
+  p.want_stress = false;
+  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::rigid);
+  p.contact.alpha *= 400;  // 137 Hz of contact, 159 of the first mode
+  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::elastic);
+  EXPECT_EQ(base_level(setup.model, p, 0).reason, LevelReason::contact_frequency);
+  p.models.clear();
+  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::frame);
+}
+
+TEST(ModelLevel, is_elastic_from_half_the_first_frequency_on) {
+  topple::Setup setup = paper_cabinet(BodyModel::automatic);
+  Parameters& p = setup.parameters;
+  p.want_stress = false;
+  const double first = 2 * k_pi * natural_modes(setup.model, 0, 7)[6].frequency;
+  // of the 40 kg on the contacts of the base, alpha/L each
+  const double n = static_cast<double>(setup.model.bodies[0].base_points.size()),
+               L = (0.09 + setup.model.contact_points[0].width) / 2;
+  for (const double share : {0.999, 1.001}) {
+    p.contact.alpha = 40 * std::pow(share * first / 2, 2) * L / n;
+    EXPECT_EQ(base_level(setup.model, p, 0).level, share < 1 ? ModelLevel::rigid : ModelLevel::elastic)
+        << share;
+  }
+}
+
+// A cabinet that falls and yields where it lands.
+topple::Setup shaken_until_it_yields() {
+  topple::Setup setup = shaken(3, 12 / k_degrees);
+  for (Element& element : setup.model.elements) {
+    const Section& post = setup.model.sections[0];
+    element.capacity << 60e6 * post.area, 60e6 * post.zt / std::sqrt(3), 60e6 * post.zy, 60e6 * post.zz;
+  }
+  return setup;
+}
+
+// What has hinges stays a frame.
+TEST(ModelLevel, climbs_before_a_section_yields_and_stays) {
+  topple::Setup setup = shaken_until_it_yields();
+  setup.parameters.contact.restitution = 0.5;
+  compute_as(setup, BodyModel::automatic);
+  topple::Run run(setup);
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::elastic);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  const BodyOutcome& o = run.outcome().bodies()[0];
+  EXPECT_GT(o.hinges, 0);
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::frame);
+  ASSERT_GE(o.level_changes.size(), 2u);
+  EXPECT_EQ(o.level_changes[1].level, ModelLevel::frame);
+  EXPECT_EQ(o.level_changes[1].reason, LevelReason::yield);
+  const Event* first_hinge = nullptr;
+  for (const Event& event : run.events())
+    if (event.kind == Event::Kind::hinge && !first_hinge) first_hinge = &event;
+  ASSERT_TRUE(first_hinge);
+  EXPECT_LE(o.level_changes[1].time, first_hinge->time);
+  EXPECT_LT(run.state().energy.balance_error(), 0.02);
+}
+
+// Integrators are of frames: without one nothing differs, down to the last bit.
+TEST(ModelLevel, adaptive_central_differences_without_a_frame_step_as_without_them) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = paper_cabinet(model);
+    setup.parameters.adaptive = true;
+    shake(setup, 4, 2);
+    topple::Run implicit(setup);
+    setup.parameters.integrator = Integrator::central_difference;
+    topple::Run run(setup);
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(run.advance().ok() && implicit.advance().ok());
+    EXPECT_GT(run.time(), 0.1);
+    EXPECT_EQ(hash(run.state()), hash(implicit.state()));
+    EXPECT_FALSE(run.stable_step());
+  }
+}
+
+TEST(ModelLevel, adaptive_central_differences_shorten_their_step_for_a_new_frame) {
+  topple::Setup setup = shaken_until_it_yields();
+  setup.parameters.integrator = Integrator::central_difference;
+  setup.parameters.adaptive = true;
+  compute_as(setup, BodyModel::automatic);
+  topple::Run run(setup);
+  double before = 0;
+  while (run.state().bodies[0].level != ModelLevel::frame) {
+    EXPECT_FALSE(run.stable_step());
+    before = run.time();
+    ASSERT_TRUE(run.advance().ok());
+    ASSERT_FALSE(run.over());
+  }
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_NEAR(run.time() - before, 0.9 * run.stable_step().value(), 1e-9 * run.time());
+    before = run.time();
+    ASSERT_TRUE(run.advance().ok());
+  }
+  EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+}
+
+// Two that meet are frames from before they touch until they are apart and calm again.
+TEST(ModelLevel, is_a_frame_while_another_body_is_near) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.velocity = Vec3(1, 0, 0);
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  spec.name = "second";
+  spec.at.x() = 0.6;
+  spec.velocity.setZero();
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.run.settle = false;
+  setup.run.duration = 2;
+  setup.parameters.gravity.setZero();
+  compute_as(setup, BodyModel::rigid);
+  topple::Run run(setup);
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::rigid);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  const auto& changes = run.outcome().bodies()[1].level_changes;
+  ASSERT_FALSE(changes.empty());
+  EXPECT_EQ(changes[0].reason, LevelReason::near);
+  EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
+  EXPECT_LT(run.state().energy.balance_error(), 0.01);
+  const Vec3 momentum = 40 * (body_momentum(setup.model, run.state(), 0).velocity +
+                              body_momentum(setup.model, run.state(), 1).velocity);
+  EXPECT_LT((momentum - Vec3(40, 0, 0)).norm(), 1e-6);
+}
+
+TEST(ModelLevel, goes_on_bit_for_bit_from_a_checkpoint) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = paper_cabinet(model, 4 / k_degrees);
+    topple::Run run(setup);
+    while (run.state().step < 300) ASSERT_TRUE(run.advance().ok());
+    topple::Run other(setup, unpack(setup.model, pack(run.state())), run.parameters());
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(run.advance().ok() && other.advance().ok());
+    EXPECT_EQ(hash(run.state()), hash(other.state()));
+  }
+}
+
+// Nodes of bodies that are not frames are placed when somebody looks, and nothing may go by where they are.
+// Parts of different sizes follow each other, so that nothing of one may be left for the next.
+TEST(ModelLevel, goes_on_bit_for_bit_in_a_new_workspace_at_every_step) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic, BodyModel::frame}) {
+    topple::Setup setup = paper_cabinet(model, 0.02);
+    setup.parameters.adaptive = true;
+    setup.parameters.contact.alpha = 5000 * k_g;
+    topple::Run run(setup), fresh(setup);
+    for (int i = 0; i < 300; ++i) {
+      ASSERT_TRUE(run.advance().ok());
+      fresh = topple::Run(setup, fresh.point());
+      ASSERT_TRUE(fresh.advance().ok());
+      ASSERT_EQ(hash(run.state()), hash(fresh.state())) << static_cast<int>(model) << ", step " << i;
+    }
+  }
+}
+
+TEST(ModelLevel, who_looks_at_an_adaptive_run_changes_nothing) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = paper_cabinet(model);
+    setup.run.duration = 3;
+    setup.parameters.adaptive = true;
+    shake(setup, 4, 2);
+    topple::Run looked_at(setup), left_alone(setup);
+    for (int i = 0; i < 500; ++i) {
+      ASSERT_TRUE(looked_at.advance().ok() && left_alone.advance().ok());
+      EXPECT_GT(looked_at.state().position.size(), 0u);
+    }
+    EXPECT_EQ(hash(looked_at.state()), hash(left_alone.state()));
+  }
+}
+
+}  // namespace
+}  // namespace topple::test
