@@ -27,10 +27,6 @@ ordered_json number(const std::optional<double>& x) {
   return x ? number(*x) : ordered_json(nullptr);
 }
 
-ordered_json vector(const Vec3& v) {
-  return {number(v.x()), number(v.y()), number(v.z())};
-}
-
 ordered_json list(const std::vector<double>& values, double unit) {
   ordered_json out = ordered_json::array();
   for (const double value : values) out.push_back(number(value / unit));
@@ -70,8 +66,8 @@ ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& mo
           {"critical_tilt_deg", number(o.critical * k_degrees)},
           {"peak_slide_m", number(o.peak_slide)},
           {"final_slide_m", number(o.slide)},
-          {"final_velocity_m_s", vector(momentum.velocity)},
-          {"final_angular_momentum_kg_m2_s", vector(momentum.angular_momentum)},
+          {"final_velocity_m_s", vector_json(momentum.velocity)},
+          {"final_angular_momentum_kg_m2_s", vector_json(momentum.angular_momentum)},
           {"peak_stress_Pa", o.always_rigid ? ordered_json(nullptr) : number(o.peak_stress)},
           {"peak_yield_ratio", number(o.peak_yield_ratio)},
           {"hinges", o.hinges},
@@ -265,8 +261,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"released_J", number(e.released)},
       {"model_switch_J", number(e.model_switch)},
       {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
-  out["floor"] = {{"final_displacement_m", vector(state.floor_displacement)},
-                  {"final_velocity_m_s", vector(state.floor_velocity)}};
+  out["floor"] = {{"final_displacement_m", vector_json(state.floor_displacement)},
+                  {"final_velocity_m_s", vector_json(state.floor_velocity)}};
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (int b = 0; b < model.furniture_total(); ++b)
@@ -278,8 +274,9 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
     out["probes"].push_back(
         {{"name", run.setup().probes[k].name},
          {"final",
-          {{"displacement_m", vector(probe.displacement)}, {"rotation_rad", vector(probe.rotation)}}},
-         {"peak", {{"displacement_m", vector(probe.peak)}, {"time_s", vector(probe.peak_time)}}}});
+          {{"displacement_m", vector_json(probe.displacement)},
+           {"rotation_rad", vector_json(probe.rotation)}}},
+         {"peak", {{"displacement_m", vector_json(probe.peak)}, {"time_s", vector_json(probe.peak_time)}}}});
   }
   out["static"] = load_steps(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
@@ -339,6 +336,10 @@ ordered_json failed_estimate(const Setup& setup, const std::string& message) {
           {"peak_tilt_deg", nullptr},
           {"how", refinement_in_words(setup)},
           {"failed", message}};
+}
+
+ordered_json vector_json(const Vec3& v) {
+  return {number(v.x()), number(v.y()), number(v.z())};
 }
 
 std::string json_text(const ordered_json& value, int indent) {

@@ -34,6 +34,9 @@ nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor)
 /// Of a UTF-8 text; what is not counts as one each.
 std::size_t letters(const std::string& text);
 
+/// Three numbers; null where one is not finite.
+nlohmann::ordered_json vector_json(const Vec3& v);
+
 /// JSON text in one line, or indented. What is not UTF-8 (a file's name can be anything) becomes U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value, int indent = -1);
 

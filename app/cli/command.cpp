@@ -7,9 +7,9 @@ namespace topple::app {
 namespace {
 
 constexpr int k_most_jobs = 256;
-constexpr std::string_view k_kinds[] = {".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
-                                        ".svg",  ".ppm", ".mp4",  ".avi", ".mov", ".mkv", ".webm", ".wmv",
-                                        ".mpeg", ".mpg", ".pdf",  ".ps",  ".eps", ".html"};
+constexpr std::string_view k_endings[] = {".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
+                                          ".svg",  ".ppm", ".mp4",  ".avi", ".mov", ".mkv", ".webm", ".wmv",
+                                          ".mpeg", ".mpg", ".pdf",  ".ps",  ".eps", ".html"};
 
 std::string not_empty(const std::string& text) {
   return text.empty() ? "is empty" : "";
@@ -26,7 +26,7 @@ std::function<std::string(const std::string&)> not_of_another_kind(std::string_v
   return [ending](const std::string& name) {
     std::string own(ending_of(name));
     std::ranges::transform(own, own.begin(), [](unsigned char c) { return std::tolower(c); });
-    const bool other = own != ending && std::ranges::find(k_kinds, own) != std::end(k_kinds);
+    const bool other = own != ending && std::ranges::find(k_endings, own) != std::end(k_endings);
     return other ? fmt::format("\"{}\" ends in {}, but what is written is {}", name, own, ending) : "";
   };
 }

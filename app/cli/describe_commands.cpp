@@ -25,10 +25,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json vector(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 ordered_json describe(const io::Scene& scene) {
   const Setup& setup = scene.setup;
   ordered_json out;
@@ -50,8 +46,8 @@ ordered_json describe(const io::Scene& scene) {
   for (const Body& body : setup.model.bodies)
     out["bodies"].push_back({{"name", body.name},
                              {"mass_kg", body.mass},
-                             {"centre_of_gravity_m", vector(body.centre_of_gravity)},
-                             {"inertia_kg_m2", vector(body.inertia.diagonal())},
+                             {"centre_of_gravity_m", vector_json(body.centre_of_gravity)},
+                             {"inertia_kg_m2", vector_json(body.inertia.diagonal())},
                              {"nodes", body.node_count},
                              {"elements", body.element_count}});
   out["anchors"] = ordered_json::array();
@@ -89,11 +85,12 @@ ordered_json describe(const io::RecordedEvent& e, const ordered_json& bodies, co
 
 ordered_json describe(const LoggedEdit& logged) {
   const Edit& edit = logged.edit;
-  return {{"branch", logged.branch},
-          {"step", logged.step},
-          {"time_s", logged.time},
-          {"key", io::edit_key(edit)},
-          {"value", edit.key == Edit::Key::direction ? vector(edit.value) : ordered_json(edit.value.x())}};
+  return {
+      {"branch", logged.branch},
+      {"step", logged.step},
+      {"time_s", logged.time},
+      {"key", io::edit_key(edit)},
+      {"value", edit.key == Edit::Key::direction ? vector_json(edit.value) : ordered_json(edit.value.x())}};
 }
 
 bool is_static(const ordered_json& description) {

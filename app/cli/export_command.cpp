@@ -6,6 +6,8 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
 #include "solver/io/export/export_csv.h"
 #include "solver/io/export/export_vtk.h"
 #include "solver/io/export/export_xdmf.h"
@@ -30,25 +32,27 @@ int export_command(const ExportOptions& options) {
         throw BadInput(
             fmt::format("{0}: is a scene, not a recording; topple run {0} -o {0}.h5 makes one", scene.name));
   const io::Recording recording = open_foreign_recording(options.recording);
+  defer_interrupts();
+  const auto proceed = [] { return !interrupted(); };
+  const auto end = [](bool whole, const std::string& target) {
+    if (!whole) say("interrupted; " + target + " is not written");
+    return whole ? k_done : k_interrupted;
+  };
   if (!options.xdmf.empty()) {
     require_writable_file("--xdmf", {options.xdmf, options.force}, host::FileKind::xdmf, options.recording);
     require_writable_file("--xdmf", {options.xdmf + ".h5", options.force}, host::FileKind::hdf5,
                           options.recording);
     if (std::filesystem::path(options.xdmf).filename().string().find(':') != std::string::npos)
       throw BadInput("--xdmf: " + options.xdmf + ": ParaView finds no data behind a name with a colon");
-    io::export_xdmf(recording, {options.xdmf, options.force});
-    return k_done;
+    return end(io::export_xdmf(recording, {options.xdmf, options.force}, proceed), options.xdmf);
   }
   const std::string& folder = options.csv.empty() ? options.vtk : options.csv;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder + ": cannot be created: " + error.message());
   require_writable_folder(folder, folder);
-  if (options.csv.empty())
-    io::export_vtk(recording, {folder, options.force});
-  else
-    io::export_csv(recording, {folder, options.force});
-  return k_done;
+  const auto& write = options.csv.empty() ? io::export_vtk : io::export_csv;
+  return end(write(recording, {folder, options.force}, proceed), folder);
 }
 
 }  // namespace

@@ -16,10 +16,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json vector(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 // Scaled so that the greatest displacement of a node is 1 m.
 ordered_json shape(const Body& body, const Mode& mode) {
   double greatest = 0;
@@ -28,8 +24,8 @@ ordered_json shape(const Body& body, const Mode& mode) {
   ordered_json nodes = ordered_json::array();
   for (int i = 0; i < body.node_count; ++i)
     nodes.push_back({{"node", i},
-                     {"displacement_m", vector(scale * mode.displacement[i])},
-                     {"rotation_rad", vector(scale * mode.rotation[i])}});
+                     {"displacement_m", vector_json(scale * mode.displacement[i])},
+                     {"rotation_rad", vector_json(scale * mode.rotation[i])}});
   return nodes;
 }
 
@@ -40,7 +36,7 @@ ordered_json describe(const Model& model, int body, int count) {
     modes.push_back({{"mode", modes.size() + 1},
                      {"frequency_Hz", mode.frequency},
                      {"rigid", mode.rigid},
-                     {"effective_mass_kg", vector(mode.effective_mass)},
+                     {"effective_mass_kg", vector_json(mode.effective_mass)},
                      {"shape", shape(b, mode)}});
   return {{"name", b.name}, {"mass_kg", b.mass}, {"modes", modes}};
 }

@@ -6,6 +6,8 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
+#include "app/support/interrupt.h"
+#include "app/support/log.h"
 #include "solver/io/recording/recover.h"
 
 namespace topple::app {
@@ -37,7 +39,11 @@ int recover_command(const RecoverOptions& options) {
   }
   const std::string to = options.output.empty() ? recovered_name(from) : options.output;
   require_writable_file("--output", {to, options.force}, host::FileKind::hdf5, from);
-  io::write_recovered(recording, rows, {to, options.force});
+  defer_interrupts();
+  if (!io::write_recovered(recording, rows, {to, options.force}, [] { return !interrupted(); })) {
+    say("interrupted; " + to + " is not written");
+    return k_interrupted;
+  }
   fmt::print("{}: {}, {} frames to {:g} s, {} checkpoints, {} events, {} edits\n", to, recording.status(),
              rows.frames.size(), recording.index()[static_cast<std::size_t>(rows.frames.back())].time,
              rows.checkpoints.size(), recording.events().size(), recording.history().edits.size());

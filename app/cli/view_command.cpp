@@ -19,7 +19,7 @@ namespace topple::app {
 namespace {
 
 constexpr double k_frame = 1. / 60;   // s, least time between two pictures
-constexpr double k_look = 0.1;        // s, how often an idle window looks for Ctrl+C
+constexpr double k_idle_wait = 0.1;   // s, how often an idle window looks for Ctrl+C
 constexpr int k_frames_of_input = 3;  // Dear ImGui shows the effect of input one or two frames later
 
 /// A Dear ImGui context that lasts as long as the window.
@@ -49,10 +49,10 @@ void show(render::Window& window, render::Stage& stage, Shell& shell) {
   Clock::time_point last = Clock::now(), next_frame = last;
   std::string title = shell.title();
   while (!window.should_close() && !shell.wants_to_close() && !interrupted()) {
-    const double wait = window.iconified() ? k_look
+    const double wait = window.iconified() ? k_idle_wait
                         : frames_due > 0   ? Seconds(next_frame - Clock::now()).count()
                         : shell.playing()  ? k_frame
-                                           : k_look;
+                                           : k_idle_wait;
     if (wait > 0)
       window.wait_events(wait);
     else

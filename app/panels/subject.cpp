@@ -17,7 +17,7 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// The value of greatest magnitude at the ends of a member's elements: between them it is linear, or less.
 template <typename At>
@@ -43,7 +43,7 @@ double beam_value(const Instant& now, std::size_t index) {
 
 double yield_ratio(const Instant& now, std::size_t index) {
   const Element& element = now.model.elements[now.model.members[index].first_element];
-  return std::isfinite(element.capacity[0]) ? beam_value<BeamQuantity::yield_ratio>(now, index) : k_nothing;
+  return std::isfinite(element.capacity[0]) ? beam_value<BeamQuantity::yield_ratio>(now, index) : k_no_value;
 }
 
 template <std::size_t component>
@@ -64,7 +64,7 @@ double slide_value(const Instant& now, std::size_t index) {
 double angular_velocity(const Instant& now, std::size_t index) {
   const io::FrameRow& from = now.before ? *now.before : now.row;
   const io::FrameRow& to = now.after ? *now.after : now.row;
-  if (!(to.time > from.time)) return k_nothing;
+  if (!(to.time > from.time)) return k_no_value;
   return log_quaternion(to.body[index].rotation() * from.body[index].rotation().conjugate()).norm() /
          (to.time - from.time);
 }
@@ -80,12 +80,12 @@ OverturnBarrier barrier(const Instant& now, std::size_t index) {
 
 double margin_value(const Instant& now, std::size_t index) {
   const double left = barrier(now, index).left;
-  return std::isfinite(left) ? left : k_nothing;
+  return std::isfinite(left) ? left : k_no_value;
 }
 
 double margin_share(const Instant& now, std::size_t index) {
   const OverturnBarrier b = barrier(now, index);
-  return std::isfinite(b.whole) && b.whole > 0 ? 100 * b.left / b.whole : k_nothing;
+  return std::isfinite(b.whole) && b.whole > 0 ? 100 * b.left / b.whole : k_no_value;
 }
 
 double displacement_value(const Instant& now, std::size_t index) {
@@ -104,7 +104,7 @@ double anchor_value(const Instant& now, std::size_t index) {
 
 double stretch_value(const Instant& now, std::size_t index) {
   const io::AnchorNumbers& anchor = now.row.anchor[index];
-  if (anchor.state == io::k_anchor_away || anchor.state == io::k_anchor_broken) return k_nothing;
+  if (anchor.state == io::k_anchor_away || anchor.state == io::k_anchor_broken) return k_no_value;
   const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) - now.model.anchors[index].to;
   return 1e3 * (span.norm() - anchor.natural_length);
 }

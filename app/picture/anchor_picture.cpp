@@ -8,7 +8,7 @@
 namespace topple::app {
 namespace {
 
-constexpr render::Float4 k_colour = {0.80f, 0.09f, 0.13f, 1};
+constexpr render::Float4 k_held_colour = {0.80f, 0.09f, 0.13f, 1};
 constexpr render::Float4 k_idle_colour = {0.93f, 0.45f, 0.42f, 1};  // carries nothing
 constexpr double k_band = 0.04, k_band_thickness = 0.016, k_rod = 0.016, k_plate = 0.042,
                  k_thimble = 0.032;      // m, width and radii
@@ -128,7 +128,7 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
                     static_cast<std::uint32_t>(anchor.body), first_profile);
     const bool strap = anchor.type == Anchor::Type::strap;
     const Shape shape = strap ? band : rod;
-    const render::Float4& colour = state == io::k_anchor_holds ? k_colour : k_idle_colour;
+    const render::Float4& colour = state == io::k_anchor_holds ? k_held_colour : k_idle_colour;
     painter.mark(plate, colour, from, direction);
     if (state == io::k_anchor_away) continue;
     painter.mark(thimble, colour, to, direction);
@@ -140,7 +140,7 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
       painter.draw(shape, k_idle_colour, {from, from + stump * fall});
       painter.draw(shape, k_idle_colour, {to, to + stump * back});
     } else if (state == io::k_anchor_holds) {
-      painter.draw(shape, k_colour, {from, to});
+      painter.draw(shape, k_held_colour, {from, to});
     } else if (strap) {
       painter.draw(shape, k_idle_colour, sagging(from, to, length));
     } else {

@@ -20,7 +20,7 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_width = 1280, k_height = 720, k_rate = 30;
+constexpr int k_width = 1280, k_height = 720, k_frame_rate = 30;
 constexpr std::size_t k_lines = 4;  // bodies that are spoken of
 /// Right of the words and above the trace.
 constexpr render::Room k_room{-0.36f, 0.95f, -0.8f, 0.9f};
@@ -111,12 +111,12 @@ int draw_ghost_video(const host::Target& target, const NamedReplay& of_a, const 
                      bool quiet) {
   try {
     const Actor a(of_a), b(of_b);
-    VideoWriter video(target, k_width, k_height, k_rate);
+    VideoWriter video(target, k_width, k_height, k_frame_rate);
     const double first = std::min(a.first(), b.first()), last = std::max(a.last(), b.last());
-    const int count = static_cast<int>(std::floor((last - first) * k_rate + 1e-6)) + 1;
+    const int count = static_cast<int>(std::floor((last - first) * k_frame_rate + 1e-6)) + 1;
     Progress progress("drawing", "pictures", count, quiet);
     const auto draw = [&](render::Picture& picture, int i) {
-      const render::SceneFrame frame = frame_of_both(a, b, first + static_cast<double>(i) / k_rate);
+      const render::SceneFrame frame = frame_of_both(a, b, first + static_cast<double>(i) / k_frame_rate);
       const auto corner = [](const render::Float3& x) { return Eigen::Vector3f(x.data()); };
       return picture.draw(frame, render::fit_box(render::sight_axes(render::sight_of(render::NamedView::iso)),
                                                  corner(frame.bounds_min), corner(frame.bounds_max), k_room,

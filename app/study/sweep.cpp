@@ -12,6 +12,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
+#include "solver/io/host/staged_file.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/parallel.h"
@@ -101,6 +102,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
   const auto give_up = time_is_over(options.quick, plan.start);
   SweepEnd end;
   end.file = plan.stem + ".rows";
+  if (!options.resume) host::expect_replaceable({end.file, options.force}, host::FileKind::json);
   ordered_json settings = plan.settings;
   settings["topple"] = TOPPLE_VERSION;
   study::KeptRows kept(end.file, settings, static_cast<int>(plan.order.size()), options.resume);

@@ -10,7 +10,7 @@
 
 namespace topple {
 
-/// Displacement of the attached point in a mode of the level elastic, reference axes, per amplitude.
+/// Displacement of the attached point in a mode of the level elastic, reference axes, 1/sqrt(kg).
 Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
 
 /// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's level.
@@ -19,19 +19,19 @@ struct AnchorPoint {
 };
 AnchorPoint anchor_point(const Model& model, const State& state, int anchor);
 
-/// Of every anchor at `state`, N and J.
+/// One per anchor of the model, at `state`.
 std::vector<AnchorForce> anchor_forces(const Model& model, const State& state);
 
-/// Puts anchors in place and takes them away as `parameters` say; sets `changed` of their bodies. False:
-/// nothing changed.
+/// Puts anchors in place and takes them away as `parameters` say; sets `changed`, one per body, of their
+/// bodies. False: nothing changed.
 bool switch_anchors(const Model& model, const Parameters& parameters, State& state,
                     std::vector<char>& changed);
 
-/// Breaks those that hold more than their strength. As switch_anchors.
+/// Breaks those whose |tension| is above their strength. `changed` and result as of switch_anchors.
 bool break_anchors(const Model& model, State& state, std::vector<char>& changed);
 
-/// Longest step that resolves the anchors at `state`, s: a twentieth of the period of a body on one that
-/// holds, the time until one begins to hold.
+/// Longest step that resolves the anchors at `state`, s: bounce_limit (step_limits.h) of a body on one that
+/// holds; of one that does not, the time until it does, but not less than that.
 double anchor_look_ahead(const Model& model, const State& state);
 
 }  // namespace topple

@@ -1,5 +1,4 @@
-// Anchors of a rigid or slightly deformed body (anchor.h). Vectors are in the floor's axes where nothing else
-// is said.
+// Anchors of a rigid or elastic body (anchor.h). Vectors are in the floor's axes where nothing else is said.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +12,15 @@ namespace topple {
 
 class BodyAnchors {
  public:
+  /// One anchor of the body.
   struct Tie {
     int index;                ///< into Model::anchors
     int node;                 ///< within the body
     Vec3 place;               ///< m, of the attached point from the centre of gravity, reference axes
-    std::vector<Vec3> shape;  ///< of the attached point, per mode, reference axes
+    std::vector<Vec3> shape;  ///< 1/sqrt(kg), anchor_shape() per mode
     AnchorState state;
-    Vec3 arm;  ///< m, from the centre of gravity, at the last find
-    AnchorForce now;
+    Vec3 arm;         ///< m, of the attached point from the centre of gravity, at the last find
+    AnchorForce now;  ///< at the last find
   };
 
   BodyAnchors(const Model& model, int body);
@@ -29,18 +29,19 @@ class BodyAnchors {
   /// Forces at the pose of `s`.
   void find(const BodyState& s);
 
-  bool any() const;     ///< in place
-  Vec3 force() const;   ///< N
-  Vec3 moment() const;  ///< N m, about the centre of gravity
-  double energy() const;
-  /// Adds what they do to the modes, N/sqrt(kg).
+  bool any() const;       ///< one is in place
+  Vec3 force() const;     ///< N
+  Vec3 moment() const;    ///< N m, about the centre of gravity
+  double energy() const;  ///< J
+  /// Adds their forces on the modes, N/sqrt(kg).
   void modal_loads(const BodyState& s, int modes, Amplitudes& load) const;
-  /// At the pose `s` that find had: adds derivatives by the velocity along which the place changes `gamma_dt`
-  /// times as much, s.
+  /// Adds `gamma_dt`, s, times the derivatives of force and moment by displacement and rotation: those by the
+  /// velocity in an implicit stage, which moves the body by gamma_dt times it. `s`: the pose that find had.
   void add_slope(const BodyState& s, double gamma_dt, ContactSlope& slope) const;
-  /// Adds -d(force)/d(place) to the stiffness of the body's six unknowns and its modes.
+  /// Adds -d(force, moment, modal loads)/d(displacement, rotation, amplitudes); 6 + modes rows and columns.
+  /// `s`: the pose that find had.
   void add_stiffness(const BodyState& s, int modes, Eigen::MatrixXd& stiffness) const;
-  /// Of those in place as stiff in all directions.
+  // Of those in place, taken to be as stiff in all directions.
   double greatest_stiffness() const;  ///< N/m, their sum
   double stiffest() const;            ///< 1/s^2: no squared frequency of the body on them is greater
   std::uint64_t hash() const;         ///< of which are in place

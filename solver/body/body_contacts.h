@@ -1,9 +1,11 @@
-// Contacts of a rigid or slightly deformed body with planes, its points four by four. Vectors are in the
-// floor's axes where nothing else is said.
+// Contacts of a rigid or elastic body with planes, four points to a pack. Vectors are in the floor's axes
+// where nothing else is said.
 //
-// What modes leave out of a body's deflection is local: each point of an elastic body stands on a spring of
-// its own, in series with its contact. That makes alpha softer; exactly for q = 1, else as at the depth that
-// bears a quarter of the weight.
+// What the modes leave out of an elastic body's deflection is taken to be local: a spring of its own at each
+// point, in series with the contact:
+//   alpha' = alpha/(1 + alpha slope give/L),  k_stick' = k_stick/(1 + give_across k_stick)
+// give, m/N: ElasticBasis::residual_shape of the point along the normal, give_across its mean across. slope:
+// dP/d(depth) over alpha, 1 for q = 1, else where a contact bears a quarter of the weight.
 #pragma once
 
 #include <array>
@@ -27,16 +29,17 @@ using PackMat3 = PackMatrix<double>;
 
 /// A contact law with what is the same at all contacts.
 struct PreparedLaw : ContactLaw {
-  double root_alpha, loss;  ///< normal_loss
-  double bend;              ///< m/s, the least speed over which forces leave their tangent
+  double root_alpha, loss;  ///< sqrt(alpha), normal_loss()
+  double bend;              ///< m/s, least smoothing speed of the law: how far a tangent by velocity is good
   bool in_packs;            ///< ContactLawTraits
-  bool plain;               ///< in_packs, linear in depth, one coefficient of friction
+  bool plain;               ///< in_packs, q = 1, static friction no higher than dynamic
   explicit PreparedLaw(const ContactLaw& law);
 };
 
+/// Velocity of a body.
 struct BodyVelocity {
   PackVec3 linear, angular;  ///< m/s of the centre of gravity, rad/s
-  Amplitudes rate;
+  Amplitudes rate;           ///< m sqrt(kg)/s, of the modes
 };
 
 /// What contacts do to a body: N, N m about the centre of gravity, W lost in normal damping and W that
@@ -45,42 +48,44 @@ struct ContactLoads {
   PackVec3 force, moment;
   double damping_power, friction_power;
 };
-/// What of them is summed up, the rest being undefined: nothing, force and moment, or all.
+/// Which of them are summed; the others are undefined. loads: force and moment.
 enum class ContactSums { none, loads, all };
 
-/// Derivatives of the force and the moment of contacts by linear and angular velocity.
+/// Derivatives of the force and the moment of contacts by linear and angular velocity: N s/m, N s, N s and
+/// N m s.
 struct ContactSlope {
   PackMat3 force_linear, force_angular, moment_linear, moment_angular;
 };
 
-/// Rows of a body's six unknowns and its modes, whole packs long.
+/// A matrix of a body's six unknowns and its modes; rows are padded to whole packs.
 using ModeMatrix = double[6 + k_modes][6 + k_modes + 2];
 
+/// The contact points of one body against all planes.
 class BodyContacts {
  public:
   using Points = PackVector<Four>;
   /// Four points of which some touch a plane.
   struct Touch {
-    int plane, group, side;
-    bool level;  // the plane is
+    int plane, group, side;  // indices into Model::planes, groups_, sides_
+    bool level;              // the plane's normal is (0, 0, 1)
     Four::Mask touching;
-    Four depth;
-    Points arm;     // m, from the centre of gravity
-    Points stick;   // m, travel since sticking began
-    Points travel;  // m, in the substep that led here
-    Four conservative, normal;
-    Four limit;  // N, of the tangential force (coulomb law)
-    Points tangential;
-    Four give, give_across;  // m/N, what the body gives way where it is pushed, less what its modes do
-    Four alpha;              // N, of the spring with what gives way behind it
-    Four stick_stiffness;    // N/m, likewise
-    Four stick_energy;
-    // N s/m, derivative of the force by the velocity: tangent_nn n n^T - tangent_identity I, and
-    // `tangent_rest` where something slips or the law is not coulomb's.
+    Four depth;                 // 1 - l/L
+    Points arm;                 // m, from the centre of gravity
+    Points stick;               // m, travel since sticking began
+    Points travel;              // m, in the substep that led here
+    Four conservative, normal;  // N: Eq. 2, and with the loss of the law
+    Four limit;                 // N, of the tangential force (coulomb law)
+    Points tangential;          // N
+    Four give, give_across;     // m/N, local flexibility along the normal and across it (top of this file)
+    Four alpha;                 // N, in series with it
+    Four stick_stiffness;       // N/m, likewise
+    Four stick_energy;          // J
+    // N s/m, derivative of the force by the point's velocity (evaluate_forces): tangent_nn n n^T -
+    // tangent_identity I, and `tangent_rest` where something slips or the law is not in packs.
     Four tangent_nn, tangent_identity;
     bool has_tangent_rest;
     PackMatrix<Four> tangent_rest;
-    Four drag;  // N s/m, of what sticks, less its derivative along the plane
+    Four drag;  // N s/m, -d(force)/d(velocity) along the plane of what sticks, 0 of what slips
   };
 
   /// Memory for what touched at the start of a substep, by the number of pairs.
@@ -121,35 +126,37 @@ class BodyContacts {
   void find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick);
   /// The springs follow the motion from `before`, with rotation matrix `r0`, to what find was given.
   void follow(const BodyState& before, const PackMat3& r0, const BodyState& s, const PackMat3& r);
-  /// Forces of what touches. with_slope: slope and slope_of_modes give their derivatives along which the
-  /// place changes `gamma_dt` times as much as the velocity, s.
+  /// Forces of what touches at velocity u. with_slope: also d(force)/d(velocity) + gamma_dt
+  /// d(force)/d(place), for slope() and add_slope_of_modes(). gamma_dt, s: an implicit stage moves a point by
+  /// gamma_dt times its velocity; 0: the place is given.
   template <bool with_slope, ContactSums sums = ContactSums::all>
   ContactLoads evaluate_forces(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt);
-  /// On the modes, N/sqrt(kg), with the forces found last.
+  /// On the modes, N/sqrt(kg), of the forces found last.
   void modal_loads(int modes, Amplitudes& load) const;
+  /// Of the forces found last with slopes; of their stick springs alone.
   ContactSlope slope() const;
-  /// That of stick springs alone, with the forces found last with slopes.
   ContactSlope stick_slope() const;
-  /// Adds `factor` times the derivatives that concern modes to rows and columns from the seventh on; six rows
-  /// of the body, then the modes.
+  /// Adds `factor`, s, times the derivatives by rates of modes and of modal loads: to the rows and columns of
+  /// the modes, which follow the body's six.
   void add_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;
-  /// Springs after slipping; those of the start of the substep are let go.
+  /// Writes the stick springs after slipping; those of points that touched at the start of the substep and no
+  /// longer do become zero.
   void keep_sticks(const PreparedLaw& law, std::span<Vec3> stick);
 
-  /// J, of springs.
+  /// J, in penalty and stick springs.
   double energy(const ContactLaw& law) const;
-  /// J, what stick springs hold more than at the start of the substep.
+  /// J, of stick springs, over the substep.
   double stick_energy_gained() const;
   /// Work of damping and friction over a substep, by the trapezoidal rule along the travel of the points.
   void book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r, StepEnergy& booked) const;
-  /// What a law that changed over a substep put into springs.
+  /// What a law that changed over a substep put into springs: input (LawChange).
   void book_law_change(const ContactLaw& before, const ContactLaw& after, StepEnergy& booked) const;
 
-  /// When the next point comes to a plane, s from now, with the acceleration of this instant; infinite: not
-  /// `within`. m/s^2; rad/s^2, material axes.
+  /// Time until the next open point of the undeformed body reaches a plane, s, with these accelerations
+  /// (m/s^2; rad/s^2, material axes); infinite: not within `within`, s.
   double next_landing(const BodyState& s, const Vec3& acceleration, const Vec3& angular_acceleration,
                       double within) const;
-  /// k_longest_step, or less: the time to touch, or that in which contacts close and bounce.
+  /// Longest step, s: least of contact_ahead and bounce_limit (step_limits.h) and k_longest_step.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
   bool any() const { return now_.count > 0; }
@@ -163,23 +170,23 @@ class BodyContacts {
   double length(const Touch& touch, int lane) const { return side(touch).L[lane]; }
   /// N, of one that touches.
   Vec3 force(const Touch& touch, int lane) const { return topple::lane(force(touch), lane); }
-  /// N s/m, derivative by its velocity, likewise.
+  /// N s/m, its derivative by the point's velocity.
   Mat3 slope(const Touch& touch, int lane) const;
-  /// Of the contact alone, without what gives way behind it.
+  /// 1 - l/L of the contact alone, without the local spring behind it.
   double own_depth(const Touch& touch, int lane) const {
     return touch.depth[lane] -
            (gives_ ? touch.give[lane] * touch.conservative[lane] / length(touch, lane) : 0);
   }
-  /// m, from the centre of gravity, reference axes, and N of one that touches; its k-th mode.
+  /// Of one that touches, reference axes: m, from the centre of gravity; 1/sqrt(kg), displacement in mode k.
   Vec3 place(const Touch& touch, int lane) const { return topple::lane(groups_[touch.group].place, lane); }
   Vec3 shape(const Touch& touch, int lane, int k) const {
     return topple::lane(groups_[touch.group].shape[k], lane);
   }
-  /// 1/(kg m): no squared frequency of the body on its contacts over alpha is greater.
+  /// 1/(kg m): over alpha, no squared frequency of the body on springs alpha/L at all contacts is greater.
   double stiffest() const { return stiffest_; }
-  /// Of a point and a plane.
+  /// Pairs of a point and a plane, groups filled up to four points.
   std::size_t pairs() const { return sides_.size() * 4; }
-  double least_length() const { return least_length_; }
+  double least_length() const { return least_length_; }  ///< m, least L
   /// kg, the share of the body that a contact carries.
   double share_of_mass() const { return contact_mass_; }
 

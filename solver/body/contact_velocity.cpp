@@ -9,10 +9,10 @@
 namespace topple {
 namespace {
 
-constexpr double k_insertion_error = 1e-5;  // of the speed; of adaptive runs in this share of the tolerance:
-constexpr double k_insertion_share = 0.01;
+constexpr double k_iterate_error = 1e-5;  // of the speed; of adaptive runs in this share of the tolerance:
+constexpr double k_iterate_share = 0.01;
 constexpr double k_contracts = 0.5;  // from one fixed-point iteration to the next, at least
-constexpr int k_most_insertions = 3;
+constexpr int k_most_iterates = 3;
 constexpr double k_velocity_error = 1e-7;  // of the speed, by Newton
 constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
 constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
@@ -60,13 +60,13 @@ double speed_of(double reach, const BodyVelocity& u) {
 }  // namespace
 
 // By fixed-point iteration, to `error` of the speed; false: that does not contract.
-[[gnu::always_inline]] inline bool ReducedBody::insert_velocity(const ContactImpulse& impulse, double error,
-                                                                BodyVelocity& u, ContactLoads& loads,
-                                                                Amplitudes& load) {
+[[gnu::always_inline]] inline bool ReducedBody::iterate_velocity(const ContactImpulse& impulse, double error,
+                                                                 BodyVelocity& u, ContactLoads& loads,
+                                                                 Amplitudes& load) {
   const auto& [law, r, h, free, m] = impulse;
   const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
   double last = 0;
-  for (int pass = 0; pass < k_most_insertions; ++pass) {
+  for (int pass = 0; pass < k_most_iterates; ++pass) {
     const ContactLoads now = contacts_.evaluate_forces<false, ContactSums::loads>(law, u, 0);
     BodyVelocity next{mul_add(h / 2 / mass_, now.force, free.linear),
                       free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * now.moment)),
@@ -169,10 +169,9 @@ void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat
 // Begins with the u that is expected; by fixed-point iteration where that contracts, else by Newton.
 bool ReducedBody::solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
                                  ContactLoads& loads, Amplitudes& load, ReducedScratch& w) {
-  const double error = parameters.adaptive
-                           ? std::min(k_insertion_error, k_insertion_share * parameters.tolerance)
-                           : k_insertion_error;
-  return insert_velocity(impulse, error, u, loads, load) || correct_velocity(impulse, u, loads, load, w);
+  const double error = parameters.adaptive ? std::min(k_iterate_error, k_iterate_share * parameters.tolerance)
+                                           : k_iterate_error;
+  return iterate_velocity(impulse, error, u, loads, load) || correct_velocity(impulse, u, loads, load, w);
 }
 
 }  // namespace topple

@@ -12,10 +12,11 @@ namespace topple {
 struct ElasticBasis {
   int modes = 0;                     ///< k_modes, or all of a small body
   Amplitudes frequency;              ///< rad/s, ascending; zero beyond `modes`
-  Eigen::MatrixXd shape;             ///< 6 nodes x modes, v M v = 1
-  Eigen::MatrixXd section;           ///< 6 elements x modes, N and N m
-  Eigen::MatrixXd residual_shape;    ///< 6 nodes x 3 nodes: static, by a force on a node, less the modes'
-  Eigen::MatrixXd residual_section;  ///< 6 elements x 3 nodes
+  Eigen::MatrixXd shape;             ///< 6 nodes x modes, v^T M v = 1: 1/sqrt(kg), rad/(m sqrt(kg))
+  Eigen::MatrixXd section;           ///< 6 elements x modes, N and N m per amplitude
+  Eigen::MatrixXd residual_shape;    ///< 6 nodes x 3 nodes, m/N, rad/N: static deflection by a unit
+                                     ///< force on a node of the free body, less that of the modes
+  Eigen::MatrixXd residual_section;  ///< 6 elements x 3 nodes, N and N m per newton
   Eigen::VectorXd mode_yield;        ///< modes: greatest sqrt(f + 1) at ends of elements per amplitude
   Eigen::VectorXd residual_yield;    ///< 3 nodes: likewise per newton
   Eigen::VectorXd mode_rotation;     ///< modes: greatest rotation of a node per amplitude, rad

@@ -6,6 +6,7 @@
 
 namespace topple {
 
+/// One system of frames (islands.h).
 class FramePart final : public Part {
  public:
   /// `system` and `sections`, of every element of the model, outlive this.

@@ -188,7 +188,7 @@ ReducedBody::ImplicitOutcome ReducedBody::implicit_substep(const Parameters& par
 }
 
 // A first guess at a substep that follows a touch.
-double ReducedBody::first_part(const ContactLaw& law) const {
+double ReducedBody::first_substep(const ContactLaw& law) const {
   const double contact =
       std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
   return k_resolved *
@@ -199,14 +199,14 @@ double ReducedBody::next_landing(const BodyState& s, double within) const {
   return contacts_.next_landing(s, s.force / mass_, angular_acceleration(s), within);
 }
 
-StepStatus::Kind ReducedBody::advance_stiffly(const Parameters& parameters, const StepInputs& start,
-                                              const StepInputs& end, double h, BodyState& s,
-                                              std::span<Vec3> stick, StepEnergy& booked) {
+StepStatus::Kind ReducedBody::advance_implicit(const Parameters& parameters, const StepInputs& start,
+                                               const StepInputs& end, double h, BodyState& s,
+                                               std::span<Vec3> stick, StepEnergy& booked) {
   const double floor = k_speed_floor * std::sqrt(parameters.gravity.norm() * reach_);
   StepInputs from = start;
   double left = h, growth = k_most_growth;
   while (left > 0) {
-    const double first = first_part(from.law);
+    const double first = first_substep(from.law);
     double size = s.substep > 0 ? s.substep : first;
     if (const double landing = next_landing(s, std::min(size, left)); landing < size)
       size = std::max(landing, std::min(size, first));

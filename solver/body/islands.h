@@ -1,4 +1,4 @@
-// The systems that frames which may touch each other make.
+// Islands: frames that may touch each other are stepped as one system of equations.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace topple {
 
-/// Systems of frames that may touch each other: what happens in one does not depend on the others. Bodies
-/// whose nodes are all held, and those on other levels, are in none.
+/// Connected components of the candidate pairs: what happens in one does not depend on the others. Bodies
+/// whose nodes are all held by supports, and those on other levels, are in none.
 class Islands {
  public:
   explicit Islands(const Model& model);
@@ -27,8 +27,8 @@ class Islands {
 
   const Model& model_;
   std::vector<bool> held_;
-  std::vector<char> frame_;  // not held
-  std::vector<ElementPair> near_;
+  std::vector<char> frame_;        // not held
+  std::vector<ElementPair> near_;  // pairs of the last arrange
   std::vector<std::unique_ptr<BodySystem>> alone_, joined_, joined_before_;
   std::vector<BodySystem*> systems_;
 };

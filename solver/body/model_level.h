@@ -4,10 +4,10 @@
 // for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
 // elastic. Every body is a frame while another is near (State::candidate_pairs), and an automatic one too
 // once
-//   - a section could have sqrt(f + 1) > k_near_yield,
-//   - a node could turn by more than k_small_rotation relative to the body.
-// It comes down when none of that held for k_calm_for, no hinge ever formed in it, and its strain energy is
-// below k_negligible m g reach.
+//   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
+//   - a node could turn by more than k_small_rotation relative to the body (sum over the modes).
+// It comes down to its base level when no other body is near, no hinge ever formed in it, and for k_calm_for
+// sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
 //
 // Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the rigid
 // motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is left.
@@ -24,12 +24,12 @@
 
 namespace topple {
 
-inline constexpr double k_slow_contact = 0.5;
-inline constexpr double k_near_yield = 0.9;
+inline constexpr double k_slow_contact = 0.5;     ///< bounce on contacts over first elastic mode, frequencies
+inline constexpr double k_near_yield = 0.9;       ///< sqrt(f + 1)
 inline constexpr double k_small_rotation = 0.02;  ///< rad
-inline constexpr double k_calm_yield = 0.45;
-inline constexpr double k_calm_for = 0.2;  ///< s
-inline constexpr double k_negligible = 1e-4;
+inline constexpr double k_calm_yield = 0.45;      ///< sqrt(f + 1)
+inline constexpr double k_calm_for = 0.2;         ///< s
+inline constexpr double k_negligible = 1e-4;      ///< strain energy over m g reach
 
 /// A few words: "a section is near yield".
 const char* name(LevelReason reason);
@@ -40,7 +40,7 @@ struct LevelChoice {
   LevelReason reason;
 };
 
-/// What a scene asks for.
+/// What a scene asks a body to be computed as.
 struct BodyModelTraits {
   BodyModel kind;
   const char* word;  ///< in scenes
@@ -53,17 +53,19 @@ inline const BodyModelTraits& traits(BodyModel model) {
   return row_of(body_models(), model);
 }
 
-/// Whether a body can be computed as `model`: rigid and frame always, but for one that stands on supports or
+/// Whether a body can be computed as `asked`: rigid and frame always, but for one that stands on supports or
 /// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
 bool can_be(const Model& model, int body, BodyModel asked);
 
-/// The choice of the traits; a frame where there is none.
+/// The level that Parameters::models leads to (BodyModelTraits::choose); frame where can_be() forbids it and
+/// for floors and walls made of members.
 LevelChoice base_level(const Model& model, const Parameters& parameters, int body);
 
 /// Positions, rotations and velocities of the nodes of all bodies that are not frames, from State::bodies.
 void place_nodes(const Model& model, State& state);
 
-/// BodyState of the nodes of a body, for `level`, which must not be frame.
+/// BodyState of a frame for `level`, rigid or elastic: rigid motion by best fit and momentum, the rest
+/// projected on the modes.
 BodyState reduce(const Model& model, const State& state, int body, ModelLevel level);
 
 }  // namespace topple

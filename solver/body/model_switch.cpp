@@ -71,7 +71,10 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   BodyState& s = state.bodies[b];
   const LevelChoice& base = base_[b];
   if (base.level == ModelLevel::frame) return base;
-  if (near_[b]) return {ModelLevel::frame, LevelReason::near};
+  if (near_[b]) {
+    s.calm_since = -1;
+    return {ModelLevel::frame, LevelReason::near};
+  }
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
     const bool calm = !is_bent(model, state, b) &&

@@ -8,15 +8,17 @@
 
 namespace topple {
 
+/// Chooses the level of each body and converts its state when that changes.
 class ModelSwitch {
  public:
   explicit ModelSwitch(const Model& model);
-  /// The parameters changed.
+  /// Call when the parameters changed.
   void forget() { base_.clear(); }
-  /// Every body on its base, or a frame where another is near. Nothing is booked: the run begins here.
+  /// Every body on its base level, or a frame where another is near. No energy is booked: the run begins
+  /// here.
   void start(const Model& model, const Parameters& parameters, State& state, Parts& parts);
-  /// Contacts of what is not a frame, then the models with which `state` goes on. True: a body became a frame
-  /// or is one no longer.
+  /// Finds the contacts of rigid and elastic bodies, then changes the levels of bodies that need it and books
+  /// EnergyLedger::model_switch. True: a body became a frame or is one no longer.
   bool update(const Model& model, const Parameters& parameters, const StepInputs& now, State& state,
               Parts& parts);
 

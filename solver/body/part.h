@@ -1,4 +1,4 @@
-// What a step advances: bodies that meet no others within it, whatever they are computed as.
+// What a step advances on its own: some bodies that touch no body of another part within it.
 #pragma once
 
 #include <span>
@@ -23,7 +23,7 @@ struct StepSpan {
   const StepInputs& start;
   const StepInputs& end;
   double h;
-  int halvings;  ///< the implicit methods halve it so often when Newton does not converge
+  int halvings;  ///< how often the implicit methods of frames may halve h when Newton does not converge
 };
 
 /// What became of a part in a step.
@@ -35,8 +35,8 @@ struct PartOutcome {
 
 /// Where the greatest normal contact force acts.
 struct HardestContact {
-  double force = 0;  ///< N
-  int body = -1, node = -1, element = -1;
+  double force = 0;                        ///< N
+  int body = -1, node = -1, element = -1;  ///< indices into the model; -1: none
 };
 
 /// Forces between bodies and planes, and between members.
@@ -45,29 +45,30 @@ struct Forces {
   std::vector<MemberForce> members;
 };
 
-/// Parts of one model share no body: each changes its own bodies' entries of a State alone, but for what
-/// touching members remember (take_sticks).
+/// Parts of one model share no body: each changes only its own bodies' entries of a State, but for the stick
+/// springs between members, which are one list (take_sticks).
 class Part {
  public:
   virtual ~Part() = default;
-  /// Whether one of its bodies is marked.
+  /// Whether one of its bodies is marked; `marked`: one per body of the model.
   virtual bool has(const std::vector<char>& marked) const = 0;
   /// Rest under gravity, as settle() of step.h.
   virtual StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) = 0;
-  /// Accelerations and contacts from the balance of forces; of its bodies that are marked,
-  /// and of those they may touch; returns what these hold.
+  /// Contacts and accelerations from the balance of forces, of its marked bodies and of those they may touch;
+  /// returns the energies of these.
   virtual BodyEnergy balance(const Parameters& parameters, const StepInputs& now,
                              const std::vector<char>& marked, State& state) = 0;
   /// `next`: the state at the start; becomes that at the end. After a failure the part's bodies are
   /// undefined.
   virtual void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) = 0;
-  /// Longest step that resolves how its bodies touch and turn, s.
+  /// Longest step that resolves how its bodies touch and turn, s (step_limits.h).
   virtual double time_limit(const Parameters& parameters, const State& state) = 0;
-  /// Appends its forces at `state`; those of the sections of bodies of few unknowns are found too.
+  /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.
   virtual void list_forces(const StepInputs& now, const State& state, Forces& forces) = 0;
-  /// Of the newest step; `hardest` where none is harder.
+  /// That of the newest step, or `hardest` where none of its own is greater.
   virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
-  /// Keeps what touching members remember to itself until give_sticks, while parts advance side by side.
+  /// Until give_sticks it works on a copy of the stick springs between members, so that parts can advance in
+  /// parallel; then those of its own pairs go back.
   virtual void take_sticks(const State&) {}
   virtual void give_sticks(State&) {}
 };

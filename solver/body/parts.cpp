@@ -62,8 +62,9 @@ double Parts::time_limit(const Parameters& parameters, const State& state) {
 std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state) {
   ContactLaw law = parameters.contact;
   if (parameters.contact_ramp.over > 0) {
-    law.alpha = std::max(law.alpha, parameters.contact_before.alpha);
-    law.q = std::max(law.q, parameters.contact_before.q);
+    const ContactLaw& before = parameters.contact_before;
+    law.alpha = std::max(law.alpha, before.alpha);
+    if (stiffness_bound(before).normal > stiffness_bound(law).normal) law.q = before.q;
   }
   std::optional<ExplicitLimit> least;
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {

@@ -16,34 +16,36 @@ struct ExplicitLimit {
   int body, node, element;
 };
 
+/// The bodies of a model, divided into parts for one step.
 class Parts {
  public:
   explicit Parts(const Model& model);
 
-  /// For the models of bodies, the pairs that may touch and the anchors of `state`. A few bodies of few
-  /// unknowns are one part; their parts come first, in the order of bodies.
+  /// Divides by the levels of bodies and the candidate pairs of `state`. Rigid and elastic bodies, of which
+  /// some make one part, come first, in the order of bodies.
   void arrange(const State& state);
   const std::vector<std::unique_ptr<Part>>& all() const { return parts_; }
-  /// A step moves nodes: there are frames.
+  /// Whether a step moves nodes: there are frames.
   bool moves_nodes() const { return !islands_.systems().empty(); }
 
   /// Part::balance of those that are marked; of all.
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state);
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);
-  /// What the motion at `state` allows, s: look_ahead, T_contact/20 of a body that touches, the time to touch
-  /// or L/(4 v) where a contact closes, 0.1/|omega|.
+  /// Longest step that the motion at `state` allows, s, at least 2 k_least_step: look_ahead()
+  /// (step_control.h), and of each part T_contact/20 of a body that touches, max(time to touch, L/(4 v))
+  /// where a contact closes, 0.1 rad/|omega| (step_limits.h).
   double time_limit(const Parameters& parameters, const State& state);
-  /// Of the frames of `state`, each alone with all contacts closed, with the stiffer of the two laws between
-  /// which an edit changes; none without frames.
+  /// Least over the frames of `state`, each alone with all contacts closed, with the stiffer of the two laws
+  /// between which an edit changes; none without frames.
   std::optional<ExplicitLimit> explicit_limit(const Parameters& parameters, const State& state);
 
-  /// One body as one of few unknowns, with the anchors of `state`; as nodes.
+  /// One body as a rigid or elastic one, with the anchors of `state`; as a frame.
   ReducedBody& reduced(const State& state, int body);
   BodySystem& alone(int body) { return *islands_.alone(body); }
 
-  /// Section forces of every element that the newest step, or balance, left; of bodies that are not frames
-  /// those that Part::list_forces found last.
+  /// Per element of the model, as the newest step or balance left them; of rigid and elastic bodies as
+  /// Part::list_forces found them last.
   std::vector<SectionForces> sections;
 
  private:

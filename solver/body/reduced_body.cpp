@@ -67,7 +67,7 @@ Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
   return unpacked(inverse_inertia_ * (moment - cross(omega, inertia_ * omega)));
 }
 
-void ReducedBody::find_swing(double h, double damping) {
+void ReducedBody::find_propagator(double h, double damping) {
   if (free_step_ == h && free_damping_ == damping) return;
   free_step_ = h;
   free_damping_ = damping;
@@ -105,7 +105,7 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
 }
 
 // The longest substep that is stable on what touches.
-double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
+double ReducedBody::stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
   const int m = modes(s);
   const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
   if (!contacts_.any() && !anchors_.any()) return swing / parameters.finer_parts;
@@ -114,14 +114,14 @@ double ReducedBody::stable_part(const Parameters& parameters, const ContactLaw& 
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.level == s.level)
       return known.step / parameters.finer_parts;
-  const double step = find_stable_part(law, s, swing);
+  const double step = find_stable_substep(law, s, swing);
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
   return step / parameters.finer_parts;
 }
 
 // Not above `swing`, with springs and stick springs as stiff as they get, in all directions.
-double ReducedBody::find_stable_part(const ContactLaw& law, const BodyState& s, double swing) const {
+double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& s, double swing) const {
   const int m = modes(s), n = 6 + m;
   const Mat3 root = model_.bodies[body_].inertia.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 + k_modes, 6 + k_modes>;
@@ -234,7 +234,7 @@ struct ReducedBody::ExplicitSubstep {
     const Parameters& parameters, const StepInputs& start, const StepInputs& end, double h, BodyState& s) {
   ExplicitSubstep substep{start, end, h, s.level == ModelLevel::elastic, s, {}, {}, {}, {}, {}};
   if (substep.bends) {
-    find_swing(h, damping_time(model_, parameters, body_));
+    find_propagator(h, damping_time(model_, parameters, body_));
     each_four_modes([&](int k) { store(&s.rate[k], load(&s.rate[k]) * load(&damped_[k])); });
   }
   substep.rate0 = s.rate;
@@ -296,9 +296,9 @@ struct ReducedBody::ExplicitSubstep {
 }
 
 // As book_work, and what the method itself takes out, from its own kinematics.
-[[gnu::always_inline]] inline void ReducedBody::book_swing(const Parameters& parameters,
-                                                           const ExplicitSubstep& substep, const BodyState& s,
-                                                           StepEnergy& booked) const {
+[[gnu::always_inline]] inline void ReducedBody::book_explicit(const Parameters& parameters,
+                                                              const ExplicitSubstep& substep,
+                                                              const BodyState& s, StepEnergy& booked) const {
   const BodyState& before = substep.before;
   const Vec3& shift = substep.shift;
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
@@ -342,12 +342,12 @@ ReducedBody::ExplicitOutcome ReducedBody::explicit_substep(const Parameters& par
   };
   contacts_.find(s, substep.r, stick);
   if (contacts_.hash() != touched)
-    if (const double stable = stable_part(parameters, start.law, s); stable < h)
+    if (const double stable = stable_substep(parameters, start.law, s); stable < h)
       return give_up(SubstepEnd::too_long, stable);
   contacts_.follow(substep.before, substep.r0, s, substep.r);
   anchors_.find(s);
   if (!push_at_end(parameters, substep, s, w)) return give_up(SubstepEnd::unsolved, h);
-  book_swing(parameters, substep, s, booked);
+  book_explicit(parameters, substep, s, booked);
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);
   respond_at<ContactSums::none>(end.law, s);
@@ -364,7 +364,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
   };
   double size =
-      !touches && s.level == ModelLevel::rigid ? h : parts_of(h, stable_part(parameters, start.law, s));
+      !touches && s.level == ModelLevel::rigid ? h : parts_of(h, stable_substep(parameters, start.law, s));
   bool stiff = s.level == ModelLevel::rigid && touches && (parameters.adaptive || size < h);
   double left = h, most = h;
   w.substep = 0;
@@ -379,7 +379,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
       if (last) break;
       left -= size;
       w.from = w.to;
-      size = std::min(parts_of(left, stable_part(parameters, w.from->law, s)), most);
+      size = std::min(parts_of(left, stable_substep(parameters, w.from->law, s)), most);
     } else if (swung.end == SubstepEnd::too_long) {
       stiff = s.level == ModelLevel::rigid;
       size = parts_of(size, swung.stable);
@@ -388,7 +388,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
       if (most < k_least_substep * h) return StepStatus::Kind::newton_diverged;
     }
   }
-  return stiff ? advance_stiffly(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
+  return stiff ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {
@@ -398,7 +398,7 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const 
   } else {
     if ((contacts_.any() || anchors_.any()) && s.substep > 0) limit = std::min(limit, s.substep);
     if (const double landing = next_landing(s, limit); landing < limit)
-      limit = std::max(landing, std::min(limit, first_part(law)));
+      limit = std::max(landing, std::min(limit, first_substep(law)));
   }
   const double turning = s.angular_velocity.norm();
   return turning * limit > k_turn ? k_turn / turning : limit;

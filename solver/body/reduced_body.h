@@ -1,21 +1,23 @@
-// A body of few unknowns, rigid or elastic, on planes.
+// A body of few unknowns (reduced model), rigid or elastic, on planes.
 //
-//   x_i = X + R (r_i + shape_i q),  u = (V, omega, dq/dt),  M = (m, R J R^T, 1)
+//   x_i = X + R (r_i + shape_i q),  u = (V, omega, dq/dt),  M = diag(m, R J R^T, 1)
 //
-// Inertia is that of the undeformed body. A step is taken in substeps, by one of two methods:
+// X: centre of gravity, q: modal amplitudes (ElasticBasis). Inertia is that of the undeformed body. A step is
+// taken in substeps, by one of two methods:
 //
 // Explicit, for modes and soft contacts, in substeps that are stable: half an impulse of what acts at the
 // start, free motion (exact for X and q; R keeps the angular momentum and is of second order), half an
 // impulse of what acts at the end, with contacts taken at the velocity that they leave:
-//   u1 = u_free + (h/2) M^-1 (G1 + sum_c J_c^T f_c(x1, J_c u1))
-// Damped modes lose exp(-2 zeta w h) of their rate at the start of a substep, so that what is at rest stays
-// so and an amplitude decays by exp(-zeta w h).
+//   u1 = u_free + (h/2) M^-1 (G1 + sum_c J_c^T f_c(x1, J_c u1)),  G1: gravity, floor and anchors
+// Rates of damped modes are multiplied by exp(-2 zeta w h) at the start of a substep: so what is at rest
+// stays at rest, and an amplitude decays as exp(-zeta w t).
 //
 // Implicit, for a rigid body on contacts that would make those substeps short: two stages of second order
 // that damp what is too fast for the substep (SDIRK2, gamma = 1 - 1/sqrt 2; Alexander 1977), on the rotation
 // vector from the start of the substep. The local error of the velocity, from the forces at the three
-// instants, decides how long a substep may be; the substep of it that is fast vibration of stick springs does
-// not count, since no result depends on it. A substep ends where a point is about to touch.
+// instants, decides how long a substep may be. It is filtered by (M - gamma h S)^-1 M with S the slope of the
+// stick springs: their fast vibration does not count, since no result depends on it. A substep ends where a
+// point is about to touch.
 #pragma once
 
 #include <array>
@@ -35,27 +37,27 @@ namespace topple {
 
 /// What all bodies share at an instant of a step.
 struct StepInputs {
-  double time;
+  double time;  ///< s
   PreparedLaw law;
   Vec3 floor;  ///< m/s^2, acceleration
   StepInputs(const Parameters& parameters, double t);
-  /// After `before`, an instant of the same parameters.
+  /// The same, for an instant after `before` with the same parameters: cheaper.
   StepInputs(const Parameters& parameters, double t, const StepInputs& before);
 };
 
-/// Scratch of a step, for one body after the other: Newton's matrix or its factors, a right side, and the
-/// ends of a substep. Factors serve the substeps of one step, no longer: a run that goes on from a state
-/// starts without.
+/// Scratch of a step, for one body after the other: factors of Newton's matrix, a right side, and the ends of
+/// a substep. Factors serve the substeps of one step, no longer: a run that goes on from a state has none,
+/// and must give the same bits.
 struct ReducedScratch {
   ModeMatrix matrix;
-  double substep = 0;          ///< s, of which the factors are; 0: none
-  std::uint64_t touching = 0;  ///< what touched
+  double substep = 0;          ///< s, size that the factors are for; 0: there are none
+  std::uint64_t touching = 0;  ///< BodyContacts::hash() that they are for
   double side[6 + k_modes];
   std::optional<StepInputs> from, to;
   std::vector<BodyContacts::TouchBuffer> buffers;
 };
 
-/// Constants of one body, and its contacts.
+/// One body: its constants, and its contacts and anchors as found last.
 class ReducedBody {
  public:
   ReducedBody(const Model& model, int body);
@@ -64,20 +66,21 @@ class ReducedBody {
   void remember(std::span<const AnchorState> anchors) { anchors_.remember(anchors); }
   /// Contacts of `s` with the springs `stick` (State::stick).
   void find_contacts(const StepInputs& now, const BodyState& s, std::span<const Vec3> stick);
-  /// What the body holds with the contacts found last.
+  /// Energies of the body with the contacts found last, J.
   BodyEnergy energy(const ContactLaw& law, const BodyState& s) const;
-  /// Contacts anew, and all that acts on the body into `s`; returns what it holds.
+  /// Finds the contacts, sets force, moment and load of `s`; returns the energies.
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, BodyState& s,
                      std::span<const Vec3> stick);
-  /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h later. `energy` is
-  /// added to. newton_diverged: the contacts have no converged forces; not_accurate; `s` is then undefined.
+  /// Advances `s` and `stick` from `start`, whose contacts were found last, to `end`, h (s) later; adds to
+  /// `energy`. newton_diverged: contact forces did not converge; not_accurate: no substep is short enough for
+  /// the tolerance; `s` is then undefined.
   StepStatus::Kind advance(const Parameters& parameters, const StepInputs& start, const StepInputs& end,
                            double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy,
                            ReducedScratch& scratch);
-  /// Rest under gravity on planes; false: none was found, or it tips over by itself.
+  /// Brings it to rest under gravity on planes; false: it has no rest, or tips over by itself.
   bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
-  /// As look_ahead of step_control.h; for a stiff rigid body the length of its next substep. Contacts of `s`
-  /// have been found.
+  /// Longest step that resolves contacts and turning, s. Elastic: BodyContacts::look_ahead. Rigid:
+  /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
   /// Index into the model of the node of a contact point.
@@ -87,21 +90,22 @@ class ReducedBody {
   /// Section forces of the body's elements at `s` under the contacts found last, into those of the model;
   /// zero on the level rigid.
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
-  /// Adds the displacements and rotations of all nodes that the contacts found last add to the modes'.
+  /// Adds to the nodes of `state` what the contacts found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;
-  /// Not below the greatest sqrt(f + 1) of any section.
+  /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
   double yield_bound(const BodyState& s) const;
-  /// Not below the greatest rotation of a node relative to the body, rad.
+  /// Upper bound of the rotation of a node relative to the body by the modes, rad.
   double rotation_bound(const BodyState& s) const;
 
  private:
-  /// Where the unknowns of a stage are counted from: m, rad, N s, N m s.
+  /// What the unknowns of an implicit stage start from: m, rad, N s, N m s.
   struct Origin {
     PackVec3 position, turn, momentum, spin;
   };
+  /// An implicit stage at its solution.
   struct Stage {
     BodyVelocity u;
-    PackVec3 turning;                      // rad/s, of the rotation vector
+    PackVec3 turning;                      // rad/s, derivative of the rotation vector
     PackVec3 spin;                         // N m s, angular momentum
     double damping_power, friction_power;  // W
   };
@@ -111,17 +115,17 @@ class ReducedBody {
   enum class SubstepEnd { reached, too_long, unsolved };
   struct ExplicitOutcome {
     SubstepEnd end;
-    double stable;  // s, of substeps
+    double stable;  // s, longest stable substep
   };
   struct ImplicitOutcome {
     SubstepEnd end;
-    double error;  // over what is allowed
+    double error;  // local error over the allowed one
   };
-  /// Half an impulse of contacts on a body that moves at `free` without it.
+  /// Half a substep's impulse of contacts, (h/2) F(u), on a body that moves at `free` without it.
   struct ContactImpulse {
     const PreparedLaw& law;
     const PackMat3& r;  // rotation matrix
-    double h;
+    double h;           // s
     const BodyVelocity& free;
     int modes;
   };
@@ -138,8 +142,8 @@ class ReducedBody {
 
   bool solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
                       ContactLoads& loads, Amplitudes& load, ReducedScratch& w);
-  bool insert_velocity(const ContactImpulse& impulse, double error, BodyVelocity& u, ContactLoads& loads,
-                       Amplitudes& load);
+  bool iterate_velocity(const ContactImpulse& impulse, double error, BodyVelocity& u, ContactLoads& loads,
+                        Amplitudes& load);
   bool correct_velocity(const ContactImpulse& impulse, BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
                         ReducedScratch& w);
   void factor_with_modes(const ContactImpulse& impulse, const PackMat3& inertia, ReducedScratch& w) const;
@@ -147,19 +151,19 @@ class ReducedBody {
                               double h, BodyState& s);
   bool push_at_end(const Parameters& parameters, const ExplicitSubstep& substep, BodyState& s,
                    ReducedScratch& w);
-  void book_swing(const Parameters& parameters, const ExplicitSubstep& substep, const BodyState& s,
-                  StepEnergy& energy) const;
+  void book_explicit(const Parameters& parameters, const ExplicitSubstep& substep, const BodyState& s,
+                     StepEnergy& energy) const;
   ExplicitOutcome explicit_substep(const Parameters& parameters, const StepInputs& start,
                                    const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
                                    StepEnergy& energy, ReducedScratch& w);
-  void find_swing(double h, double damping);
+  void find_propagator(double h, double damping);
   Vec3 drift(double h, BodyState& s) const;
-  double stable_part(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
-  double find_stable_part(const ContactLaw& law, const BodyState& s, double swing) const;
+  double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
+  double find_stable_substep(const ContactLaw& law, const BodyState& s, double swing) const;
 
-  StepStatus::Kind advance_stiffly(const Parameters& parameters, const StepInputs& start,
-                                   const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
-                                   StepEnergy& energy);
+  StepStatus::Kind advance_implicit(const Parameters& parameters, const StepInputs& start,
+                                    const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
+                                    StepEnergy& energy);
   ContactLoads reach_stage(const ImplicitSubstep& substep, const PreparedLaw& law, const Origin& from,
                            bool with_slope, BodyState& at, Stage& stage, PackMat3& r);
   bool solve_stage(ImplicitSubstep& substep, const StepInputs& now, const PackVec3& field, const Origin& from,
@@ -168,7 +172,7 @@ class ReducedBody {
                                    const StepInputs& end, double h, double allowed, BodyState& s,
                                    std::span<Vec3> stick, StepEnergy& energy);
   double next_landing(const BodyState& s, double within) const;
-  double first_part(const ContactLaw& law) const;
+  double first_substep(const ContactLaw& law) const;
 
   const Model& model_;
   const int body_;
@@ -177,7 +181,7 @@ class ReducedBody {
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
   BodyAnchors anchors_;
-  // What contacts_ was pressed for.
+  // What the forces of contacts_ were evaluated for.
   struct Found {
     ModelLevel level;
     Quat rotation;
@@ -187,9 +191,9 @@ class ReducedBody {
   };
   std::optional<Found> found_;
   Eigen::VectorXd section_;
-  // Swing of the modes over a step of this size: cosine, sine over frequency, less frequency times sine, and
-  // tan(x)/x of half the angle, by which impulses count so that a constant load leaves its static deflection;
-  // and what damping leaves of the rates.
+  // Exact free motion of the modes over free_step_, s: cos(w h), sin(w h)/w, -w sin(w h); tan(w h/2)/(w h/2),
+  // by which impulses are multiplied so that a constant load leaves its static deflection; exp(-2 zeta w h),
+  // factor on the rates by damping, free_damping_ being damping_time().
   double free_step_ = 0, free_damping_ = 0;
   Amplitudes cosine_, sine_, back_, kick_, damped_;
   // Stable substeps by what touches.

@@ -1,4 +1,4 @@
-// Some bodies of few unknowns, none of which is near another.
+// Some rigid and elastic bodies, none of which is near another.
 #pragma once
 
 #include <utility>
@@ -8,9 +8,10 @@
 
 namespace topple {
 
+/// Bodies that ReducedBody advances one after the other.
 class ReducedPart final : public Part {
  public:
-  /// The bodies with these numbers; they outlive this.
+  /// Index into the model, and the body, which outlives this.
   struct Member {
     int index;
     ReducedBody* body;

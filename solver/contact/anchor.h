@@ -3,9 +3,9 @@
 //   d = at - to,  l = |d|,  N = k (l - l0),  F = -N d/l on the body at `at`,  U = k/2 (l - l0)^2
 //
 // N > 0 pulls. A strap holds where l > l0 only, a pole where l < l0 only, a bracket always. An anchor breaks
-// for good at the end of the first step that leaves |N| above its strength. What it holds when it breaks or
-// is taken away is EnergyLedger::released. One that is put in place has the length that it has room for: it
-// starts without force. Taking a broken one away and putting it in place again replaces it.
+// for good at the end of the first step that leaves |N| above its strength. The energy that it holds when it
+// breaks or is taken away is booked as EnergyLedger::released. Putting it in place sets l0 to the present l,
+// so that it starts without force; a broken one is taken away first.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct AnchorState {
   AnchorHold hold = AnchorHold::in_place;
 };
 
-/// Whether it holds when its point is `length` away from the floor's, m.
+/// Whether it bears a force at the distance l = `length` of its ends, m.
 bool holds(const Anchor& anchor, const AnchorState& state, double length);
 
 struct AnchorForce {
@@ -31,14 +31,14 @@ struct AnchorForce {
   Vec3 force = Vec3::Zero();  ///< N, on the body
 };
 
-/// Of an anchor whose attached point is at `at`, m; nothing unless it is in place.
+/// Force of an anchor whose attached point is at `at`, m; zero where it does not hold.
 AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at);
 
-/// d(force)/d(at), N/m.
+/// d(force)/d(at), N/m; zero where it does not hold.
 Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at);
 
-/// Derivative of a force at the end of `arm`, and of its moment about the beginning, by displacement and
-/// rotation of the beginning: `tangent` is that of the force by its place.
+/// Derivative of a force at node + arm, and of its moment about the node, by displacement and spatial spin of
+/// the node; `tangent`: that of the force by the position at which it acts.
 Mat6 anchor_slope(const Mat3& tangent, const Vec3& arm, const Vec3& force);
 
 }  // namespace topple

@@ -6,8 +6,8 @@
 
 namespace topple {
 
-/// Period of the slowest body that bounces on the contacts it rests on, s: 2 pi sqrt(L depth / (q g)), with
-/// depth = (W / (n alpha))^(1/q) on the n contact points of its base. 0 without gravity or planes.
+/// Longest period with which a body bounces on the contacts that it rests on, s: 2 pi sqrt(L depth / (q g)),
+/// depth = (W / (n alpha))^(1/q), n contact points on its base. 0 without gravity or planes.
 double contact_period(const Model& model, const ContactLaw& law, const Vec3& gravity);
 
 /// The same of one body; 0 without gravity, planes or contact points.

@@ -1,6 +1,7 @@
-// The coulomb law at contacts, P: one (double) or four (Four).
-//   N = P (1 - m_n v_n/sqrt(v_n^2 + eps_n^2)); a stick spring with damping, capped at mu N, mu of
-//   friction_coefficient at the tangential velocity
+// The coulomb law, at one contact (template argument P: double) or four (Four).
+//   N = P (1 - m_n v_n/sqrt(v_n^2 + eps_n^2)),  m_n: normal_loss, eps_n: normal_speed
+//   T = -(k stick + c v_t), capped at mu(v_t) N
+// k, c: stick spring and its damping; v_t: tangential velocity.
 #pragma once
 
 #include <cmath>
@@ -11,9 +12,7 @@
 
 namespace topple {
 
-/// mu of the coulomb law at a slip speed whose square is `speed2`, m^2/s^2, between static and kinetic
-/// friction:
-///   mu + (mu_s - mu)/(1 + (v/slip_speed)^2)
+/// Friction between static and kinetic, mu + (mu_s - mu)/(1 + (v/slip_speed)^2); speed2: v^2, m^2/s^2.
 template <class T>
 T friction_coefficient(const ContactLaw& law, T speed2) {
   return law.friction + law.excess() / (1 + speed2 * (1 / (law.slip_speed * law.slip_speed)));
@@ -22,22 +21,22 @@ T friction_coefficient(const ContactLaw& law, T speed2) {
 template <class P>
 using MaskOf = decltype(P() <= P());
 
-/// `Across`: what lies across the normal.
+/// `Across`: type of tangential vectors.
 template <class P, class Across>
 struct CoulombForce {
   P inverse;           ///< s/m, 1/sqrt(v_n^2 + eps_n^2)
-  P factor, normal;    ///< N/P; N
-  Across stick, slip;  ///< m, m/s
-  Across trial;        ///< N, of the stick spring and its damping, against the force
-  P mu, limit;         ///< limit: N, mu N
-  MaskOf<P> sticks;    ///< also where nothing moves
-  bool slips;          ///< something that touches does
-  P scale;             ///< the tangential force over -trial; 0 where nothing touches
-  P inverse_size;      ///< 1/N, of trial; 0 where it sticks
+  P factor, normal;    ///< N/P; N, in newtons
+  Across stick, slip;  ///< tangential parts of travel, m, and velocity, m/s
+  Across trial;        ///< k stick + c slip, N: minus the force if it sticks
+  P mu, limit;         ///< mu; mu N, in newtons
+  MaskOf<P> sticks;    ///< |trial| <= limit
+  bool slips;          ///< some contact that touches does not stick
+  P scale;             ///< T = -scale trial; 0 where nothing touches
+  P inverse_size;      ///< 1/|trial|; 0 where it sticks
 };
 
-/// n: normal; v: m/s; stick: m, travel since sticking began; p: N, of Eq. 2's spring; k, c: N/m and N s/m, of
-/// the stick spring and its damping; loss: normal_loss. weakens: law.excess() > 0, or known not to be.
+/// loss: normal_loss; weakens: law.excess() > 0; n: normal; v: m/s; stick: m, travel since sticking began; p:
+/// P of Eq. 2, N; k, c: N/m and N s/m.
 template <class P, class Normal>
 [[gnu::always_inline]] inline auto coulomb_force(const ContactLaw& law, double loss, bool weakens,
                                                  const Normal& n, const PackVector<P>& v,
@@ -75,9 +74,10 @@ template <class P>
   return P(-loss * law.normal_speed * law.normal_speed) * p * inverse * inverse * inverse;
 }
 
-/// The derivative of the force is  (normal + across) n n^T - across I  and, where something slips, this: with
-/// `normal` that of N along n, `across` that of -trial times its scale, and by velocity, when friction
-/// weakens, that of mu.
+/// What slip adds to the derivative of the force by position or velocity, which is otherwise
+///   (normal + across) n n^T - across I,
+/// normal: dN by motion along n; across: scale times that of trial (k, c or a mix of them). weakens: adds
+/// d(mu)/dv; only by velocity.
 template <class P, class Across, class Normal>
 [[gnu::always_inline]] inline PackMatrix<P> slip_slope(const ContactLaw& law, bool weakens,
                                                        const CoulombForce<P, Across>& f, const Normal& n,
@@ -92,13 +92,13 @@ template <class P, class Across, class Normal>
   return outer(in_space(along), side_way);
 }
 
-/// J, of a stick spring whose force is capped; travel2: m^2.
+/// Energy of a stick spring, J, its force capped at `limit`, N; k: N/m; travel2: its travel squared, m^2.
 template <class P>
 [[gnu::always_inline]] inline P stick_energy(P k, P travel2, P limit) {
   const P spring2 = k * k * travel2;
   return P(0.5) / k * choose(spring2 <= limit * limit, spring2, limit * limit);
 }
-/// What is left of its travel, a share.
+/// Share of its travel that is left when the force is capped; 0 where nothing touches.
 template <class P>
 [[gnu::always_inline]] inline P held_share(P k, P travel2, P limit, MaskOf<P> touching) {
   using std::sqrt;

@@ -2,10 +2,10 @@
 //
 // Two elements a and b hold the energy
 //   E = kappa U(l) + (1 - kappa)/4 (sum of U at the two ends of a over b and of b over a),
-// U the energy of Eq. 2 with hardening (contact_law.h), l the distance where the centre lines are nearest,
-// kappa = x^2 (3 - 2 x), x = sin^2 of their angle over k_parallel. Side by side they touch at two places with
-// half weights; forces are derivatives of E, kappa's included, so that nothing but damping and friction takes
-// energy. Forces act on centre lines.
+// U: penalty_energy with hardening, l: distance where the centre lines are nearest, kappa = x^2 (3 - 2 x),
+// with x = sin^2 of their angle over k_parallel, at most 1. So nearly parallel elements touch at their ends
+// and do not chatter about one moving point. Forces are derivatives of E, kappa's included: only damping and
+// friction take energy. They act on centre lines.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace topple {
 
-inline constexpr double k_parallel = 1e-2;  ///< of sin^2: less is blended
+inline constexpr double k_parallel = 1e-2;  ///< sin^2 of the angle below which kappa < 1
 
 /// A stick spring between members: tangential travel since sticking began, m. Part of State.
 struct MemberStick {
@@ -32,8 +32,8 @@ struct MemberPair {
   ElementPair elements;
   std::array<int, 4> node;    ///< ends of a, then of b, numbered within the system
   double L;                   ///< m
-  double mass;                ///< kg, share of the bodies that a contact carries
-  std::array<Vec3, 4> start;  ///< m, of the nodes where the step began: on which side they were
+  double mass;                ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
+  std::array<Vec3, 4> start;  ///< m, positions of the nodes where the step began: they tell the side
   std::array<Vec3, 5> stick;  ///< m, per place, where the step began
 };
 
@@ -41,8 +41,8 @@ struct MemberPair {
 struct MemberTouch {
   int pair;   ///< within the system
   int place;  ///< 0: where they are nearest; 1, 2: first and second end of a over b; 3, 4: of b over a
-  std::array<double, 4> share;  ///< of the ends: motion of a's point relative to b's is sum share x
-  double weight;                ///< of its energy in the pair's
+  std::array<double, 4> share;  ///< of the ends' motion in that of a's point relative to b's: sum share x
+  double weight;                ///< of its U in E: kappa or (1 - kappa)/4
   NearestPoints at;
   std::array<Vec3, 4> ends;  ///< m, of a, then of b
   Vec3 normal;               ///< unit, from b to a; keeps its side while l goes through zero
@@ -52,14 +52,16 @@ struct MemberTouch {
   ContactOutput out;
 };
 
-/// Part of the force that turns two nearly parallel elements: -kappa' (U - sum U/4) d(sin^2)/dx.
+/// Part of the force of two nearly parallel elements by kappa' = d(kappa)/d(sin^2):
+///   -kappa' (U - (sum of U at the ends)/4) d(sin^2)/dx
 struct MemberBlend {
   int pair;
-  double slope, curvature;                  ///< of kappa by sin^2
-  double surplus;                           ///< J, U where they are nearest less that of the four ends
-  std::array<Vec3, 4> by_sine, by_surplus;  ///< derivatives by the nodes
+  double slope, curvature;                  ///< kappa' and kappa''
+  double surplus;                           ///< J, the bracket
+  std::array<Vec3, 4> by_sine, by_surplus;  ///< derivatives of sin^2 and of the bracket by the nodes
 };
 
+/// All that touches between members at some instant.
 struct MemberContacts {
   std::vector<MemberTouch> touches;
   std::vector<MemberBlend> blends;
@@ -73,8 +75,8 @@ struct MemberContacts {
 /// Relative motion of a touch: sum share x over the nodes of its pair.
 Vec3 relative(const MemberTouch& touch, const MemberPair& pair, std::span<const Vec3> x);
 
-/// What touches at `position` and `velocity` (per node of the system), with forces; `start`: positions where
-/// the sticks of `pairs` are from.
+/// What touches at `position` and `velocity` (per node of the system), with forces. `start`: positions at the
+/// instant of the stick springs of `pairs`.
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found);
@@ -82,17 +84,17 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
 
-/// Adds -d(force)/d(position) - velocity_factor d/d(velocity), but for the turning of kappa's derivative.
+/// Adds -d(force)/d(position) - velocity_factor d(force)/d(velocity), the factor in 1/s, without the second
+/// derivatives of sin^2 and, below l = 0.02 L, without the turning of the normal.
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                  double velocity_factor, BlockLu& lu);
 
-/// J, held in normal springs (not that of the printed law) and stick springs.
+/// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
                      std::span<const MemberPair> pairs);
 
-/// First pair that went through each other, or moved more than half of L relative to each other while near:
-/// the step from `start` to `end` is too long to see what happened between. -1: none, as below a relative
-/// speed of L/(2 h).
+/// First pair that went through each other, or moved by more than L/2 relative to each other within reach:
+/// the step from `start` to `end` (positions) is too long to see what happened between. -1: none.
 int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pairs,
                   std::span<const Vec3> start, std::span<const Vec3> end);
 

@@ -1,4 +1,4 @@
-// Which elements of different bodies are near each other, and where their centre lines are nearest.
+// Candidate pairs: elements of different bodies that may touch soon. And where centre lines are nearest.
 #pragma once
 
 #include <array>
@@ -18,31 +18,30 @@ struct ElementPair {
   auto operator<=>(const ElementPair&) const = default;
 };
 
-/// Where two straight lines a0-a1 and b0-b1 are nearest: at a0 + s (a1 - a0) and b0 + t (b1 - b0),
-/// 0 <= s, t <= 1.
+/// Where two segments a0-a1 and b0-b1 are nearest: at a0 + s (a1 - a0) and b0 + t (b1 - b0), 0 <= s, t <= 1.
 struct NearestPoints {
   double s, t;
-  bool s_free, t_free;  ///< strictly between the ends: it moves as the lines do
+  bool s_free, t_free;  ///< strictly between the ends: it slides along as the lines move
   Vec3 between;         ///< m, from the point on b to the point on a
 };
 NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
 
-/// The same of the point p, in place of line a; s = 0.
+/// The same for a point p in place of a; s = 0, not free.
 NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1);
 
-/// L of Eq. 2 of two elements: the mean of their members' contact widths, m.
+/// L of Eq. 2 for two elements: the mean of their members' contact widths, m.
 double contact_length(const Model& model, const ElementPair& pair);
 
-/// Per body: supports hold every direction of all its nodes.
+/// Per body: true when supports hold every direction of all its nodes.
 std::vector<bool> held_bodies(const Model& model);
 
-/// Looks for near elements again and again, in the memory that the first time took.
+/// Search for candidate pairs; keeps its memory from one search to the next.
 class NearSearch {
  public:
   explicit NearSearch(const Model& model);
-  /// Pairs of elements whose surfaces are within `margin`, m, of each other, in order; they live until the
-  /// next call. Bodies are found on a grid as wide as the largest free one, so that the time is nearly linear
-  /// in their number; bodies whose nodes are all held do not meet each other.
+  /// Pairs of elements of two bodies, not both held, whose surfaces are within `margin` (m) of each other, in
+  /// order; valid until the next call. Bodies are sorted into a grid with cells as wide as the largest of
+  /// them that is not held, so that the time is nearly linear in their number.
   const std::vector<ElementPair>& find(std::span<const Vec3> position, double margin);
 
  private:

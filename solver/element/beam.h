@@ -9,11 +9,11 @@
 
 namespace topple {
 
+/// Positions, m, and rotations of an element's two nodes.
 using BeamEnds = PackEnds<double>;
-
 BeamEnds beam_ends(const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2);
 
-/// One lane of a pack, elastic and without offset.
+/// Constants of one element, without offset, for the functions of beam_kernel.h.
 PackBeam<double> pack_beam(const Element& element);
 
 /// Gamma = Rs^T (x2-x1)/L - e1, K = psi/L, with psi = log(R1^T R2), |psi| < pi, and Rs = R1 exp(t psi), t =
@@ -26,18 +26,18 @@ BeamStrain elastic_strain(const ElementState& state, const BeamStrain& strain);
 /// U = L/2 (Gamma.Cn Gamma + K.Cm K) of the elastic strain, J.
 double beam_energy(const Element& element, const BeamStrain& elastic);
 
-/// Gradient of U, with the offset held or, at a hinge, taken along by the flow (plasticity.h): force and
-/// moment at the first and second node, world axes; moments are conjugate to spatial spins.
+/// Gradient of U by positions and spatial spins of the two nodes, N and N m, world axes: the element acts on
+/// them with its opposite. The offset is held, but for the flow of a hinge (plasticity.h).
 struct BeamGradient {
   Vec3 force1, moment1, force2, moment2;
 };
 
-/// The gradient, and its derivative by (x1, spin1, x2, spin2), 12 x 12, row-major; not symmetric away from
-/// equilibrium.
+/// Rows and columns: x1, spin1, x2, spin2.
 using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
+/// The gradient and its derivative, which is not symmetric away from equilibrium; both zero when broken.
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
                   BeamGradient& gradient, Mat12& tangent);
-/// The tangent as built.
+/// The elastic tangent in the reference pose, where it is symmetric.
 Mat12 beam_stiffness(const Model& model, const Element& element);
 
 }  // namespace topple

@@ -8,10 +8,10 @@
 
 namespace topple {
 
-/// Below this |psi|^2 the series of PackAngle hold to rounding.
+/// rad^2: below this |psi|^2 the series of PackAngle are exact to rounding.
 inline constexpr double k_small_angle = 0.04;
 
-/// What stays of an element. A broken one has no stiffness.
+/// Constants of an element, but for the offset. A broken one has no stiffness.
 template <class P>
 struct PackBeam {
   PackQuaternion<P> triad;                   ///< local to world axes
@@ -44,7 +44,7 @@ struct PackAngleSlope {
   P left1, left2, g;
 };
 
-/// Rotation vector over the vector part of a quaternion.
+/// f of psi = f q.v, the rotation vector of a unit quaternion with |psi|^2 < k_small_angle, by its series.
 template <class P>
 [[gnu::always_inline]] inline P log_factor(const PackQuaternion<P>& q) {
   const P r = P(1) / q.w;
@@ -52,6 +52,7 @@ template <class P>
          polynomial(dot(q.v, q.v) * r * r, 1, -1. / 3, 1. / 5, -1. / 7, 1. / 9, -1. / 11, 1. / 13, -1. / 15);
 }
 
+/// PackAngle and its derivatives by series, for x < k_small_angle.
 template <class P>
 [[gnu::always_inline]] inline PackAngle<P> small_angle(P x, P t) {
   const P tt = t * t, y = tt * x, z = y * P(0.25);
@@ -71,7 +72,7 @@ template <class P>
           polynomial(x, 1. / 720, 1. / 15120, 1. / 403200, 1. / 11975040)};
 }
 
-/// log_factor, small_angle and small_angle_slope in closed form, for any angle below pi; not for none.
+/// log_factor, small_angle and small_angle_slope in closed form, for 0 < |psi| < pi.
 inline double large_log_factor(const PackQuaternion<double>& q) {
   const double s = std::sqrt(q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z);
   return 2 * elementary::atan2(s, q.w) / s;
@@ -90,7 +91,7 @@ inline PackAngleSlope<double> large_angle_slope(double x, double t) {
   return {tt * t * f.df1, tt * tt * f.df2, InverseJacobianCoefficient(x).dg};
 }
 
-/// The same for any angle below pi, lane by lane.
+/// The same for any |psi| < pi: per lane the series or the closed form.
 inline double any_log_factor(const PackQuaternion<double>& q) {
   const double s2 = q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z;
   return s2 > k_small_angle / 4 * (q.w * q.w) ? large_log_factor(q) : log_factor(q);
@@ -137,6 +138,7 @@ inline PackAngleSlope<Four> any_angle_slope(Four x, Four t) {
   return out;
 }
 
+/// The same, faster where all lanes are small.
 template <class P>
 [[gnu::always_inline]] inline PackAngle<P> angle_functions(P x, P t) {
   return any_above(x, k_small_angle) ? any_angle(x, t) : small_angle(x, t);
@@ -146,6 +148,7 @@ template <class P>
   return any_above(x, k_small_angle) ? any_angle_slope(x, t) : small_angle_slope(x, t);
 }
 
+/// exp [psi] as a unit quaternion.
 template <class P>
 PackQuaternion<P> exponential(const PackVector<P>& psi) {
   const PackAngle<P> angle = angle_functions(dot(psi, psi), P(1));
@@ -159,17 +162,18 @@ PackMatrix<P> inverse_left_jacobian(const PackVector<P>& psi) {
   return polynomial_of(psi, double_cross(psi), P(1), P(-0.5), angle.g);
 }
 
-/// Strains of a pack and what forces need beside them.
+/// Strains of a pack, and what its forces and tangent need beside them.
 template <class P>
 struct PackStrain {
   PackAngle<P> angle;
-  PackVector<P> psi;     ///< first end's axes
-  PackQuaternion<P> e1;  ///< axes of the first end
-  PackMatrix<P> rs;      ///< axes of the integration point
-  PackVector<P> d;       ///< rs^T (x2 - x1), m
-  PackVector<P> gamma, kappa;
+  PackVector<P> psi;           ///< rotation vector between the ends, axes of the first
+  PackQuaternion<P> e1;        ///< axes of the first end to world axes; as a matrix r1 below
+  PackMatrix<P> rs;            ///< axes of the integration point to world axes
+  PackVector<P> d;             ///< rs^T (x2 - x1), m
+  PackVector<P> gamma, kappa;  ///< BeamStrain
 };
 
+/// Formulas: beam_strain.
 template <class P>
 [[gnu::always_inline]] inline PackStrain<P> pack_strain(const PackBeam<P>& beam, const PackEnds<P>& ends) {
   PackStrain<P> s;
@@ -195,7 +199,7 @@ template <class P>
   return s;
 }
 
-/// Section forces at the stress point.
+/// SectionForces of a pack.
 template <class P>
 struct PackSection {
   PackVector<P> normal, moment;
@@ -215,8 +219,8 @@ struct PackEndRates {
   PackVector<P> w1, w2;  ///< rad/s
 };
 
-/// Viscous section forces, `time` (s) times D and the rates of the strains. With the rotation's rate of the
-/// integration point, w = w1 + r1 t T(t psi) dpsi/dt:
+/// Viscous section forces, time D (rates of the strains); time: damping_time, s. With w, the angular velocity
+/// of the integration point, w = w1 + r1 t T(t psi) dpsi/dt:
 ///   dpsi/dt = T(psi)^-1 r1^T (w2 - w1),  dgamma/dt = rs^T (v2 - v1 - w x (x2 - x1))/L
 template <class P>
 [[gnu::always_inline]] inline PackSection<P> viscous_section(const PackBeam<P>& beam, const PackStrain<P>& s,
@@ -225,21 +229,21 @@ template <class P>
   const PackVector<P> t1 = cross(s.psi, turn), t2 = cross(s.psi, t1);
   const PackVector<P> psi_rate = mul_add(s.angle.g, t2, mul_add(P(-0.5), t1, turn));
   const PackVector<P> p1 = cross(s.psi, psi_rate), p2 = cross(s.psi, p1);
-  const PackVector<P> lead =
+  const PackVector<P> relative_spin =
       rotate(s.e1, beam.t * mul_add(s.angle.left2, p2, mul_add(s.angle.left1, p1, psi_rate)));
-  const PackVector<P> apart =
-      transposed_times(s.rs, rates.v2 - rates.v1) - cross(transposed_times(s.rs, rates.w1 + lead), s.d);
+  const PackVector<P> apart = transposed_times(s.rs, rates.v2 - rates.v1) -
+                              cross(transposed_times(s.rs, rates.w1 + relative_spin), s.d);
   const P factor = time * beam.inverse_length;
   return {factor * times(beam.normal_stiffness, apart), factor * times(beam.bending_stiffness, psi_rate)};
 }
 
-/// BeamGradient: the second node's, and the first node's moment; the forces are opposite.
+/// BeamGradient of a pack, N and N m; force1 = -force2.
 template <class P>
 struct PackGradient {
   PackVector<P> force2, moment1, moment2;
 };
 
-/// With p = n x d in the integration point's axes and T(t psi)^T r1^T = T(t psi) rs^T:
+/// n, m0: section forces. With p = n x d in the integration point's axes and T(t psi)^T r1^T = T(t psi) rs^T:
 ///   q = t T(t psi) p,  moment2 = r1 T(psi)^-T (q + m0),  moment1 = rs p - moment2
 template <class P>
 [[gnu::always_inline]] inline PackGradient<P> pack_gradient(const PackBeam<P>& beam, const PackStrain<P>& s,
@@ -256,7 +260,7 @@ template <class P>
   return g;
 }
 
-/// J
+/// Elastic energy of each lane, J.
 template <class P>
 [[gnu::always_inline]] inline P pack_energy(const PackBeam<P>& beam, const PackStrain<P>& s,
                                             const PackSection<P>& section) {
@@ -265,8 +269,8 @@ template <class P>
           dot(section.moment, s.kappa - beam.offset_kappa));
 }
 
-/// Blocks of the tangent by (x1, spin1, x2, spin2). Rows of the first node's force are the second's with the
-/// other sign, and so are columns by x1 those by x2.
+/// Blocks of the tangent, derivatives of PackGradient by x2, spin1 and spin2. Rows of force1 are those of
+/// force2 with the other sign, columns by x1 those by x2 with the other sign.
 template <class P>
 struct PackTangent {
   PackMatrix<P> force_x2, force_spin1, force_spin2;  ///< of force2
@@ -274,19 +278,19 @@ struct PackTangent {
   PackMatrix<P> moment2_x2, moment2_spin1, moment2_spin2;
 };
 
-/// Derivatives of the section forces by the strains, of sections that do not flow: N and N m^2.
+/// Derivatives of the section forces by the strains where no section flows: N and N m^2.
 template <class P>
 struct PackStiffness {
   PackVector<P> normal_gamma, moment_kappa;  ///< diagonal
 };
-/// Of sections of which some flow (SectionTangent).
+/// The same where some flow (SectionTangent).
 template <class P>
 struct PackFlowing {
   PackMatrix<P> normal_gamma, normal_kappa, moment_kappa;
 };
 
-/// What sections that flow add: stretch and shear along with curvature. `e` is dn / d(spin2 - spin1) by the
-/// curvature, and its transpose the change of r1 T(psi)^-T m0 by the stretch.
+/// Adds what the coupling of normal and shear forces with curvature, normal_kappa, makes where sections flow.
+/// e: derivative of force2 by spin2 - spin1 through kappa; e^T: of r1 T(psi)^-T m0 by x2 - x1 through gamma.
 template <class P>
 [[gnu::always_inline]] inline void add_coupling(const PackMatrix<P>& e, const PackVector<P>& d,
                                                 const PackMatrix<P>& b, PackTangent<P>& k) {
@@ -303,9 +307,9 @@ template <class P>
   k.moment1_spin2 = k.moment1_spin2 - (x + spin2);
 }
 
-/// `stiffness`: PackStiffness or PackFlowing. All in world axes, where [psi] and what is made of it need no
-/// rotation:
-///   b = t T(t psi) T(psi)^-1 = t (I + b1 [psi] + b2 [psi]^2)
+/// Derivatives of pack_gradient. `stiffness`: PackStiffness or PackFlowing. In world axes throughout, psi
+/// included; b turns the integration point with the second end: its spin is (I - b) spin1 + b spin2.
+///   b = t T(t psi) T(psi)^-1 = t I + b1 [psi] + b2 [psi]^2
 template <class P, template <class> class Stiffness>
 [[gnu::always_inline]] inline PackTangent<P> pack_tangent(const PackBeam<P>& beam, const PackStrain<P>& s,
                                                           const PackSection<P>& section,

@@ -18,38 +18,39 @@ struct OwnElement {
   int i, j;
 };
 
-/// Force and moment on a node, N and N m, padded to vectors of four.
+/// Force and moment on a node, N and N m, world axes; the fourth number pads.
 struct NodeForce {
   double force[4], moment[4];
 };
 
-/// Of the nodes of a system.
+/// Motion of the nodes of a system.
 struct NodeMotion {
   std::span<const Vec3> position, velocity;  ///< m, m/s
   std::span<const Quat> rotation;
   std::span<const Vec3> angular_velocity;  ///< rad/s, material axes
 };
 
-/// The elements of a system in their order; what fills the last pack has no stiffness.
+/// The elements of a system in their order, four to a pack; those that fill up the last have no stiffness.
 class BeamPacks {
  public:
   BeamPacks(const Model& model, std::span<const OwnElement> own, const BlockLu& lu);
 
-  /// Copies hinges and offsets, one per element.
+  /// Copies hinges and offsets. `elements`, here and below: one per own element.
   void remember(std::span<const ElementState> elements);
-  /// Damping of the elements of some own ones, `first` to `last` (not itself): damping_time, s.
+  /// Sets damping_time, s, of the own elements `first` to `last` - 1.
   void damp(std::size_t first, std::size_t last, double time);
-  /// Subtracts the gradient of the energy (BeamGradient), and viscous forces, from `forces`, one per node of
-  /// the system, in the order of the elements.
+  /// Subtracts BeamGradient and viscous forces of all elements from `forces`, one per node of the system; in
+  /// the order of the elements, on which the bits depend.
   void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                          std::span<NodeForce> forces);
-  /// The same, and adds the tangent (beam_tangent; by velocities times `velocity_factor`, 1/s) to `lu`.
+  /// The same, and adds the tangent to `lu`: beam_tangent, and `velocity_factor` (1/s) times the derivative
+  /// of viscous forces by velocities.
   void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                          double velocity_factor, std::span<NodeForce> forces, BlockLu& lu);
   /// Work that viscous forces take from one motion to another, by the trapezoidal rule, J.
   double viscous_work(std::span<const ElementState> elements, const NodeMotion& start,
                       const NodeMotion& end) const;
-  /// As energy() where subtract_gradient was called last; for elements without hinges.
+  /// As energy(), from the latest subtract_gradient without tangent; only where no element has a hinge.
   double latest_energy(std::vector<SectionForces>& sections) const;
   /// Elastic energy, J; also fills the elements' part of `sections`, one per element of the model.
   double energy(std::span<const Vec3> position, std::span<const Quat> rotation,
@@ -61,7 +62,7 @@ class BeamPacks {
     std::array<int, 4> i, j;                  ///< nodes, numbered within the system
     std::array<std::array<int, 4>, 4> block;  ///< numbers of (i, i), (i, j), (j, i), (j, j)
     std::array<int, 4> element;               ///< index into Model::elements; -1: none
-    bool hinged;                              ///< some of them
+    bool hinged;                              ///< some of them have a hinge or are broken
     Four damping;                             ///< s, damping_time
     PackSection<Four> section;                ///< of the latest gradient
   };

@@ -11,7 +11,7 @@
 
 namespace topple {
 
-/// a of a body, s.
+/// a of a body, s; 0: no damping.
 inline double damping_time(const Model& model, const Parameters& parameters, int body) {
   if (parameters.damping.empty() || parameters.damping[body] == 0) return 0;
   return 2 * parameters.damping[body] / model.bodies[body].first_frequency;

@@ -9,7 +9,7 @@ namespace topple {
 
 /// Strains at the stress point r = -s (Eq. 1) in the frame of the integration point.
 struct BeamStrain {
-  Vec3 gamma;  ///< axial strain, shear strains along y and z
+  Vec3 gamma;  ///< axial strain, shear strains along y and z, -
   Vec3 kappa;  ///< twist and curvatures about y and z, 1/m
 };
 
@@ -19,8 +19,8 @@ struct SectionForces {
   Vec3 moment;  ///< Mx, My, Mz, N m
 };
 
-/// Where an element has its plastic hinge: where its section flows (plasticity.h). middle: of the `midpoint`
-/// scheme. broken: it carries nothing.
+/// Where an element has its plastic hinge, at which its section flows (plasticity.h): at an end, or in the
+/// middle with the midpoint scheme. broken: it carries nothing.
 enum class Hinge : std::int64_t { none, first, second, broken, middle };
 
 /// Part of State, one per element.

@@ -6,18 +6,19 @@
 
 namespace topple {
 
-/// At an elastic strain.
+/// Section forces of an elastic strain: EA, kGAy, kGAz times gamma; GJ, EIy, EIz times kappa.
 SectionForces section_forces(const Element& element, const BeamStrain& elastic);
 
-/// Those of the stress point r = -s at xi in -1..1 along the element, by equilibrium:
+/// Section forces at xi in -1..1 along the element from those at the stress point r = -s, by equilibrium:
 ///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
 SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
 
-/// Energy that an element holds under these forces at its stress point, J.
+/// Elastic energy of an element under these forces at its stress point, J.
 double section_energy(const Element& element, const SectionForces& forces);
 
-/// Greatest equivalent stress of a section under these forces, Pa: extreme-fibre normal stress with torsional
-/// shear after von Mises.
+/// Equivalent stress of a section after von Mises, Pa: extreme-fibre normal stress with torsional shear.
+///   sqrt(sigma^2 + 3 tau^2),  sigma = |N|/A + |My| cz/Iy + |Mz| cy/Iz,  tau = |Mx| max(cy, cz)/J,
+/// cy, cz: fibre_y, fibre_z. Shear forces do not count, nor does yielding.
 double equivalent_stress(const Section& section, const SectionForces& forces);
 
 }  // namespace topple

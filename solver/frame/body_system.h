@@ -20,16 +20,16 @@ namespace topple {
 
 /// Contact of one point with one plane at some instant.
 struct TouchingPair {
-  int point;  ///< index into Model::contact_points
-  int plane;
+  int point;     ///< index into Model::contact_points
+  int plane;     ///< index into Model::planes
   int node;      ///< of the point, numbered within the system
-  int own_body;  ///< likewise
+  int own_body;  ///< index into BodySystem::bodies
   double depth;  ///< 1 - l/L, > 0
   double L;      ///< m
   ContactOutput out;
 };
 
-/// What touches at some instant.
+/// All that touches at some instant.
 struct Contacts {
   std::vector<TouchingPair> planes;
   MemberContacts members;
@@ -46,47 +46,48 @@ struct BodyMotion {
   void resize(int nodes);
 };
 
-/// Four nodes of a system that are worked on together; what fills the last pack repeats its last node.
+/// Four nodes of a system, one per lane; the last node is repeated to fill up the last pack.
 struct NodePack {
   std::array<int, 4> node;                    ///< numbered within the system
-  std::array<int, 4> diagonal;                ///< numbers of blocks in the sparse matrix
-  Four real;                                  ///< 1; of what fills 0
-  Four mass;                                  ///< kg; of what fills 0
+  std::array<int, 4> diagonal;                ///< numbers of their diagonal blocks in BodySystem::lu
+  Four real;                                  ///< 1; 0: a repeated node
+  Four mass;                                  ///< kg; 0: a repeated node
   Four inverse_mass;                          ///< 1/kg
-  PackMatrix<Four> inertia, inverse_inertia;  ///< as Model::node_inertia; the former of what fills 0
+  PackMatrix<Four> inertia, inverse_inertia;  ///< Model::node_inertia (0: a repeated node) and its inverse
 };
 
-/// Factor of a load at time t.
+/// Factor of a load at time t: its history, linear between its points and constant outside; without one 1.
 double load_factor(const Load& load, double t);
 
 /// Bodies of a model that may touch each other, or one alone, with their sparse solver and scratch. Arrays
-/// are per node of the system: those of its bodies one after the other, then held nodes of others that they
-/// may touch.
+/// are per node of the system: the nodes of its bodies one after the other, then nodes of held bodies that
+/// they may touch.
 class BodySystem {
  public:
   BodySystem(const Model& model, int body);
-  /// `candidate_pairs`: pairs of elements that may touch; of each at least one belongs to `bodies`, the other
-  /// too or its nodes are held.
+  /// `candidate_pairs`: pairs of elements that may touch, in order; of each, one or both belong to `bodies`,
+  /// the other to a held body.
   BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs);
 
-  /// Applied minus internal force and moment (world axes) at time t: gravity, -m a(t), loads, beams,
-  /// anchors, contacts. `stick_start`: State::stick where the step began; `start`: positions there. Fills
-  /// `force`, `moment` and `contacts`.
+  /// Fills `force`, `moment` and `contacts` at time t: sum of gravity, -m a(t), loads, beams, anchors and
+  /// contacts, in world axes; no inertia forces. `stick_start`: State::stick where the step began; `start`:
+  /// positions of the nodes there.
   void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
-  /// Without contacts: fills `force` and `moment`.
+  /// The same without contacts.
   void evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion);
-  /// With the tangent: adds d(internal - contact)/d(position) + velocity_factor d/d(velocity) into
-  /// `lu`.
+  /// As evaluate, and adds -d(force)/d(motion) - velocity_factor (1/s) d(force)/d(velocity) of beams, anchors
+  /// and contacts to `lu`; motion: position and spatial spin.
   void evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start,
                              double velocity_factor);
   /// Where points touch planes, without forces.
   void find_plane_contacts(const BodyMotion& motion, std::vector<TouchingPair>& found) const;
-  /// Contacts alone, into `found`.
+  /// Contacts with their forces, into `found`.
   void find_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                      std::span<const Vec3> start, Contacts& found) const;
-  /// Also fills this system's part of `sections`, one per element of the model.
+  /// At `motion`, where `contacts` were found. Also fills this system's part of `sections`, one per element
+  /// of the model.
   BodyEnergy energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& contacts,
                     std::vector<SectionForces>& sections);
   double kinetic_energy(const BodyMotion& motion) const;  ///< J
@@ -94,49 +95,50 @@ class BodySystem {
   double viscous_work(const BodyMotion& start, const BodyMotion& end) const {
     return beams_.viscous_work(elements, start, end);
   }
-  /// Of the elements' elastic strain, J; also fills this system's part of `sections`: forces without flow.
+  /// Elastic energy of the elements, J, with the flow so far; also fills this system's part of `sections`.
   double elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections);
-  /// Copies this system's part of an array over the model's nodes into one over its own, and back.
+  /// Copies this system's part of an array over the model's nodes into one over its own; put: back.
   template <class T>
   void take(const std::vector<T>& all, std::vector<T>& own) const {
     own.resize(count);
     each_run([&](int global, int i, int nodes) { copy_values(&all[global], nodes, &own[i]); });
     for (int i = count - held_nodes(); i < count; ++i) own[i] = all[node[i]];
   }
-  /// Held nodes may be in other systems as well: no step writes to them.
+  /// Not for held nodes, which may be in several systems: no step writes to them.
   template <class T>
   void put(const std::vector<T>& own, std::vector<T>& all) const {
     each_run([&](int global, int i, int nodes) { copy_values(&own[i], nodes, &all[global]); });
   }
-  /// Copies this system's part of the state.
+  /// Copies the motion of this system's nodes.
   void load(const State& state, BodyMotion& motion) const;
-  /// Copies what elements, anchors and touching members remember. Steps begin with it; evaluations read it.
+  /// Copies hinges, offsets, anchors and sticks between members: evaluations read them. Steps begin with it.
   void load_memory(const State& state);
-  /// What touching members remember, alone.
+  /// The same for sticks between members alone.
   void load_sticks(const State& state);
-  /// Keeps the sticks of touching members to itself until give_sticks, so that a step changes no part of the
-  /// state that another system has a part in.
+  /// While systems advance in parallel: from take_sticks to give_sticks it keeps its sticks between members
+  /// to itself, as State::member_sticks is one array for all.
   void take_sticks(const State& state);
   void give_sticks(State& state);
-  /// Writes stick springs of `contacts`; open contacts forget theirs.
+  /// Writes the stick springs of `contacts`; those of open contacts become zero.
   void store_stick(const Contacts& contacts, State& state);
-  /// Of a touching pair at `motion`.
+  /// Input of the contact law for a touching pair at `motion`; arguments as of evaluate.
   ContactInput plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start) const;
   const std::vector<MemberPair>& member_pairs() const { return member_pairs_; }
   /// Number of a node within the system, -1: it is not in it.
   int local(int node) const;
-  /// Element at a node, for messages.
+  /// An element of this system (index into the model) at a node of the model, for messages; -1: none.
   int element_at(int node) const;
 
   struct OwnLoad {
     const Load* load;
-    int node;
+    int node;  ///< numbered within the system
   };
   struct OwnAnchor {
     int index;  ///< into Model::anchors
-    int node;
+    int node;   ///< numbered within the system
     AnchorState state;
+    /// From the node to the attached point, m, floor's frame.
     Vec3 arm(const Model& of, const BodyMotion& motion) const {
       return motion.rotation[node] * of.anchors[index].arm;
     }
@@ -161,7 +163,7 @@ class BodySystem {
   std::vector<OwnLoad> loads;
   std::vector<OwnAnchor> anchors;  ///< as they were loaded
   bool yields;                     ///< some element can
-  bool ends_here = false;          ///< the latest evaluation is that of the motion with which the step ends
+  bool ends_here = false;          ///< the latest evaluation was at the end of the step: energy() uses it
   /// Per node, when it yields: own elements that end there and at which end (0, 1).
   std::vector<std::vector<std::pair<int, int>>> joints;
 
@@ -192,14 +194,14 @@ class BodySystem {
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
 
-  // Contact points of one body.
+  // Four contact points of one body.
   struct PointPack {
     std::array<int, 4> node;  // numbered within the system
     int first, count;         // of Model::contact_points
     int own_body;
     int reach;  // of `reaches_`, one per plane from here on
   };
-  // Where four points begin to touch a plane, m along its normal, and L.
+  // Coordinate along a plane's normal at which each of four points begins to touch it, and L, m.
   struct PlaneReach {
     Four place, L;
   };
@@ -211,7 +213,7 @@ class BodySystem {
   bool keeps_sticks_ = false;
   BeamPacks beams_;
   std::vector<double> damping_;        // Parameters::damping of beams_
-  std::vector<NodeForce> node_force_;  // applied less those of the beams
+  std::vector<NodeForce> node_force_;  // gravity, floor, loads and beams
 };
 
 }  // namespace topple

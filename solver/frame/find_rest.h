@@ -1,4 +1,4 @@
-// Rest by steps in pseudo time, of whatever has a stiffness and a mass.
+// Rest by pseudo-transient continuation (steps in pseudo time), of whatever has a stiffness and a mass.
 #pragma once
 
 #include <algorithm>
@@ -6,25 +6,25 @@
 
 namespace topple {
 
-inline constexpr double k_balance = 1e-10;  ///< of the weight, greatest force left
+inline constexpr double k_balance = 1e-10;  ///< greatest unbalanced force at rest over the weight
 
-/// What forces in balance are: rest; none, it tips over by itself; or something yields, and it goes on.
+/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section yields.
 enum class Balance { rest, tips_over, yields };
 
-/// How far a step has led, m.
+/// Greatest displacement of a node, m.
 struct RestStep {
-  double length;    ///< of the step
-  double furthest;  ///< from where it began
+  double length;    ///< by the step
+  double furthest;  ///< since find_rest began
 };
 
-/// Newton with K + M/sigma^2 for a balance of forces; sigma grows while steps are short. False: nothing is
-/// found, or it is no rest. `body` has:
+/// Newton's method with K + M/sigma^2 for a balance of forces; sigma, s, doubles after short steps and halves
+/// after long ones. False: no balance was found, or it is not stable. `body` has:
 ///   double size            m
-///   double balanced        N, what may be left
-///   double unbalance()     N, what is left; finds forces and tangent
-///   Balance look()         where they are in balance
-///   optional<RestStep> step(sigma)    null: there is none
-///   void follow()          takes the step: contacts go along
+///   double balanced        N, greatest unbalanced force that counts as balance
+///   double unbalance()     N, the unbalanced force; finds forces and tangent
+///   Balance look()         judges a balance
+///   optional<RestStep> step(sigma)    solves for a step; null: singular or not finite
+///   void follow()          takes the step, stick springs included
 template <class Body>
 bool find_rest(Body& body) {
   constexpr int k_most_rounds = 400;

@@ -1,4 +1,4 @@
-// Implicit time integration on the group of motions.
+// Implicit time integration of positions and rotations (a Lie group).
 #pragma once
 
 #include <vector>
@@ -21,28 +21,30 @@ struct GeneralizedAlpha {
         gamma(0.5 + alpha_f - alpha_m),
         beta(0.25 * (gamma + 0.5) * (gamma + 0.5)) {}
   static GeneralizedAlpha newmark(double beta, double gamma);
-  /// Those of the implicit method that `parameters` choose.
+  /// Of the implicit method that `parameters` choose.
   explicit GeneralizedAlpha(const Parameters& parameters);
 };
 
 /// Scratch of the integrators for one system.
 struct IntegratorScratch {
   BodyMotion start, trial;
-  std::vector<Vec3> travel, turn;  ///< unknowns: displacement, rotation vector (material) of the step
+  std::vector<Vec3> travel, turn;  ///< unknowns: displacement, m, and rotation vector (material) of the step
   std::vector<Vec3> acceleration, angular_acceleration, algorithmic, algorithmic_angular;
-  /// Where the step starts: accelerations, and the travel and turn that leave the algorithmic ones zero.
+  /// Accelerations at the start of the step, and the travel and turn for which the algorithmic ones at its
+  /// end are zero.
   std::vector<Vec3> balance0, angular_balance0, algorithmic0, algorithmic_angular0, coasting, coasting_turn;
   std::vector<double> right_hand_side;     ///< six per node
-  std::vector<double> kept_residual, way;  ///< of a correction that is cut short
+  std::vector<double> kept_residual, way;  ///< line search: residual, and correction, six per node
   std::vector<Vec3> kept_travel, kept_turn;
   Contacts contacts_start;
   Profile* profile = nullptr;
   HingeStep hinges;
 };
 
-/// Advances the bodies of `system` in `state` by h from time t with the balance of forces taken at the end of
-/// the step (Brüls & Cardona 2010). Newton to convergence; a step that does not converge is halved, at most
-/// `halvings` times. On failure their part of `state` is undefined.
+/// Advances the bodies of `system` in `state` by h (s) from time t with the balance of forces taken at the
+/// end of the step (Brüls & Cardona 2010). Newton's method to convergence; a step that does not converge is
+/// halved, at most `halvings` times. Failures: newton_diverged, not_finite, singular, passed_through; their
+/// part of `state` is then undefined.
 StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
                                      double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy);
 

@@ -16,20 +16,22 @@
 
 namespace topple {
 
-inline constexpr double k_yielding = 1e-8;   ///< of f: above it a section is fully plastic
-inline constexpr double k_unloading = 1e-3;  ///< of f: hysteresis
-inline constexpr double k_beside = 1e-3;     ///< of f: joint rule of update_hinges
-inline constexpr double k_crowded = 1e-2;    ///< of f: one hinge per element, update_hinges
-inline constexpr int k_most_redos = 60;      ///< of one step
+// Of f, yield_function:
+inline constexpr double k_yielding = 1e-8;   ///< above it a section is fully plastic
+inline constexpr double k_unloading = 1e-3;  ///< below minus this a hinge goes: hysteresis against chatter
+inline constexpr double k_beside = 1e-3;     ///< joint rule of update_hinges
+inline constexpr double k_crowded = 1e-2;    ///< rule of one hinge per element of update_hinges
+
+inline constexpr int k_most_redos = 60;  ///< repeated solutions of one step for its hinges
 
 /// What the solutions of one step changed so far.
 struct HingeStep {
-  /// An end of an element that is loaded beyond yield, f in units in which symmetric sections are equal.
+  /// An end of an element loaded beyond yield. f is rounded so that symmetric sections compare as equal.
   struct Candidate {
     long long f;
     int element, end;
   };
-  std::vector<bool> formed;  ///< per element of the system; once per step
+  std::vector<bool> formed;  ///< per element of the system: its hinge was formed or moved, once per step
   int redos = 0;
   std::vector<Candidate> candidates;  ///< scratch, as `nodes`
   std::vector<int> nodes;
@@ -49,18 +51,18 @@ struct HingeStep {
 ///   undetermined. It yields all the same once loaded k_beside beyond its surface while the others lie on
 ///   theirs: then the directions of flow differ.
 /// - An element holds one hinge. When its other end is loaded k_crowded beyond yield the hinge moves there:
-///   in turns both flow, each a step late (Outcome::crowded_members).
+///   then both flow in turns, each a step late (warning: Outcome::crowded_members, overturn.h).
 /// False too after k_most_redos: the next step goes on from there.
 bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step);
 
 /// Takes the flow of the accepted solution into system.elements and `state`; hinges loaded k_unloading below
-/// yield go. Returns the energy, J, that flow and fracture took, by the trapezoidal rule like all work.
+/// yield go. Returns the energy that flow and fracture took, J, by the trapezoidal rule like all work.
 double commit_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& end, State& state);
 
-/// A fully plastic section breaks when
-///   |kappa_y| size_z/2, |kappa_z| size_y/2 or the stretch gamma_x (tension only)
+/// Whether a fully plastic section breaks: one of
+///   |kappa_y| size_z/2,  |kappa_z| size_y/2,  gamma_x (tension only)
 /// reaches fracture_strain, or an elastic shear strain V/(k G A) reaches sqrt(3) fracture_strain (von Mises).
-/// kappa and gamma_x are those of the whole element: flow is spread over its length.
+/// kappa and gamma_x are the whole strain of the element: flow is spread over its length.
 bool breaks(const Model& model, const Element& element, const BeamStrain& strain,
             const SectionForces& forces);
 

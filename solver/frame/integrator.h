@@ -1,4 +1,4 @@
-// The time integrations of frames.
+// Table of the time integrations of frames.
 #pragma once
 
 #include <span>
@@ -13,18 +13,18 @@ namespace topple {
 struct IntegratorTraits {
   Integrator kind;
   const char* word;  ///< in scenes
-  bool is_explicit;  ///< steps have a limit of stability, and need no equations solved
-  /// Advances the bodies of the system by h from time t, see advance_generalized_alpha().
+  bool is_explicit;  ///< no equations to solve, but a stability limit (explicit_limit)
+  /// As advance_generalized_alpha(); explicit ones do not halve steps.
   StepStatus (*advance)(BodySystem&, const Parameters&, State&, double t, double h, int halvings,
                         IntegratorScratch&, StepEnergy&);
 };
-/// In the order of the words of `run.integrator`, before which stands auto.
+/// In the order of the words of the scene key `run.integrator`, of which the first is auto.
 std::span<const IntegratorTraits> integrators();
 inline const IntegratorTraits& traits(Integrator integrator) {
   return row_of(integrators(), integrator);
 }
 
-/// Of the number of a choice of `run.integrator`.
+/// Integrator of word number `choice` of `run.integrator`, from 0; auto: generalized_alpha.
 Integrator chosen_integrator(int choice);
 
 }  // namespace topple

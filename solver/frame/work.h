@@ -1,4 +1,4 @@
-// The work that bodies exchange in a step of their nodes.
+// Work on the nodes of bodies in a step.
 #pragma once
 
 #include "solver/frame/body_system.h"
@@ -6,10 +6,10 @@
 
 namespace topple {
 
-/// Work of gravity, floor, loads, viscous stresses and contacts on a system over a step from t to t + h
-/// between two evaluations of the contacts, by the trapezoidal rule. The normal spring of Eq. 2 and the stick
-/// springs are not booked: their energy is known at both ends. What an edit of the contact law puts into them
-/// counts as input.
+/// Adds to `energy` the work of gravity, floor, loads, viscous stresses and contacts on a system over a step
+/// from t to t + h (s), by the trapezoidal rule with the contact forces at its two ends. The springs of Eq. 2
+/// and stick springs are left out: BodySystem::energy has what they hold. What the ramp of an edit of the
+/// contact law puts into them is input (LawChange).
 void book_work(const BodySystem& system, const Parameters& parameters, double t, double h,
                const BodyMotion& start, const BodyMotion& end, const Contacts& contacts_start,
                const Contacts& contacts_end, StepEnergy& energy);

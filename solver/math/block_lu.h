@@ -25,18 +25,18 @@ class BlockLu {
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 6; ++c) out[k_stride * c + r] += block(r, c);
   }
-  /// Adds [a b; c d] of each lane to the block of that number.
+  /// Adds the 6 x 6 matrix [a b; c d] of lane k to block number[k], see index().
   void add(const std::array<int, 4>& number, const PackMatrix<Four>& a, const PackMatrix<Four>& b,
            const PackMatrix<Four>& c, const PackMatrix<Four>& d);
   /// Number of block (i, j), which must be on the diagonal or an edge.
   int index(int i, int j) const;
-  /// Makes x[6 i + k] = b[6 i + k]: row and diagonal of a fixed direction.
+  /// Replaces row 6 i + k by x[6 i + k] = b[6 i + k], for a fixed direction; before factor().
   void fix(int i, int k);
-  /// Node at fault when a diagonal block is singular, else -1. `count`: also finds negative().
+  /// Factors in place. The node whose diagonal block is singular, else -1. `count`: also finds negative().
   int factor(bool count = false);
   /// Negative eigenvalues of the matrix last factored with `count`; it must be symmetric but for fixed rows.
   int negative() const { return negative_; }
-  /// Overwrites b (6 per node) with x.
+  /// Overwrites b (6 per node) with x; after factor() returned -1.
   void solve(double* b) const;
 
  private:
@@ -50,8 +50,8 @@ class BlockLu {
     std::vector<int> update;  ///< block numbers of (row a, row b), row-major
   };
   int nodes_;
-  std::vector<int> place_;    ///< node to position in the order
-  std::vector<int> node_at_;  ///< inverse
+  std::vector<int> place_;    ///< node to position in the order of elimination
+  std::vector<int> node_at_;  ///< its inverse
   std::vector<int> lookup_;   ///< permuted (i, j) to block number, -1: none
   std::vector<Column> columns_;
   std::vector<double> values_;

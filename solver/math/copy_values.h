@@ -1,4 +1,4 @@
-// Copies of values that own nothing, as Vec3 and what is made of it.
+// Copies of arrays of values that own no memory, such as Vec3.
 #pragma once
 
 #include <cstring>
@@ -7,7 +7,8 @@
 
 namespace topple {
 
-// Writes `count` values of `from` to `to` as bytes: an assignment of Eigen's goes number by number.
+/// Copies `count` values with one memcpy: an assignment of Eigen vectors goes number by number. The arrays do
+/// not overlap.
 template <class T>
 void copy_values(const T* from, std::size_t count, T* to) {
   static_assert(std::is_trivially_destructible_v<T>);

@@ -32,8 +32,8 @@ double hypot(double x, double y);
 
 namespace topple {
 
-/// What the bits of a run follow: a word for these functions, the rule of rounding, the order of operations
-/// and the method. Recordings keep it. Its number is raised when a scene comes to give other bits.
+/// Name and number of all that decides the bits of a run: these functions, rounding, the order of operations
+/// and the method. Recordings store it; the number is raised when some scene gives other bits than before.
 const char* arithmetic();
 
 }  // namespace topple

@@ -1,29 +1,31 @@
-// a b + c, rounded once, on processors without the instruction: the same bits, by operations that all have
-// (Boldo and Melquiond 2008: the sum of two numbers and what rounding left of them, rounded to odd).
+// Fused multiply-add, a b + c rounded once, for processors without the instruction: the same bits from sums
+// and products. The lower part of the exact sum is rounded to odd before the last addition (Boldo and
+// Melquiond 2008).
 #pragma once
 
 #include <cmath>
 
 namespace topple {
 
-/// Two doubles, worked on together.
+/// Two doubles as a GNU vector.
 using Two = double __attribute__((vector_size(16)));
 
 namespace fused {
 
 using Mask = long long __attribute__((vector_size(16)));
 
+/// A number of twice the digits: high + low.
 struct TwoSum {
   Two high, low;
 };
 
-/// a + b, exact (Knuth).
+/// a + b, exact, for any a and b (Knuth).
 [[gnu::always_inline]] inline TwoSum exact_sum(Two a, Two b) {
   const Two high = a + b, of_b = high - a;
   return {high, (a - (high - of_b)) + (b - of_b)};
 }
 
-/// Of 26 digits each (Veltkamp).
+/// a as the sum of two numbers of 26 digits each, whose products are exact (Veltkamp).
 [[gnu::always_inline]] inline TwoSum halves(Two a) {
   const Two scaled = (0x1p27 + 1) * a, high = scaled - (scaled - a);
   return {high, a - high};
@@ -35,7 +37,7 @@ struct TwoSum {
 
 }  // namespace fused
 
-/// a b + c, rounded once. Any numbers; the library's function where the exact product leaves the range of
+/// a b + c, rounded once, for any numbers; std::fma where intermediate results could leave the range of
 /// doubles.
 inline Two fused_multiply_add(Two a, Two b, Two c) {
   using namespace fused;

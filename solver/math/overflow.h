@@ -1,5 +1,5 @@
-// One test for both numbers above k_largest_number (types.h) and NaN or infinity: multiplied by k_overflow,
-// the former become infinite too, and an infinite or undefined term makes a whole sum so.
+// One test of many numbers for NaN, infinity and more than k_largest_number (types.h): the sum of all
+// x * k_overflow is finite only when no x is any of these.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace topple {
 
-/// x * k_overflow is infinite for |x| > k_largest_number.
+/// Factor that makes |x| > k_largest_number infinite.
 inline constexpr double k_overflow = std::numeric_limits<double>::max() / k_largest_number;
 
 }  // namespace topple

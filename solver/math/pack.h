@@ -1,4 +1,5 @@
-// Four doubles that are worked on together, and vectors, matrices and rotations of such packs.
+// Packs of four doubles that the processor works on at once (SIMD), and vectors, matrices and rotations of
+// packs. P: Four, or double for one.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ namespace topple {
   return mul_add(-a, b, c);
 }
 
-/// As those of Four, of one number.
+/// a > b, or one of them is NaN. This and the next three do for one number what those of Four do per lane.
 [[gnu::always_inline]] inline bool any_above(double a, double b) {
   return !(a <= b);
 }
@@ -43,7 +44,7 @@ namespace topple {
 
 using FourMask = long long __attribute__((vector_size(32)));  ///< per lane all bits or none
 
-/// Bit k: lane k is set.
+/// Bit k is set where lane k is.
 [[gnu::always_inline]] inline unsigned bits(FourMask mask) {
 #ifdef __AVX2__
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
@@ -57,8 +58,8 @@ inline constexpr unsigned k_all_lanes = 15;
   return bits(mask | ~where) == k_all_lanes;
 }
 
-/// GNU vectors: the same operations in every build type and on every processor. Where compilers do not find
-/// the instruction for several lanes, it is named for AVX2 and FMA; the bits are the same.
+/// Four doubles as a GNU vector: the same operations and bits in every build type and on every processor. The
+/// AVX2 and FMA instructions that compilers do not find by themselves are named.
 struct Four {
   using Vector = double __attribute__((vector_size(32)));
   using Mask = FourMask;
@@ -133,6 +134,7 @@ struct Four {
   }
 };
 
+/// Four numbers in a row, of any alignment.
 [[gnu::always_inline]] inline Four load(const double* from) {
   Four to;
   std::memcpy(&to.v, from, sizeof to.v);
@@ -141,11 +143,11 @@ struct Four {
 [[gnu::always_inline]] inline void store(double* to, Four value) {
   std::memcpy(to, &value.v, sizeof value.v);
 }
-/// In the order of the lanes.
+/// Sum of the lanes, in their order.
 [[gnu::always_inline]] inline double sum(Four a) {
   return a[0] + a[1] + a[2] + a[3];
 }
-/// Rows become columns.
+/// Transposes the 4 x 4 matrix of the rows a, b, c, d.
 [[gnu::always_inline]] inline void transpose(Four& a, Four& b, Four& c, Four& d) {
   const Four::Vector ab0 = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6),
                      ab1 = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
@@ -157,6 +159,7 @@ struct Four {
   d = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
+/// A vector in space per lane.
 template <class P>
 struct PackVector {
   P x, y, z;
@@ -182,6 +185,7 @@ template <class P>
   return {less_product(a.y * b.z, a.z, b.y), less_product(a.z * b.x, a.x, b.z),
           less_product(a.x * b.y, a.y, b.x)};
 }
+/// Component by component.
 template <class P>
 [[gnu::always_inline]] inline PackVector<P> times(const PackVector<P>& a, const PackVector<P>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -193,7 +197,7 @@ template <class P>
   return {mul_add(f, a.x, b.x), mul_add(f, a.y, b.y), mul_add(f, a.z, b.z)};
 }
 
-/// Rows.
+/// A 3 x 3 matrix per lane, by rows.
 template <class P>
 struct PackMatrix {
   PackVector<P> row[3];
@@ -256,7 +260,7 @@ template <class P>
   return {
       {v.y * a.row[2] - v.z * a.row[1], v.z * a.row[0] - v.x * a.row[2], v.x * a.row[1] - v.y * a.row[0]}};
 }
-/// Of m: m^-1 = matrix over determinant.
+/// Adjugate and determinant of m: m^-1 = matrix / determinant.
 template <class P>
 struct PackAdjugate {
   PackMatrix<P> matrix;
@@ -292,7 +296,7 @@ template <class P>
   const P xy = v.x * v.y, xz = v.x * v.z, yz = v.y * v.z;
   return {{{-(yy + zz), xy, xz}, {xy, -(xx + zz), yz}, {xz, yz, -(xx + yy)}}};
 }
-/// a I + b [v] + c [v]^2
+/// a I + b [v] + c [v]^2; `square`: [v]^2, double_cross(v).
 template <class P>
 [[gnu::always_inline]] inline PackMatrix<P> polynomial_of(const PackVector<P>& v, const PackMatrix<P>& square,
                                                           P a, P b, P c) {
@@ -322,7 +326,7 @@ template <class P>
 [[gnu::always_inline]] inline PackQuaternion<P> conjugate(const PackQuaternion<P>& q) {
   return {-q.v, q.w};
 }
-/// Of one that rounding moved off length 1.
+/// q of length 1, given one that is off by rounding only: 1/|q| by one Newton step, (3 - |q|^2)/2.
 template <class P>
 [[gnu::always_inline]] inline PackQuaternion<P> normalized(const PackQuaternion<P>& q) {
   const P inverse = less_product(P(1.5), P(0.5), mul_add(q.w, q.w, dot(q.v, q.v)));
@@ -353,7 +357,7 @@ template <class P, class... Rest>
     return mul_add(x, polynomial(x, rest...), P(first));
 }
 
-/// Of four nodes.
+/// The values of four nodes, one per lane.
 [[gnu::always_inline]] inline PackVector<Four> gather(const Vec3* x, const std::array<int, 4>& node) {
   const auto two = [x](int a, int b) {
     Two of_a, of_b;  // the first two numbers of each
@@ -375,19 +379,21 @@ template <class P, class... Rest>
   return out;
 }
 
-/// Four vectors, one per lane; the last number of each is 0.
+/// The vector (x, y, z, 0) of each lane.
 [[gnu::always_inline]] inline std::array<Four, 4> lanes(const PackVector<Four>& v) {
   std::array<Four, 4> rows{v.x, v.y, v.z, Four(0)};
   transpose(rows[0], rows[1], rows[2], rows[3]);
   return rows;
 }
 
+/// The first three numbers of `lane`.
 [[gnu::always_inline]] inline void store_three(double* to, Four lane) {
   const auto first = __builtin_shufflevector(lane.v, lane.v, 0, 1);
   std::memcpy(to, &first, sizeof first);
   to[2] = lane[2];
 }
 
+/// Writes lane k to x[node[k]], in the order of the lanes.
 [[gnu::always_inline]] inline void scatter(const PackVector<Four>& v, Vec3* x,
                                            const std::array<int, 4>& node) {
   const std::array<Four, 4> rows = lanes(v);
@@ -433,11 +439,12 @@ inline Mat3 unpacked(const PackMatrix<double>& m) {
   const auto row = [&](int i) { return Four(m(i, 0)) * a.x + Four(m(i, 1)) * a.y + Four(m(i, 2)) * a.z; };
   return {row(0), row(1), row(2)};
 }
-/// Each over its lanes.
+/// The sums over the lanes of a, b, c and d, each as (0 + 1) + (2 + 3).
 [[gnu::always_inline]] inline Four sums(Four a, Four b, Four c, Four d) {
   transpose(a, b, c, d);
   return (a + b) + (c + d);
 }
+/// Sum over the lanes.
 [[gnu::always_inline]] inline PackMatrix<double> sum(const PackMatrix<Four>& m) {
   const auto& [a, b, c] = m.row;
   const Four first = sums(a.x, a.y, a.z, b.x), second = sums(b.y, b.z, c.x, c.y);

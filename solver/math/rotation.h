@@ -15,8 +15,10 @@ inline Mat3 skew(const Vec3& v) {
   return m;
 }
 
-/// Coefficients in a = |psi| of the series around the exponential, with x = a^2:
-///   f0 = sin a / a, f1 = (1 - cos a)/a^2, f2 = (a - sin a)/a^3, and d/dx of f1 and f2.
+/// Coefficients of the exponential and of its left Jacobian T, exp(psi + dpsi) = exp(T dpsi) exp(psi), with
+/// a = |psi|, x = a^2:
+///   exp [psi] = I + f0 [psi] + f1 [psi]^2,  T = I + f1 [psi] + f2 [psi]^2
+///   f0 = sin a / a,  f1 = (1 - cos a)/a^2,  f2 = (a - sin a)/a^3;  df1, df2: their derivatives by x.
 /// Taylor series below a = 0.3, where the closed forms cancel.
 struct ExpCoefficients {
   double f0, f1, f2, df1, df2;
@@ -38,7 +40,7 @@ struct ExpCoefficients {
   }
 };
 
-/// exp([psi]) as a unit quaternion.
+/// exp [psi] as a unit quaternion; psi: rad.
 inline Quat exp_quaternion(const Vec3& psi) {
   const double x = psi.squaredNorm() / 4;  // of the half angle
   double cosine, sinc;
@@ -54,7 +56,7 @@ inline Quat exp_quaternion(const Vec3& psi) {
   return Quat(cosine, 0.5 * sinc * psi.x(), 0.5 * sinc * psi.y(), 0.5 * sinc * psi.z());
 }
 
-/// Rotation vector of a unit quaternion, |psi| <= pi.
+/// Rotation vector psi of a unit quaternion, rad, |psi| <= pi.
 inline Vec3 log_quaternion(const Quat& rotation) {
   Quat q = rotation;
   if (q.w() < 0) q.coeffs() = -q.coeffs();
@@ -69,8 +71,7 @@ inline Vec3 log_quaternion(const Quat& rotation) {
   return 2 * elementary::atan2(s, q.w()) / s * q.vec();
 }
 
-/// g of T^-1 = I - [psi]/2 + g [psi]^2, the inverse of T = I + f1 [psi] + f2 [psi]^2 in
-/// exp(psi + dpsi) = exp(T dpsi) exp(psi), and its derivative by x = |psi|^2; |psi| < 2 pi.
+/// g of T^-1 = I - [psi]/2 + g [psi]^2, T as above, and its derivative by x = a^2; a = |psi| < 2 pi.
 ///   g = (1 - (a/2) cot(a/2)) / a^2, with (a/2) cot(a/2) = f0 / (2 f1).
 struct InverseJacobianCoefficient {
   double g, dg;

@@ -14,9 +14,9 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Quat = Eigen::Quaterniond;
 
 inline constexpr double k_pi = 3.14159265358979323846;
-inline constexpr double k_standard_gravity = 9.80665;  ///< m/s^2, also 1 kgf = 9.80665 N
-inline constexpr double k_gal = 0.01;                  ///< m/s^2
-/// SI. What is larger in a state or in parameters counts as infinite: nothing that is legal comes near it.
+inline constexpr double k_standard_gravity = 9.80665;  ///< m/s^2; also 1 kgf in N
+inline constexpr double k_gal = 0.01;                  ///< 1 gal in m/s^2
+/// In SI units. What is larger in a state or in parameters counts as infinite: legal values stay far below.
 inline constexpr double k_largest_number = 1e30;
 
 }  // namespace topple

@@ -1,6 +1,6 @@
-// Vector operations with a unit normal n of a plane, once for any n and once for n = (0, 0, 1), the type
-// Upwards, where the compiler leaves out products with 0 and 1. A template over the type of the normal gives
-// the same bits with both.
+// Vector operations with the unit normal n of a plane: for any n (PackVector), and for n = (0, 0, 1)
+// (Upwards) without the products with 0 and 1. A template over the type of the normal gives the same bits
+// with both.
 #pragma once
 
 #include "solver/math/pack.h"
@@ -10,7 +10,7 @@ namespace topple {
 /// (0, 0, 1)
 struct Upwards {};
 
-/// A vector without a part along z.
+/// A vector (x, y, 0).
 template <class P>
 struct PackPlanar {
   P x, y;
@@ -69,7 +69,7 @@ template <class P>
 [[gnu::always_inline]] inline PackVector<P> tangential(const PackVector<P>& n, const PackVector<P>& v) {
   return mul_add(-dot(n, v), n, v);
 }
-/// v itself, given that n . v = 0.
+/// v itself, given that n . v = 0; tangential() without the arithmetic.
 template <class P>
 [[gnu::always_inline]] inline PackPlanar<P> lying(Upwards, const PackVector<P>& v) {
   return {v.x, v.y};

@@ -1,4 +1,4 @@
-// Accelerations that were recorded, or computed elsewhere, as samples.
+// Accelerations that were recorded or computed elsewhere, as samples.
 #pragma once
 
 #include <memory>
@@ -15,23 +15,23 @@ struct AccelerogramComponent {
   std::vector<double> samples;     ///< m/s^2, two or more
 };
 
-/// A record: straight between the samples of each component, 0 before the first and after the last. Shared
-/// and never changed: a copy of Parameters copies no samples.
+/// A record: linear between the samples of each component, 0 before the first and after the last. Shared and
+/// never changed, so that a copy of Parameters copies no samples.
 struct Accelerogram {
   std::vector<AccelerogramComponent> components;
-  double duration = 0;  ///< s, from the first to the last sample of the longest component
-  double interval = 0;  ///< s, the shortest
-  double peak = 0;      ///< m/s^2, largest size of the sum of the components at one of their samples
+  double duration = 0;             ///< s, from the first to the last sample of the longest component
+  double interval = 0;             ///< s, the shortest of the components'
+  double peak = 0;                 ///< m/s^2, greatest length of the sum of the components, at their samples
   Vec3 strongest = Vec3::UnitX();  ///< direction of the component with the largest sample
 };
 
-/// A record of one or more components.
+/// A record of one or more components; finds the other numbers.
 std::shared_ptr<const Accelerogram> make_accelerogram(std::vector<AccelerogramComponent> components);
 
-/// Acceleration `tau` seconds after the first sample, m/s^2, world axes. Takes the same time wherever it is.
+/// Acceleration `tau` seconds after the first sample, m/s^2, world axes. Takes the same time for every tau.
 Vec3 acceleration(const Accelerogram& record, double tau);
 
-/// Makes the mean of the samples 0.
+/// Subtracts the mean of the samples, of which there is one at least.
 void remove_mean(std::vector<double>& samples);
 
 /// Subtracts from the acceleration the parabola c0 + c1 t + c2 t^2 that leaves the least mean square

@@ -1,4 +1,4 @@
-// Lines of members into a model: what cabinets and frames have in common.
+// Builds a body from lines of members, for cabinets, frames and grids.
 #pragma once
 
 #include <map>
@@ -20,24 +20,26 @@ struct BuildError : std::runtime_error {
   std::string key;
 };
 
-/// Appends one body to a model: open, add lines and contact points, then close. Node positions that agree
-/// within k_same_place are one node.
+/// Appends one body to a model: construct, add lines, masses and contact points, then close. Node positions
+/// that agree within k_same_place are one node.
 class BodyBuilder {
  public:
   static constexpr double k_same_place = 1e-7;  ///< m
 
   BodyBuilder(Model& model, const std::string& name);
 
+  /// The node at `position` (m, world, reference pose), new if there is none: index into the model, as below.
   int node(const Vec3& position);
-  /// `members` equal members of `elements` elements each between two points. Returns the nodes along the
-  /// line.
+  /// `members` equal members of `elements` elements each between two points, m. `up`: direction near the
+  /// local z axis; zero: z, or x for a vertical line. Returns the nodes along the line. Throws BuildError:
+  /// `up` is parallel to the line, or a yielding section has no plastic moduli.
   std::vector<int> line(const std::string& name, const Vec3& from, const Vec3& to, int members, int elements,
                         int section, int material, const Vec3& up);
-  /// Line mass rho A with Simpson weights, and the section's rotary inertia, of every member from its
-  /// density.
+  /// Adds to the nodes of every member its mass rho A and rotary inertia rho (Iy + Iz, Iy, Iz) per length,
+  /// with Simpson weights 1/6 : 2/3 : 1/6 over each two elements.
   void add_material_mass();
-  void add_contact_point(int node, double width);
-  /// Fills mass, centre of gravity, inertia, base and support polygon.
+  void add_contact_point(int node, double width);  ///< width: m
+  /// Fills mass, centre of gravity, inertia, reach, base (the lowest contact points) and support polygon.
   void close();
 
   Body& body() { return model_.bodies[body_]; }
@@ -45,7 +47,7 @@ class BodyBuilder {
  private:
   Model& model_;
   int body_;
-  std::map<std::tuple<long long, long long, long long>, int> places_;
+  std::map<std::tuple<long long, long long, long long>, int> places_;  // node by position/k_same_place
 };
 
 }  // namespace topple

@@ -1,4 +1,5 @@
-// How much of a body's motion is computed, and the motion of a body that is not computed node by node.
+// Model levels: how much of a body's motion is computed. And the motion of a body that is not computed node
+// by node.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct LevelTraits {
   ModelLevel kind;
   const char* word;
   bool has_modes, has_stresses;
-  bool moves_nodes;  ///< by themselves: they are what is computed
+  bool moves_nodes;  ///< the nodes are the unknowns
 };
 inline constexpr LevelTraits k_model_levels[] = {{ModelLevel::rigid, "rigid", false, false, false},
                                                  {ModelLevel::elastic, "elastic", true, true, false},
@@ -25,36 +26,36 @@ constexpr const LevelTraits& traits(ModelLevel level) {
   return row_of(k_model_levels, level);
 }
 
-/// Why a body stands on its level.
+/// Why a body is on its level (rules: model_level.h).
 enum class LevelReason : std::uint8_t {
   asked,              ///< the scene or an edit names it
   motion,             ///< nothing but motion is asked for
   stress,             ///< stresses are asked for
   contact_frequency,  ///< the body bounces on its contacts almost as fast as it vibrates
   yield,              ///< a section comes near its yield surface
-  deformation,        ///< too much for linear elasticity
-  near,               ///< another body is
-  calm                ///< nothing of that is left, and no hinge has formed
+  deformation,        ///< it deforms too much for linear elasticity
+  near,               ///< another body may touch it (State::candidate_pairs)
+  calm                ///< no reason for a higher level is left, and no hinge has formed
 };
 
-inline constexpr int k_modes = 12;  ///< of the level elastic, at most
+inline constexpr int k_modes = 12;  ///< most modes of a body on the level elastic
 using Amplitudes = Eigen::Array<double, k_modes, 1>;
 
-/// Part of State, one per body. On the level `frame` the nodes hold the motion and only `level` and `reason`
-/// mean something; on the others they follow from this (place_nodes). Modes are those of ElasticBasis; zero
-/// on the level rigid.
+/// Part of State, one per body. On the level frame the nodes hold the motion and only the first three members
+/// mean something; on the others the nodes follow from this (place_nodes). Modes are those of ElasticBasis,
+/// with amplitudes of zero on the level rigid.
 struct BodyState {
   ModelLevel level = ModelLevel::frame;
   LevelReason reason = LevelReason::asked;
-  double calm_since = -1;                     ///< s, of a body that may come down soon; -1: it may not
+  double calm_since = -1;  ///< s, since when a frame meets the conditions of a lower level; -1: it does not
   Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
   Quat rotation = Quat::Identity();           ///< reference to current
   Vec3 velocity = Vec3::Zero();               ///< m/s
   Vec3 angular_velocity = Vec3::Zero();       ///< rad/s, material axes
   Amplitudes amplitude = Amplitudes::Zero();  ///< m sqrt(kg)
   Amplitudes rate = Amplitudes::Zero();       ///< m sqrt(kg)/s
-  double substep = 0;  ///< s, of a step that the level rigid tries next; 0: none was yet
-  // What acts at this instant: gravity, floor and contacts.
+  double substep = 0;  ///< s, implicit substep that the level rigid tries next; 0: none was taken yet
+  // What acts at this instant: gravity, floor, contacts and anchors.
   Vec3 force = Vec3::Zero();             ///< N
   Vec3 moment = Vec3::Zero();            ///< N m about the centre of gravity, floor's axes
   Amplitudes load = Amplitudes::Zero();  ///< on the modes, N/sqrt(kg)

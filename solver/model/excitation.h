@@ -9,14 +9,14 @@
 
 namespace topple {
 
-/// A form of pulse. A new one is a Shake::Shape and a row of the table in excitation.cpp.
+/// A shape of pulse. A new one is a Shake::Shape and a row of the table in excitation.cpp.
 struct PulseTraits {
   Shake::Shape kind;
   const char* word;                     ///< in scenes
   double (*value)(double t, double T);  ///< over the amplitude, at time t in 0..T of its duration T, s
   std::span<const double> kinks;  ///< t/T within the pulse at which value or slope jump: steps end there
-  double velocity;                ///< greatest that it gives the floor, over amplitude and T
-  double cycles;                  ///< of a sine that pushes as long in one direction
+  double velocity;                ///< greatest velocity that it gives the floor, over amplitude times T
+  double cycles;  ///< periods within T of the sine whose half waves last as long as its pushes
 };
 std::span<const PulseTraits> pulse_shapes();
 inline const PulseTraits& traits(Shake::Shape shape) {
@@ -27,13 +27,13 @@ inline const PulseTraits& traits(Shake::Shape shape) {
 struct ShakeTraits {
   Shake::Kind kind;
   const char* word;  ///< in scenes
-  // Which of its numbers it has; without amplitude and direction it is a record with a scale.
+  // Which numbers of Shake it uses; a record has a scale instead of amplitude and direction.
   bool has_amplitude, has_frequency, has_duration;
   bool sweeps;                                   ///< the frequency goes from `frequency` to `last_frequency`
-  Vec3 (*acceleration)(const Shake&, double t);  ///< m/s^2 from its start on
-  double (*end)(const Shake&);                   ///< s
+  Vec3 (*acceleration)(const Shake&, double t);  ///< m/s^2, t not before its start
+  double (*end)(const Shake&);                   ///< see shake_end, s
   double (*period)(const Shake&, double t);      ///< s, of its motion at time t
-  void (*complete)(Shake&);  ///< chooses what a sine lacks that becomes one; null: nothing
+  void (*complete)(Shake&);  ///< sets what a sine does not have, when an edit turns one into this; or null
 };
 std::span<const ShakeTraits> shake_kinds();
 inline const ShakeTraits& traits(Shake::Kind kind) {
@@ -44,10 +44,11 @@ inline const ShakeTraits& traits(Shake::Kind kind) {
 /// shake_turns; a pulse; or scale times a record (accelerogram.h). Allocates nothing.
 Vec3 shake_acceleration(const Shake& shake, double t);
 
-/// Amplitude along its direction at time t, between two edits as between two values, m/s^2.
+/// Amplitude times direction at time t, m/s^2; 0 when off. After an edit it goes from the old to the new
+/// value over Shake::ramp.
 Vec3 shake_amplitude(const Shake& shake, double t);
 
-/// Factor of a record at time t, between two edits as between two values.
+/// Factor of a record at time t, likewise.
 double shake_scale(const Shake& shake, double t);
 
 /// Cycles that a sine or sweep has passed at time t. Sine: f (t - start); after an edit of the frequency the
@@ -55,7 +56,7 @@ double shake_scale(const Shake& shake, double t);
 /// each octave takes as long: f0 T/ln(f1/f0) ((f1/f0)^(x/T) - 1).
 double shake_turns(const Shake& shake, double t);
 
-/// Of a sine or sweep at time t, Hz.
+/// Frequency of a sine or sweep at time t, Hz.
 double shake_frequency(const Shake& shake, double t);
 
 /// Time from which on the shake is 0, s; infinite for a sine that goes on.
@@ -71,11 +72,11 @@ Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t);
 /// with `initial_velocity = jump`, m/s.
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1);
 
-/// Corner of the causal high-pass that makes the displayed floor displacement of the acceleration, Hz.
+/// Corner frequency of the causal high-pass that turns the acceleration into the displayed displacement, Hz.
 inline constexpr double k_floor_corner = 0.05;
 
-/// Advances the filter d'' + 2 z w d' + w^2 d = a(t), z = 1/sqrt(2), w = 2 pi k_floor_corner, by one step
-/// with the accelerations at its two ends (trapezoidal rule).
+/// Advances the filter d'' + 2 z w d' + w^2 d = a(t), z = 1/sqrt(2), w = 2 pi k_floor_corner, by h (s) with
+/// the accelerations a0 and a1 at the two ends, m/s^2 (trapezoidal rule).
 void advance_floor(Vec3& displacement, Vec3& velocity, const Vec3& a0, const Vec3& a1, double h);
 
 }  // namespace topple

@@ -8,18 +8,19 @@
 
 namespace topple {
 
-/// Rows of moments (target values) over groups of nodes that share one mass by symmetry.
+/// Conditions moments m = target on the masses m per node of groups of nodes that weigh the same by symmetry.
 struct MomentProblem {
   Eigen::MatrixXd moments;  ///< constraints x groups: what one kilogram on every node of the group
-                            ///< adds; the first row is the mass itself
-  Eigen::VectorXd target;   ///< constraints
+                            ///< adds; the first row is for the mass itself
+  Eigen::VectorXd target;   ///< per constraint: kg, kg m or kg m^2
   Eigen::VectorXd nominal;  ///< groups, kg per node: the distribution to stay close to
   Eigen::VectorXd least;    ///< groups, kg per node: lower bound, > 0
   Eigen::VectorXd count;    ///< groups, nodes in the group
 };
 
-/// Masses per node that meet the moments exactly, are not below `least`, and depart least (relative squares)
-/// from `nominal`. Primal active set. None: no such masses.
+/// Masses per group that meet the moments to rounding, are not below `least`, and have the least sum of
+/// count (m/nominal - 1)^2. Newton's method on the dual problem, one multiplier per moment. None: no such
+/// masses were found.
 std::optional<Eigen::VectorXd> fit_masses(const MomentProblem& problem);
 
 }  // namespace topple

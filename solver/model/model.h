@@ -27,7 +27,8 @@ struct Element {
   Eigen::Vector4d capacity = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity());
 };
 
-/// A straight member: a run of elements of one section and one material, two by two subsets.
+/// A straight member: an even number of elements of one section and one material. Each two of them place
+/// their integration points together (SchemeTraits::s).
 struct Member {
   std::string name;  ///< "post-1", "brace-front-a"; unique within its body
   int body;
@@ -37,18 +38,18 @@ struct Member {
   int material;  ///< index into Model::materials
 };
 
-/// Fixed directions of a node, in world axes; bit k < 3 translation k, bit 3 + k rotation k.
+/// Fixed directions of a node, world axes; bit k: translation along axis k, bit 3 + k: rotation about it.
 struct Support {
   int node;
   unsigned fixed;
 };
 
-/// Dead load on a node, world axes; times a factor that is piecewise linear in time (empty: 1).
+/// Dead load on a node, world axes, times a factor that is piecewise linear in time (load_factor).
 struct Load {
   int node;
   Vec3 force;                                      ///< N
   Vec3 moment;                                     ///< N m
-  std::vector<std::pair<double, double>> history;  ///< (s, factor), increasing times
+  std::vector<std::pair<double, double>> history;  ///< (s, factor), increasing times; empty: 1
 };
 
 /// A node that can touch floors and walls.
@@ -74,10 +75,11 @@ struct Body {
                                       ///< from above, world, reference pose; empty when it has no base
   std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
-  std::vector<std::array<int, 4>> panels;       ///< nodes of flat sheets, for pictures only
+  std::vector<std::array<int, 4>>
+      panels;  ///< corner nodes of flat sheets, which are drawn and may bear anchors
   std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the level elastic
-  double first_frequency =
-      0;                ///< rad/s, of its first elastic mode (damping.h); 0: not known, it has no damping
+  /// rad/s, angular, of its first elastic mode (damping.h); 0: not known, it has no damping.
+  double first_frequency = 0;
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
 };
 
@@ -89,28 +91,28 @@ struct Plane {
   double width;  ///< m, contact width; 0: that of the touching member
 };
 
-/// Of a plane where `point` touches it, m.
+/// Contact width of a plane where `point` touches it, m.
 inline double contact_width(const ContactPoint& point, const Plane& plane) {
   return plane.width > 0 ? plane.width : point.width;
 }
-/// L of Eq. 2 of a point and a plane: the mean of their contact widths, m.
+/// L of Eq. 2 for a point and a plane: the mean of their contact widths, m.
 inline double contact_length(const ContactPoint& point, const Plane& plane) {
   return (point.width + contact_width(point, plane)) / 2;
 }
 
 enum class Scheme { asi_gauss, asi, midpoint };
 
-/// Place s of the stress points that makes those of two elements the Gauss points of the pair: 2/sqrt(3) - 1
-/// (Eq. 1).
+/// |s| of the integration points for which the stress points r = -s (Eq. 1) of two equal elements are the
+/// Gauss points of the member: 2/sqrt(3) - 1.
 inline constexpr double k_gauss_shift = 0.15470053837925152;
 
 /// Where integration points of a member's elements stand.
 struct SchemeTraits {
   Scheme kind;
   const char* word;     ///< in scenes
-  double s[2];          ///< elastic stress points of the first and second of each two elements, -1..1
-  bool hinges_at_ends;  ///< of the elements (plasticity.h), otherwise in the middle
-  const char* about;    ///< of its stresses and hinges, for legends
+  double s[2];          ///< elastic, of the first and second of each two elements, -1..1
+  bool hinges_at_ends;  ///< of the elements (plasticity.h); false: in the middle
+  const char* about;    ///< a line for legends
 };
 /// A new one is a Scheme and a row here.
 inline constexpr SchemeTraits k_schemes[] = {
@@ -136,7 +138,7 @@ struct Anchor {
   Vec3 to;           ///< m, floor's frame
   Type type;         ///< strap: pulls only; bracket: both ways; pole: pushes only
   double stiffness;  ///< N/m
-  double strength = std::numeric_limits<double>::infinity();  ///< N, it breaks above
+  double strength = std::numeric_limits<double>::infinity();  ///< N, |tension| above which it breaks
   double length;                                              ///< m, natural: that at the start, > 0
 };
 

@@ -19,27 +19,27 @@ struct ContactLaw {
   double alpha = 50 * k_standard_gravity;  ///< N, penalty coefficient
   double q = 1;                            ///< penalty index
   double friction = 0.6;                   ///< mu, kinetic
-  double friction_static = 0;  ///< coulomb law: of what sticks (friction_coefficient); not above mu: mu
-  double restitution = 0;      ///< coulomb law; a body that rocks lands without bouncing (Housner)
+  double friction_static = 0;  ///< coulomb law: static friction (friction_coefficient); not above mu: mu
+  double restitution = 0;      ///< coulomb law: e, 0..1; 0 as Housner's block, which does not bounce
   double normal_speed = 0.01;  ///< m/s, eps_n of the coulomb law
-  /// m/s; paper and printed law: smoothing of the direction v/|v|; coulomb law: at which half of the
-  /// difference between static and kinetic friction is gone
+  /// m/s. paper and printed law: smoothing eps of the direction v/sqrt(v^2 + eps^2). coulomb law: slip speed
+  /// at which friction is half-way from static to kinetic.
   double slip_speed = 0.01;
   bool operator==(const ContactLaw&) const = default;
-  /// What static friction has more than kinetic.
+  /// Static less kinetic friction, not below 0.
   double excess() const { return friction_static > friction ? friction_static - friction : 0; }
 };
 
-/// The way from earlier values to those edited while it runs: what jumped would put energy in.
+/// Smooth change from old values to those of an edit during a run: a jump would put energy in.
 struct ParameterRamp {
-  double since = 0;  ///< s
-  double over = 0;   ///< s; 0: no ramp
-  /// Share of the new values at time t: 0..1, smooth.
+  double since = 0;  ///< s, its start
+  double over = 0;   ///< s, its duration; 0: no ramp
+  /// Share of the new values at time t, 0..1: (1 - cos(pi (t - since)/over))/2 within the ramp.
   double share(double t) const;
   bool operator==(const ParameterRamp&) const = default;
 };
 
-/// One floor acceleration; several add up.
+/// One acceleration of the floor (formulas: excitation.h); several add up.
 struct Shake {
   enum class Kind { sine, sweep, pulse, record };
   enum class Shape { half_sine, full_sine, rectangle };
@@ -51,49 +51,50 @@ struct Shake {
   Vec3 direction = Vec3::UnitX();  ///< unit; record: of its strongest component
   double start = 0;                ///< s
   bool on = true;
-  double cycles = 0;  ///< sine: 0 = until the end
-  double taper = 0;   ///< sine, sweep: cycles of smooth rise and fall
+  double cycles = 0;  ///< sine: number of periods; 0: until the end of the run
+  double taper = 0;   ///< sine, sweep: cycles over which it smoothly rises and falls
   Start initial_velocity = Start::rest;
   Shape shape = Shape::half_sine;              ///< pulse
   double duration = 1;                         ///< s, pulse, sweep
   std::shared_ptr<const Accelerogram> record;  ///< record: not null
   double scale = 1;                            ///< record: factor
 
-  // Of edits while it runs (edit.h).
-  double turned = 0;                     ///< s after `start`: `frequency` holds since
+  // Left by edits during a run (edit.h).
+  double turned = 0;                     ///< s after `start`, of the latest change of `frequency`
   double turns = 0;                      ///< cycles passed by then
-  Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, along its direction
-  double scale_before = 1;
-  ParameterRamp ramp;  ///< from them to `amplitude` along `direction` and to `scale`
+  Vec3 amplitude_before = Vec3::Zero();  ///< m/s^2, amplitude times direction before an edit
+  double scale_before = 1;               ///< scale before it
+  ParameterRamp ramp;                    ///< from them to `amplitude` times `direction` and to `scale`
   bool operator==(const Shake&) const = default;
 };
 
-/// What a body is computed as (method: model_level.h). automatic: the least that answers what is asked.
+/// What a body is computed as (method: model_level.h). automatic: the cheapest level that answers what is
+/// asked for.
 enum class BodyModel { automatic, rigid, elastic, frame };
 
-/// Of frames (method: integrator.h).
+/// Time integration of frames (table: integrator.h).
 enum class Integrator { generalized_alpha, central_difference, newmark };
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene/scene_keys.h, one table for scene
 /// files, sliders and fuzzers.
 struct Parameters {
   ContactLaw contact;
-  ContactLaw contact_before;   ///< until an edit
-  ParameterRamp contact_ramp;  ///< from it to `contact`
+  ContactLaw contact_before;   ///< law before the latest edit
+  ParameterRamp contact_ramp;  ///< from it to `contact`, see contact_law()
   std::vector<Shake> shakes;
   std::vector<BodyModel> models;  ///< one per body; empty: all frame
   std::vector<double> damping;    ///< one per body: ratio to critical at its first elastic mode; empty: 0
   std::vector<bool> anchors;      ///< one per anchor: it is in place; empty: all are
-  bool want_stress = true;        ///< what `automatic` goes by
+  bool want_stress = true;        ///< stresses are asked for; `automatic` depends on it
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1
   double beta = 0.25, gamma = 0.5;  ///< of newmark
   double time_step = 1e-3;          ///< s, fixed step
   bool adaptive = false;            ///< the step follows `tolerance` instead (step_control.h)
-  double tolerance = 1e-3;          ///< of the adaptive step
-  /// Bodies that are no frames swing in parts of a step (reduced_body.h) this many times shorter than is
-  /// stable.
+  double tolerance = 1e-3;          ///< of the adaptive step, relative to the speed (step_control.h)
+  /// Explicit substeps of rigid and elastic bodies (reduced_body.h) are this many times shorter than
+  /// stability asks for.
   double finer_parts = 1;
   bool operator==(const Parameters&) const = default;
 };

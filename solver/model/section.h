@@ -24,11 +24,11 @@ struct Section {
   double size_z = 0;     ///< m, outer; pipe: diameter
   double thickness = 0;  ///< m, wall; box and pipe
   double area = 0;       ///< m^2
-  double iy = 0;         ///< m^4, resists bending in the local x-z plane
-  double iz = 0;         ///< m^4, resists bending in the local x-y plane
+  double iy = 0;         ///< m^4, second moment of area for bending in the local x-z plane
+  double iz = 0;         ///< m^4, likewise in the local x-y plane
   double j = 0;          ///< m^4, torsion constant
-  double ky = 0;         ///< shear coefficient in y
-  double kz = 0;         ///< shear coefficient in z
+  double ky = 0;         ///< -, shear coefficient in y
+  double kz = 0;         ///< -, shear coefficient in z
   double zy = 0;         ///< m^3, plastic modulus of bending in the local x-z plane
   double zz = 0;         ///< m^3, likewise in the local x-y plane
   double zt = 0;         ///< m^3, plastic modulus of torsion: Mx0 = zt yield / sqrt(3)
@@ -39,10 +39,10 @@ struct Section {
   double fibre_z() const { return size_z / 2; }
 };
 
-/// Fills area, iy, iz, j, ky, kz, width from shape, sizes and thickness (thin-walled Bredt torsion
-/// for the box, Saint-Venant series for the solid, shear coefficients after Cowper 1966), and the plastic
-/// moduli zy, zz, zt (torsion: Bredt with the wall at yield; solid and pipe: Nadai's sand heap).
-/// shape must not be custom; sizes > 0; 0 < 2 thickness < smaller size.
+/// Fills area, iy, iz, j, ky, kz, width from shape, sizes and thickness (thin-walled Bredt torsion for the
+/// box, Saint-Venant series for the solid, shear coefficients after Cowper 1966; width: mean of the sizes),
+/// and the plastic moduli zy, zz, zt (torsion: Bredt with the wall at yield; solid and pipe: Nadai's sand
+/// heap). Sizes > 0; 0 < 2 thickness < smaller size. A custom section stays as it is.
 void complete_section(Section& section, double poisson);
 
 }  // namespace topple

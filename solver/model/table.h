@@ -1,6 +1,6 @@
-// Tables of traits: what comes in kinds (contact laws, pulse shapes, schemes, ...) has one row a kind, with a
-// member `kind`, and where scenes name it a member `word`. The order of rows is that of lists and charts and
-// means nothing else.
+// Tables of traits: what comes in kinds (contact laws, pulse shapes, schemes, ...) has one row per kind, with
+// a member `kind`, and where scenes name it a member `word`. The order of rows is that of lists and charts
+// and means nothing else.
 #pragma once
 
 #include <cstddef>

@@ -11,9 +11,9 @@
 
 namespace topple {
 
-/// A new value of one parameter. SI, as in Parameters; numbers stand in the first component, `direction` uses
-/// all three, the frequency of a sweep two (first, last). Choices are numbers of those of the scene's
-/// key, from 0; want: 1 motion and stress, 0 motion alone; on and anchor: 1 or 0.
+/// A new value of one parameter. SI, as in Parameters; a number is the first component, `direction` uses all
+/// three, the frequency of a sweep two (first, last). A choice is its index, from 0, in the list of the
+/// scene's key; want: 1 motion and stress, 0 motion alone; on and anchor: 1 or 0.
 struct Edit {
   enum class Key {
     on,
@@ -36,10 +36,10 @@ struct Edit {
     want,
     time_step
   };
-  /// What an edit is of, as tables of the scene are called; `contact` and `run` there are one of.
+  /// Table of the scene that the key is in. There is one `contact` and one `run`.
   enum class Of { shake, contact, body, anchor, run };
   Key key;
-  int shake = 0;  ///< index of the shake, body or anchor
+  int shake = 0;  ///< index of the shake, body or anchor; else 0
   Vec3 value = Vec3::Zero();
 };
 
@@ -48,9 +48,9 @@ struct Edit {
 struct EditTraits {
   Edit::Key kind;
   Edit::Of of;
-  const char* word;  ///< the key in the scene
-  bool dynamic;      ///< statics have no use for it
-  bool (*exists)(const Model&, const Parameters&, int index);
+  const char* word;                                            ///< the key in the scene
+  bool dynamic;                                                ///< statics have no use for it
+  bool (*exists)(const Model&, const Parameters&, int index);  ///< whether it can be edited there
   Vec3 (*get)(const Parameters&, int index);
   void (*set)(const Edit&, const Model&, double t, Parameters&);  ///< from time t on, see apply()
 };
@@ -70,7 +70,8 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
 /// on and off change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),
 /// numbers of the contact law over two of contact_period. A type, and the frequencies of a sweep, begin the
 /// shake anew, with acceleration 0 but for a rectangle; a sine becomes a pulse of half its period, or a sweep
-/// to ten times its frequency in 10 s. What another contact law holds in its springs the next step books. The
+/// to ten times its frequency in 10 s. The rest changes at once: body models and anchors with the next step,
+/// which also books what another contact law holds in its springs; time_step ends adaptive stepping. The
 /// result depends on nothing but the arguments, so that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 

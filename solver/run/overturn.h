@@ -13,9 +13,9 @@
 
 namespace topple {
 
-/// A side is lifted when it carries less than this part of the body's weight while the body stands on
-/// another, and has closed again when it carries more than k_closing. Two thresholds, or a resting side would
-/// chatter.
+/// Share of the body's weight. A side is lifted when it carries less than k_uplift while the floor carries
+/// more than k_closing, and has closed again when it carries more than k_closing. Two thresholds, or a
+/// resting side would chatter.
 inline constexpr double k_uplift = 1e-3;
 inline constexpr double k_closing = 1e-2;
 
@@ -23,7 +23,7 @@ inline constexpr double k_closing = 1e-2;
 inline constexpr std::size_t k_kept_impacts = 100;
 
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
-/// rad. Infinite for a body without a base or with supports.
+/// rad: atan(distance/height). Infinite without a floor, and for a body without a base or with supports.
 double critical_angle(const Model& model, int body, const BodyPose& pose);
 
 /// Energy that lifts the centre of gravity of a rigid body over the edge in the direction of its tilt, J;
@@ -33,11 +33,13 @@ struct OverturnBarrier {
   double left;   ///< from this tilt on
   double whole;  ///< from upright, in the same direction
 };
+/// gravity: m/s^2.
 OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, double gravity);
 
 /// Horizontal travel of the mid-point of the base relative to the floor since the reference pose, m.
 double slide(const Model& model, int body, const BodyPose& pose);
 
+/// Something that happened to a body, at the end of a step.
 struct Event {
   enum class Kind { uplift, impact, overturn, hinge, fracture, model, anchor };
   Kind kind;
@@ -111,7 +113,7 @@ class Outcome {
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
-  /// What a force on a place of an element adds to what sides of the body's base carry.
+  /// Adds a force, N, at `place` (0..1 along the element) to what the sides of the body's base carry.
   void carry(const Model& model, int element, double place, const Vec3& force);
   void observe_forces(const Model& model, const std::vector<ContactForce>& forces,
                       const std::vector<MemberForce>& between);

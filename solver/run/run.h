@@ -27,7 +27,7 @@ struct RunSettings {
   StopWhen stop_when = StopWhen::never;
 };
 
-/// Node whose motion the summary reports; node -1: the body itself.
+/// What the summary reports the motion of: a node, or with node -1 the body's centre of gravity and rotation.
 struct Probe {
   std::string name;
   int body;
@@ -58,7 +58,7 @@ struct RunPoint {
   Outcome outcome;
   std::vector<ProbeOutcome> probes;
   std::int64_t newton_iterations = 0, rejected_steps = 0;
-  std::optional<double> rest_since = {};
+  std::optional<double> rest_since = {};  ///< s
   bool stopped_early = false;
   std::vector<LoadStep> load_steps = {};  ///< statics
 };

@@ -5,21 +5,22 @@
 
 namespace topple {
 
-/// Energies that bodies exchanged in a step, J; added to.
+/// Energies exchanged in a step, J, with the meaning and signs of EnergyLedger; functions add to them.
 struct StepEnergy {
   double input = 0, gravity = 0, friction = 0, normal_damping = 0, numerical = 0, plastic = 0, damping = 0;
   StepEnergy& operator+=(const StepEnergy& other);
 };
 
-/// Energies of a body, or of several, that depend on where it is, J.
+/// Energies that a body, or several, hold by their motion at an instant, J.
 struct BodyEnergy {
   double kinetic = 0, strain = 0, contact = 0, anchor = 0;
   BodyEnergy& operator+=(const BodyEnergy& other);
   double sum() const { return kinetic + strain + contact + anchor; }
 };
 
-/// What a contact law that changes over a step puts into springs that do not move: input. Call for every
-/// contact at both ends of the step.
+/// Books as input the energy that a change of the contact law over a step (the ramp of an edit) puts into the
+/// springs of contacts, half of it at each end of the step. Call for every contact that is closed there.
+/// depth: 1 - l/L. L: m. stick_energy: J. weight: as MemberTouch::weight.
 class LawChange {
  public:
   LawChange(const ContactLaw& before, const ContactLaw& after, StepEnergy& energy);

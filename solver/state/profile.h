@@ -1,10 +1,11 @@
-// Where the time of steps goes.
+// Computing time of steps by phases.
 #pragma once
 
 #include <array>
 
 namespace topple {
 
+/// search: candidate pairs; models: model levels; reduced: rigid and elastic bodies; forces..energy: frames.
 enum class Phase { other, search, models, reduced, forces, tangent, factor, solve, energy, observe, record };
 
 /// Sums of the time spent in each phase, for one thread. Without a clock nothing is measured.
@@ -12,7 +13,7 @@ struct Profile {
   double (*clock)() = nullptr;  ///< s, from any start
   std::array<double, static_cast<int>(Phase::record) + 1> seconds{};
   Phase phase = Phase::other;
-  double since = 0;  ///< s, by the clock
+  double since = 0;  ///< s, by the clock, when `phase` began
 
   void enter(Phase next) {
     if (!clock) return;
@@ -23,7 +24,7 @@ struct Profile {
   }
 };
 
-/// The time of a scope belongs to a phase, and not to the one around it. `profile` may be null.
+/// Counts the time of a scope for a phase, and not for the phase around it. `profile` may be null.
 class InPhase {
  public:
   InPhase(Profile* profile, Phase phase) : profile_(profile && profile->clock ? profile : nullptr) {

@@ -8,7 +8,7 @@
 
 namespace topple {
 
-/// Section forces of every element at `state`.
+/// Elastic section forces of every element at its stress point, from the nodes of `state`; zero when broken.
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
 
 }  // namespace topple

@@ -1,4 +1,4 @@
-// How the solver asks for more than one thread, which it does not make itself.
+// How the solver runs tasks on threads, which it does not make itself.
 #pragma once
 
 #include <functional>

@@ -12,37 +12,37 @@ struct StepInProgress {
   const Parameters& parameters;
   const State& from;
   double h;
-  int halvings;  ///< the implicit methods halve it so often when Newton does not converge
+  int halvings;  ///< how often the implicit methods of frames may halve h when Newton does not converge
   Workspace::Impl& w;
   StepInputs start;
-  StepEnergy exchanged = {};
-  BodyEnergy held = {};
+  StepEnergy exchanged = {};  ///< in the step
+  BodyEnergy held = {};       ///< at its end
 
   StepInProgress(const Model& model, const Parameters& parameters, const State& from, double h, int halvings,
                  Workspace::Impl& w);
-  double end() const { return from.time + h; }
+  double end() const { return from.time + h; }  ///< s
 };
 
-/// `w.next` becomes `from`, with all pairs that touch when no node moves by more than `travel`, m.
+/// Copies `from` to `w.next` and finds all candidate pairs, for nodes that move by `travel`, m, at most.
 void find_candidates(const StepInProgress& step, double travel);
 
-/// What each body is computed as from here on.
+/// Chooses what each body is computed as from here on (model_switch.h).
 void switch_models(const StepInProgress& step);
 
-/// What happened between the steps: anchors switched, another law, a jump of the floor's velocity, another
-/// step size.
+/// Applies what changed since the last step: anchors, contact law, step size, a jump of the floor's velocity.
 void apply_events(StepInProgress& step);
 
 /// step_too_long where an explicit method is not stable.
 StepStatus check_stability(const StepInProgress& step);
 
-/// The parts go to the end of the step, side by side where there are workers.
+/// Advances all parts to the end of the step, in parallel where there are workers. The first failure counts.
 StepStatus advance_parts(StepInProgress& step);
 
-/// Time, floor and energies of the end.
+/// Sets step, time, floor motion and energies of `w.next`.
 void close_ledger(const StepInProgress& step);
 
-/// `status` becomes not_finite or energy_lost where the numbers or the energies at the end are so.
+/// `status` becomes not_finite where a number at the end is not, energy_lost where a contact is closed and
+/// the balance error is above k_lost_balance.
 void check(const StepInProgress& step, StepStatus& status);
 
 }  // namespace topple

@@ -10,7 +10,8 @@
 
 namespace topple {
 
-/// A direction that moves in equal parts while the load factor follows: where the path turns down.
+/// Displacement control: one direction of a node moves in equal increments and the load factor is solved for,
+/// so that a path can be followed beyond a limit point.
 struct DisplacementControl {
   int node = 0;              ///< index into the model
   int direction = 0;         ///< 0..2 translation, 3..5 rotation about world axes
@@ -32,17 +33,18 @@ struct LoadStep {
 
 /// Walks a model through its load steps. Weight acts in full from the start, that of a member as a
 /// distributed load: with its fixed-end forces and moments on the member's ends. Loads without a history grow
-/// with the load factor, the others follow their history over it. Contacts hold as in settle().
+/// with the load factor, the others follow their history over it. Contacts as in settle() (step.h).
 class LoadPath {
  public:
   LoadPath(const Model& model, const StaticSettings& settings);
 
-  /// Balances the weight, without the loads that grow: load factor 0. `settled`: as settle() first.
+  /// Balances the weight, without the loads that grow: load factor 0. `settled`: after settle().
+  /// uncontrolled: the loads do not move the controlled direction.
   StepStatus start(const Parameters& parameters, bool settled, State& state);
-  /// The next load step: halved where Newton finds no equilibrium, or without displacement control and
-  /// moments one that is not stable. no_equilibrium: not even k_least_part of
-  /// it has one; `state` is then the last equilibrium found, and State::step counts it when it is new.
-  /// State::time becomes the load factor, with displacement control the part of the way.
+  /// The next load step. It is halved where Newton finds no equilibrium or, under load control by forces
+  /// alone, one whose tangent is not positive definite. no_equilibrium: not even 1/1024 of the step has one;
+  /// `state` is then the last equilibrium found, and State::step counts it when it is new. State::time
+  /// becomes the load factor, with displacement control the share of the load steps.
   StepStatus advance(const Parameters& parameters, State& state);
 
  private:

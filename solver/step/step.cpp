@@ -11,7 +11,8 @@ namespace {
 constexpr int k_halvings = 6;
 constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes move further than was expected
 
-StepStatus meet(const Model& model, const Parameters& parameters, const State& state, Workspace::Impl& w);
+StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
+                        Workspace::Impl& w);
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w);
 
 }  // namespace
@@ -19,7 +20,7 @@ void accept(const Model& model, const Parameters& parameters, State& state, Work
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until) {
   Workspace::Impl& w = workspace.impl();
-  StepStatus status = meet(model, parameters, state, w);
+  StepStatus status = check_inputs(model, parameters, state, w);
   if (!status.ok()) return status;
   status = parameters.adaptive ? adaptive_step(model, parameters, state, w, until)
                                : try_step(model, parameters, state, parameters.time_step, k_halvings, w);
@@ -58,7 +59,8 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
 namespace {
 
 // Looks at the numbers of parameters that are new, and of a state that is not finite.
-StepStatus meet(const Model& model, const Parameters& parameters, const State& state, Workspace::Impl& w) {
+StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
+                        Workspace::Impl& w) {
   if (w.parameters == parameters && is_finite(state, false)) return {};
   const StepStatus status = look_at_numbers(model, parameters, state, false);
   if (status.ok()) w.invalidate_caches(parameters);

@@ -19,18 +19,18 @@ namespace topple {
 /// collapses.
 StepStatus settle(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
 
-/// Initial accelerations and energies of `state`; call once before the first step and after a change of
-/// Parameters that is not seen by step.
+/// Sets levels, anchors, accelerations and energies of `state`, where a run begins: call once before the
+/// first step, or to begin anew from a state with other parameters.
 void prepare(const Model& model, const Parameters& parameters, State& state, Workspace& workspace);
 
 /// Fills the workspace from a state that was stepped before, such as a checkpoint; leaves the state as it is.
 void resume(const Model& model, const State& state, Workspace& workspace);
 
-/// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, `until` at
-/// most. On failure `state` is as before the call. bad_parameter: is_finite refuses them. energy_lost: the
-/// step is much too long for what happens in it. The implicit methods halve their step within the call when
-/// Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64, an
-/// adaptive one down to k_least_step.
+/// Advances `state` by parameters.time_step, or in an adaptive run by what step_control.h allows, to `until`,
+/// s, at most. On failure `state` is as before the call. bad_parameter: is_finite refuses them. energy_lost:
+/// the step is much too long for what happens in it. The implicit methods halve their step within the call
+/// when Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64,
+/// an adaptive one down to k_least_step.
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until = std::numeric_limits<double>::infinity());
 

@@ -13,7 +13,7 @@
 namespace topple {
 
 /// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
-/// `workspace`. Also finds the section forces of bodies on the level elastic.
+/// `workspace`. Also finds the section forces of rigid (zero) and elastic bodies.
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
 

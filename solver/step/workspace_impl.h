@@ -15,7 +15,7 @@ struct Workspace::Impl {
   explicit Impl(const Model& model) : parts(model), models(model), search(model) {
     forces.contacts.reserve(model.contact_points.size() * model.planes.size());
   }
-  /// Forgets what other parameters were good for.
+  /// Forgets what holds for the earlier parameters only.
   void invalidate_caches(const Parameters& now) {
     if (parameters == now) return;
     parameters = now;
@@ -24,7 +24,7 @@ struct Workspace::Impl {
     explicit_limit.reset();
   }
 
-  /// Of parameters and a state whose bodies are computed as `parts` are.
+  /// Of a state that `parts` were arranged for; found once until the caches are invalidated.
   const std::optional<ExplicitLimit>& find_explicit_limit(const Parameters& now, const State& state) {
     if (!explicit_limit) explicit_limit = parts.explicit_limit(now, state);
     return explicit_limit;
@@ -39,7 +39,7 @@ struct Workspace::Impl {
   NearSearch search;
   std::vector<PartScratch> scratches{1};        // per worker
   std::vector<PartOutcome> outcomes;            // per part, of the newest step
-  std::optional<Parameters> parameters;         // met last; for them hold:
+  std::optional<Parameters> parameters;         // seen last; for them hold:
   std::optional<StepInputs> reached;            //   the end of the last step that was tried
   std::optional<ExplicitLimit> explicit_limit;  //   of the frames there are
   std::vector<char> changed;                    // per body: one of its anchors was switched or broke

@@ -171,7 +171,7 @@ AccelerogramFile read_csv(std::string_view text, const std::string& name, const 
     }
     for (std::size_t k = 0; k < columns.at.size(); ++k) {
       const double value = cell(columns.at[k]);
-      largest[k].meet(value, lines.number());
+      largest[k].update(value, lines.number());
       file.components[k].push_back(value);
     }
     if (static_cast<double>(file.components[0].size()) > k_most_samples)

@@ -87,7 +87,7 @@ AccelerogramFile read_at2(std::string_view text, const std::string& name, const 
       const auto end = std::min(rest.find_first_of(" \t"), rest.size());
       const double value = finite_number(rest.substr(0, end), lines, "");
       rest.remove_prefix(end);
-      largest.meet(value, lines.number());
+      largest.update(value, lines.number());
       if (++found <= *count) samples.push_back(value);
     }
   }

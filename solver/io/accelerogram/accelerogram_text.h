@@ -48,36 +48,37 @@ class Lines {
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 std::string upper(std::string_view text);
-/// In quotes, no longer than a message bears.
+/// In quotes, for a message: at most 40 characters, those beyond ASCII as "?".
 std::string shown(std::string_view text);
 /// A whole number, of more than 15 digits as a power of ten.
 std::string count_text(double count);
 
-/// Nothing when it is no number.
+/// Nothing when it is no number; infinity when it is too large for one.
 std::optional<double> number_in(std::string_view text);
-/// The number at the begin of `text`, taken off it.
+/// The finite number at the begin of `text`, taken off it; else nothing, and nothing is taken off.
 std::optional<double> take_number(std::string_view& text);
-/// Fails, with `what` before what was found.
+/// Fails where the text is none, with `what` before what was found.
 double finite_number(std::string_view text, const Lines& lines, const std::string& what);
 
-// They fail, with `key` before what was found.
+// The limits of accelerogram_content.h. They fail, with `key` before what was found.
 void check_count(const Lines& lines, const std::string& key, double count);
 void check_interval(const Lines& lines, int line, const std::string& key, double interval);
-/// Above k_highest_peak the unit is taken to be wrong.
+/// `size`: in `unit`. Fails above k_highest_peak, where the unit is taken to be wrong.
 void check_peak(const Lines& lines, int line, double size, std::string_view unit);
 
 inline constexpr const char* k_known_units = "known: g, gal, m/s^2, cm/s^2";
 
 /// The symbol of a unit as files spell it; empty when it is none that is known.
 std::string_view acceleration_unit(std::string_view text);
-/// The symbol that counts of what the file states (empty: nothing) and the scene says.
+/// The symbol that the file states (empty: nothing) or the scene says. Fails when neither does, or they
+/// differ.
 std::string_view chosen_unit(const Lines& lines, std::string_view stated, const AccelerogramNotes& notes);
 
-/// The largest of numbers as they stand in the file.
+/// The largest |number| as it stands in the file, and its line.
 struct Largest {
   double size = 0;
   int line = 0;
-  void meet(double value, int number) {
+  void update(double value, int number) {
     if (std::abs(value) > size) {
       size = std::abs(value);
       line = number;
@@ -85,6 +86,7 @@ struct Largest {
   }
 };
 
+/// `factor`: SI value of one unit.
 void to_si(std::vector<double>& values, double factor);
 
 /// Whether the text is CSV.

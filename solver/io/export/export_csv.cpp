@@ -135,7 +135,8 @@ void floor_row(CsvFile& csv, const FrameRow& row) {
 
 }  // namespace
 
-void write_csv(const Recording& recording, const Model& model, const host::Target& folder) {
+bool write_csv(const Recording& recording, const Model& model, const host::Target& folder,
+               const Proceed& proceed) {
   std::error_code error;
   fs::create_directories(folder.path, error);
   if (error) throw WriteError(folder.path.string() + ": cannot be created: " + error.message());
@@ -153,25 +154,25 @@ void write_csv(const Recording& recording, const Model& model, const host::Targe
   std::optional<CsvFile> anchors;
   if (!model.anchors.empty())
     anchors.emplace(within("anchors.csv"), "time_s,anchor,tension_N,energy_J,natural_length_m,state");
-  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
-    const FrameRow row = recording.frame(i);
-    expect_same_model(model, row);
+  const bool whole = each_frame(recording, model, proceed, [&](const FrameRow& row) {
     bodies_rows(bodies, model, row);
     nodes_rows(nodes, model, row);
     elements_rows(elements, model, row);
     floor_row(floor, row);
     energy_row(energy, row);
     if (anchors) anchors_rows(*anchors, model, row);
-  }
+  });
+  if (!whole) return false;
   std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &floor, &energy};
   if (anchors) files.push_back(&*anchors);
   for (CsvFile* file : files) file->close();
   for (CsvFile* file : files) file->commit();
+  return true;
 }
 
-void export_csv(const Recording& recording, const host::Target& folder) {
+bool export_csv(const Recording& recording, const host::Target& folder, const Proceed& proceed) {
   const Scene scene = recorded_scene(recording);
-  write_csv(recording, scene.setup.model, folder);
+  return write_csv(recording, scene.setup.model, folder, proceed);
 }
 
 }  // namespace topple::io

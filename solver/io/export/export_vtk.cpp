@@ -72,7 +72,7 @@ std::string frame_file(const Model& model, const ElementPlaces& places, const Fr
 
 }  // namespace
 
-void export_vtk(const Recording& recording, const host::Target& folder) {
+bool export_vtk(const Recording& recording, const host::Target& folder, const Proceed& proceed) {
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
   const ElementPlaces places(model);
@@ -83,16 +83,16 @@ void export_vtk(const Recording& recording, const host::Target& folder) {
   std::string list =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "<Collection>\n";
-  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
-    const FrameRow row = recording.frame(i);
-    expect_same_model(model, row);
+  const bool whole = each_frame(recording, model, proceed, [&](const FrameRow& row) {
     char name[32];
     std::snprintf(name, sizeof name, "frame-%06zu.vtp", files.size());
     write(name, frame_file(model, places, row));
     list += "<DataSet timestep=\"" + shortest(row.time) + "\" file=\"" + name + "\"/>\n";
-  }
+  });
+  if (!whole) return false;
   write("frames.pvd", list + "</Collection>\n</VTKFile>\n");
   for (host::StagedFile& file : files) file.commit();
+  return true;
 }
 
 }  // namespace topple::io

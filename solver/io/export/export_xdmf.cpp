@@ -137,18 +137,17 @@ void add_frame(XdmfFile& file, const Model& model, const FrameRow& row, int numb
 
 }  // namespace
 
-void export_xdmf(const Recording& recording, const host::Target& target) {
+bool export_xdmf(const Recording& recording, const host::Target& target, const Proceed& proceed) {
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
   XdmfFile file(target);
   const std::string fixed = fixed_parts(file, model);
   int number = 0;
-  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
-    const FrameRow row = recording.frame(i);
-    expect_same_model(model, row);
-    add_frame(file, model, row, number++, fixed);
-  }
+  if (!each_frame(recording, model, proceed,
+                  [&](const FrameRow& row) { add_frame(file, model, row, number++, fixed); }))
+    return false;
   file.commit();
+  return true;
 }
 
 }  // namespace topple::io

@@ -6,6 +6,7 @@
 
 #include "solver/element/plasticity.h"
 #include "solver/element/section_forces.h"
+#include "solver/io/recording/recording_format.h"
 #include "solver/math/rotation.h"
 
 namespace topple::io {
@@ -39,6 +40,17 @@ ElementPlaces::ElementPlaces(const Model& model) {
     member.push_back(element.member);
     body.push_back(model.members[static_cast<std::size_t>(element.member)].body);
   }
+}
+
+bool each_frame(const Recording& recording, const Model& model, const Proceed& proceed,
+                const std::function<void(const FrameRow&)>& each) {
+  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
+    if (proceed && !proceed()) return false;
+    const FrameRow row = recording.frame(i);
+    expect_same_model(model, row);
+    each(row);
+  }
+  return true;
 }
 
 std::string shortest(double value) {

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "solver/io/recording/frame_row.h"
+#include "solver/io/recording/recording.h"
 #include "solver/model/model.h"
 
 namespace topple::io {
@@ -59,6 +60,14 @@ void each_field(const Model& model, const FrameRow& row, Field field) {
   field("s", FieldPlace::elements, row.s, 1);
   field("hinge", FieldPlace::elements, row.hinge, 1);
 }
+
+/// Asked before each frame that is exported; false gives the export up.
+using Proceed = std::function<bool()>;
+
+/// Calls `each` with every frame of the way to the newest branch. False when `proceed`, where there is one,
+/// gave it up. Throws InputError when a frame is not of `model`.
+bool each_frame(const Recording& recording, const Model& model, const Proceed& proceed,
+                const std::function<void(const FrameRow&)>& each);
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);

@@ -65,7 +65,7 @@ struct Streams {
 /// A program at work in a process of its own, which is killed when its owner goes.
 class Process {
  public:
-  /// Looks for `program` in PATH unless it has a slash. `variables`: "NAME=VALUE", beside the environment.
+  /// Looks for `program` in PATH unless it has a slash. `variables`: "NAME=VALUE", added to the environment.
   /// Throws std::system_error: "PROGRAM: No such file or directory".
   Process(const std::string& program, const std::vector<std::string>& arguments, const Streams& streams,
           const std::vector<std::string>& variables = {});

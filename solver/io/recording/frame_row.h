@@ -12,7 +12,7 @@ namespace topple::io {
 
 inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
 
-/// AnchorNumbers::state. slack: in place, without force.
+/// Values of AnchorNumbers::state. slack: in place, without force.
 inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
 /// "away", "slack", "holds", "broken".
 const char* anchor_word(float state);
@@ -22,7 +22,7 @@ struct BodyNumbers {
   double x, y, z;         ///< m, centre of gravity, floor's frame
   double qw, qx, qy, qz;  ///< rotation from the reference pose
   double tilt, slide;     ///< rad, m
-  double energy;          ///< J, kinetic, strain and gravity
+  double energy;          ///< J, kinetic, strain and gravity, the last relative to the reference pose
   double critical_angle;  ///< rad, 0: none
 
   bool operator==(const BodyNumbers&) const = default;
@@ -62,8 +62,9 @@ enum EnergyColumn : std::size_t {
   k_released
 };
 
-/// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes, b bodies, a anchors,
-/// t elements that other bodies' members can touch: e, or 0 of a single body.
+/// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes (index: point times
+/// planes plus plane), b bodies, a anchors, t elements that other bodies' members can touch: e, or 0 of a
+/// single body.
 struct FrameRow {
   std::int32_t branch = 0;
   std::int64_t step = 0;
@@ -71,11 +72,11 @@ struct FrameRow {
   std::vector<float> position;        ///< n x 3, m, floor's frame
   std::vector<float> rotation;        ///< n x 4, w x y z
   std::vector<float> section_force;   ///< e x 6: N, Vy, Vz, T, My, Mz at the stress point, N and N m
-  std::vector<float> s;               ///< e, integration point
+  std::vector<float> s;               ///< e, integration point, -r of Eq. 1
   std::vector<std::uint8_t> hinge;    ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken,
                                       ///< 4 in the middle; 5, 6: none now, flowed at the first, second end
   std::vector<float> contact_depth;   ///< c, 1 - l/L; 0: open
-  std::vector<float> contact_force;   ///< c x 3, N
+  std::vector<float> contact_force;   ///< c x 3, N, on the point, floor's frame
   std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,
                                       ///< N, and where it acts, 0..1 from the first node to the second
   std::vector<double> energy;         ///< EnergyColumn

@@ -15,18 +15,18 @@ namespace topple::io {
 struct Checkpoint {
   std::int32_t branch;
   std::int64_t step;
-  double time;
-  std::uint64_t hash;
+  double time;                ///< s
+  std::uint64_t hash;         ///< of the packed state (state.h)
   std::vector<double> state;  ///< pack(State)
 };
 
-/// No NaN, no infinity in it; bits that are integers do not look like any.
+/// No NaN, no infinity in it; integers packed bit for bit do not look like any.
 bool is_finite(const Checkpoint& checkpoint);
 
 struct RecordedEvent {
   std::int32_t branch;
   std::int64_t step;
-  double time;
+  double time;  ///< s
   Event event;
 };
 
@@ -39,8 +39,8 @@ struct Observation {
   bool empty() const { return !frame && !checkpoint && events.empty(); }
 };
 
-/// Of a body, relative to the floor, J: what is left of its energy without that of strain and gravity. To the
-/// rounding of the row's places, 1e-7 of the body's weight times their size.
+/// Of a body, relative to the floor, J: BodyNumbers::energy less strain and gravity energy. Its error is that
+/// of the row's single-precision positions: 1e-7 of them times the body's weight.
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int body);
 
 /// The newest state of `run` as a row of branch 0.
@@ -66,8 +66,9 @@ class Observer {
   std::int32_t branch_;
   bool begun_ = false;
   std::size_t events_seen_ = 0;
-  std::int64_t last_frame_ = -1, last_checkpoint_ = -1;                                           ///< steps
-  double next_frame_ = -std::numeric_limits<double>::infinity(), next_checkpoint_ = next_frame_;  ///< turns
+  std::int64_t last_frame_ = -1, last_checkpoint_ = -1;  ///< steps; -1: none
+  double next_frame_ = -std::numeric_limits<double>::infinity(),
+         next_checkpoint_ = next_frame_;  ///< due then; in intervals
 };
 
 }  // namespace topple::io

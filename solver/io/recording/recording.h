@@ -55,7 +55,7 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a frame shows or a checkpoint holds.
+/// The instant of a frame or a checkpoint.
 struct FrameKey {
   std::int32_t branch;
   std::int64_t step;
@@ -72,9 +72,10 @@ class Recording {
   Recording& operator=(Recording&&) noexcept;
 
   std::int32_t format() const;
-  /// That its rows and state hashes follow (elementary.h).
+  /// Which elementary functions its rows and state hashes were computed with (elementary.h).
   const std::string& arithmetic() const;
-  /// A run can go on from its checkpoints. Those of older formats are numbers for their hash alone.
+  /// A run can go on from its checkpoints. States of older formats are packed otherwise: their hashes can be
+  /// checked, no more.
   bool can_go_on() const;
   /// Makes zero what frames of its format do not hold.
   void leave_out_unrecorded(FrameRow& row) const;

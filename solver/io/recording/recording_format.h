@@ -7,9 +7,9 @@
 //   /frames/index  one FrameRecord a row, written last: its extent is the number of complete frames
 //   /frames/NAME   the fields of FrameRow, one row a frame (frame_fields)
 //   /checkpoints/index, /checkpoints/state     likewise; `state` holds pack(State), one after the other
-//                  /frames/anchor, /model/anchors and two columns of /frames/energy: with anchors only
 //   /events, /edits, /blobs, /branches, /result, /summary
 //
+// /frames/anchor, /model/anchors and two columns of /frames/energy are there with anchors only.
 // All data sets exist before SWMR writing starts and nothing is of variable length. Rows are only ever
 // appended. A record whose branch is -1 (the fill value) was allocated, but not written when the writer died:
 // readers leave such records at the end away. `/result` has one row once the run was finished.
@@ -85,7 +85,7 @@ struct EventRecord {
 };
 struct EditRecord {
   std::int32_t branch = k_not_written;
-  std::int32_t kind = 0;  ///< 0: a value; others, with a blob, are to come
+  std::int32_t kind = 0;  ///< 0: a value; others are reserved for edits with a blob
   std::int64_t step = 0;
   char key[64] = {};     ///< edit_key(): "shake.1.amplitude"
   double value[4] = {};  ///< SI; the last one is the time of the step, s

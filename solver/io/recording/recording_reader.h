@@ -17,8 +17,9 @@ class RowReader {
   hsize_t rows() const { return dims_[0]; }
   /// Dimensions of one row.
   std::vector<hsize_t> row_dims() const { return {dims_.begin() + 1, dims_.end()}; }
+  /// `to`: room for `count` rows. Throws Hdf5Error.
   void read(hsize_t first, hsize_t count, void* to) const;
-  /// Forgets what it knows of a file that somebody else is writing.
+  /// Looks again how many rows there are in a file that somebody else is writing.
   void refresh();
 
  private:

@@ -34,7 +34,8 @@ SoundRows sound_rows(const Recording& recording) {
   return rows;
 }
 
-void write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target) {
+bool write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target,
+                     const std::function<bool()>& proceed) {
   expect_to_go_on(recording);  // a copy of another format would hold what nobody recorded
   const Scene scene = recorded_scene(recording);
   const Model& model = scene.setup.model;
@@ -47,9 +48,13 @@ void write_recovered(const Recording& recording, const SoundRows& rows, const ho
   for (const LoggedEdit& edit : recording.history().edits) writer.append(edit);
   for (const RecordedEvent& event : recording.events()) writer.append(event);
   for (const std::int64_t i : rows.checkpoints) writer.append(recording.checkpoint(i));
-  for (const std::int64_t i : rows.frames) writer.append(recording.frame(i));
+  for (const std::int64_t i : rows.frames) {
+    if (proceed && !proceed()) return false;
+    writer.append(recording.frame(i));
+  }
   writer.finish(recording.status(), recording.summary_json());
   staged.commit();
+  return true;
 }
 
 }  // namespace topple::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ struct SoundRows {
 SoundRows sound_rows(const Recording& recording);
 
 /// Writes a closed recording that holds these rows and all events, edits, branches and the result of
-/// `recording`. It appears at `target` whole or not at all. Throws WriteError, and InputError when the scene
-/// gives another model now than the one that was recorded, or the format is one that no run goes on from.
-void write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target);
+/// `recording`. It appears at `target` whole or not at all; false, and it does not, when `proceed` (asked
+/// before each frame) gave it up. Throws WriteError, and InputError when the scene gives another model now
+/// than the one that was recorded, or the format is one that no run goes on from.
+bool write_recovered(const Recording& recording, const SoundRows& rows, const host::Target& target,
+                     const std::function<bool()>& proceed = {});
 
 }  // namespace topple::io

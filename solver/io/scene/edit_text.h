@@ -22,12 +22,11 @@ std::optional<Edit> parse_edit_key(std::string_view text);
 const Key& key_of(Edit::Key key);
 
 /// Refuses a value that is not finite, out of range, no choice or no direction. Throws InputError with one
-/// line
-/// ("contact.friction: 2.4 is outside 0..1.5").
+/// line: "contact.friction: 2.4 is outside 0..1.5".
 void check_edit_value(const Edit& edit);
 
-/// Refuses also what a run with these parameters has no place for, such as a shake that does not exist. An
-/// edit that passes can be applied.
+/// The same, and refuses an edit of what a run with these parameters does not have, such as a shake that does
+/// not exist. An edit that passes can be applied. Throws InputError.
 void check_edit(const Edit& edit, const Parameters& parameters, const Model& model);
 
 }  // namespace topple::io

@@ -59,7 +59,7 @@ Node parse_toml(std::string_view text, const std::string& origin);
 /// UTF-8, which no scene can hold.
 void apply_override(Node& root, const std::string& override_text);
 
-/// A text as TOML has it between double quotes, which stand around it.
+/// A text as a TOML basic string: escaped, with double quotes around it.
 std::string written_text(std::string_view text);
 
 /// TOML text of the tree; comments are lost, order is kept.

@@ -34,7 +34,7 @@ struct Key {
   std::string_view unit = {};  ///< in which the reference, errors and sliders show it; empty: SI
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  int count = 0;        ///< of numbers and integers; least_count is fewer when some may be left out
+  int count = 0;        ///< entries of a list, see KeyType; least_count is fewer when some may be left out
   int least_count = 0;  ///< 0: exactly `count`; 1: a bare number is accepted too
   std::vector<double> fallback = {};  ///< the default: values, index of the choice, 0 or 1; empty: none
   std::string_view otherwise = {};    ///< what an absent key means when that is no value
@@ -43,7 +43,7 @@ struct Key {
   std::string_view of = {};                     ///< the key whose choice it belongs to
   std::vector<std::string_view> when = {};      ///< the choices of `of` that it belongs to
   std::vector<std::string_view> analyses = {};  ///< of run.analysis that it belongs to; empty: all
-  std::string_view about = {};
+  std::string_view about = {};                  ///< its meaning, for the reference
 };
 
 }  // namespace topple::io

@@ -8,7 +8,8 @@
 
 namespace topple::io {
 
-/// Reads a file that `scene` names from what the scene holds of it, else beside the working folder.
+/// Reads a file that `scene` names from what the scene keeps of it, else as builtin_files() (scene_file.h).
+/// `scene` must outlive it.
 ReadSceneFile files_of(const Scene& scene);
 
 /// A scene that starts as another one was changed while it ran.

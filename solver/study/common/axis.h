@@ -24,7 +24,7 @@ struct Axis {
   int entry = -1;     ///< index in the array that holds it; -1: none does
   bool logarithmic = false;
   std::vector<double> values;
-  std::optional<double> own;  ///< the scene's value
+  std::optional<double> own;  ///< the scene's value, in `unit`
 
   int count() const { return static_cast<int>(values.size()); }
   double in_si(int i) const { return si * values[static_cast<std::size_t>(i)]; }

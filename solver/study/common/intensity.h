@@ -17,7 +17,7 @@ struct Motion {
 /// Of the floor from t = 0 to `duration`, 200 a second. Velocity jumps (excitation.h) are not in it.
 Motion floor_motion(const std::vector<Shake>& shakes, double duration);
 
-/// Largest size of the sum of the components, m/s^2; 0 without samples.
+/// Largest length of the acceleration vector, m/s^2; 0 without samples.
 double peak(const Motion& motion);
 
 /// Gain of the three filters together at f > 0 Hz:
@@ -26,8 +26,8 @@ double peak(const Motion& motion);
 /// 0 at f = 0. For accelerations in gal, as JMA has it; not a plain number but Hz^-1/2.
 double intensity_filter(double f);
 
-/// The acceleration a, gal, that the size of the filtered motion reaches for 0.3 s in all; 0 for a motion
-/// shorter than that.
+/// The acceleration a, gal, that the length of the filtered vector reaches or exceeds for 0.3 s in all; 0 for
+/// a motion shorter than that.
 double intensity_acceleration(const Motion& motion);
 
 /// Instrumental seismic intensity 2 log10(a) + 0.94 of a in gal, rounded to two decimals and then cut to one.

@@ -9,7 +9,8 @@
 
 namespace topple::study {
 
-/// The tolerance is divided by this, a fixed step and the parts in which bodies swing by k_finer_step.
+/// The tolerance is divided by this, a fixed step and the explicit substeps of rigid and elastic bodies
+/// (reduced_body.h) by k_finer_step.
 inline constexpr double k_finer_tolerance = 10;
 inline constexpr double k_finer_step = 2;
 
@@ -19,14 +20,14 @@ inline constexpr double k_finer_step = 2;
 inline constexpr double k_error_of_difference = 2;
 
 /// Stated errors are not below these. A difference that small says nothing: errors of opposite signs meet in
-/// it by chance; a slide of a tenth of a millimetre is what stick springs give way under a cabinet.
+/// it by chance; stick springs under a cabinet give way by a tenth of a millimetre.
 inline constexpr double k_least_time_error = 1e-5;   ///< s
 inline constexpr double k_least_tilt_error = 1e-5;   ///< rad
 inline constexpr double k_least_slide_error = 1e-4;  ///< m
 inline constexpr double k_least_stress_error = 1e3;  ///< Pa
 
-/// The same run at half the step and a tenth of the tolerance, which rigid bodies on stiff contacts follow at
-/// fixed steps too. Not for statics.
+/// The same run at half the step and a tenth of the tolerance; implicit substeps of rigid bodies follow the
+/// tolerance at fixed steps too. Not for statics.
 Setup refined(const Setup& setup);
 
 /// Stated errors of one body: k_error_of_difference times the difference. Absent: the quantity does not exist

@@ -8,9 +8,10 @@
 
 namespace topple::study {
 
-/// Of the normal distribution, for two-sided intervals of 95 %.
+/// Quantile of the normal distribution for two-sided intervals of 95 %.
 inline constexpr double k_95 = 1.959964;
 
+/// A confidence interval.
 struct Interval {
   double low, high;
 };
@@ -20,7 +21,7 @@ struct Interval {
 /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22, 1927, 209-212.
 Interval wilson(int hits, int trials);
 
-/// The same scene with the amplitude of every shake times `factor`.
+/// The same scene with the amplitude or scale of every shake times `factor`.
 Setup shaken_by(const Setup& setup, double factor);
 
 /// `count` >= 2 factors in equal steps from 1 - spread to 1 + spread.

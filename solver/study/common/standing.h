@@ -23,13 +23,13 @@ struct Standing {
   double inertia_of_edge;  ///< kg m^2, about the edge
   std::vector<Contact> contacts;
 
-  double weight() const { return mass * gravity; }  ///< N
-  double rigid_limit() const { return base / height; }
-  double critical() const;  ///< rad, atan(b/h)
-  double p() const;         ///< 1/s, sqrt(m g R/inertia_of_edge), R^2 = b^2 + h^2
+  double weight() const { return mass * gravity; }      ///< N
+  double rigid_limit() const { return base / height; }  ///< b/h: over g, acceleration at which it lifts
+  double critical() const;                              ///< rad, atan(b/h)
+  double p() const;                                     ///< 1/s, sqrt(m g R/inertia_of_edge), R^2 = b^2 + h^2
 };
 
-/// The body must stand freely (alone.h).
+/// Towards the nearest edge. The body must stand freely (alone.h).
 Standing standing(const Model& model, const Parameters& parameters, int body);
 
 /// The same pushed towards the edge that lies across `direction`, unit; none: no edge does.

@@ -17,13 +17,13 @@ inline constexpr int k_elements_per_member[] = {2, 4, 8, 16, 32, 64};
 
 /// A number that schemes are judged by, and what it should be.
 struct Quantity {
-  std::string name;    ///< "elastica-deflection"
-  std::string title;   ///< for charts: "Elastica: tip deflection"
-  std::string unit;    ///< "m", "rad", "Hz", "1"
-  std::string source;  ///< of the reference; like the title without _ ^ { } @ & ~
-  bool charted;        ///< has a panel of its own
-  int order;           ///< with which midpoint elements converge
-  double reference = 0;
+  std::string name;        ///< "elastica-deflection"
+  std::string title;       ///< for charts: "Elastica: tip deflection"
+  std::string unit;        ///< "m", "rad", "Hz", "1"
+  std::string source;      ///< of the reference; like the title without _ ^ { } @ & ~
+  bool charted;            ///< has a panel of its own
+  int order;               ///< of convergence of midpoint elements
+  double reference = 0;    ///< in `unit`
   double uncertainty = 0;  ///< of the reference, relative; 0: exact
 };
 
@@ -44,7 +44,7 @@ struct ElementsRow {
   Scheme scheme;
   int elements_per_member;
   int elements, unknowns;  ///< of the whole model
-  double reference;
+  double reference;        ///< in `unit`
   std::optional<double> computed;
   std::optional<double> error;  ///< |computed - reference|/|reference|
   std::optional<double> cpu;    ///< s, of one solution (measure.h), without reading the scene

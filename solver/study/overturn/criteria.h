@@ -18,7 +18,7 @@ struct Criterion {
   std::vector<double> x, y;  ///< in the axes' units
 };
 
-/// Acceleration at which a rigid block lifts, m/s^2: g b/h (West; Milne 1885).
+/// Acceleration at which a rigid block lifts an edge, m/s^2: g b/h (West; Milne 1885).
 double west_acceleration(const Standing& body);
 
 /// Velocity of the floor, m/s, below which a block does not overturn by Ishiyama's second criterion:
@@ -34,10 +34,10 @@ struct Criteria {
   std::string why_not;  ///< "": there are
 };
 
-/// They hold where y is the amplitude and x the frequency or duration of the only shake, along the level,
-/// across edges of a body that starts at rest on a level floor; whole pulses: where both edges are as far
-/// off. A sine is compared with one of its cycles alone. Of a motion that has no formula there is West's
-/// only.
+/// They hold where y is the amplitude and x the frequency or duration of the only shake, which is horizontal
+/// and perpendicular to two edges of a body that starts at rest on a level floor. Curves of least pulses need
+/// both edges equally far from the centre of gravity. A sine is compared with one of its cycles alone. A
+/// motion that is neither sine nor pulse has West's only.
 Criteria criteria(const Setup& scene, const Axis& x, const Axis& y);
 
 }  // namespace topple::study

@@ -12,12 +12,12 @@ namespace topple::study {
 /// Runs at one intensity.
 struct Level {
   double intensity;  ///< > 0
-  int runs, hits;
+  int runs, hits;    ///< hits: runs in which a body overturned
 };
 
 /// P = Phi(ln(a/median)/beta).
 struct Lognormal {
-  double median, beta;
+  double median, beta;  ///< unit of the intensity; standard deviation of its logarithm
   double median_error;  ///< standard error, the median times that of its logarithm (Fisher's information)
   double beta_error;    ///< likewise
   double deviance;      ///< 2 sum of k ln(k/(n P)) + (n - k) ln((n - k)/(n (1 - P)))

@@ -48,7 +48,8 @@ class OverturnRunner {
  public:
   explicit OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {}
   /// A row of JSON in one line: "status" ("completed", or why it failed), "fell" (s, per piece of furniture,
-  /// null: it stands), "lifted", "cpu_s". Empty: give_up() came true, it is asked after each step.
+  /// null: it stands), "lifted" (a side of any lifted), "cpu_s". Empty: give_up() came true, it is asked
+  /// after each step.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
@@ -106,7 +107,7 @@ std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& 
 struct GroundMeasure {
   const char *name, *title, *unit;  ///< "pga", "peak ground acceleration", "gal"
   double FloorPeak::*value;
-  double si;
+  double si;  ///< value of one unit
 };
 inline constexpr GroundMeasure k_ground_measures[] = {
     {"pga", "peak ground acceleration", "gal", &FloorPeak::acceleration, k_gal},

@@ -14,7 +14,7 @@ namespace topple::study {
 
 inline constexpr double k_depth_bound = 0.01;       ///< of the depth 1 - l/L at rest
 inline constexpr double k_theory_bound = 0.02;      ///< of the error against rigid contact
-inline constexpr double k_creep_bound = 1e-6;       ///< m, of the way in k_creep_time at rest
+inline constexpr double k_creep_bound = 1e-6;       ///< m, of the displacement in k_creep_time at rest
 inline constexpr double k_creep_time = 10;          ///< s
 inline constexpr double k_period_steps = 20;        ///< time steps that resolve a period of the bounce
 inline constexpr double k_pulse_ratios[] = {2, 4};  ///< w/p of the half-sines
@@ -28,7 +28,7 @@ struct PenaltyRow {
   double time_step = 0;             ///< s; 0: chosen step by step, or none is taken
   bool coarse = false;              ///< the scene's own step, which is too long to resolve the bounce
   std::optional<double> at;         ///< l/L, impact speed in m/s, or w/p
-  std::optional<double> reference;  ///< of theory
+  std::optional<double> reference;  ///< of theory, in CaseMeaning::unit
   std::optional<double> computed = {};
   std::string status = "not run";
 

@@ -28,7 +28,7 @@ std::string percent(double share) {
 }
 
 /// "steady tipping 1.9 % off", with the body's name where there are several.
-std::string in_words(const PenaltyStudy& study, const PenaltyRow& row) {
+std::string row_in_words(const PenaltyStudy& study, const PenaltyRow& row) {
   std::string what = row.kind == Case::depth       ? "depth at rest"
                      : row.kind == Case::tipping   ? "steady tipping"
                      : row.kind == Case::fall_back ? "fall-back time"
@@ -84,7 +84,7 @@ std::string steady_in_words(const BodyGroup& group) {
 std::vector<std::string> at_own_step(const PenaltyStudy& study, double alpha) {
   std::vector<std::string> found;
   for (const PenaltyRow& row : study.rows)
-    if (row.coarse && same(row.law.alpha, alpha) && row.computed) found.push_back(in_words(study, row));
+    if (row.coarse && same(row.law.alpha, alpha) && row.computed) found.push_back(row_in_words(study, row));
   return found;
 }
 
@@ -138,7 +138,7 @@ AlphaVerdict verdict(const PenaltyStudy& study, double alpha) {
     if (row.status == "not run")
       found.complete = false;
     else
-      (row.kept().value_or(true) ? found.kept : found.missed).push_back(in_words(study, row));
+      (row.kept().value_or(true) ? found.kept : found.missed).push_back(row_in_words(study, row));
   }
   return found;
 }

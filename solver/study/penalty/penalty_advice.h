@@ -32,6 +32,7 @@ struct Advice {
   AlphaVerdict of_scene, of_default;  ///< what the scene's alpha and the program's do
 };
 
+/// alpha: N, one of PenaltyStudy::alphas.
 AlphaVerdict verdict(const PenaltyStudy& study, double alpha);
 Advice advise(const PenaltyStudy& study);
 nlohmann::ordered_json advice_as_json(const Advice& advice);

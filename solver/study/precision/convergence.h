@@ -1,4 +1,4 @@
-// What finer and finer steps tell about the limit, and which settings are worth their cost.
+// Observed order of convergence, and the Pareto front of error against cost.
 #pragma once
 
 #include <optional>

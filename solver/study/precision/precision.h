@@ -3,7 +3,8 @@
 // Every law and alpha is physics of its own, and so has a reference of its own: errors are those of the
 // computation, what a law or alpha changes is shown beside them. The reference is the frame, all nodes free,
 // with central differences at the finest step, checked by generalized-alpha at its finest. Bodies that rock
-// forget how they started after some impacts; so errors are those of a window, which ends where the two part.
+// forget how they started after some impacts; so errors are those of a window, which ends where the tilts of
+// the two references part by more than k_parted.
 #pragma once
 
 #include <array>
@@ -32,6 +33,7 @@ enum class Method {
 };
 inline constexpr int k_methods = 10;
 
+/// What a Method stands for.
 struct MethodMeaning {
   const char* name;   ///< "frame newmark"
   const char* about;  ///< "frame, Newmark 1/4, 1/2": in a chart
@@ -42,6 +44,7 @@ struct MethodMeaning {
 };
 const MethodMeaning& meaning(Method method);
 
+/// A method at one step or tolerance.
 struct Setting {
   Method method = Method::scene;
   double step = 0;       ///< s; adaptive: 0
@@ -91,7 +94,8 @@ std::string run_case(const PrecisionPlan& plan, int k, const std::function<bool(
 
 /// What errors are of. tilt: root mean square over the window, over the body's least critical angle.
 /// overturn_time, peak_stress: relative, within the window. energy: the error of the balance at the window's
-/// end. Of several bodies the greatest. A run that ended before the window did is compared up to its end.
+/// end. Of several bodies the greatest. A run that completed before the window's end is compared up to its
+/// own.
 enum class Measure { tilt, overturn_time, peak_stress, energy };
 inline constexpr int k_measures = 4;
 /// Without: the measure does not exist, or the run is not comparable.

@@ -13,11 +13,12 @@
 namespace topple::study {
 
 /// Energy over the largest exchanged so far: what may appear or vanish unexplained, and what the integrator
-/// may take. What it gives counts as appeared.
+/// may dissipate. What the integrator gives is judged as what appears.
 inline constexpr double k_stable_balance = 0.01, k_stable_damping = 0.1;
-/// Contact widths by which a run sinks deeper than the reference when it goes through a floor.
+/// Depth 1 - l/L beyond that of the reference from which on a run went through a floor, if it is above 1 too.
 inline constexpr double k_through = 0.5;
-/// Of the amplitudes of the reference runs, and s that are run after the last body overturned.
+/// Relative change of the amplitudes in two of the reference runs; s that are run after the last body
+/// overturned.
 inline constexpr double k_reference_spread = 0.02, k_after_fall = 1;
 
 /// A way to step a scene.
@@ -42,7 +43,9 @@ struct StabilityPlan {
   int points() const { return x.count() * y.count(); }
   int groups() const;
   int group(int point) const;
-  int references() const;  ///< runs of each group
+  /// Reference runs of each group: a quarter of the step and a hundredth of the tolerance; half and a tenth;
+  /// with shakes two more as the first, amplitudes times 1 -+ k_reference_spread.
+  int references() const;
   /// First those of the groups, then point methods + method.
   int cases() const { return groups() * references() + points() * static_cast<int>(methods.size()); }
 };

@@ -15,13 +15,16 @@ struct Demand {
   double bounce = 0;         ///< s, shortest period of a body on its contacts; 0: none
   double landing = 0;        ///< s, in which a landing body crosses the width of its contact; 0: none lands
   double alpha = 0;    ///< N, below which a body that lands flat goes through its contacts; 0: none does
-  double turning = 0;  ///< rad^2/s, integral of the squared rate over a fall or over the run
+  double turning = 0;  ///< rad^2/s, integral of the squared angular velocity over a fall; without gravity,
+                       ///< over the run
 };
 /// `scene` after `duration`, s. A body that stands freely is taken to fall over its nearest edge from
 /// balance:
 ///   w^2 = 2 m g (R - b)/I_edge when it lies; its far end, H from the edge, lands at v = w H
 ///   landing = L/v,  alpha = m g (R - b) (q + 1)/(n L), n contacts on the side on which it lands
-/// One that starts with a velocity lands at least with that.
+/// and then turning = 4 p (1 - cos((pi/2 - critical)/2)). One that starts with velocity v0 or at a height d
+/// above the floor lands at v^2 = v0^2 + 2 g d:
+///   landing = L/v,  alpha = m v^2 (q + 1)/(2 n L), n contacts on the base
 Demand demand(const Setup& scene, double duration);
 
 /// Share of its energy that one closing or opening of a linear contact gives or takes at most when

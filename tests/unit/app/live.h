@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -50,14 +52,17 @@ template <typename Work, typename Done>
 /// Lets one step wait until it is released.
 class Gate {
  public:
-  LiveRun::Advance advance() {
-    return [this](Run& run) {
-      std::unique_lock lock(mutex_);
-      if (closed_) {
-        waiting_ = true;
-        changed_.notify_all();
-        changed_.wait(lock, [this] { return !closed_; });
-        waiting_ = false;
+  ~Gate() { open(); }
+
+  /// The run may outlive the gate.
+  LiveRun::Advance advance() const {
+    return [state = state_](Run& run) {
+      std::unique_lock lock(state->mutex);
+      if (state->closed) {
+        state->waiting = true;
+        state->changed.notify_all();
+        state->changed.wait(lock, [&] { return !state->closed; });
+        state->waiting = false;
       }
       lock.unlock();
       return run.advance();
@@ -65,22 +70,25 @@ class Gate {
   }
   void shut() { set(true); }
   void open() { set(false); }
-  bool held() {
-    const std::lock_guard lock(mutex_);
-    return waiting_;
+  bool held() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->waiting;
   }
 
  private:
+  struct State {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool closed = false, waiting = false;
+  };
   void set(bool closed) {
     {
-      const std::lock_guard lock(mutex_);
-      closed_ = closed;
+      const std::lock_guard lock(state_->mutex);
+      state_->closed = closed;
     }
-    changed_.notify_all();
+    state_->changed.notify_all();
   }
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool closed_ = false, waiting_ = false;
+  const std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 }  // namespace topple::app

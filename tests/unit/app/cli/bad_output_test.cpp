@@ -110,12 +110,17 @@ TEST_F(BadOutputTest, a_file_of_another_kind_in_a_folder_of_results_is_refused) 
   write_bytes("out/frame-000001.png", k_notes);
   write_bytes("out/frames.pvd", k_notes);
   write_bytes("out/elements.json", k_notes);
+  write_bytes("out/overturn.rows", k_notes);
   const std::vector<std::string> before = files();
   const std::string found = ": holds text and is not replaced by ";
   expect_one_line({"export", "a.h5", "--csv", "out"}, 2, "out/nodes.csv" + found);
   expect_one_line({"export", "a.h5", "--vtk", "out"}, 2, "out/frames.pvd" + found);
   expect_one_line({"render", "a.h5", "--png", "out", "--size", "96x64"}, 2, "out/frame-000001.png" + found);
   expect_one_line({"study", "elements", "-o", "out"}, 2, "out/elements.json" + found);
+  expect_one_line({"study", "overturn", "s.toml", "-o", "out", "--x", "shake.table.frequency=1..2:2", "--y",
+                   "shake.table.amplitude=1..2:2"},
+                  2, "out/overturn.rows" + found);
+  EXPECT_EQ(bytes_of("out/overturn.rows"), k_notes);
   EXPECT_EQ(files(), before);
   EXPECT_EQ(topple({"export", "a.h5", "--csv", "out", "--force"}).code, 0);
   EXPECT_TRUE(bytes_of("out/nodes.csv").starts_with("time_s,"));

@@ -74,6 +74,17 @@ TEST_F(InterruptTest, a_sequence_keeps_its_whole_pictures) {
   }
 }
 
+TEST_F(InterruptTest, an_export_leaves_nothing_half_written) {
+  ASSERT_EQ(topple({"run", "s.toml", "--set", "run.duration=20", "-o", "a.h5"}).code, 0);
+  for (const char* format : {"--csv", "--vtk"}) {
+    const Ended ended = interrupt({"export", "a.h5", format, "out"}, "out");
+    EXPECT_EQ(ended.code, 130);
+    EXPECT_EQ(ended.err, "topple: interrupted; out is not written\n");
+    EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "out", "s.toml"}));
+    std::filesystem::remove("out");
+  }
+}
+
 TEST_F(InterruptTest, a_video_is_not_left_half_written) {
   ASSERT_EQ(topple({"run", "s.toml", "-o", "a.h5"}).code, 0);
   const int out = memory(), err = memory();

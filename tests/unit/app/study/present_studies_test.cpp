@@ -11,7 +11,7 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Without what takes time.
-ordered_json rows_of(const study::OverturnPlan& plan, const study::OverturnMap& map) {
+ordered_json table_of(const study::OverturnPlan& plan, const study::OverturnMap& map) {
   ordered_json rows = rows_as_json(plan, map);
   for (auto& row : rows) row.erase("cpu_s");
   return rows;
@@ -39,7 +39,7 @@ TEST(PresentStudies, the_map_has_the_rows_of_the_study_of_the_changed_scene) {
       ++computed;
     }
   EXPECT_EQ(computed, found->map.run);
-  EXPECT_EQ(rows_of(*found->plan, found->map), rows_of(plan, gather(plan, rows)));
+  EXPECT_EQ(table_of(*found->plan, found->map), table_of(plan, gather(plan, rows)));
 }
 
 TEST(PresentStudies, a_map_that_is_stopped_keeps_what_it_has) {

@@ -180,6 +180,25 @@ TEST(StepControl, central_difference_steps_nine_tenths_of_its_limit_contacts_inc
   EXPECT_TRUE(is_finite(sim.state));
 }
 
+TEST(StepControl, the_limit_during_a_ramp_is_that_of_the_stiffer_law) {
+  // at q = 0.5 a shallow contact is stiffer than at q = 2
+  const Simulation sim = rocking(1e-3);
+  const auto limit = [&](double q, double q_before, double over) {
+    Parameters p = sim.parameters;
+    p.contact.kind = ContactLawKind::paper;  // no stick springs, which would hide it
+    p.contact.alpha *= 1e4;                  // stiffer than the members
+    p.contact_before = p.contact;
+    p.contact.q = q;
+    p.contact_before.q = q_before;
+    p.contact_ramp = {.since = 0, .over = over};
+    return Parts(sim.model).explicit_limit(p, sim.state).value().step;
+  };
+  const double shallow = limit(0.5, 0.5, 0);
+  EXPECT_LT(shallow, 0.9 * limit(2, 2, 0));
+  EXPECT_EQ(limit(2, 0.5, 1), shallow);
+  EXPECT_EQ(limit(0.5, 2, 1), shallow);
+}
+
 TEST(StepControl, resting_frame_takes_a_twentieth_of_its_period_on_its_contacts) {
   Model model = steel_model();
   const BodyStart start = add_cabinet(model, tall_cabinet());

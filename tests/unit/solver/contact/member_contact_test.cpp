@@ -8,7 +8,7 @@
 namespace topple::test {
 namespace {
 
-constexpr double k_width = 0.03;
+constexpr double k_member_width = 0.03;
 
 ContactLaw elastic_law() {
   ContactLaw law;
@@ -26,7 +26,7 @@ struct Pair {
     MemberPair& pair = pairs[0];
     pair.elements = {0, 1};
     pair.node = {0, 1, 2, 3};
-    pair.L = k_width;
+    pair.L = k_member_width;
     pair.mass = 1;
     for (int k = 0; k < 4; ++k) pair.start[k] = position[k];
     pair.stick.fill(Vec3::Zero());
@@ -50,7 +50,7 @@ Pair random_pair(std::mt19937& rng, double angle) {
   const Quat turn = random_rotation(rng);
   const Vec3 origin = random_vector(rng);
   const Vec3 a = 0.2 * Vec3::UnitX(), b = 0.15 * Vec3(std::cos(angle), std::sin(angle), 0.02 * u(rng));
-  const Vec3 off(0.1 * u(rng), 0.008 * u(rng), k_width * (0.5 + 0.4 * u(rng)));
+  const Vec3 off(0.1 * u(rng), 0.008 * u(rng), k_member_width * (0.5 + 0.4 * u(rng)));
   std::vector<Vec3> ends = {-a, a, off - b, off + b};
   for (Vec3& x : ends) x = origin + turn * x;
   return Pair(ends);
@@ -175,7 +175,7 @@ TEST(MemberContact, side_is_kept_when_centre_lines_go_through_each_other) {
 
 TEST(MemberContact, side_by_side_they_touch_as_much_as_across) {
   // aligned: four ends with a quarter each hold as much as one crossing
-  const double height = 0.4 * k_width;
+  const double height = 0.4 * k_member_width;
   const Pair across({{-0.2, 0, height}, {0.2, 0, height}, {0, -0.2, 0}, {0, 0.2, 0}});
   const Pair along({{-0.2, 0, height}, {0.2, 0, height}, {-0.2, 0, 0}, {0.2, 0, 0}});
   const ContactLaw law = elastic_law();
@@ -186,7 +186,7 @@ TEST(MemberContact, side_by_side_they_touch_as_much_as_across) {
 
 TEST(MemberContact, hardening_keeps_force_and_energy_smooth_and_takes_any_blow) {
   const ContactLaw law = elastic_law();
-  const double L = k_width, h = 1e-7;
+  const double L = k_member_width, h = 1e-7;
   for (double depth : {0.3, 0.8, 0.81, 0.9, 0.97, 0.996, 0.999, 1.01}) {
     const double slope =
         (penalty_energy(law, depth + h, L, true) - penalty_energy(law, depth - h, L, true)) / (2 * h * L);
@@ -220,7 +220,7 @@ Eigen::Matrix<double, 12, 12> tangent_of(const ContactLaw& law, const Pair& pair
 TEST(MemberContact, tangent_without_friction_is_the_second_derivative_of_the_energy) {
   std::mt19937 rng(4);
   const ContactLaw law = elastic_law();
-  const double height = 0.6 * k_width;
+  const double height = 0.6 * k_member_width;
   const std::vector<std::vector<Vec3>> ends = {
       {{-0.2, 0, height}, {0.3, 0, height}, {0, -0.2, 0}, {0.01, 0.2, 0}},      // between all ends
       {{-0.2, 0, height}, {0.3, 0, height}, {0.02, 0.004, 0}, {0.05, 0.2, 0}},  // b's first over a

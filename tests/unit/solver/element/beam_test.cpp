@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "unit/solver/element_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -113,11 +114,6 @@ Element random_element(std::mt19937& rng, double s) {
   return e;
 }
 
-struct Pose {
-  Vec3 x1, x2;
-  Quat q1, q2;
-};
-
 // Nodes turned against each other by `angle`, 20 % of stretch and shear.
 Pose random_pose(std::mt19937& rng, const Element& e, double angle) {
   Pose p;
@@ -130,28 +126,6 @@ Pose random_pose(std::mt19937& rng, const Element& e, double angle) {
   return p;
 }
 
-Pose moved(Pose p, int direction, double h) {
-  Vec3 step = Vec3::Zero();
-  step[direction % 3] = h;
-  switch (direction / 3) {
-    case 0:
-      p.x1 += step;
-      break;
-    case 1:
-      p.q1 = exp_quaternion(step) * p.q1;
-      break;
-    case 2:
-      p.x2 += step;
-      break;
-    default:
-      p.q2 = exp_quaternion(step) * p.q2;
-  }
-  return p;
-}
-
-BeamEnds ends_of(const Pose& p) {
-  return beam_ends(p.x1, p.q1, p.x2, p.q2);
-}
 double energy_of(const Element& e, const Pose& p) {
   return beam_energy(e, beam_strain(e, ends_of(p)));
 }

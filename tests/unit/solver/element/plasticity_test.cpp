@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/element/beam.h"
+#include "unit/solver/element_pose.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -99,28 +100,10 @@ BeamStrain random_strain(std::mt19937& rng, double size) {
   return {random_vector(rng, size), random_vector(rng, size)};
 }
 
-struct Pose {
-  Vec3 x1, x2;
-  Quat q1, q2;
-};
-
 Pose random_pose(std::mt19937& rng, double length) {
   const Quat q1 = random_rotation(rng);
   const Vec3 x1 = random_vector(rng);
   return {x1, x1 + length * random_direction(rng), q1, q1 * exp_quaternion(random_vector(rng, 0.5))};
-}
-
-Pose moved(Pose p, int direction, double h) {
-  const Vec3 step = h * Vec3::Unit(direction % 3);
-  if (direction / 3 == 0) p.x1 += step;
-  if (direction / 3 == 1) p.q1 = exp_quaternion(step) * p.q1;
-  if (direction / 3 == 2) p.x2 += step;
-  if (direction / 3 == 3) p.q2 = exp_quaternion(step) * p.q2;
-  return p;
-}
-
-BeamEnds ends_of(const Pose& p) {
-  return beam_ends(p.x1, p.q1, p.x2, p.q2);
 }
 
 Eigen::Matrix<double, 12, 1> stacked(const BeamGradient& g) {
@@ -130,14 +113,14 @@ Eigen::Matrix<double, 12, 1> stacked(const BeamGradient& g) {
 }
 
 const Hinge k_hinges[] = {Hinge::first, Hinge::second, Hinge::middle};
-const double k_places[] = {0, k_gauss_shift, -k_gauss_shift};
+const double k_point_places[] = {0, k_gauss_shift, -k_gauss_shift};
 
 TEST(Plasticity, beam_tangent_is_the_derivative_of_the_gradient_while_a_hinge_flows) {
   std::mt19937 rng(7);
   int flowing = 0;
   for (int sample = 0; sample < 60; ++sample)
     for (Hinge hinge : k_hinges) {
-      const Element e = element_that_yields(rng, k_places[sample % 3]);
+      const Element e = element_that_yields(rng, k_point_places[sample % 3]);
       const ElementState state{hinge, random_strain(rng, 0.1)};
       const Pose pose = random_pose(rng, e.length);
       if (!respond(e, state, beam_strain(e, ends_of(pose))).flows) continue;
@@ -159,7 +142,7 @@ TEST(Plasticity, beam_tangent_is_the_derivative_of_the_gradient_while_a_hinge_fl
 TEST(Plasticity, forces_are_the_gradient_of_the_energy_with_offsets) {
   std::mt19937 rng(8);
   for (int sample = 0; sample < 50; ++sample) {
-    const Element e = element_that_yields(rng, k_places[sample % 3]);
+    const Element e = element_that_yields(rng, k_point_places[sample % 3]);
     const ElementState state{Hinge::none, random_strain(rng, 0.3)};
     const Pose pose = random_pose(rng, e.length);
     const auto energy = [&](const Pose& p) {
@@ -201,7 +184,7 @@ TEST(Plasticity, flow_ends_on_the_surface_at_the_hinge_and_what_it_takes_is_posi
 // stress point without the moments' conversion, the shear would not follow and the end moment would miss Mp.
 TEST(Plasticity, element_turns_about_its_hinge_without_any_change_of_forces) {
   std::mt19937 rng(10);
-  for (double s : k_places) {
+  for (double s : k_point_places) {
     Element e = element_that_yields(rng, s);
     e.capacity = Vec4(1e9, 1e9, 1e-6, 1e9);
     const double turn = 1e-6;
