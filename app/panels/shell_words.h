@@ -15,9 +15,6 @@ inline constexpr Phrase k_export{"Export…", "書き出し…"};
 inline constexpr Phrase k_export_about{"Picture, video or tables (Ctrl+E)",
                                        "画像・動画・表の書き出し (Ctrl+E)"};
 inline constexpr Phrase k_loop_about{"At the end, begin again (L)", "最後まで来たら最初から繰り返す (L)"};
-inline constexpr Phrase k_achieved{"runs at {0}", "実際 {0}"};
-inline constexpr Phrase k_achieved_about{"Simulated seconds per second, reached",
-                                         "実際の速さ（実時間に対する比）"};
 
 inline constexpr Phrase k_choose{"Choose a scene", "シーンを選ぶ"};
 inline constexpr Phrase k_choose_about{"or drop a scene, a recording or an accelerogram on the window",

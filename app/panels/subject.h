@@ -50,8 +50,8 @@ struct SubjectValue {
 };
 std::span<const SubjectValue> values_of(Subject::Kind kind);
 
-/// Of the values of a member: its stress, its yield ratio, and N, the first of the components.
-inline constexpr std::size_t k_stress_value = 0, k_yield_value = 1, k_first_component_value = 2;
+/// Of the values of a member: its stress, and N, the first of the components.
+inline constexpr std::size_t k_stress_value = 0, k_first_component_value = 2;
 
 /// "0.013", "12.3", "1.23e+06", or a dash for what is not a number.
 std::string value_text(double value);

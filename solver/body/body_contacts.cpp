@@ -357,19 +357,19 @@ double BodyContacts::energy(const ContactLaw& law) const {
 
 void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const PackMat3& r,
                                StepEnergy& booked) const {
-  Four damping_power = Four(0), friction_power = damping_power;
+  Four damping_loss = Four(0), friction_loss = damping_loss;
   const auto book = [&](const Touch& touch, const Points& travel, double sign) {
-    damping_power -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
-    friction_power -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
+    damping_loss -= 0.5 * (touch.normal - touch.conservative) * dot(normal(touch), travel);
+    friction_loss -= 0.5 * dot(touch.tangential, travel) + sign * touch.stick_energy;
   };
   if (now_.hash == start_.hash) {
     const Touch* before = start_.list().data();
     for (const Touch& touch : now_.list()) {
       const Four lost = (before->normal - before->conservative) + (touch.normal - touch.conservative);
       with_normal(touch, [&](const auto& n) {
-        damping_power -= 0.5 * lost * dot(n, touch.travel);
-        friction_power -= 0.5 * dot(lying(n, before->tangential) + lying(n, touch.tangential), touch.travel) +
-                          (touch.stick_energy - before->stick_energy);
+        damping_loss -= 0.5 * lost * dot(n, touch.travel);
+        friction_loss -= 0.5 * dot(lying(n, before->tangential) + lying(n, touch.tangential), touch.travel) +
+                         (touch.stick_energy - before->stick_energy);
       });
       ++before;
     }
@@ -378,8 +378,8 @@ void BodyContacts::book_travel(const Vec3& shift, const BodyState& s, const Pack
       book(touch, in_all_lanes(shift) + (in_all_lanes(r) * place(s, groups_[touch.group]) - touch.arm), -1);
     for (const Touch& touch : now_.list()) book(touch, touch.travel, 1);
   }
-  booked.normal_damping += sum(damping_power);
-  booked.friction += sum(friction_power);
+  booked.normal_damping += sum(damping_loss);
+  booked.friction += sum(friction_loss);
 }
 
 void BodyContacts::book_law_change(const ContactLaw& before, const ContactLaw& after,

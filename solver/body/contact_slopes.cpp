@@ -1,4 +1,4 @@
-// Derivatives of the forces that BodyContacts presses with.
+// Derivatives of the forces of BodyContacts.
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -8,40 +8,40 @@
 namespace topple {
 namespace {
 
-// Sums of slopes  lead n n^T - across I  of points in one plane; with the arm r and m = r x n:
-//   force by angular velocity  lead n m^T + across [r],  moment by it  lead m m^T + across (r r^T - r^2 I)
+// Sums of slopes  nn n n^T - identity I  of points in one plane; with the arm r and m = r x n:
+//   force by angular velocity  nn n m^T + identity [r],  moment by it  nn m m^T + identity (r r^T - r^2 I)
 class PlaneSlope {
  public:
   template <class Normal>
-  [[gnu::always_inline]] void add(Four lead, Four across, const Normal& n, const PackVector<Four>& r) {
-    const auto m = cross(r, n), lead_m = lead * m;
-    const PackVector<Four> across_r = across * r;
-    lead_ += lead;
-    across_ += across;
-    across_r_ = across_r_ + across_r;
-    square_ = mul_add(across_r.z, r.z, mul_add(across_r.y, r.y, mul_add(across_r.x, r.x, square_)));
+  [[gnu::always_inline]] void add(Four nn, Four identity, const Normal& n, const PackVector<Four>& r) {
+    const auto m = cross(r, n), nn_m = nn * m;
+    const PackVector<Four> identity_r = identity * r;
+    nn_ += nn;
+    identity_ += identity;
+    identity_r_ = identity_r_ + identity_r;
+    square_ = mul_add(identity_r.z, r.z, mul_add(identity_r.y, r.y, mul_add(identity_r.x, r.x, square_)));
     const auto both = [&](Four mi, Four mj, Four ri, Four rj, Four sum) {
       return mul_add(mi, mj, mul_add(ri, rj, sum));
     };
-    lead_m_.x += lead_m.x;
-    lead_m_.y += lead_m.y;
-    xx_ = both(lead_m.x, m.x, across_r.x, r.x, xx_);
-    yy_ = both(lead_m.y, m.y, across_r.y, r.y, yy_);
-    xy_ = both(lead_m.x, m.y, across_r.x, r.y, xy_);
+    nn_m_.x += nn_m.x;
+    nn_m_.y += nn_m.y;
+    xx_ = both(nn_m.x, m.x, identity_r.x, r.x, xx_);
+    yy_ = both(nn_m.y, m.y, identity_r.y, r.y, yy_);
+    xy_ = both(nn_m.x, m.y, identity_r.x, r.y, xy_);
     if constexpr (std::is_same_v<Normal, Upwards>) {
-      zz_ = mul_add(across_r.z, r.z, zz_);
-      xz_ = mul_add(across_r.x, r.z, xz_);
-      yz_ = mul_add(across_r.y, r.z, yz_);
+      zz_ = mul_add(identity_r.z, r.z, zz_);
+      xz_ = mul_add(identity_r.x, r.z, xz_);
+      yz_ = mul_add(identity_r.y, r.z, yz_);
     } else {
-      lead_m_.z += lead_m.z;
-      zz_ = both(lead_m.z, m.z, across_r.z, r.z, zz_);
-      xz_ = both(lead_m.x, m.z, across_r.x, r.z, xz_);
-      yz_ = both(lead_m.y, m.z, across_r.y, r.z, yz_);
+      nn_m_.z += nn_m.z;
+      zz_ = both(nn_m.z, m.z, identity_r.z, r.z, zz_);
+      xz_ = both(nn_m.x, m.z, identity_r.x, r.z, xz_);
+      yz_ = both(nn_m.y, m.z, identity_r.y, r.z, yz_);
     }
   }
   [[gnu::always_inline]] ContactSlope total(const PackVec3& n) const {
-    const Four by_n = sums(lead_, lead_m_.x, lead_m_.y, lead_m_.z),
-               by_r = sums(across_, across_r_.x, across_r_.y, across_r_.z),
+    const Four by_n = sums(nn_, nn_m_.x, nn_m_.y, nn_m_.z),
+               by_r = sums(identity_, identity_r_.x, identity_r_.y, identity_r_.z),
                diagonals = sums(xx_, yy_, zz_, square_), others = sums(xy_, xz_, yz_, Four(0));
     const double a = by_r[0], xx = diagonals[0] - diagonals[3], yy = diagonals[1] - diagonals[3],
                  zz = diagonals[2] - diagonals[3], xy = others[0], xz = others[1], yz = others[2];
@@ -52,8 +52,8 @@ class PlaneSlope {
   }
 
  private:
-  Four lead_{0}, across_{0}, square_{0}, xx_{0}, yy_{0}, zz_{0}, xy_{0}, xz_{0}, yz_{0};
-  PackVector<Four> lead_m_ = in_all_lanes(Vec3::Zero()), across_r_ = lead_m_;
+  Four nn_{0}, identity_{0}, square_{0}, xx_{0}, yy_{0}, zz_{0}, xy_{0}, xz_{0}, yz_{0};
+  PackVector<Four> nn_m_ = in_all_lanes(Vec3::Zero()), identity_r_ = nn_m_;
 };
 
 }  // namespace
@@ -67,8 +67,8 @@ template <class F>
     return with_normal(*touch, [&](const auto& n) {
       PlaneSlope sum;
       for (; touch != all.end() && touch->plane == plane; ++touch) {
-        const auto [lead, across] = nn_and_identity(*touch);
-        sum.add(lead, across, n, touch->arm);
+        const auto [nn, identity] = nn_and_identity(*touch);
+        sum.add(nn, identity, n, touch->arm);
       }
       return sum.total(packed(model_.planes[plane].normal));
     });

@@ -14,12 +14,12 @@ namespace {
 
 constexpr double k_gamma = 0.29289321881345254;  // 1 - 1/sqrt(2)
 constexpr double k_error_constant = 3 * k_gamma * k_gamma - 2 * k_gamma * k_gamma * k_gamma - 1. / 6;
-constexpr double k_stage_error = 1e-7;  // of the speed
-constexpr double k_good_rate = 0.1;     // of Newton with an old matrix
-constexpr double k_slow = 1e-3;         // m/s, below it errors of a stage are absolute
-constexpr double k_part_error = 0.03;   // of the tolerance times the speed: local error of the velocity
-constexpr double k_speed_floor = 0.01;  // of the speed of a fall through the reach
-constexpr double k_resolved = 0.3;      // rad, of a contact's bounce, in the first substep after a touch
+constexpr double k_stage_error = 1e-7;    // of the speed
+constexpr double k_good_rate = 0.1;       // of Newton with an old matrix
+constexpr double k_slow = 1e-3;           // m/s, below it errors of a stage are absolute
+constexpr double k_substep_error = 0.03;  // of the tolerance times the speed: local error of the velocity
+constexpr double k_speed_floor = 0.01;    // of the speed of a fall through the reach
+constexpr double k_resolved = 0.3;        // rad, of a contact's bounce, in the first substep after a touch
 constexpr double k_safety = 0.9, k_most_growth = 3, k_most_shrinking = 5;
 constexpr double k_least_substep = 1e-4;  // of the first one
 constexpr double k_no_stage = 1e3;        // counts as this error
@@ -214,7 +214,7 @@ StepStatus::Kind ReducedBody::advance_implicit(const Parameters& parameters, con
     if (left < 2 * size) size = left <= size ? left : left / 2;
     const bool last = size == left;
     const StepInputs to = last ? end : StepInputs(parameters, from.time + size);
-    const double allowed = k_part_error * parameters.tolerance *
+    const double allowed = k_substep_error * parameters.tolerance *
                            std::max(s.velocity.norm() + reach_ * s.angular_velocity.norm(), floor);
     const ImplicitOutcome substep = implicit_substep(parameters, from, to, size, allowed, s, stick, booked);
     const bool good = substep.end == SubstepEnd::reached;

@@ -18,7 +18,7 @@ namespace topple {
 namespace {
 
 constexpr double k_stable_turn = 0.6;          // rad per substep, of the stiffest motion on contacts; limit 2
-constexpr double k_swing = 2.5;                // rad per substep, of the highest mode
+constexpr double k_free_turn = 2.5;            // rad per substep, of the highest mode
 constexpr double k_small_turn = 0.02;          // rad
 constexpr double k_least_substep = 1. / 4096;  // of a step
 
@@ -107,21 +107,22 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
 // The longest substep that is stable on what touches.
 double ReducedBody::stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
   const int m = modes(s);
-  const double swing = m > 0 ? k_swing / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (!contacts_.any() && !anchors_.any()) return swing / parameters.finer_parts;
+  const double free_limit =
+      m > 0 ? k_free_turn / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
+  if (!contacts_.any() && !anchors_.any()) return free_limit / parameters.finer_parts;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.level == s.level)
       return known.step / parameters.finer_parts;
-  const double step = find_stable_substep(law, s, swing);
+  const double step = find_stable_substep(law, s, free_limit);
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
   return step / parameters.finer_parts;
 }
 
-// Not above `swing`, with springs and stick springs as stiff as they get, in all directions.
-double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& s, double swing) const {
+// Not above `free_limit`, with springs and stick springs as implicit as they get, in all directions.
+double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const {
   const int m = modes(s), n = 6 + m;
   const Mat3 root = model_.bodies[body_].inertia.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 + k_modes, 6 + k_modes>;
@@ -142,7 +143,7 @@ double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& 
     stiffness += model_.anchors[tie.index].stiffness * j.transpose() * j;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
-  return std::min(swing, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
+  return std::min(free_limit, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
 }
 
 BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const {
@@ -260,10 +261,10 @@ struct ReducedBody::ExplicitSubstep {
   const Vec3 field = parameters.gravity - substep.end.floor;
   const bool bends = substep.bends, tied = anchors_.any();
   const Vec3 pull = anchors_.force(), twist = anchors_.moment();
-  Amplitudes pressed;
+  Amplitudes anchor_loads;
   if (bends) {
-    pressed.setZero();
-    anchors_.modal_loads(s, modes(s), pressed);
+    anchor_loads.setZero();
+    anchors_.modal_loads(s, modes(s), anchor_loads);
     s.load.setZero();
   }
   ContactLoads loads{{0, 0, 0}, {0, 0, 0}, 0, 0};
@@ -277,7 +278,7 @@ struct ReducedBody::ExplicitSubstep {
     if (tied) {
       free.linear = mul_add(h / 2 / mass_, packed(pull), free.linear);
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
-      if (bends) add_product(h / 2, kick_, pressed, free.rate);
+      if (bends) add_product(h / 2, kick_, anchor_loads, free.rate);
     }
     if (!solve_velocity(parameters, {substep.end.law, r, h, free, modes(s)}, u, loads, s.load, w))
       return false;
@@ -287,7 +288,7 @@ struct ReducedBody::ExplicitSubstep {
   if (tied) {
     s.force += pull;
     s.moment += twist;
-    if (bends) s.load += pressed;
+    if (bends) s.load += anchor_loads;
   }
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
@@ -311,17 +312,17 @@ struct ReducedBody::ExplicitSubstep {
       0.5 * dot(packed(Vec3(before.moment + s.moment)), substep.r0 * packed(substep.spin)) -
       0.5 * dot(packed(Vec3(s.angular_velocity + before.angular_velocity)), inertia_ * packed(faster));
   if (substep.bends) {
-    Amplitudes damping_power, numerical;
+    Amplitudes damping_loss, numerical;
     each_four_modes([&](int k) {
       const auto square = [](Four x) { return x * x; };
       const Four half = 0.5, a0 = load(&before.amplitude[k]), a = load(&s.amplitude[k]),
                  square0 = square(load(&substep.rate0[k]));
-      store(&damping_power[k], square(load(&before.rate[k])) - square0);
+      store(&damping_loss[k], square(load(&before.rate[k])) - square0);
       store(&numerical[k], half * (load(&before.load[k]) + load(&s.load[k])) * (a - a0) -
                                half * (square(load(&s.rate[k])) - square0) -
                                half * square(load(&basis_->frequency[k])) * (square(a) - square(a0)));
     });
-    booked.damping += 0.5 * damping_power.sum();
+    booked.damping += 0.5 * damping_loss.sum();
     booked.numerical += numerical.sum();
   }
 }
@@ -357,38 +358,39 @@ ReducedBody::ExplicitOutcome ReducedBody::explicit_substep(const Parameters& par
 StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepInputs& start,
                                       const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
                                       StepEnergy& booked, ReducedScratch& w) {
-  const BodyContacts::ScratchLease loan(contacts_, w.buffers);
+  const BodyContacts::ScratchLease lease(contacts_, w.buffers);
   const bool touches =
       contacts_.any() || anchors_.any() || (s.level == ModelLevel::rigid && next_landing(s, h) < h);
-  const auto parts_of = [](double way, double stable) {
+  const auto equal_substeps = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
   };
-  double size =
-      !touches && s.level == ModelLevel::rigid ? h : parts_of(h, stable_substep(parameters, start.law, s));
-  bool stiff = s.level == ModelLevel::rigid && touches && (parameters.adaptive || size < h);
+  double size = !touches && s.level == ModelLevel::rigid
+                    ? h
+                    : equal_substeps(h, stable_substep(parameters, start.law, s));
+  bool implicit = s.level == ModelLevel::rigid && touches && (parameters.adaptive || size < h);
   double left = h, most = h;
   w.substep = 0;
   w.from.reset();
-  while (!stiff) {
+  while (!implicit) {
     const bool last = size >= left;
     const StepInputs& from = w.from ? *w.from : start;
     if (!last) w.to.emplace(parameters, from.time + size, from);
-    const ExplicitOutcome swung =
+    const ExplicitOutcome outcome =
         explicit_substep(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w);
-    if (swung.end == SubstepEnd::reached) {
+    if (outcome.end == SubstepEnd::reached) {
       if (last) break;
       left -= size;
       w.from = w.to;
-      size = std::min(parts_of(left, stable_substep(parameters, w.from->law, s)), most);
-    } else if (swung.end == SubstepEnd::too_long) {
-      stiff = s.level == ModelLevel::rigid;
-      size = parts_of(size, swung.stable);
+      size = std::min(equal_substeps(left, stable_substep(parameters, w.from->law, s)), most);
+    } else if (outcome.end == SubstepEnd::too_long) {
+      implicit = s.level == ModelLevel::rigid;
+      size = equal_substeps(size, outcome.stable);
     } else {
       size = most = size / 2;
       if (most < k_least_substep * h) return StepStatus::Kind::newton_diverged;
     }
   }
-  return stiff ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
+  return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

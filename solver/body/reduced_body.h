@@ -159,7 +159,7 @@ class ReducedBody {
   void find_propagator(double h, double damping);
   Vec3 drift(double h, BodyState& s) const;
   double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
-  double find_stable_substep(const ContactLaw& law, const BodyState& s, double swing) const;
+  double find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const;
 
   StepStatus::Kind advance_implicit(const Parameters& parameters, const StepInputs& start,
                                     const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,

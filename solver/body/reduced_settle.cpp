@@ -17,7 +17,7 @@ class ReducedBody::RestOnPlanes {
   RestOnPlanes(ReducedBody& body, const Parameters& parameters, BodyState& state, std::span<Vec3> stick)
       : size(body.reach_),
         body_(body),
-        still_(without_passage(at_rest(parameters))),
+        still_(without_ramp(at_rest(parameters))),
         now_(still_, 0),
         s_(state),
         stick_(stick),
@@ -94,7 +94,7 @@ class ReducedBody::RestOnPlanes {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
-  static Parameters without_passage(Parameters parameters) {
+  static Parameters without_ramp(Parameters parameters) {
     parameters.contact_ramp = {};
     return parameters;
   }
@@ -131,7 +131,7 @@ class ReducedBody::RestOnPlanes {
 
 bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick) {
   std::vector<BodyContacts::TouchBuffer> buffers;
-  const BodyContacts::ScratchLease loan(contacts_, buffers);
+  const BodyContacts::ScratchLease lease(contacts_, buffers);
   RestOnPlanes body(*this, parameters, s, stick);
   return find_rest(body);
 }

@@ -84,17 +84,17 @@ double step_error(const Model& model, const Parameters& parameters, const State&
 
 double next_kink(const Model& model, const Parameters& parameters, double t) {
   double next = std::numeric_limits<double>::infinity();
-  const auto meet = [&](double at) {
+  const auto consider = [&](double at) {
     if (at > t + k_least_step) next = std::min(next, at);
   };
   for (const Shake& shake : parameters.shakes) {
-    meet(shake.start);
-    meet(shake_end(shake));
+    consider(shake.start);
+    consider(shake_end(shake));
     if (shake.kind == Shake::Kind::pulse)
-      for (const double kink : traits(shake.shape).kinks) meet(shake.start + kink * shake.duration);
+      for (const double kink : traits(shake.shape).kinks) consider(shake.start + kink * shake.duration);
   }
   for (const Load& load : model.loads)
-    for (const auto& [at, factor] : load.history) meet(at);
+    for (const auto& [at, factor] : load.history) consider(at);
   return next;
 }
 

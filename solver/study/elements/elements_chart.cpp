@@ -51,64 +51,55 @@ Decades decades(const std::vector<ElementsRow>& rows, double margin, Value value
     least = std::min(least, value(row));
     most = std::max(most, value(row));
   }
-  const Decades around{static_cast<int>(std::floor(std::log10(least) - margin)),
-                       static_cast<int>(std::ceil(std::log10(most) + margin))};
-  return around;
+  return {static_cast<int>(std::floor(std::log10(least) - margin)),
+          static_cast<int>(std::ceil(std::log10(most) + margin))};
 }
 
 /// Title, origin and legend, as a plot without axes.
 std::string header(const std::string& origin) {
   const double top = k_height;
-  const std::string grey = "noenhanced textcolor rgb '#444444'";
-  std::string out =
-      k_sheet.label(
-          bold("Error of three beam schemes against the number of elements and against CPU time", 1.5),
-          k_left, top - 34, "") +
-      k_sheet.label(origin, k_left, top - 76, grey) +
-      k_sheet.label(
-          "CPU time: of the solving thread for one solution (all load steps, or three modes), without "
-          "reading "
-          "the scene; mean of the fastest of repeated samples",
-          k_left, top - 102, grey) +
-      k_sheet.label(
-          fmt::format("Error: |computed − reference| / |reference|; below {:.0e} it is drawn there. "
-                      "Without hinges ASI and midpoint elements are the same",
-                      k_error_floor),
-          k_left, top - 128, grey);
-  out +=
-      k_sheet.place(k_left, k_width - k_right, top - 226, top - 146) +
-      "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
-      "set key at graph 0,1 left top vertical maxrows 2 Left reverse samplen 4 spacing 1.25 width 2\nplot ";
+  Plot keys;
   for (std::size_t s = 0; s < std::size(k_schemes); ++s)
-    out += fmt::format("NaN with linespoints {} title {} noenhanced, ", style(s),
-                       gnuplot_quoted(k_schemes[s].about));
-  return out + "NaN with lines " + k_guide + " title 'order of convergence in theory, of midpoint elements'" +
-         "\nunset label\nunset key\nset border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4\n"
-         "set grid xtics ytics lc rgb '#cccccc' lw 0.8 dt 1\nset logscale xy\n";
+    keys.layers.push_back(fmt::format("NaN with linespoints {} title {} noenhanced", style(s),
+                                      gnuplot_quoted(k_schemes[s].about)));
+  keys.layers.push_back(std::string("NaN with lines ") + k_guide +
+                        " title 'order of convergence in theory, of midpoint elements'");
+  const std::vector<std::string> lines{
+      origin,
+      "CPU time: of the solving thread for one solution (all load steps, or three modes), without reading "
+      "the scene; mean of the fastest of repeated samples",
+      fmt::format("Error: |computed − reference| / |reference|; below {:.0e} it is drawn there. Without "
+                  "hinges ASI and midpoint elements are the same",
+                  k_error_floor)};
+  return k_sheet.label(
+             bold("Error of three beam schemes against the number of elements and against CPU time", 1.5),
+             k_left, top - 34) +
+         k_sheet.lines(lines, k_left, top - 76, 26, k_grey_as_is) +
+         k_sheet.legend(k_left, k_width - k_right, top - 226, top - 146,
+                        "2 Left reverse samplen 4 spacing 1.25 width 2", keys) +
+         k_open_border + "set tics out scale 0.7,0.4\n" + grid("#cccccc") + "set logscale xy\n";
 }
 
 /// Blocks $scheme0, 1, 2 with columns elements per member, CPU time in ms, error.
 std::string data_blocks(const std::vector<ElementsRow>& rows) {
   std::string out;
   for (std::size_t s = 0; s < std::size(k_schemes); ++s) {
-    out += fmt::format("$scheme{} << END\n", s);
-    bool any = false;
-    for (const ElementsRow& row : rows) {
-      if (row.scheme != k_schemes[s].kind) continue;
-      out += fmt::format("{} {} {}\n", row.elements_per_member, 1e3 * *row.cpu, floored(*row.error));
-      any = true;
-    }
-    out += any ? "END\n" : "NaN NaN NaN\nEND\n";
+    std::string list;
+    for (const ElementsRow& row : rows)
+      if (row.scheme == k_schemes[s].kind)
+        list += fmt::format("{} {} {}\n", row.elements_per_member, 1e3 * *row.cpu, floored(*row.error));
+    out += data_block(fmt::format("scheme{}", s), list, 3);
   }
   return out;
 }
 
 /// Broad lines first: those under the thin ones stay visible where curves coincide.
-std::string curves(int column) {
-  std::string out;
+std::string plot_curves(int column, const std::vector<std::string>& below) {
+  Plot plot{.data = "", .layers = below};
   for (std::size_t s = std::size(k_schemes); s-- > 0;)
-    out += fmt::format(", $scheme{} using {}:3 with linespoints {} notitle", s, column, style(s));
-  return out;
+    plot.layers.push_back(
+        fmt::format("$scheme{} using {}:3 with linespoints {} notitle", s, column, style(s)));
+  return plot.command();
 }
 
 /// A line of the order of convergence, above the greatest of the errors with the fewest elements.
@@ -140,19 +131,17 @@ std::string column(const ElementsStudy& study, const Quantity& quantity, double 
   std::string source = quantity.source;
   if (quantity.uncertainty > 0) source += fmt::format(" ± {:.0e}", quantity.uncertainty);
   std::string out = data_blocks(rows) + y_axis(y);
-  out += k_sheet.label(bold(quantity.title, 1.08), left, top - 12, "");
-  out += k_sheet.label("{/*0.92 " + source + "}", left, top - 40, "textcolor rgb '#444444'");
+  out += k_sheet.label(bold(quantity.title, 1.08), left, top - 12);
+  out += k_sheet.label(scaled(source, 0.92), left, top - 40, k_grey);
   out += k_sheet.place(left, right, upper - panel, upper);
   out += "set xrange [1.6:80]\nset format x '%g'\nset xtics nomirror (2,4,8,16,32,64)\nset mxtics 1\n";
   out += "set xlabel 'elements per member' offset 0,0.4\n";
   out += left > k_left ? "unset ylabel\n" : "set ylabel 'relative error' offset 1,0\n";
-  out += "plot " + guide(rows, quantity.order) + curves(1) + "\nunset label\n";
+  out += plot_curves(1, {guide(rows, quantity.order)}) + "unset label\n";
   out += k_sheet.place(left, right, lower - panel, lower);
   out += fmt::format("set xrange [1e{}:1e{}]\nset xtics nomirror 1e{},10,1e{}\nset mxtics 10\n", x.from, x.to,
                      x.from, x.to);
-  out += "set xlabel 'CPU time, ms' offset 0,0.4\n";
-  out += "plot " + curves(2).substr(2) + "\n";
-  return out;
+  return out + "set xlabel 'CPU time, ms' offset 0,0.4\n" + plot_curves(2, {});
 }
 
 }  // namespace
@@ -166,14 +155,14 @@ std::string elements_chart(const ElementsStudy& study, const std::string& origin
   const double width = (k_width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
   const double block = (k_height - k_header) / static_cast<double>(std::max(1, blocks));
   const double panel = (block - k_above - 2 * k_below - k_under) / 2;
-  std::string script = k_sheet.begin(format) + header(origin);
+  std::string content = header(origin);
   for (std::size_t k = 0; k < charted.size(); ++k) {
     const std::size_t row = k / k_columns, place = k % k_columns;
     const double left = k_left + static_cast<double>(place) * (width + k_gap);
     const double top = k_height - k_header - static_cast<double>(row) * block;
-    script += column(study, *charted[k], left, left + width, top, panel);
+    content += column(study, *charted[k], left, left + width, top, panel);
   }
-  return script + "unset multiplot\n";
+  return k_sheet.script(format, content);
 }
 
 }  // namespace topple::study

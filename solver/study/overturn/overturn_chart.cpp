@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <functional>
 #include <vector>
 
-#include "solver/study/common/gnuplot.h"
 #include "solver/study/common/map_panel.h"
 
 namespace topple::study {
@@ -18,17 +17,16 @@ constexpr int k_left = 112, k_bottom = 92, k_top = 300;           // around pane
 constexpr int k_map_right = 1070, k_second_left = 1424, k_second_right = 1926;
 constexpr int k_margin = 20, k_mark_row = 26;  // px: right of marks; from one row of them to the next
 
-/// How a verdict is drawn: told apart in grey by luminance, and by marks.
 struct Look {
   Verdict verdict;
-  const char *fill, *mark;  // "": hatched; no mark
-  const char* meaning;
+  CellStyle cell;
 };
 constexpr Look k_looks[] = {{Verdict::stands, "#edf2f7", "", "stands: no side of a base lifts"},
                             {Verdict::rocks, "#a9cbe4", "pt 7 lc rgb '#2b5c86'", "rocks and stays up"},
                             {Verdict::some, "#f2ab5e", "pt 9 lc rgb '#5a2d00'", "some bodies overturn"},
                             {Verdict::all, "#a3203a", "pt 2 lw 1.6 lc rgb '#ffffff'", "all bodies overturn"},
                             {Verdict::failed, "#f5e663", "pt 1 lw 2 lc rgb '#000000'", "the run failed"}};
+constexpr CellStyle k_failed = k_looks[4].cell;
 constexpr Look k_open = {Verdict::not_computed, "", "", "not computed"};
 
 /// Nodes of viridis (S. van der Walt and N. Smith 2015), whose luminance grows evenly.
@@ -45,19 +43,13 @@ class Chart {
       : plan_(plan),
         map_(map),
         with_fragility_(plan.ensemble > 1),
-        marks_(with_fragility_ ? Rows(1) : rows_of_marks()),
-        panel_{{with_fragility_ ? k_double : k_single,
-                k_height + k_mark_row * (static_cast<int>(marks_.size()) - 1)},
-               k_left,
-               k_map_right,
-               k_bottom,
-               k_height - k_top,
-               &plan.x,
-               &plan.y} {}
+        marks_(rows_of_marks()),
+        sheet_{with_fragility_ ? k_double : k_single,
+               k_height + k_mark_row * (static_cast<int>(marks_.size()) - 1)},
+        panel_{sheet_, k_left, k_map_right, k_bottom, k_height - k_top, &plan.x, &plan.y} {}
 
   std::string script(const std::string& origin, ChartFormat format) {
-    return panel_.sheet.begin(format) + header(origin) + map_panel() + (with_fragility_ ? fragility() : "") +
-           "unset multiplot\n";
+    return sheet_.script(format, header(origin) + map_panel() + (with_fragility_ ? fragility() : ""));
   }
 
  private:
@@ -67,25 +59,18 @@ class Chart {
     return map_.points[static_cast<std::size_t>(j * plan_.x.count() + i)];
   }
 
-  std::string text(const std::string& words, double x, double y, const std::string& how = "") const {
-    return panel_.sheet.label(words, x, y, how);
-  }
-
   std::string header(const std::string& origin) const {
     const std::string what = plan_.ensemble > 1 ? "How often a body overturns in " : "What overturns in ";
-    const int top = panel_.sheet.height;
-    std::string out = text(bold(plain(what + plan_.scene.name), 1.5), k_left, top - 34);
-    const std::string grey = std::string("noenhanced ") + k_grey;
-    out += text(plan_.scene.title, k_left, top - 74, grey);
     std::string settings = fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
     for (const std::string& change : plan_.set) settings += ", " + change;
     if (plan_.ensemble > 1)
       settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
                               1 - plan_.spread, 1 + plan_.spread);
-    out += text(settings, k_left, top - 100, grey);
-    out += text(origin + ", " + coverage(), k_left, top - 126, grey);
-    out += plan_.ensemble > 1 ? marks_of_ensemble() : marks_of_verdicts();
-    return out + criteria_in_words();
+    const int top = sheet_.height;
+    return sheet_.label(bold(plain(what + plan_.scene.name), 1.5), k_left, top - 34) +
+           sheet_.lines({plan_.scene.title, settings, origin + ", " + coverage()}, k_left, top - 74, 26,
+                        k_grey_as_is) +
+           marks() + criteria_in_words();
   }
 
   std::string coverage() const {
@@ -97,7 +82,7 @@ class Chart {
     const std::string points = plan_.ensemble == 1 ? "one run a point"
                                : least == most     ? fmt::format("{} runs a point", most)
                                                    : fmt::format("{} to {} runs a point", least, most);
-    return map_.run == map_.of ? points : fmt::format("{} of {} runs, {}", map_.run, map_.of, points);
+    return map_.run == map_.of ? points : runs_in_words(map_.run, map_.of) + ", " + points;
   }
 
   bool shows(Verdict verdict) const {
@@ -109,161 +94,102 @@ class Chart {
 
   /// What the marks of the map mean, in rows that the sheet is wide enough for.
   Rows rows_of_marks() const {
+    std::vector<Look> looks(std::begin(k_looks), std::end(k_looks));
+    if (with_fragility_) looks = {{Verdict::failed, {k_failed.fill, k_failed.mark, "every run failed"}}};
+    looks.push_back(k_open);
     Rows rows(1);
     double x = k_left;
-    const auto add = [&](const Look& look) {
-      if (!shows(look.verdict)) return;
-      const double width = width_of(look.meaning);
+    for (const Look& look : looks) {
+      if (!shows(look.verdict)) continue;
+      const double width = width_of(look.cell.meaning);
       if (x + width > k_single - k_margin) {
         rows.emplace_back();
         x = k_left;
       }
       rows.back().push_back(look);
       x += width;
-    };
-    std::ranges::for_each(k_looks, add);
-    add(k_open);
+    }
     return rows;
   }
 
-  std::string marks_of_verdicts() const {
+  std::string marks() const {
     std::string out;
-    double y = panel_.sheet.height - 160;
+    double x = k_left, y = sheet_.height - 160 + k_mark_row;
     for (const std::vector<Look>& row : marks_) {
-      double x = k_left;
-      for (const Look& look : row) {
-        out += panel_.sheet.swatch(x, y, look.fill, look.mark, look.meaning);
-        x += width_of(look.meaning);
-      }
+      x = k_left;
       y -= k_mark_row;
+      for (const Look& look : row) {
+        out += sheet_.swatch(x, y, look.cell);
+        x += width_of(look.cell.meaning);
+      }
     }
-    return out;
-  }
-
-  std::string marks_of_ensemble() const {
-    std::string out;
-    double x = k_left;
-    const double y = k_height - 160;
-    if (shows(Verdict::failed)) {
-      out += panel_.sheet.swatch(x, y, k_looks[4].fill, k_looks[4].mark, "every run failed");
-      x += width_of("every run failed");
-    }
-    if (shows(Verdict::not_computed)) {
-      out += panel_.sheet.swatch(x, y, k_open.fill, k_open.mark, k_open.meaning);
-      x += width_of(k_open.meaning);
-    }
-    const Sheet& s = panel_.sheet;
     if (has_medians())
-      out += fmt::format(
-                 "set arrow from screen {0:.5f},{2:.5f} to screen {1:.5f},{2:.5f} nohead lc rgb '#e7298a' lw "
-                 "3\n",
-                 x / s.width, (x + 34) / s.width, y / s.height) +
-             text("", x + 17, y, "point pt 7 ps 0.8 lc rgb '#e7298a'") +
-             text("median of the fitted lognormal, where there is one within the map", x + 44, y);
+      out += sheet_.stroke(x, x + 34, y, "lc rgb '#e7298a' lw 3") +
+             sheet_.label("", x + 17, y, "point pt 7 ps 0.8 lc rgb '#e7298a'") +
+             sheet_.label("median of the fitted lognormal, where there is one within the map", x + 44, y);
     return out;
   }
 
   std::string criteria_in_words() const {
     if (!map_.criteria.why_not.empty())
-      return text(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190, k_grey);
+      return sheet_.label(plain("No criteria are drawn: " + map_.criteria.why_not), k_left, k_height - 190,
+                          k_grey);
     std::vector<std::string> lines{fmt::format(
         "Curves: a rigid block like {} alone on the floor, b = {:.0f} mm, h = {:.0f} mm, that does not slip "
         "(friction of the scene: {:g})",
         plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base, 1e3 * map_.criteria.body.height,
         plan_.scene.setup.parameters.contact.friction)};
     for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
-    std::string out;
-    for (std::size_t k = 0; k < lines.size(); ++k)
-      out += text("{/*0.94 " + lines[k] + "}", k_left, k_height - 186 - 22 * static_cast<double>(k), k_grey);
-    return out;
+    for (std::string& line : lines) line = scaled(line, 0.94);
+    return sheet_.lines(lines, k_left, k_height - 186, 22, k_grey);
   }
 
   bool has_medians() const {
-    return std::ranges::count_if(map_.fragility, [](const Fragility& f) { return f.fit.has_value(); }) > 0;
+    return with_fragility_ &&
+           std::ranges::any_of(map_.fragility, [](const Fragility& f) { return f.fit.has_value(); });
   }
 
-  /// Cells of the points for which `wanted` gives a value.
-  template <typename Wanted>
-  std::string cells(const std::string& block, Wanted wanted) const {
-    return panel_.cells(block, [&](int i, int j) { return wanted(point(i, j)); });
-  }
-
-  /// Data blocks, and what is plotted of them.
-  std::pair<std::string, std::string> verdict_layers() const {
-    std::string data, plot;
-    for (const Look& look : k_looks) {
-      const std::string block = fmt::format("verdict{}", static_cast<int>(look.verdict));
-      data += cells(block, [&](const OverturnPoint& p) {
-        return p.verdict == look.verdict ? std::optional(0.) : std::nullopt;
-      });
-      plot += fmt::format("${} using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '{}' notitle, ",
-                          block, look.fill);
-      if (*look.mark)
-        plot += fmt::format("${} using 1:2 with points {} ps {:.2f} notitle, ", block, look.mark,
-                            panel_.mark_size() * (look.verdict == Verdict::rocks ? 0.45 : 0.8));
-    }
-    return {data, plot};
-  }
-
-  std::pair<std::string, std::string> probability_layers() const {
-    std::string data = cells("probability", [](const OverturnPoint& p) { return p.probability(); });
-    data += cells("failed", [](const OverturnPoint& p) {
-      return p.verdict == Verdict::failed ? std::optional(0.) : std::nullopt;
-    });
-    std::string plot =
-        "$probability using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette notitle, ";
-    plot += fmt::format(
-        "$failed using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '{0}' notitle, "
-        "$failed using 1:2 with points {1} ps {2:.2f} notitle, ",
-        k_looks[4].fill, k_looks[4].mark, panel_.mark_size());
-    return {data, plot};
+  std::function<bool(int i, int j)> has(Verdict verdict) const {
+    return [this, verdict](int i, int j) { return point(i, j).verdict == verdict; };
   }
 
   std::string map_panel() {
-    auto [data, plot] = plan_.ensemble > 1 ? probability_layers() : verdict_layers();
-    data += cells("open", [](const OverturnPoint& p) {
-      return p.verdict == Verdict::not_computed ? std::optional(0.) : std::nullopt;
-    });
-    plot += "$open using 1:2:3:4:5:6 with boxxyerror fs pattern 4 noborder fc rgb '#888888' notitle, ";
+    Plot plot;
+    if (plan_.ensemble > 1) {
+      plot.data = panel_.cells("probability", [&](int i, int j) { return point(i, j).probability(); });
+      plot.layers = {"$probability using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette notitle"};
+      panel_.fill_cells(plot, "failed", has(Verdict::failed), k_failed, 1);
+    } else {
+      for (const Look& look : k_looks)
+        panel_.fill_cells(plot, fmt::format("verdict{}", static_cast<int>(look.verdict)), has(look.verdict),
+                          look.cell, look.verdict == Verdict::rocks ? 0.45 : 0.8);
+    }
+    panel_.fill_cells(plot, "open", has(Verdict::not_computed), k_open.cell, 1);
     std::string labels;
     for (std::size_t k = 0; k < map_.criteria.list.size(); ++k) {
       const Criterion& c = map_.criteria.list[k];
-      data += fmt::format("$curve{} << END\n", k);
-      for (std::size_t n = 0; n < c.x.size(); ++n) data += fmt::format("{:.6g} {:.6g}\n", c.x[n], c.y[n]);
-      data += c.x.empty() ? "NaN NaN\nEND\n" : "END\n";
-      // a light line below keeps the dark one apart from any ground
-      plot += fmt::format(
-          "$curve{0} with lines lc rgb '#ffffff' lw 5.5 notitle, $curve{0} with lines lc rgb '#000000' lw "
-          "2.4 dt {1} notitle, ",
-          k, k_dashes[std::min(k, std::size(k_dashes) - 1)]);
+      outline(plot, fmt::format("curve{}", k), c.x, c.y, 5.5, 2.4,
+              k_dashes[std::min(k, std::size(k_dashes) - 1)]);
       labels += end_label(c);
     }
-    if (plan_.ensemble > 1 && has_medians()) {
-      data += "$medians << END\n" + medians() + "END\n";
-      plot +=
-          "$medians with linespoints lc rgb '#ffffff' lw 6 pt 7 ps 1.1 notitle, "
-          "$medians with linespoints lc rgb '#e7298a' lw 3 pt 7 ps 0.8 notitle, ";
+    if (has_medians()) {
+      plot.add("medians", medians(), "with linespoints lc rgb '#ffffff' lw 6 pt 7 ps 1.1 notitle");
+      plot.layers.push_back("$medians with linespoints lc rgb '#e7298a' lw 3 pt 7 ps 0.8 notitle");
     }
-    data += "$own << END\n" + own_point() + "END\n";
-    plot +=
-        "$own with points pt 7 ps 2.9 lc rgb '#ffffff' notitle, $own with points pt 6 ps 2.5 lw 3 lc rgb "
-        "'#000000' notitle, "
-        "$own with points pt 7 ps 0.8 lc rgb '#000000' notitle";
-    std::string out = data + labels + own_label();
-    out += panel_.sheet.place(panel_.left, panel_.right, panel_.bottom, panel_.top);
-    out += "set border 15 lc rgb '#444444' lw 1 front\nset tics out scale 0.7,0.4 front\nunset key\n";
-    out += axis_scale("x", plan_.x) + axis_scale("y", plan_.y);
-    out += "set xlabel " + gnuplot_quoted(axis_title(plan_.x)) + " offset 0,0.2\nset ylabel " +
-           gnuplot_quoted(axis_title(plan_.y)) + " offset 1.4,0\n";
+    plot.layers.push_back("$own with points pt 7 ps 2.9 lc rgb '#ffffff' notitle");
+    plot.layers.push_back("$own with points pt 6 ps 2.5 lw 3 lc rgb '#000000' notitle");
+    plot.layers.push_back("$own with points pt 7 ps 0.8 lc rgb '#000000' notitle");
+    std::string out = plot.data + panel_.own_block() + labels + own_label() + panel_.axes() +
+                      axis_label("y", plan_.y, "1.4,0");
     if (plan_.ensemble > 1)
       out +=
           std::string(k_viridis) +
           fmt::format(
               "set cbrange [0:1]\nset colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f}\n"
               "set cbtics 0.25\nset cblabel 'share of runs in which a body overturns' offset 0.4,0\n",
-              (k_map_right + 128.) / panel_.sheet.width, panel_.bottom / panel_.sheet.height,
-              22. / panel_.sheet.width, (panel_.top - panel_.bottom) / panel_.sheet.height);
-    return out + "plot " + plot + "\nunset label\nunset arrow\nunset object\nunset colorbox\n";
+              (k_map_right + 128.) / sheet_.width, panel_.bottom / sheet_.height, 22. / sheet_.width,
+              (panel_.top - panel_.bottom) / sheet_.height);
+    return out + plot.command() + "unset label\nunset arrow\nunset object\nunset colorbox\n";
   }
 
   /// Beside the right edge where the curve leaves there, else above the panel.
@@ -273,8 +199,8 @@ class Chart {
     for (std::size_t n = c.x.size(); n-- > 0;) {
       if (c.y[n] > most_y || c.y[n] < least_y) continue;
       if (n + 1 == c.x.size() && panel_.x(c.x[n]) > panel_.x(most_x) - 60)
-        return text(plain(c.label), panel_.right + 8, panel_.y(c.y[n]), "left");
-      return text(plain(c.label), panel_.x(c.x[n]), panel_.top + 14, "center");
+        return sheet_.label(plain(c.label), panel_.right + 8, panel_.y(c.y[n]), "left");
+      return sheet_.label(plain(c.label), panel_.x(c.x[n]), panel_.top + 14, "center");
     }
     return "";
   }
@@ -290,43 +216,27 @@ class Chart {
         continue;
       }
       const double at = other.values[k];
-      out += map_.fragility_along_y ? fmt::format("{:.6g} {:.6g}\n", at, f.fit->median)
-                                    : fmt::format("{:.6g} {:.6g}\n", f.fit->median, at);
+      out += map_.fragility_along_y ? point_row(at, f.fit->median) : point_row(f.fit->median, at);
     }
     return out;
   }
 
-  bool own_shown() const {
-    const auto inside = [](const Axis& axis) {
-      return axis.own && *axis.own >= axis.edges().front() && *axis.own <= axis.edges().back();
-    };
-    return inside(plan_.x) && inside(plan_.y);
-  }
-
-  std::string own_point() const {
-    return own_shown() ? fmt::format("{:.9g} {:.9g}\n", *plan_.x.own, *plan_.y.own) : "NaN NaN\n";
-  }
-
   std::string own_label() const {
-    if (!own_shown()) return "";
+    if (!panel_.own_shown()) return "";
     const double x = panel_.x(*plan_.x.own), y = panel_.y(*plan_.y.own);
     const bool right = x < (panel_.left + panel_.right) / 2;
     return "set style textbox 1 opaque noborder fillcolor '#ffffff' margins 0.6,0.4\n" +
-           text(
-               fmt::format("the scene: {}, {}", valued(plan_.x, *plan_.x.own), valued(plan_.y, *plan_.y.own)),
-               x + (right ? 20 : -20), y, std::string(right ? "left" : "right") + " front boxed bs 1");
+           sheet_.label(panel_.own_in_words(), x + (right ? 20 : -20), y,
+                        std::string(right ? "left" : "right") + " front boxed bs 1");
   }
 
   std::string fragility() const {
-    const double middle_x = (k_second_left + k_second_right) / 2.;
-    std::string out = panel_.sheet.place(k_second_left, k_second_right, k_bottom, k_height - k_top);
+    std::string out = sheet_.place(k_second_left, k_second_right, k_bottom, k_height - k_top);
     if (map_.fragility.empty())
       return out +
-             text("no fragility curve: neither axis is an amplitude or scale above 0", middle_x,
-                  k_height / 2., "center") +
-             "unset border\nunset tics\nunset xlabel\nunset ylabel\nset xrange [0:1]\nset yrange "
-             "[0:1]\nunset "
-             "logscale\nplot NaN notitle\n";
+             sheet_.label("no fragility curve: neither axis is an amplitude or scale above 0",
+                          (k_second_left + k_second_right) / 2., k_height / 2., "center") +
+             no_axes("unset xlabel\nunset ylabel\n") + "unset logscale\nplot NaN notitle\n";
     const Axis& other = map_.fragility_along_y ? plan_.x : plan_.y;
     const std::vector<FloorPeak> peaks = floor_peaks(plan_, map_, map_.own_column);
     const std::vector<Level> own = levels(plan_, map_, map_.own_column);
@@ -341,20 +251,20 @@ class Chart {
       lines.insert(lines.begin() + 1, median_in_words(*by_velocity.fit, "PGV: ", pgv.unit));
     if (other.own)
       lines.insert(lines.begin(), "the value nearest to the scene's " + valued(other, *other.own));
-    double y = k_height - k_top + (ground ? 46 : -6) + 24 * static_cast<double>(lines.size());
-    out += text(bold(plain("At " + other.key + " = " +
-                           valued(other, other.values[static_cast<std::size_t>(map_.own_column)])),
-                     1.08),
-                k_second_left, y + 28);
-    for (const std::string& line : lines) out += text(line, k_second_left, std::exchange(y, y - 24), k_grey);
-    out += "$shares << END\n";
+    const double y = k_height - k_top + (ground ? 46 : -6) + 24 * static_cast<double>(lines.size());
+    out += sheet_.label(bold(plain("At " + other.key + " = " +
+                                   valued(other, other.values[static_cast<std::size_t>(map_.own_column)])),
+                             1.08),
+                        k_second_left, y + 28) +
+           sheet_.lines(lines, k_second_left, y, 24, k_grey);
+    std::string shares;
     for (const Level& level : over) {
       if (level.runs == 0) continue;
       const Interval bounds = wilson(level.hits, level.runs);
-      out += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
-                         static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
+      shares += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
+                            static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
     }
-    out += "NaN NaN NaN NaN\nEND\n" + axis_scale("x", along);
+    out += data_block("shares", shares + "NaN NaN NaN NaN\n") + axis_scale("x", along);
     const auto proportional = [&](const FloorPeak& peak) {
       return std::abs(peak.velocity * peaks[0].acceleration - peaks[0].velocity * peak.acceleration) <
              1e-6 * peak.velocity * peaks[0].acceleration;
@@ -364,25 +274,24 @@ class Chart {
     out +=
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics autofreq nomirror\nset grid ytics lc rgb "
         "'#dddddd' lw 0.8\n";
-    out += "set xlabel " + gnuplot_quoted(axis_title(along)) + " offset 0,0.2\n";
-    out += std::string(
-               "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset "
-               "1.2,0\nset border ") +
+    out += axis_label("x", along, "0,0.2") +
+           "set ylabel 'share of runs in which a body overturns, 95 % intervals (Wilson)' offset 1.2,0\n"
+           "set border " +
            (above ? "7\n" : "3\n");
-    std::string plot = "$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle";
+    Plot plot;
     if (at.fit) {
-      out += "$fit << END\n";
+      std::string fit;
       const std::vector<double> ends = along.edges();
       for (int k = 0; k <= 200; ++k) {
         const double part = k / 200.;
         const double a = along.logarithmic ? ends.front() * std::pow(ends.back() / ends.front(), part)
                                            : std::lerp(ends.front(), ends.back(), part);
-        out += fmt::format("{:.6g} {:.6g}\n", a, at.fit->probability(a));
+        fit += point_row(a, at.fit->probability(a));
       }
-      out += "END\n";
-      plot = "$fit with lines lc rgb '#e7298a' lw 3 notitle, " + plot;
+      plot.add("fit", fit, "with lines lc rgb '#e7298a' lw 3 notitle");
     }
-    return out + "plot " + plot + "\n";
+    plot.layers.push_back("$shares with yerrorbars pt 7 ps 1.1 lw 1.8 lc rgb '#0072b2' notitle");
+    return out + plot.data + plot.command();
   }
 
   /// The intensity axis in a measure of the floor's motion.
@@ -397,7 +306,7 @@ class Chart {
 
   /// A second scale above the panel, in proportion to the first.
   static std::string axis_above(const Axis& axis) {
-    return axis_scale("x2", axis) + "set x2label " + gnuplot_quoted(axis_title(axis)) + " offset 0,-0.4\n";
+    return axis_scale("x2", axis) + axis_label("x2", axis, "0,-0.4");
   }
 
   static std::string median_in_words(const Lognormal& fit, const std::string& what, const std::string& unit) {
@@ -426,7 +335,8 @@ class Chart {
   const OverturnPlan& plan_;
   const OverturnMap& map_;
   const bool with_fragility_;
-  const Rows marks_;  ///< of verdicts
+  const Rows marks_;
+  const Sheet sheet_;
   const MapPanel panel_;
 };
 

@@ -26,7 +26,6 @@ constexpr int k_most_groups = 4;           // drawn; the table has all
 constexpr const char* k_colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9"};
 constexpr const char* k_dash[] = {"1", "(12,5)", "(4,4)", "(12,4,3,4)", "(8,3)"};
 constexpr int k_mark[] = {7, 5, 9, 13, 11}, k_styles = std::size(k_mark);
-constexpr const char* k_grey = "textcolor rgb '#444444'";
 constexpr const char* k_bound_line = "lc rgb '#111111' lw 1.6 dt (3,4)";
 
 std::string line_style(int k, double width) {
@@ -49,12 +48,11 @@ struct Point {
   double x, y;
 };
 
-/// A named block of data; what a logarithmic axis cannot show is left out by the caller.
-std::string block(const std::string& name, const std::vector<Point>& points) {
-  std::string out = "$" + name + " << END\n";
-  for (const Point& point : points) out += fmt::format("{} {}\n", point.x, point.y);
-  if (points.empty()) out += "NaN NaN\n";
-  return out + "END\n";
+/// Of a data block; what a logarithmic axis cannot show is left out by the caller.
+std::string rows_of(const std::vector<Point>& points) {
+  std::string rows;
+  for (const Point& point : points) rows += fmt::format("{} {}\n", point.x, point.y);
+  return rows;
 }
 
 /// "3.6·10^{-8} µm" for gnuplot's enhanced mode.
@@ -67,10 +65,13 @@ std::string micrometres(double way) {
 }
 
 /// Whole decades around positive numbers.
-std::string decades(const std::string& axis, double least, double most, double scale = 1) {
-  return fmt::format("set {}range [{}:{}]\n", axis,
-                     scale * std::pow(10., std::floor(std::log10(least / scale))),
-                     scale * std::pow(10., std::ceil(std::log10(most / scale))));
+std::string decades(const std::string& axis, double least, double most) {
+  return fmt::format("set {}range [{}:{}]\n", axis, std::pow(10., std::floor(std::log10(least))),
+                     std::pow(10., std::ceil(std::log10(most))));
+}
+
+std::string log_axis(const char* which, const char* tic_format) {
+  return fmt::format("set logscale {0}\nset format {0} '{1}'\nset m{0}tics 10\n", which, tic_format);
 }
 
 /// Sees the study, knows its place on the sheet.
@@ -85,8 +86,8 @@ class Chart {
   }
 
   std::string script(const std::string& origin, ChartFormat format) {
-    return k_sheet.begin(format) + header(origin) + force() + depth() + creep() + restitution() +
-           frequency() + errors() + "unset multiplot\n";
+    return k_sheet.script(
+        format, header(origin) + force() + depth() + creep() + restitution() + frequency() + errors());
   }
 
  private:
@@ -97,11 +98,11 @@ class Chart {
   }
 
   template <typename Choose>
-  std::vector<Point> points(Case kind, Choose choose) const {
+  std::string rows(Case kind, Choose choose) const {
     std::vector<Point> found;
     for (const PenaltyRow& row : study_.rows)
       if (row.kind == kind && row.computed) choose(row, found);
-    return found;
+    return rows_of(found);
   }
 
   std::string header(const std::string& origin) const {
@@ -111,18 +112,13 @@ class Chart {
                                  : "no α to recommend";
     if (advice_.alpha && advice_.time_step && !advice_.resolved)
       title += fmt::format(", with {} = {:.2g} ms", plain("time_step"), 1e3 * *advice_.time_step);
-    std::string out = k_sheet.label(bold(title, 1.5), k_left, k_height - 34, "");
-    const std::string grey = std::string("noenhanced ") + k_grey;
-    out += k_sheet.label(study_.title, k_left, k_height - 76, grey);
-    out += k_sheet.label(settings(), k_left, k_height - 102, grey);
-    const std::string runs =
-        study_.run == study_.of ? "" : fmt::format(", {} of {} runs", study_.run, study_.of);
-    out += k_sheet.label(origin + runs + ". Bodies stand alone on the floor", k_left, k_height - 128, grey);
-    double y = k_height - 160;
-    for (const std::string& sentence : in_short())
-      out += k_sheet.label(sentence, k_left, std::exchange(y, y - 26), "noenhanced");
-    return out + k_sheet.place(k_left, k_width - k_right, k_height - k_header, k_height - 1) +
-           "unset border\nunset tics\nunset key\nset xrange [0:1]\nset yrange [0:1]\nplot NaN notitle\n";
+    const std::string runs = study_.run == study_.of ? "" : ", " + runs_in_words(study_.run, study_.of);
+    return k_sheet.label(bold(title, 1.5), k_left, k_height - 34) +
+           k_sheet.lines({study_.title, settings(), origin + runs + ". Bodies stand alone on the floor"},
+                         k_left, k_height - 76, 26, k_grey_as_is) +
+           k_sheet.lines(in_short(), k_left, k_height - 160, 26, "noenhanced") +
+           k_sheet.place(k_left, k_width - k_right, k_height - k_header, k_height - 1) +
+           no_axes("unset key\n") + "plot NaN notitle\n";
   }
 
   std::string settings() const {
@@ -168,15 +164,23 @@ class Chart {
     const int row = k / k_columns;
     const double left = k_left + (k % k_columns) * (width + k_gap);
     const double top = k_height - k_header - row * height;
-    return "unset label\nunset logscale\nunset arrow\nset border 3 lc rgb '#444444' lw 1\n"
-           "set tics out nomirror scale 0.7,0.4\nset xtics nomirror autofreq\nset ytics nomirror "
-           "autofreq\nset mxtics default\n"
-           "set mytics default\nset format x '%g'\nset format y '%g'\n"
-           "set grid xtics ytics lc rgb '#d4d4d4' lw 0.8 dt 1\n"
-           "set key Left reverse samplen 3 spacing 1.2 font ',11.5'\n" +
-           k_sheet.label(bold(title, 1.08), left, top - 14, "") +
-           k_sheet.label("{/*0.92 " + source + "}", left, top - 40, k_grey) +
+    return std::string("unset label\nunset logscale\nunset arrow\n") + k_open_border +
+           "set tics out nomirror scale 0.7,0.4\nset xtics nomirror autofreq\n"
+           "set ytics nomirror autofreq\nset mxtics default\nset mytics default\nset format x '%g'\nset "
+           "format y '%g'\n" +
+           grid("#d4d4d4") + "set key Left reverse samplen 3 spacing 1.2 font ',11.5'\n" +
+           k_sheet.label(bold(title, 1.08), left, top - 14) +
+           k_sheet.label(scaled(source, 0.92), left, top - 40, k_grey) +
            k_sheet.place(left, left + width, top - height + k_below, top - k_above);
+  }
+
+  /// A line up the panel at x, between two heights of it, and what it is at a third one.
+  static std::string upright(double x, double from, double to, const char* style, const char* text,
+                             double text_at, const char* how) {
+    return fmt::format(
+        "set arrow from first {0},graph {1} to first {0},graph {2} nohead {3}\n"
+        "set label '{4}' at first {0},graph {5} {6} font ',11'\n",
+        x, from, to, style, text, text_at, how);
   }
 
   /// alpha across, with the scene's and the recommended one as lines between two heights of the panel.
@@ -189,10 +193,8 @@ class Chart {
     const auto mark = [&](double alpha, const char* text, const char* style) {
       const double x = in_kgf(alpha);
       const bool right = x > std::sqrt(least * most);
-      return fmt::format(
-          "set arrow from first {0},graph {1} to first {0},graph {2} nohead {3}\n"
-          "set label '{4}' at first {0},graph {5} {6} font ',11'\n",
-          x, from, to, style, text, from + 0.03, right ? "right offset -0.5,0" : "left offset 0.5,0");
+      return upright(x, from, to, style, text, from + 0.03,
+                     right ? "right offset -0.5,0" : "left offset 0.5,0");
     };
     out += mark(study_.law.alpha, "scene", "lc rgb '#111111' lw 1.6 dt (10,5)");
     if (advice_.alpha && std::abs(*advice_.alpha / study_.law.alpha - 1) > 1e-6)
@@ -224,15 +226,16 @@ class Chart {
     std::set<double> drawn;
     for (const PenaltyRow& row : study_.rows)
       if (row.kind == Case::force) drawn.insert(row.law.q);
-    std::string data, plot;
+    Plot plot;
     int k = 0;
     for (const double q : drawn) {
       const bool own = q == study_.law.q;
-      data += block(fmt::format("force{}", k), points(Case::force, [q](const PenaltyRow& row, auto& out) {
-                      if (row.law.q == q) out.push_back({*row.at, *row.computed});
-                    }));
-      plot += fmt::format("$force{} with lines {} title 'q = {:g}{}', ", k, line_style(k, own ? 4 : 2), q,
-                          own ? " (scene)" : "");
+      const std::string line = rows(Case::force, [q](const PenaltyRow& row, auto& out) {
+        if (row.law.q == q) out.push_back({*row.at, *row.computed});
+      });
+      plot.add(fmt::format("force{}", k), line,
+               fmt::format("with lines {} title 'q = {:g}{}'", line_style(k, own ? 4 : 2), q,
+                           own ? " (scene)" : ""));
       ++k;
     }
     std::vector<Point> rest;
@@ -240,48 +243,49 @@ class Chart {
       const double depth = rest_depth(group(g).theory, study_.law);
       rest.push_back({1 - depth, study_.law.alpha * std::pow(depth, study_.law.q)});
     }
-    return data + block("rest", rest) +
+    plot.add("rest", rows_of(rest), "with points lc rgb '#111111' pt 6 ps 1.9 lw 2 title 'at rest'");
+    return plot.data +
            panel(0, "Force of a contact against its depth",
                  fmt::format("α (1 − l/L)^q of Eq. 2, α = {} = {:.4g} N", kgf_text(study_.law.alpha),
                              study_.law.alpha)) +
            fmt::format("set xrange [0:1]\nset yrange [0:{}]\nset key top right\n", 1.02 * study_.law.alpha) +
-           "set xlabel 'distance of the centre lines l / L' offset 0,0.3\nset ylabel 'force, N' offset 1,0\n"
-           "plot " +
-           plot + "$rest with points lc rgb '#111111' pt 6 ps 1.9 lw 2 title 'at rest'\n";
+           "set xlabel 'distance of the centre lines l / L' offset 0,0.3\n"
+           "set ylabel 'force, N' offset 1,0\n" +
+           plot.command();
   }
 
   std::string depth() const {
-    std::string data, plot;
+    Plot plot;
     double least = k_depth_bound, most = k_depth_bound;
-    for (std::size_t k = 0; k < drawn_.size(); ++k) {
+    for (int k = 0; k < static_cast<int>(drawn_.size()); ++k) {
       const int g = drawn_[k];
       const std::vector<Point> line =
           over_alpha([&](const ContactLaw& law) { return rest_depth(group(g).theory, law); });
       least = std::min(least, line.back().y);
       most = std::max(most, line.front().y);
-      data += block(fmt::format("theory{}", k), line) +
-              block(fmt::format("depth{}", k), points(Case::depth, [g](const PenaltyRow& row, auto& out) {
-                      if (row.group == g && *row.computed > 0)
-                        out.push_back({in_kgf(row.law.alpha), *row.computed});
-                    }));
+      const std::string settled = rows(Case::depth, [g](const PenaltyRow& row, auto& out) {
+        if (row.group == g && *row.computed > 0) out.push_back({in_kgf(row.law.alpha), *row.computed});
+      });
       const std::string names = plain(group(g).names);
-      plot += fmt::format("{}$theory{} with lines {} title {}, $depth{} with points {} title {}",
-                          k == 0 ? "" : ", ", k, line_style(static_cast<int>(k), 2),
-                          gnuplot_quoted(names + ": rigid, theory"), k, mark_style(static_cast<int>(k)),
-                          gnuplot_quoted(names + ": settled"));
+      plot.add(
+          fmt::format("theory{}", k), rows_of(line),
+          fmt::format("with lines {} title {}", line_style(k, 2), gnuplot_quoted(names + ": rigid, theory")));
+      plot.add(fmt::format("depth{}", k), settled,
+               fmt::format("with points {} title {}", mark_style(k), gnuplot_quoted(names + ": settled")));
     }
-    return data + panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} where evenly loaded") +
+    return plot.data +
+           panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} where evenly loaded") +
            alpha_axis(0, 1) + level(k_depth_bound, "bound 1 %") + decades("y", least, most) +
-           "set logscale y\nset format y '10^{%T}'\nset mytics 10\nset key top right\n"
-           "set ylabel 'depth 1 − l / L' offset 1,0\nplot " +
-           plot + "\n";
+           log_axis("y", "10^{%T}") + "set key top right\nset ylabel 'depth 1 − l / L' offset 1,0\n" +
+           plot.command();
   }
 
   std::string creep() const {
     constexpr double k_least = 1e-15;  // m; below is drawn there
-    std::string data, names, values, plot;
+    Plot plot;
+    std::string names, values;
     double most = k_creep_bound;
-    for (std::size_t k = 0; k < drawn_.size(); ++k) {
+    for (int k = 0; k < static_cast<int>(drawn_.size()); ++k) {
       std::vector<Point> list;
       for (const PenaltyRow& row : study_.rows) {
         if (row.kind != Case::creep || row.group != drawn_[k]) continue;
@@ -294,34 +298,31 @@ class Chart {
                               gnuplot_quoted(text), 1e6 * shown, y,
                               shown > 0.1 * most && shown > k_creep_bound ? "right" : "left");
       }
-      data += block(fmt::format("creep{}", k), list);
-      plot += fmt::format("{}$creep{} with points {} title {}", k == 0 ? "" : ", ", k,
-                          mark_style(static_cast<int>(k)), gnuplot_quoted(plain(group(drawn_[k]).names)));
+      plot.add(fmt::format("creep{}", k), rows_of(list),
+               fmt::format("with points {} title {}", mark_style(k),
+                           gnuplot_quoted(plain(group(drawn_[k]).names))));
     }
     for (const ContactLawTraits& law : contact_laws())
       names += fmt::format("{}'{}' {}", names.empty() ? "" : ",", law.word,
                            -topple::place_of(contact_laws(), law.kind));
-    return data +
+    return plot.data +
            panel(2, "Creep at rest", fmt::format("greatest way of a node in {:g} s at rest", k_creep_time)) +
            "set logscale x\nset format x '10^{%T}'\nset yrange [-2.6:0.9]\nset key top left\n"
            "set mxtics 10\nset ylabel ''\n" +
            decades("x", 1e6 * k_least, 1e6 * most) + "set ytics (" + names + ")\n" + values +
-           fmt::format(
-               "set arrow from first {0},graph 0 to first {0},graph 1 nohead {1}\n"
-               "set label 'bound 1 µm' at first {0},graph 0.03 offset 0.5,0 font ',11'\n",
-               1e6 * k_creep_bound, k_bound_line) +
-           "set xlabel 'way, µm' offset 0,0.3\nplot " + plot + "\n";
+           upright(1e6 * k_creep_bound, 0, 1, k_bound_line, "bound 1 µm", 0.03, "offset 0.5,0") +
+           "set xlabel 'way, µm' offset 0,0.3\n" + plot.command();
   }
 
   /// Height of a law in the panel of creep; bodies side by side.
-  double place_of(ContactLawKind kind, std::size_t k) const {
+  double place_of(ContactLawKind kind, int k) const {
     return -static_cast<double>(topple::place_of(contact_laws(), kind)) -
-           0.22 * (static_cast<double>(k) - (static_cast<double>(drawn_.size()) - 1) / 2);
+           0.22 * (k - (static_cast<double>(drawn_.size()) - 1) / 2);
   }
 
   std::string restitution() const {
     constexpr double k_slowest = 8e-4, k_fastest = 2.5;  // m/s
-    std::string data, plot;
+    Plot plot;
     for (int k = 0; k < static_cast<int>(contact_laws().size()); ++k) {
       ContactLaw law = study_.law;
       law.kind = contact_laws()[k].kind;
@@ -330,31 +331,27 @@ class Chart {
         const double speed = k_slowest * std::pow(k_fastest / k_slowest, i / 100.);
         theory.push_back({speed, study::restitution(law, speed)});
       }
-      data +=
-          block(fmt::format("quadrature{}", k), theory) +
-          block(fmt::format("impact{}", k), points(Case::restitution, [&](const PenaltyRow& row, auto& out) {
-                  if (row.law.kind == law.kind) out.push_back({*row.at, *row.computed});
-                }));
+      const std::string impacts = rows(Case::restitution, [&](const PenaltyRow& row, auto& out) {
+        if (row.law.kind == law.kind) out.push_back({*row.at, *row.computed});
+      });
       // open marks around filled ones stay visible where two laws agree
       const std::string marks =
           k == 0 ? fmt::format("lc rgb '{}' pt 6 ps 2 lw 2", k_colour[0]) : mark_style(k);
-      plot += fmt::format("{}$quadrature{} with lines {} notitle, $impact{} with points {} title {}",
-                          k == 0 ? "" : ", ", k, line_style(k, 2), k, marks, gnuplot_quoted(in_words(law)));
+      plot.add(fmt::format("quadrature{}", k), rows_of(theory),
+               fmt::format("with lines {} notitle", line_style(k, 2)));
+      plot.add(fmt::format("impact{}", k), impacts,
+               fmt::format("with points {} title {}", marks, gnuplot_quoted(in_words(law))));
     }
     const ContactLaw& law = study_.law;
-    return data +
+    return plot.data +
            panel(3, "Restitution of a normal impact",
                  "marks: solver; lines: quadrature of the law; no gravity") +
-           fmt::format("set logscale x\nset format x '10^{{%T}}'\nset mxtics 10\nset xrange [{}:{}]\n",
-                       k_slowest, k_fastest) +
+           log_axis("x", "10^{%T}") + fmt::format("set xrange [{}:{}]\n", k_slowest, k_fastest) +
            "set yrange [-0.02:1.02]\nset key top right\nset xlabel 'impact speed, m/s' offset 0,0.3\n"
            "set ylabel 'speed after / before' offset 1,0\n" +
            level(law.restitution, fmt::format("e = {:g} asked", law.restitution)) +
-           fmt::format(
-               "set arrow from first {0},graph 0 to first {0},graph 0.8 nohead {1}\n"
-               "set label 'normal\\_speed ε_n' at first {0},graph 0.1 offset 0.5,0 font ',11'\n",
-               law.normal_speed, k_bound_line) +
-           "plot " + plot + "\n";
+           upright(law.normal_speed, 0, 0.8, k_bound_line, "normal\\_speed ε_n", 0.1, "offset 0.5,0") +
+           plot.command();
   }
 
   static std::string in_words(const ContactLaw& law) {
@@ -378,18 +375,16 @@ class Chart {
       levels += level(
           limit, fmt::format("{:g} steps of {:.3g} ms a period", k_period_steps, 1e3 * study_.time_step));
     }
-    return block("line", line) +
-           block("bounce", points(Case::frequency,
-                                  [&](const PenaltyRow& row, auto& out) {
-                                    if (row.group == decisive_)
-                                      out.push_back({in_kgf(row.law.alpha), *row.computed});
-                                  })) +
+    const std::string bounce = rows(Case::frequency, [&](const PenaltyRow& row, auto& out) {
+      if (row.group == decisive_) out.push_back({in_kgf(row.law.alpha), *row.computed});
+    });
+    Plot plot;
+    plot.add("line", rows_of(line), "with lines " + line_style(0, 2) + " title 'rigid, theory'");
+    plot.add("bounce", bounce, "with points " + mark_style(0) + " title 'solver'");
+    return plot.data +
            panel(4, "Contact frequency", "vertical motion of " + plain(body.names) + " about rest") +
-           alpha_axis(0, 0.86) + decades("y", line.front().y, most) + levels +
-           "set logscale y\nset format y '%g'\nset mytics 10\nset key top left\n"
-           "set ylabel 'frequency, Hz' offset 1,0\nplot $line with lines " +
-           line_style(0, 2) + " title 'rigid, theory', $bounce with points " + mark_style(0) +
-           " title 'solver'\n";
+           alpha_axis(0, 0.86) + decades("y", line.front().y, most) + levels + log_axis("y", "%g") +
+           "set key top left\nset ylabel 'frequency, Hz' offset 1,0\n" + plot.command();
   }
 
   std::string errors() const {
@@ -397,33 +392,33 @@ class Chart {
     const BodyGroup& body = group(decisive_);
     const double rigid = body.theory.rigid_limit();
     const auto of = [&](Case kind, double at) {
-      return points(kind, [&](const PenaltyRow& row, auto& out) {
+      return rows(kind, [&](const PenaltyRow& row, auto& out) {
         if (row.group == decisive_ && row.at.value_or(0) == at && !row.coarse)
           out.push_back({in_kgf(row.law.alpha), 100 * std::max(*row.error(), k_least)});
       });
+      ;
     };
-    std::string data = block("lean", over_alpha([&](const ContactLaw& law) {
-                               return 100 * std::max(1 - tipping_limit(body.theory, law) / rigid, k_least);
-                             })) +
-                       block("tipping", of(Case::tipping, 0)) + block("fall", of(Case::fall_back, 0));
-    std::string plot = "plot $lean with lines " + line_style(0, 2) +
-                       " title 'steady tipping: theory', $tipping with points " + mark_style(0) +
-                       " title 'steady tipping: settled', $fall with linespoints " + both_style(2) +
-                       " title 'time to fall back'";
-    for (int k = 0; k < static_cast<int>(std::size(k_pulse_ratios)); ++k) {
-      const int style = k == 0 ? 1 : 3;
-      data += block(fmt::format("pulse{}", k), of(Case::half_sine, k_pulse_ratios[k]));
-      plot += fmt::format(", $pulse{} with linespoints {} title 'least half-sine, w/p = {:g}'", k,
-                          both_style(style), k_pulse_ratios[k]);
-    }
-    return data +
+    const std::vector<Point> lean = over_alpha([&](const ContactLaw& law) {
+      return 100 * std::max(1 - tipping_limit(body.theory, law) / rigid, k_least);
+    });
+    Plot plot;
+    plot.add("lean", rows_of(lean), "with lines " + line_style(0, 2) + " title 'steady tipping: theory'");
+    plot.add("tipping", of(Case::tipping, 0),
+             "with points " + mark_style(0) + " title 'steady tipping: settled'");
+    plot.add("fall", of(Case::fall_back, 0),
+             "with linespoints " + both_style(2) + " title 'time to fall back'");
+    for (int k = 0; k < static_cast<int>(std::size(k_pulse_ratios)); ++k)
+      plot.add(fmt::format("pulse{}", k), of(Case::half_sine, k_pulse_ratios[k]),
+               fmt::format("with linespoints {} title 'least half-sine, w/p = {:g}'",
+                           both_style(k == 0 ? 1 : 3), k_pulse_ratios[k]));
+    return plot.data +
            panel(5, "Error against rigid contact",
                  fmt::format("{}: b/h = {:.3g}, {:.4g} gal; 0.01 % stands for less", plain(body.names), rigid,
                              rigid * body.theory.gravity / k_gal)) +
            alpha_axis(0.27, 1) + level(100 * k_theory_bound, "bound 2 %") +
            "set logscale y\nset yrange [0.0005:100]\nset format y '%g'\nset mytics 10\nset key bottom left\n"
            "set ylabel '|error|, %' offset 1,0\n" +
-           plot + "\n";
+           plot.command();
   }
 
   const PenaltyStudy& study_;

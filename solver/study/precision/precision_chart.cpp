@@ -14,12 +14,10 @@ namespace {
 // px
 constexpr Sheet k_sheet{1800, 1510};
 constexpr int k_left = 92, k_right = 24, k_gap = 104, k_columns = 3;
-constexpr int k_first = 384, k_pitch = 486,
-              k_panel = 340;    // top of the first row of panels, row to row, height
-constexpr int k_tables = 1314;  // top of the tables
+constexpr int k_first = 1126, k_pitch = 486,
+              k_panel = 340;   // top of the first row of panels, row to row, height
+constexpr int k_tables = 196;  // top of the tables
 constexpr double k_width = (k_sheet.width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
-
-constexpr const char* k_grey = "textcolor rgb '#444444'";
 
 // Colours of Okabe and Ito; fixed steps are filled marks on lines, steps by tolerance open ones on dashes.
 constexpr const char* k_style[k_methods] = {"",
@@ -33,6 +31,7 @@ constexpr const char* k_style[k_methods] = {"",
                                             "lc rgb '#8c6d00' lw 2 dt 1 pt 11 ps 1.5",
                                             "lc rgb '#111111' lw 2 dt 1 pt 2 ps 1.4"};
 constexpr const char* k_front_style = "lc rgb '#f5d76e' lw 9 dt 1";
+constexpr const char* k_own_style = "pt 6 ps 2.6 lw 3 lc rgb '#000000'";
 constexpr const char* k_law_colour[] = {"#0072b2", "#d55e00", "#555555"};                // by law
 constexpr const char* k_alpha_look[] = {"dt 1 pt 7", "dt (8,4) pt 5", "dt (2,4) pt 9"};  // by factor
 
@@ -43,30 +42,21 @@ constexpr const char* k_subtitles[k_measures] = {"root mean square difference, o
                                                  "energy that nothing explains, over the largest exchanged"};
 
 struct Place {
-  double left, top;  // px, of the panel, from the top of the sheet
-  std::string axes() const {
-    return k_sheet.place(left, left + k_width, k_sheet.height - top - k_panel, k_sheet.height - top);
-  }
+  double left, top;  // px, of the panel
+  std::string axes() const { return k_sheet.place(left, left + k_width, top - k_panel, top); }
 };
 Place place(int n) {
   const int row = n / k_columns;
-  return {k_left + (n % k_columns) * (k_width + k_gap), static_cast<double>(k_first + row * k_pitch)};
+  return {k_left + (n % k_columns) * (k_width + k_gap), static_cast<double>(k_first - row * k_pitch)};
 }
 
-std::string text(const std::string& words, double x, double from_top, const std::string& how = "") {
-  return k_sheet.label(words, x, k_sheet.height - from_top, how);
+std::string axis_labels(const char* x = "CPU time per simulated second, ms") {
+  return fmt::format("set xlabel '{}' offset 0,0.3\nset ylabel 'error, %' offset 0.6,0\n", x);
 }
-
-std::string small(const std::string& words) {
-  return "{/*0.9 " + words + "}";
-}
+constexpr double k_small = 0.9, k_tiny = 0.84;  // of text, over the size of other text
 
 std::string percent(double share) {
   return fmt::format("{:.2g} %", 100 * share);
-}
-
-std::string milliseconds(double seconds) {
-  return fmt::format("{:.3g} ms", 1e3 * seconds);
 }
 
 /// What is drawn in a panel.
@@ -90,16 +80,13 @@ class Chart {
   Chart(const PrecisionPlan& plan, const PrecisionStudy& study) : plan_(plan), study_(study) {}
 
   std::string script(const std::string& origin, ChartFormat format) {
-    std::string out = k_sheet.begin(format) + header(origin) + cheapest_table() + law_table() + legend();
-    if (reference(0).run < 0) return out + "unset multiplot\n";
-    out +=
-        "set border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4 nomirror\nset xtics nomirror\nset "
-        "ytics nomirror\n"
-        "set logscale xy\n"
-        "set grid xtics ytics lc rgb '#d8d8d8' lw 0.8 dt 1\nset mxtics 10\nset format x '%g'\nset format y "
-        "'%g'\n";
+    std::string out = header(origin) + cheapest_table() + law_table() + legend();
+    if (reference(0).run < 0) return k_sheet.script(format, out);
+    out += std::string(k_open_border) +
+           "set tics out scale 0.7,0.4 nomirror\nset xtics nomirror\nset ytics nomirror\nset logscale xy\n" +
+           grid("#d8d8d8") + "set mxtics 10\nset format x '%g'\nset format y '%g'\n";
     for (int m = 0; m < k_measures; ++m) out += cost_panel(static_cast<Measure>(m));
-    return out + step_panel() + laws_panel() + "unset multiplot\n";
+    return k_sheet.script(format, out + step_panel() + laws_panel());
   }
 
  private:
@@ -115,20 +102,26 @@ class Chart {
   }
 
   std::string header(const std::string& origin) const {
-    const std::string grey = std::string("noenhanced ") + k_grey;
-    std::string out = text(bold(plain("Error against cost of " + plan_.scene.name), 1.5), k_left, 36);
-    out += text(plan_.scene.title + ". Contact: " + in_words(plan_.laws.front()), k_left, 76, grey);
-    const std::string covered = study_.run == study_.of ? fmt::format("{} runs", study_.of)
-                                                        : fmt::format("{} of {} runs", study_.run, study_.of);
-    out += text(origin + ", " + covered, k_left, 102, grey);
+    return k_sheet.label(bold(plain("Error against cost of " + plan_.scene.name), 1.5), k_left,
+                         k_sheet.height - 36) +
+           k_sheet.lines(conditions(origin), k_left, k_sheet.height - 76, 26, k_grey_as_is);
+  }
+
+  /// What errors and times are of.
+  std::vector<std::string> conditions(const std::string& origin) const {
+    std::vector<std::string> lines{plan_.scene.title + ". Contact: " + in_words(plan_.laws.front()),
+                                   origin + ", " + runs_in_words(study_.run, study_.of)};
     const Reference& r = reference(0);
-    if (r.run < 0) return out + text("No errors are known: " + r.why_not, k_left, 128, grey);
+    if (r.run < 0) {
+      lines.push_back("No errors are known: " + r.why_not);
+      return lines;
+    }
     std::string line =
         fmt::format("Reference: {}; {} is off by", in_words(plan_, r.run), in_words(plan_, r.check));
     for (int m = 0; m < k_measures; ++m)
       if (const auto& off = r.uncertainty[static_cast<std::size_t>(m)])
         line += fmt::format("{} {} ({})", m > 0 ? "," : "", percent(*off), name(static_cast<Measure>(m)));
-    out += text(line, k_left, 128, grey);
+    lines.push_back(line);
     line = fmt::format("Compared over {:.4g} s", r.window);
     line += r.window < r.end - plan_.interval
                 ? fmt::format(" of {:.4g} s: then the tilts of these two part by {} of the critical angle",
@@ -136,14 +129,12 @@ class Chart {
                 : std::string(", the whole run");
     if (plan_.scene.setup.run.stop_when == StopWhen::all_overturned)
       line += "; runs end when all bodies have overturned";
-    out += text(line, k_left, 154, grey);
-    out += text("Grey: the reference itself is not more certain, smaller errors are drawn there", k_left, 180,
-                grey);
-    return out + text(
-                     "CPU time: of the solving thread for the whole run, settling included, over the time "
-                     "simulated; "
-                     "of repeated runs the fastest",
-                     k_left, 206, grey);
+    lines.push_back(line);
+    lines.push_back("Grey: the reference itself is not more certain, smaller errors are drawn there");
+    lines.push_back(
+        "CPU time: of the solving thread for the whole run, settling included, over the time simulated; "
+        "of repeated runs the fastest");
+    return lines;
   }
 
   bool has(Method method) const {
@@ -151,36 +142,29 @@ class Chart {
   }
 
   std::string legend() const {
-    std::string out =
-        k_sheet.place(k_left, k_sheet.width - k_right, k_sheet.height - 306, k_sheet.height - 222) +
-        "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
-        "set key at graph 0,1 left top vertical maxrows 3 Left reverse samplen 3 spacing 1.15 width -3 font "
-        "',12'\n"
-        "plot ";
+    Plot keys;
     for (int m = 1; m < k_methods; ++m)
       if (const auto method = static_cast<Method>(m); has(method))
-        out += fmt::format("NaN with linespoints {} title {} noenhanced, ", k_style[m],
-                           gnuplot_quoted(meaning(method).about));
-    out += std::string("NaN with lines ") + k_front_style + " title 'Pareto front', ";
-    out += "NaN with points pt 6 ps 2.6 lw 3 lc rgb '#000000' title 'the scene as it is'";
-    return out + "\nunset label\nunset key\nunset object\n";
+        keys.layers.push_back(fmt::format("NaN with linespoints {} title {} noenhanced", k_style[m],
+                                          gnuplot_quoted(meaning(method).about)));
+    keys.layers.push_back(std::string("NaN with lines ") + k_front_style + " title 'Pareto front'");
+    keys.layers.push_back(std::string("NaN with points ") + k_own_style + " title 'the scene as it is'");
+    return k_sheet.legend(k_left, k_sheet.width - k_right, k_sheet.height - 306, k_sheet.height - 222,
+                          "3 Left reverse samplen 3 spacing 1.15 width -3 font ',12'", keys) +
+           "unset object\n";
   }
 
-  /// Blocks of the methods, those of no point left out; returns what is plotted of them.
+  /// Adds the methods, but those of no point.
   template <typename X>
-  std::pair<std::string, std::string> curves(Measure measure, X x_of) const {
-    std::string data, plot;
+  void add_curves(Plot& plot, Measure measure, X x_of) const {
     for (int m = 1; m < k_methods; ++m) {
-      std::string lines;
+      std::string rows;
       for (int k = 0; k < plan_.cases() && plan_.law_of(k) == 0; ++k)
         if (const Setting& setting = plan_.setting_of(k); setting.method == static_cast<Method>(m))
-          if (const auto x = x_of(k), e = error(k, measure); x && e)
-            lines += fmt::format("{:.6g} {:.6g}\n", *x, *e);
-      if (lines.empty()) continue;
-      data += fmt::format("$method{} << END\n{}END\n", m, lines);
-      plot += fmt::format(", $method{} with linespoints {} notitle", m, k_style[m]);
+          if (const auto x = x_of(k), e = error(k, measure); x && e) rows += point_row(*x, *e);
+      if (!rows.empty())
+        plot.add(fmt::format("method{}", m), rows, fmt::format("with linespoints {} notitle", k_style[m]));
     }
-    return {data, plot};
   }
 
   /// Ranges around what is drawn of the scene's own law, and where the reference is not certain.
@@ -194,15 +178,14 @@ class Chart {
     if (const auto& off = reference(0).uncertainty[index(measure)]; off && *off > 0)
       out += fmt::format(
           "set object 1 rectangle from graph 0,graph 0 to graph 1,first {:.6g} fs solid noborder fc rgb "
-          "'#ececec' "
-          "behind\n",
+          "'#ececec' behind\n",
           100 * *off);
     return out;
   }
 
   std::string titles(const Place& at, const std::string& title, const std::string& subtitle) const {
-    return text(bold(title, 1.08), at.left, at.top - 50) +
-           text(small(subtitle), at.left, at.top - 24, k_grey);
+    return k_sheet.label(bold(title, 1.08), at.left, at.top + 50) +
+           k_sheet.label(scaled(subtitle, k_small), at.left, at.top + 24, k_grey);
   }
 
   std::string cost_panel(Measure measure) const {
@@ -212,27 +195,26 @@ class Chart {
     const std::string range = ranges(measure, cost);
     if (range.empty())
       return out + at.axes() + "unset tics\nset xrange [1:2]\nset yrange [1:2]\n" +
-             text("no run of this scene has it", at.left + 30, at.top + 60, k_grey) +
+             k_sheet.label("no run of this scene has it", at.left + 30, at.top - 60, k_grey) +
              "plot NaN notitle\nunset label\nset xtics\nset ytics\n";
-    auto [data, plot] = curves(measure, cost);
-    data += "$front << END\n";
+    Plot plot;
+    plot.layers = {std::string("$front with lines ") + k_front_style + " notitle"};
+    add_curves(plot, measure, cost);
+    std::string steps;
     double before = 0;
     for (const int k : front(plan_, study_, 0, measure)) {
       const auto e = error(k, measure);
       if (!e) continue;
-      if (before > 0) data += fmt::format("{:.6g} {:.6g}\n", 1e3 * *row(k).cost, before);
-      data += fmt::format("{:.6g} {:.6g}\n", 1e3 * *row(k).cost, *e);
+      if (before > 0) steps += point_row(*cost(k), before);
+      steps += point_row(*cost(k), *e);
       before = *e;
     }
-    data += before > 0 ? "END\n" : "NaN NaN\nEND\n";
     const auto own = error(0, measure);
-    data +=
-        "$own << END\n" + (own && row(0).cost ? fmt::format("{:.6g} {:.6g}\nEND\n", 1e3 * *row(0).cost, *own)
-                                              : std::string("NaN NaN\nEND\n"));
-    out = data + out + range + at.axes() +
-          "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\nset ylabel 'error, %' offset 0.6,0\n";
-    return out + "plot $front with lines " + k_front_style + " notitle" + plot +
-           ", $own with points pt 6 ps 2.6 lw 3 lc rgb '#000000' notitle\nunset label\nunset object 1\n";
+    plot.data += data_block("front", steps);
+    plot.add("own", own && cost(0) ? point_row(*cost(0), *own) : "",
+             std::string("with points ") + k_own_style + " notitle");
+    return plot.data + out + range + at.axes() + axis_labels() + plot.command() +
+           "unset label\nunset object 1\n";
   }
 
   std::string step_panel() const {
@@ -242,11 +224,13 @@ class Chart {
       return h > 0 ? std::optional(1e3 * h) : std::nullopt;
     };
     const std::string range = ranges(Measure::tilt, step);
-    const auto [data, plot] = curves(Measure::tilt, step);
-    std::string out =
-        data + titles(at, "How the error goes with the step", "tilt; level ends are the error of the model") +
-        range + at.axes() + "set xlabel 'time step, ms' offset 0,0.3\nset ylabel 'error, %' offset 0.6,0\n";
-    return plot.empty() ? "" : out + "plot " + plot.substr(2) + "\nunset label\nunset object 1\n";
+    Plot plot;
+    add_curves(plot, Measure::tilt, step);
+    if (plot.layers.empty()) return "";
+    return plot.data +
+           titles(at, "How the error goes with the step", "tilt; level ends are the error of the model") +
+           range + at.axes() + axis_labels("time step, ms") + plot.command() +
+           "unset label\nunset object 1\n";
   }
 
   /// 0, 1, 2: the factor that a law's alpha has.
@@ -262,57 +246,57 @@ class Chart {
 
   std::string laws_panel() const {
     const Place at = place(k_measures + 1);
-    std::string data, plot;
+    Plot plot;
     Box box;
     for (int law = 0; law < static_cast<int>(plan_.laws.size()); ++law) {
-      std::string lines;
+      std::string rows;
       for (const int k : front(plan_, study_, law, Measure::tilt))
         if (const auto e = error(k, Measure::tilt)) {
-          lines += fmt::format("{:.6g} {:.6g}\n", 1e3 * *row(k).cost, *e);
+          rows += point_row(1e3 * *row(k).cost, *e);
           box.add(1e3 * *row(k).cost, *e);
         }
-      if (lines.empty()) continue;
+      if (rows.empty()) continue;
       const ContactLaw& of = plan_.laws[static_cast<std::size_t>(law)];
-      data += fmt::format("$law{} << END\n{}END\n", law, lines);
-      plot += fmt::format(
-          ", $law{} with linespoints lc rgb '{}' lw 2 {} ps 1 title {}", law,
-          k_law_colour[static_cast<std::size_t>(place_of(contact_laws(), of.kind)) % std::size(k_law_colour)],
-          k_alpha_look[factor_of(of)], gnuplot_quoted(in_words(of)));
+      plot.add(fmt::format("law{}", law), rows,
+               fmt::format("with linespoints lc rgb '{}' lw 2 {} ps 1 title {}",
+                           k_law_colour[static_cast<std::size_t>(place_of(contact_laws(), of.kind)) %
+                                        std::size(k_law_colour)],
+                           k_alpha_look[factor_of(of)], gnuplot_quoted(in_words(of))));
     }
-    if (plot.empty()) return "";
+    if (plot.layers.empty()) return "";
     box.high *= std::pow(box.high / box.low, 0.25);  // for the key
-    return data +
+    return plot.data +
            titles(at, "Fronts under other laws and alpha",
                   "tilt, each against a reference of its own physics") +
            box.ranges() + at.axes() +
            "set key at graph 1.03,1.03 right top Left reverse noenhanced samplen 2 width -1 spacing 1 font "
-           "',10'\n"
-           "set xlabel 'CPU time per simulated second, ms' offset 0,0.3\n"
-           "set ylabel 'error, %' offset 0.6,0\nplot " +
-           plot.substr(2) + "\nunset label\nunset key\n";
+           "',10'\n" +
+           axis_labels() + plot.command() + "unset label\nunset key\n";
   }
 
   std::string cheapest_table() const {
     if (reference(0).run < 0) return "";
     constexpr double k_head = 80, k_column = 268;
-    std::string out = text(bold("Cheapest setting within an error", 1.08), k_left, k_tables);
+    std::string out = k_sheet.label(bold("Cheapest setting within an error", 1.08), k_left, k_tables);
     for (int m = 0; m < k_measures; ++m) {
       const auto measure = static_cast<Measure>(m);
       const double x = k_left + k_head + m * k_column;
-      out += text(name(measure), x, k_tables + 30, k_grey);
+      out += k_sheet.label(name(measure), x, k_tables - 30, k_grey);
       for (std::size_t l = 0; l < std::size(k_levels); ++l) {
-        const double y = k_tables + 58 + 48 * static_cast<double>(l);
-        if (m == 0) out += text(percent(k_levels[l]), k_left, y);
+        const double y = k_tables - 58 - 48 * static_cast<double>(l);
+        if (m == 0) out += k_sheet.label(percent(k_levels[l]), k_left, y);
         const std::optional<int> k = cheapest(plan_, study_, 0, measure, k_levels[l]);
         if (!k) {
-          out += text(small("none tried, or not certain"), x, y, k_grey);
+          out += k_sheet.label(scaled("none tried, or not certain", k_small), x, y, k_grey);
           continue;
         }
         const std::string setting = in_words(plan_, *k);
         const std::size_t comma = setting.find(", ");
-        out += text(small(plain(setting.substr(0, comma))), x, y);
-        out += text(small(plain(setting.substr(comma + 2)) + "; " + milliseconds(*row(*k).cost) + "/s"), x,
-                    y + 20, k_grey);
+        out += k_sheet.label(scaled(plain(setting.substr(0, comma)), k_small), x, y);
+        out += k_sheet.label(
+            scaled(plain(setting.substr(comma + 2)) + fmt::format("; {:.3g} ms/s", 1e3 * *row(*k).cost),
+                   k_small),
+            x, y - 20, k_grey);
       }
     }
     return out;
@@ -321,20 +305,22 @@ class Chart {
   /// What a law and alpha change, by their references.
   std::string law_table() const {
     constexpr double k_x = 1268, k_line = 17;
-    std::string out = text(bold("What law and alpha change", 1.08), k_x, k_tables) +
-                      text("{/*0.84 " + plain(bodies_in_words()) + "}", k_x + 164, k_tables + 25, k_grey);
+    std::string out =
+        k_sheet.label(bold("What law and alpha change", 1.08), k_x, k_tables) +
+        k_sheet.label(scaled(plain(bodies_in_words()), k_tiny), k_x + 164, k_tables - 25, k_grey);
     for (int law = 0; law < static_cast<int>(plan_.laws.size()); ++law) {
       const Reference& r = reference(law);
       std::string words;
       for (std::size_t b = 0; b < std::min<std::size_t>(r.fell.size(), k_told_bodies); ++b)
         words += (b ? ", " : "") + (r.fell[b] ? fmt::format("{:.4f} s", *r.fell[b]) : std::string("stands"));
-      const double y = k_tables + 43 + k_line * law;
-      out += text("{/*0.84 " + in_words(plan_.laws[static_cast<std::size_t>(law)]) + "}", k_x, y, "");
-      out += text("{/*0.84 " + (r.run < 0 ? "no reference" : words) + "}", k_x + 164, y, "");
+      const double y = k_tables - 43 - k_line * law;
+      out += k_sheet.label(scaled(in_words(plan_.laws[static_cast<std::size_t>(law)]), k_tiny), k_x, y);
+      out += k_sheet.label(scaled(r.run < 0 ? "no reference" : words, k_tiny), k_x + 164, y);
       if (r.run >= 0)
-        out += text(fmt::format("{{/*0.84 {:.4g} s}}", r.window), k_sheet.width - k_right - 40, y, "");
+        out +=
+            k_sheet.label(scaled(fmt::format("{:.4g} s", r.window), k_tiny), k_sheet.width - k_right - 40, y);
     }
-    return out + text("{/*0.84 window}", k_sheet.width - k_right - 40, k_tables + 25, k_grey);
+    return out + k_sheet.label(scaled("window", k_tiny), k_sheet.width - k_right - 40, k_tables - 25, k_grey);
   }
 
   std::string bodies_in_words() const {

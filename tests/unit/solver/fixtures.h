@@ -68,7 +68,7 @@ inline Plane ground(double width = 0.09) {
   return {"floor", Vec3::Zero(), Vec3::UnitZ(), width};
 }
 
-/// The assumed cabinet of method.md 5.
+/// A cabinet of the proportions of the paper's, of assumed steel.
 inline CabinetSpec tall_cabinet() {
   CabinetSpec spec;
   spec.name = "cabinet";

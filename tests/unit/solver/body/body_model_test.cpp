@@ -52,7 +52,7 @@ TEST(RigidBody, turns_with_second_order) {
   EXPECT_NEAR(error[0] / error[1], 4, 0.6);
 }
 
-// method.md 6: 0.02 to 0.04 degrees at 1 alpha; those bound the means, single instants after impacts double
+// 0.02 to 0.04 degrees at 1 alpha were measured; those bound the means, single instants after impacts double
 // it.
 TEST(RigidBody, follows_the_frame_on_soft_contacts) {
   Simulation rigid = simulate(paper_cabinet(BodyModel::rigid, 4 / k_degrees)),

@@ -288,8 +288,8 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
         return p.shakes[i].amplitude_before[k];
       };
     }
-    out[name + "passage.since"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.since; };
-    out[name + "passage.over"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.over; };
+    out[name + "ramp.since"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.since; };
+    out[name + "ramp.over"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.over; };
   }
   [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
                                 want_stress, gravity, integrator, spectral_radius, beta, gamma, time_step,

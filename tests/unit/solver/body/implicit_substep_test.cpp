@@ -30,9 +30,9 @@ Course course(const Setup& setup, double duration) {
   return out;
 }
 
-// The error of a part is 1e-4 of the speed at a tolerance of 1e-3; some fifty parts see the impacts, which
-// are the worst. Bounds are twice what was found.
-TEST(RigidPart, comes_to_the_motion_that_small_swinging_steps_follow) {
+// The error of a substep is 1e-4 of the speed at a tolerance of 1e-3; some fifty substeps see the impacts,
+// which are the worst. Bounds are twice what was found.
+TEST(ImplicitSubstep, comes_to_the_motion_that_small_explicit_substeps_follow) {
   constexpr double k_duration = 1.5, k_tilt = 0.05;
   const double exact = course(stiff_block(k_tilt, 1e-5), k_duration).tilt;
   const auto look = [&](const topple::Setup& setup, double error, double balance, int most_steps) {
@@ -56,7 +56,7 @@ TEST(RigidPart, comes_to_the_motion_that_small_swinging_steps_follow) {
 }
 
 // A bounce is followed whatever the step. The smoothing of the law, 1 mm/s, is a thousandth of the speed.
-TEST(RigidPart, bounces_with_the_restitution_asked_for) {
+TEST(ImplicitSubstep, bounces_with_the_restitution_asked_for) {
   const auto rebound = [](double e, double h) {
     topple::Setup setup = stiff_block(0, h);
     setup.run.settle = false;
@@ -77,7 +77,7 @@ TEST(RigidPart, bounces_with_the_restitution_asked_for) {
 // Sliding ends where springs hold; a step is judged by the change of its forces, so that those of its start
 // must be of the springs as they are. Coulomb: the way is v^2/(2 mu g), less what the smoothing of the bounce
 // and the spring's last travel are, some 0.1 %.
-TEST(RigidPart, slides_to_rest_at_any_tolerance_with_the_forces_of_its_state) {
+TEST(ImplicitSubstep, slides_to_rest_at_any_tolerance_with_the_forces_of_its_state) {
   for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
     SCOPED_TRACE(tolerance);
     topple::Setup setup = stiff_block(0, 1e-3);
@@ -107,7 +107,7 @@ TEST(RigidPart, slides_to_rest_at_any_tolerance_with_the_forces_of_its_state) {
 
 // th'' = -p^2 sin(a - th) as long as th hardly changes, p^2 = 3g/4R. Contacts give way by a fifth of a
 // micron.
-TEST(RigidPart, lets_go_from_rest_at_any_tolerance) {
+TEST(ImplicitSubstep, lets_go_from_rest_at_any_tolerance) {
   constexpr double k_tilt = 0.05, k_time = 0.05;
   const double radius = std::hypot(0.19, 0.895), critical = std::atan2(0.19, 0.895),
                fall = 3 * k_g / (4 * radius) * std::sin(critical - k_tilt) * k_time * k_time / 2;

@@ -201,7 +201,7 @@ TEST(Contact, a_body_breaks_away_at_the_friction_angle_and_slides_with_mu_g) {
   }
 }
 
-// method.md 8: travel of one half cycle between two stops.
+// Travel of one half cycle between two stops.
 double slip_per_half_cycle(double a0, double w, double eta) {
   const double phi = std::asin(eta);
   double low = phi + 1e-3, high = phi + k_pi;

@@ -302,7 +302,7 @@ TEST(Beam, bar_rolls_up_to_a_full_circle_under_an_end_moment) {
 }
 
 TEST(Beam, elastica_under_a_tip_load_is_reached_with_second_order) {
-  // method.md 8: shortening, deflection, tip angle at P L^2/EI
+  // Elastica (Mattiasson 1981): shortening, deflection, tip angle at P L^2/EI
   constexpr double k_stretch = 1e6;
   const double table[4][4] = {{1, .056433, .301721, .461352},
                               {2, .160642, .493457, .781750},

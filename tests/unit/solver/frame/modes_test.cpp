@@ -7,7 +7,7 @@
 namespace topple::test {
 namespace {
 
-// Steel beam 50 x 50 mm, 1 m, of method.md 8: shear coefficient 5/6.
+// Steel beam 50 x 50 mm, 1 m: shear coefficient 5/6.
 Model square_beam(int elements, std::vector<Support> supports) {
   Model model;
   Material material = steel();

@@ -104,7 +104,7 @@ TEST(Newmark, damped_rule_slows_a_rigid_rotation_and_the_ledger_says_so) {
   EXPECT_LT(sim.state.energy.balance_error(), 1e-3);
 }
 
-// A mass of 10 kg swings at 7.72 m/s round the end of a stiff bar without mass of its own (method.md 8).
+// A mass of 10 kg swings at 7.72 m/s round the end of a stiff bar without mass of its own.
 struct Swing {
   Vec3 x{3.0443, 0, 0}, v{0, 7.72, 0}, a = Vec3::Zero();
   double strain = 0;

@@ -99,7 +99,7 @@ TEST(Excitation, shakes_add_up_along_their_directions) {
 }
 
 TEST(Excitation, jump_makes_the_floors_displacement_a_pure_sine) {
-  // method.md 5
+  // speed a/w and travel a/w^2
   for (const auto& [gal, f, speed, travel] :
        {std::tuple{190., 0.5, 0.605, 0.193}, std::tuple{700., 2., 0.557, 0.0443}}) {
     SCOPED_TRACE(f);

@@ -149,7 +149,7 @@ TEST(Edit, of_a_record_is_of_its_scale_alone) {
   EXPECT_EQ(editable({}, p)[1].first, Edit::Key::scale);
 }
 
-TEST(Edit, within_the_passage_of_another_goes_on_without_a_jump) {
+TEST(Edit, within_the_ramp_of_another_goes_on_without_a_jump) {
   Parameters p = shaken_parameters(2, 0.5);
   const double smooth = roughest(p, 0, 0.01);
   apply(set(Edit::Key::amplitude, 6), {}, 0.6, p);

@@ -300,7 +300,7 @@ TEST(Overturn, time_of_overturning_is_that_of_the_critical_angle) {
 // g b/h. On springs in three rows its far side is unloaded from 2/3 of that on.
 TEST(Overturn, slow_push_lifts_a_side_between_two_thirds_and_all_of_g_b_over_h_and_topples_just_above) {
   const double threshold = k_g * (k_depth / 2) / k_height;
-  EXPECT_NEAR(threshold / k_gal, 177.4, 0.1);  // method.md 5: 177 gal
+  EXPECT_NEAR(threshold / k_gal, 177.4, 0.1);
   for (double share : {0.97, 1.03}) {
     SCOPED_TRACE(share);
     const Standing s = standing();

@@ -59,7 +59,7 @@ TEST(Statics, elastica_under_a_tip_load) {
   struct Case {
     double load, shortening, deflection, angle;
   };
-  // method.md 8, Mattiasson 1981
+  // Mattiasson 1981
   for (const Case& c : {Case{1, .056433, .301721, .461352}, Case{2, .160642, .493457, .781750},
                         Case{5, .387628, .713792, 1.215368}, Case{10, .554996, .810609, 1.430286}}) {
     SCOPED_TRACE(c.load);
