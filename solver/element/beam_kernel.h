@@ -157,7 +157,7 @@ PackQuaternion<P> exponential(const PackVector<P>& psi) {
 
 /// T(psi)^-1, where exp(psi + dpsi) = exp(T dpsi) exp(psi).
 template <class P>
-PackMatrix<P> inverse_left_jacobian(const PackVector<P>& psi) {
+[[gnu::always_inline]] inline PackMatrix<P> inverse_left_jacobian(const PackVector<P>& psi) {
   const PackAngle<P> angle = angle_functions(dot(psi, psi), P(1));
   return polynomial_of(psi, double_cross(psi), P(1), P(-0.5), angle.g);
 }
