@@ -192,7 +192,7 @@ class Chart {
     return out + plot.command() + "unset label\nunset arrow\nunset object\nunset colorbox\n";
   }
 
-  /// Beside the right edge where the curve leaves there, else above the panel.
+  /// Beside the right edge where the curve leaves there, on the map where it leaves below, else above.
   std::string end_label(const Criterion& c) const {
     const double most_x = plan_.x.edges().back(), most_y = plan_.y.edges().back(),
                  least_y = plan_.y.edges().front();
@@ -200,6 +200,8 @@ class Chart {
       if (c.y[n] > most_y || c.y[n] < least_y) continue;
       if (n + 1 == c.x.size() && panel_.x(c.x[n]) > panel_.x(most_x) - 60)
         return sheet_.label(plain(c.label), panel_.right + 8, panel_.y(c.y[n]), "left");
+      if (n + 1 < c.x.size() && c.y[n + 1] < least_y)
+        return sheet_.label(plain(c.label), panel_.x(c.x[n]) + 10, panel_.y(c.y[n]) + 12, "left front");
       return sheet_.label(plain(c.label), panel_.x(c.x[n]), panel_.top + 14, "center");
     }
     return "";

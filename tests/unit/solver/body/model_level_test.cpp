@@ -217,6 +217,26 @@ TEST(ModelLevel, is_a_frame_while_another_body_is_near) {
   EXPECT_LT((momentum - Vec3(40, 0, 0)).norm(), 1e-6);
 }
 
+// The 0.2 s of calm after which a frame comes down begin when the other body has left.
+TEST(ModelLevel, is_not_calm_while_another_body_is_near) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  spec.name = "second";
+  spec.at.x() = 0.45;
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.run.settle = false;
+  setup.parameters.gravity.setZero();
+  compute_as(setup, BodyModel::rigid);
+  Simulation sim = simulate(setup);
+  ASSERT_EQ(sim.state.bodies[0].reason, LevelReason::near);
+  sim.state.bodies[0].calm_since = 0;  // it was alone, and calm, before
+  ASSERT_TRUE(sim.advance(1));
+  EXPECT_EQ(sim.state.bodies[0].reason, LevelReason::near);
+  EXPECT_EQ(sim.state.bodies[0].calm_since, -1);
+}
+
 TEST(ModelLevel, goes_on_bit_for_bit_from_a_checkpoint) {
   for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
     topple::Setup setup = paper_cabinet(model, 4 / k_degrees);
