@@ -16,8 +16,10 @@ struct TomlFault {
   std::string message;
 };
 
-/// The first of these, outside of strings and comments; empty when there is none:
-/// - a character beyond ASCII (toml++ takes it for impossible),
+/// The first of these, outside of strings and comments but for one; empty when there is none:
+/// - a character beyond ASCII (toml++ takes it for impossible), in a string of several lines one that is the
+///   first behind a line that ends with a backslash (the same),
+/// - a quote, bracket or "=" within a number or a word (toml++ reads on as far as a blank),
 /// - a table's header whose name begins with nothing that begins a name ("[="; toml++ asserts the opposite),
 /// - a key of more than 500 dots (tables nest without a limit in toml++, and trees are walked recursively).
 /// In a text that is broken otherwise too, what follows the first break may be read wrongly.
