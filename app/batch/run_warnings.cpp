@@ -12,6 +12,7 @@
 #include "solver/contact/contact_period.h"
 #include "solver/frame/integrator.h"
 #include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 #include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {
@@ -48,7 +49,7 @@ void warn_of_depth(const Run& run, Warnings& list) {
 void warn_of_shakes(const Run& run, Warnings& list) {
   const std::vector<Shake>& shakes = run.parameters().shakes;
   for (std::size_t k = 0; k < shakes.size(); ++k)
-    if (shakes[k].kind != Shake::Kind::record && shakes[k].amplitude > k_most_g * k_standard_gravity)
+    if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
       list.push_back(
           fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
                       k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
@@ -89,7 +90,7 @@ void warn_of_step(const Run& run, Warnings& list) {
   const Model& model = run.setup().model;
   const double h = p.time_step;
   for (const Shake& shake : p.shakes)
-    if (shake.kind == Shake::Kind::record && h > k_same_interval * shake.record->interval)
+    if (traits(shake.kind).has_record && h > k_same_interval * shake.record->interval)
       list.push_back(fmt::format(
           "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
           "steps is not seen",

@@ -164,7 +164,9 @@ std::string static_head(const ordered_json& s) {
 // Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h).
 std::string integrators(const ordered_json& s) {
   bool frames = false, others = false;
-  const auto look = [&](const ordered_json& model) { (model == "frame" ? frames : others) = true; };
+  const auto look = [&](const ordered_json& model) {
+    (level_called(model.get<std::string>()).moves_nodes ? frames : others) = true;
+  };
   for (const auto& b : s["bodies"]) {
     look(b["model"]);
     for (const auto& change : b["model_changes"]) look(change["model"]);

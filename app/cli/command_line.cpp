@@ -69,19 +69,19 @@ int run_command_line(int argc, char** argv) {
     flush_results();
     return code;
   } catch (const BadInput& error) {
-    if (started_rank() == 0) say(error.what());
+    if (started_rank() == 0) log_message(error.what());
     return k_bad_input;
   } catch (const host::Refusal& error) {
-    say(error.what());
+    log_message(error.what());
     return k_bad_input;
   } catch (const io::InputError& error) {
-    say(error.what());
+    log_message(error.what());
     return k_bad_input;
   } catch (const std::bad_alloc&) {
-    say("there is not enough memory for this");
+    log_message("there is not enough memory for this");
     return k_failed;
   } catch (const std::exception& error) {
-    say(error.what());
+    log_message(error.what());
     return k_failed;
   }
 }

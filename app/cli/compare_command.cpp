@@ -91,14 +91,14 @@ void check(const CompareOptions& options, const Side& a, const Side& b) {
 bool run_side(Side& side, bool pictures, bool quiet) {
   if (side.recording) {
     if (side.summary.is_null())
-      say("warning: " + side.source + ": its run was interrupted, so it has no outcome");
+      log_message("warning: " + side.source + ": its run was interrupted, so it has no outcome");
     return true;
   }
   if (pictures) side.temporary = std::make_unique<TemporaryFile>();
   RecordedRun run = record(side.scene, pictures ? side.temporary->path() : "", {.quiet = quiet});
   side.summary = std::move(run.summary);
   side.exit_code = run.exit_code;
-  if (!run.trouble.empty()) say(run.trouble);
+  if (!run.trouble.empty()) log_message(run.trouble);
   if (run.recorded) side.recording = std::make_unique<io::Recording>(side.temporary->path());
   return run.exit_code != k_interrupted;
 }

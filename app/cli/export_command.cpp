@@ -35,7 +35,7 @@ int export_command(const ExportOptions& options) {
   defer_interrupts();
   const auto proceed = [] { return !interrupted(); };
   const auto end = [](bool whole, const std::string& target) {
-    if (!whole) say("interrupted; " + target + " is not written");
+    if (!whole) log_message("interrupted; " + target + " is not written");
     return whole ? k_done : k_interrupted;
   };
   if (!options.xdmf.empty()) {

@@ -41,7 +41,7 @@ int recover_command(const RecoverOptions& options) {
   require_writable_file("--output", {to, options.force}, host::FileKind::hdf5, from);
   defer_interrupts();
   if (!io::write_recovered(recording, rows, {to, options.force}, [] { return !interrupted(); })) {
-    say("interrupted; " + to + " is not written");
+    log_message("interrupted; " + to + " is not written");
     return k_interrupted;
   }
   fmt::print("{}: {}, {} frames to {:g} s, {} checkpoints, {} events, {} edits\n", to, recording.status(),

@@ -54,12 +54,12 @@ struct RenderOptions {
   int fps = 30;
   render::NamedView view = render::NamedView::iso;
   std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
-  std::optional<std::string> follow;   ///< body the camera goes along with; empty: of `inspect`, or first
+  std::optional<std::string> follow;   ///< body the camera follows; empty: of `inspect`, or first
   std::optional<double> from, to;      ///< s
   bool ui = false;                     ///< with the panels of the window
   Language language = Language::english;
   PictureSettings picture;  ///< all but `diagram`
-  std::string inspect;      ///< BODY or BODY/MEMBER, looked at closely; empty: none
+  std::string inspect;      ///< BODY or BODY/MEMBER; empty: none
   render::Renderer renderer = render::Renderer::any;
   bool quiet = false;
   bool force = false;  ///< in place of files of any kind
@@ -203,8 +203,8 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
       });
   if (video && !interrupted()) video->finish();
   if (!video && fs::exists(fs::path(o.png) / picture_name(count)))
-    say(fmt::format("warning: {} also holds pictures of an earlier, longer sequence, from {} on", o.png,
-                    picture_name(count)));
+    log_message(fmt::format("warning: {} also holds pictures of an earlier, longer sequence, from {} on",
+                            o.png, picture_name(count)));
   return interrupted() ? k_interrupted : k_done;
 }
 
@@ -247,8 +247,8 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
     code = k_interrupted;
   }
   if (code == k_interrupted)
-    say("interrupted; " +
-        (o.png.empty() ? o.still + o.mp4 + " is not written" : "the pictures drawn so far are in " + o.png));
+    log_message("interrupted; " + (o.png.empty() ? o.still + o.mp4 + " is not written"
+                                                 : "the pictures drawn so far are in " + o.png));
   return code;
 }
 
@@ -274,14 +274,14 @@ int render_command(const RenderOptions& options) {
   const TemporaryFile file;
   const RecordedRun run = record(*scene, file.path(), {.quiet = options.quiet});
   if (!run.trouble.empty())
-    say(run.trouble + (run.exit_code == k_failed && run.recorded ? "; drawing up to there" : ""));
+    log_message(run.trouble + (run.exit_code == k_failed && run.recorded ? "; drawing up to there" : ""));
   if (run.exit_code == k_interrupted || !run.recorded) return run.exit_code;
   try {
     const int drawn = draw(options, file.path(), scene);
     return drawn == k_done ? run.exit_code : drawn;
   } catch (const BadInput& error) {  // an instant that a failed run never reached
     if (run.exit_code == k_done) throw;
-    say(error.what());
+    log_message(error.what());
     return run.exit_code;
   }
 }

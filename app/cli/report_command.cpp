@@ -69,7 +69,7 @@ std::vector<TiltCurve> tilt_curves(const Replay& replay, const nlohmann::ordered
   return curves;
 }
 
-/// The instants that tell the run, without their pictures.
+/// The key frames of the run, without their pictures.
 std::vector<KeyPicture> key_instants(const Replay& replay, const std::vector<TiltCurve>& curves,
                                      const nlohmann::ordered_json& bodies) {
   std::vector<KeyPicture> list;
@@ -146,7 +146,7 @@ std::string command_text(const ReportOptions& options) {
 }
 
 int interrupted_report(const std::string& file) {
-  say("interrupted; " + file + " is not written");
+  log_message("interrupted; " + file + " is not written");
   return k_interrupted;
 }
 
@@ -167,7 +167,7 @@ int report_command(const ReportOptions& options) {
   RecordedRun run = record(scene, temporary.path(), {.quiet = options.quiet, .estimate = true});
   if (run.exit_code == k_interrupted) return interrupted_report(file);
   if (run.exit_code != k_done) {
-    say(run.trouble + "; " + file + " is not written");
+    log_message(run.trouble + "; " + file + " is not written");
     return run.exit_code;
   }
   Report report{.scene = &scene,

@@ -61,12 +61,13 @@ int run_command(const RunOptions& options) {
                                      .jobs = options.jobs,
                                      .estimate = options.estimate});
   if (!result.trouble.empty())
-    say(result.trouble +
-        (result.recorded
-             ? fmt::format("; {} holds everything up to {:.6g}{}", options.recording,
-                           result.summary["simulated_s"].get<double>(), extent_unit(is_static(scene.setup)))
-             : ""));
-  for (const auto& warning : result.summary["warnings"]) say("warning: " + warning.get<std::string>());
+    log_message(result.trouble + (result.recorded
+                                      ? fmt::format("; {} holds everything up to {:.6g}{}", options.recording,
+                                                    result.summary["simulated_s"].get<double>(),
+                                                    extent_unit(is_static(scene.setup)))
+                                      : ""));
+  for (const auto& warning : result.summary["warnings"])
+    log_message("warning: " + warning.get<std::string>());
   if (json_to_output) {
     fmt::print("{}\n", json_text(result.summary, 2));
   } else {

@@ -51,9 +51,9 @@ int carry_out_sweep(const Study& study, const StudyOptions& options) {
   Crew crew(study.timed ? options.jobs.value_or(1) : options.jobs);
   defer_interrupts();
   if (!crew.leads()) {
-    if (const auto heard = crew.listen()) {
-      const Sweep part = study.sweep(scene_from(*heard), options);
-      if (part.hear) part.hear(heard->back());
+    if (const auto parts = crew.receive_broadcast()) {
+      const Sweep part = study.sweep(scene_from(*parts), options);
+      if (part.receive) part.receive(parts->back());
       crew.serve(part.cases().make, options.quick);
     }
     return k_done;
@@ -68,7 +68,7 @@ int carry_out_sweep(const Study& study, const StudyOptions& options) {
   plan.kind = study.name;
   plan.stem = stem;
   plan.start = start;
-  if (whole.hear) plan.told.push_back(prepared);
+  if (whole.receive) plan.broadcast.push_back(prepared);
   const std::optional<SweepEnd> end = sweep(crew, plan, options);
   if (!end) return k_interrupted;
   const double wall_s = seconds_since(start);
@@ -98,7 +98,7 @@ int carry_out_whole(const Study& study, const StudyOptions& options) {
   });
   progress.reset();
   if (interrupted()) {
-    say("interrupted before every case had run");
+    log_message("interrupted before every case had run");
     return k_interrupted;
   }
   const double wall_s = seconds_since(start);

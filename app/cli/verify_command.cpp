@@ -1,13 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <thread>
 
 #include "app/batch/recorded_run.h"
 #include "app/batch/summary.h"
@@ -19,6 +15,8 @@
 #include "app/support/log.h"
 #include "app/support/progress.h"
 #include "solver/io/scene/scene.h"
+#include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
 
 namespace topple::app {
 namespace {
@@ -125,7 +123,7 @@ double work(const io::Scene& scene) {
 }
 
 /// Runs the scenes on all cores, the longest first; rows come in the order of the scenes. Throws what the
-/// first of them threw.
+/// longest of those that failed threw.
 ordered_json run_all(const std::vector<io::Scene>& scenes, bool quiet) {
   const std::size_t count = scenes.size();
   std::vector<std::size_t> order(count);
@@ -133,30 +131,17 @@ ordered_json run_all(const std::vector<io::Scene>& scenes, bool quiet) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return work(scenes[a]) > work(scenes[b]); });
   std::vector<ordered_json> rows(count);
-  std::vector<std::exception_ptr> thrown(count);
-  std::atomic<std::size_t> next = 0;
-  std::mutex progress_mutex;
-  std::size_t done = 0;
   Progress progress("verify", "scenes", static_cast<double>(count), quiet);
-  const auto work_off = [&] {
-    for (std::size_t k = next++; k < count && !interrupted(); k = next++) {
-      try {
-        rows[order[k]] = rows_of(scenes[order[k]]);
-      } catch (...) {
-        thrown[order[k]] = std::current_exception();
-      }
-      const std::scoped_lock lock(progress_mutex);
-      progress.update(static_cast<double>(++done));
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    for (std::size_t k = 1; k < std::min(cores, count); ++k) helpers.emplace_back(work_off);
-    work_off();
-  }
-  for (const std::exception_ptr& error : thrown)
-    if (error) std::rethrow_exception(error);
+  study::for_each_case(
+      static_cast<int>(count), study::core_count(),
+      [&](int k, int) {
+        const std::size_t scene = order[static_cast<std::size_t>(k)];
+        rows[scene] = rows_of(scenes[scene]);
+      },
+      [&](int done) {
+        progress.update(done);
+        return !interrupted();
+      });
   ordered_json all = ordered_json::array();
   for (const ordered_json& some : rows)
     for (const ordered_json& one : some) all.push_back(one);
@@ -231,7 +216,7 @@ int verify_command(const VerifyOptions& options) {
   const auto start = Clock::now();
   const ordered_json rows = run_all(scenes, options.quiet);
   if (interrupted()) {
-    say("interrupted before every case had run");
+    log_message("interrupted before every case had run");
     return k_interrupted;
   }
   const auto missed =

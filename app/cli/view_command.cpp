@@ -33,11 +33,11 @@ struct Interface {
 Appearance window_appearance(const std::filesystem::path& settings, const std::optional<Language>& asked) {
   std::string warning;
   Appearance appearance = read_appearance(settings, warning);
-  if (!warning.empty()) say("warning: " + warning);
+  if (!warning.empty()) log_message("warning: " + warning);
   if (asked) {
     appearance.language = *asked;
   } else if (appearance.language == Language::japanese && !render::has_japanese_font()) {
-    say("warning: Japanese needs the Debian package fonts-vlgothic; the window is in English");
+    log_message("warning: Japanese needs the Debian package fonts-vlgothic; the window is in English");
     appearance.language = Language::english;
   }
   return appearance;
@@ -81,7 +81,7 @@ void show(render::Window& window, render::Stage& stage, Shell& shell) {
 int say_end(const std::string& scene, const std::vector<LiveStatus>& ends) {
   bool good = true;
   for (const LiveStatus& status : ends) {
-    if (!status.record_failure.empty()) say(status.record_failure);
+    if (!status.record_failure.empty()) log_message(status.record_failure);
     if (!status.recording.empty() && status.record_failure.empty())
       fmt::print("recording: {}\n", status.recording);
     good = good && status.record_failure.empty();
@@ -90,7 +90,7 @@ int say_end(const std::string& scene, const std::vector<LiveStatus>& ends) {
   if (ends.empty()) return k_done;
   const LiveStatus& last = ends.back();
   const bool failed = last.kind == LiveStatus::Kind::failed || last.kind == LiveStatus::Kind::ended;
-  if (failed) say(scene + ": " + last.message);
+  if (failed) log_message(scene + ": " + last.message);
   return good && !failed ? k_done : k_failed;
 }
 

@@ -8,7 +8,7 @@ namespace topple::app {
 namespace {
 
 constexpr std::size_t k_rows_at_once = 256;
-constexpr std::int64_t k_return_steps = 50;  // between two looks at the stop flag
+constexpr std::int64_t k_return_steps = 50;  // between two polls of the stop flag
 
 }  // namespace
 
@@ -17,7 +17,7 @@ void LiveWorker::read_recording() {
   io::check_edits(from.history(), setup_);
   history_ = from.history();
   status_.branch = from.newest_branch();
-  tell([this](LiveReport& report) {
+  publish([this](LiveReport& report) {
     for (; read_branches_ < history_.branches.size(); ++read_branches_)
       report.branches.push_back(history_.branches[read_branches_]);
     for (; read_edits_ < history_.edits.size(); ++read_edits_)
@@ -30,7 +30,7 @@ void LiveWorker::read_recording() {
   } catch (const io::InputError&) {  // a fork then goes back farther
   }
   const std::vector<io::RecordedEvent> events = from.events();
-  tell([&](LiveReport& report) {
+  publish([&](LiveReport& report) {
     for (; read_events_ < events.size(); ++read_events_) report.events.push_back(events[read_events_]);
   });
 }
@@ -38,8 +38,8 @@ void LiveWorker::read_recording() {
 void LiveWorker::read_rows() {
   const io::Recording& from = *source_.recording;
   std::vector<RowPtr> rows;
-  const auto tell_rows = [&] {
-    tell([&rows](LiveReport& report) {
+  const auto publish_rows = [&] {
+    publish([&rows](LiveReport& report) {
       report.rows.insert(report.rows.end(), rows.begin(), rows.end());
       rows.clear();
     });
@@ -48,12 +48,12 @@ void LiveWorker::read_rows() {
   try {
     for (; read_rows_ < from.frame_count() && !stop_; ++read_rows_) {
       rows.push_back(std::make_shared<const io::FrameRow>(from.frame(read_rows_)));
-      if (rows.size() == k_rows_at_once) tell_rows();
+      if (rows.size() == k_rows_at_once) publish_rows();
     }
   } catch (const io::InputError& error) {  // what came before the damage can be seen
     status_.message = error.what();
   }
-  tell_rows();
+  publish_rows();
 }
 
 void LiveWorker::follow() {
@@ -79,7 +79,7 @@ void LiveWorker::start_recording(const std::string& arithmetic) {
   }
 }
 
-// From the nearest point that is kept.
+// From the nearest checkpoint before it, of this run or of the recording that it replays.
 Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
   const std::vector<Stretch> way = history_.way_to(branch);
   const auto on_way = [&](std::int32_t id, std::int64_t at) {
@@ -133,7 +133,7 @@ void LiveWorker::fork(const Fork& from) {
   status_.branch = branch.id;
   status_.message.clear();
   if (recorder_) recorder_->post(branch);
-  tell([&branch](LiveReport& report) {
+  publish([&branch](LiveReport& report) {
     report.branches.push_back(branch);
     report.head = nullptr;
   });

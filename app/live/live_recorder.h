@@ -1,5 +1,4 @@
-// A recording that a thread of its own writes: whoever posts waits for the disk only when a thousand things
-// do.
+// A recording written by a thread of its own, through a queue.
 #pragma once
 
 #include <condition_variable>
@@ -27,7 +26,7 @@ class LiveRecorder {
   LiveRecorder(const LiveRecorder&) = delete;
   LiveRecorder& operator=(const LiveRecorder&) = delete;
 
-  /// From any thread; ignored after finish() or a failure. Waits while a thousand things are to be written.
+  /// From any thread; ignored after finish() or a failure. Blocks while a thousand items are queued.
   void post(Item item);
   /// Writes what was posted, status and summary, closes, and returns then. Only the first call counts.
   void finish(const std::string& status, const std::string& summary_json);

@@ -15,7 +15,7 @@ namespace topple::app {
 
 using RowPtr = std::shared_ptr<const io::FrameRow>;
 
-/// How it stands with a live run.
+/// State of a live run.
 struct LiveStatus {
   enum class Kind {
     starting,  ///< settling

@@ -10,7 +10,7 @@
 namespace topple::app {
 namespace {
 
-constexpr std::chrono::milliseconds k_report_interval{8};  // a picture lasts longer
+constexpr std::chrono::milliseconds k_report_interval{8};  // shorter than a picture of the window
 constexpr std::chrono::milliseconds k_follow_interval{200};
 constexpr double k_most_lag = 0.1;     // s that a run which cannot keep its pace tries to make up
 constexpr double k_rate_window = 0.5;  // s
@@ -66,7 +66,7 @@ void LiveWorker::begin() {
     return;
   }
   history_.branches.push_back({});
-  tell([](LiveReport& report) { report.branches.push_back({}); });
+  publish([](LiveReport& report) { report.branches.push_back({}); });
   run_.emplace(setup_);
   if (!run_->status().ok()) {
     fail(run_->status());
@@ -115,7 +115,7 @@ void LiveWorker::change(const Edit& edit) {
   run_->edit(edit);
   history_.edits.push_back(logged);
   if (recorder_) recorder_->post(logged);
-  tell([&logged](LiveReport& report) { report.edits.push_back(logged); });
+  publish([&logged](LiveReport& report) { report.edits.push_back(logged); });
   set(status_.kind == LiveStatus::Kind::failed ? LiveStatus::Kind::halted : status_.kind);
 }
 
@@ -126,7 +126,7 @@ void LiveWorker::fail(const StepStatus& status) {
   status_.kind = LiveStatus::Kind::failed;
 }
 
-// What became of it is told with the next report of the head, not before.
+// Its status is published with the next report_head(), not before.
 void LiveWorker::step_once() {
   const Clock::time_point start = Clock::now();
   const StepStatus status = advance_(*run_);
@@ -171,7 +171,7 @@ void LiveWorker::record(io::Observation observation) {
     if (points_.size() * observation.checkpoint->state.size() * sizeof(double) > k_most_point_bytes)
       thin_older_half(points_);
   }
-  tell([&observation](LiveReport& report) {
+  publish([&observation](LiveReport& report) {
     if (observation.frame) report.rows.push_back(std::make_shared<const io::FrameRow>(*observation.frame));
     report.events.insert(report.events.end(), observation.events.begin(), observation.events.end());
   });
@@ -183,14 +183,14 @@ void LiveWorker::report_head() {
   io::FrameRow row = io::frame_row(*run_);
   row.branch = status_.branch;
   auto head = std::make_shared<const io::FrameRow>(std::move(row));
-  tell([&head](LiveReport& report) { report.head = std::move(head); });
+  publish([&head](LiveReport& report) { report.head = std::move(head); });
   set(status_.kind);
 }
 
 void LiveWorker::set(LiveStatus::Kind kind) {
   status_.kind = kind;
   if (recorder_) status_.record_failure = recorder_->failure();
-  tell([](LiveReport&) {});
+  publish([](LiveReport&) {});
   if (!stop_) wake_();
 }
 
@@ -203,7 +203,7 @@ void LiveWorker::finish() {
                                                      : end_status_;
   recorder_->finish(status, json_text(summary(*source_.scene, *run_, status, wall_)));
   status_.record_failure = recorder_->failure();
-  tell([](LiveReport&) {});
+  publish([](LiveReport&) {});
 }
 
 }  // namespace topple::app

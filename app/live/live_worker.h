@@ -38,7 +38,7 @@ struct Point {
   RunPoint run;
 };
 
-inline constexpr std::chrono::milliseconds k_patience{300};  // with a step under way when the run is closed
+inline constexpr std::chrono::milliseconds k_patience{300};  // of close() with a step under way
 
 class LiveWorker {
  public:
@@ -113,7 +113,7 @@ class LiveWorker {
   void run_some();
   void record(io::Observation observation);
   template <typename Add>
-  void tell(Add add);
+  void publish(Add add);
   void report_head();
   void set(LiveStatus::Kind kind);
   void finish();
@@ -138,7 +138,7 @@ class LiveWorker {
   std::atomic<bool> pending_ = false, stop_ = false;
   std::promise<void> closed_;
 
-  // Of the thread.
+  // Used by the thread alone.
   LiveStatus status_;
   std::optional<Run> run_;
   io::Observer observer_;
@@ -155,9 +155,9 @@ class LiveWorker {
   std::thread thread_;
 };
 
-// What happened and how it stands with the run become known together.
+// Under one lock, so that news and status of a report belong together.
 template <typename Add>
-void LiveWorker::tell(Add add) {
+void LiveWorker::publish(Add add) {
   const std::lock_guard lock(mutex_);
   add(report_);
   report_.status = status_;

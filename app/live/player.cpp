@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/picture/bridge.h"
 #include "solver/io/scene/edit_text.h"
 
 namespace topple::app {
@@ -333,11 +334,11 @@ void Player::edit(const Edit& edit) {
   new_undo_ = false;
   Undo& undo = undo_.back();
   const auto same = std::ranges::find_if(
-      undo.again, [&](const Edit& other) { return other.key == edit.key && other.shake == edit.shake; });
+      undo.again, [&](const Edit& other) { return other.key == edit.key && other.index == edit.index; });
   if (same != undo.again.end()) {
     *same = edit;
   } else {
-    undo.back.push_back({edit.key, edit.shake, edited_value(parameters_, edit.key, edit.shake)});
+    undo.back.push_back({edit.key, edit.index, edited_value(parameters_, edit.key, edit.index)});
     undo.again.push_back(edit);
   }
   redo_.clear();

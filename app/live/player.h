@@ -1,5 +1,5 @@
-// What a person does with a run: play, pause, rewind, branch, edit, undo. The instant looked at, and
-// everything reported so far.
+// The controls of a run (play, pause, rewind, branch, edit, undo), the frame shown, and everything reported
+// so far.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/live/live_run.h"
-#include "app/picture/bridge.h"
+#include "app/picture/run_extent.h"
 #include "app/picture/thinning.h"
 
 namespace topple::app {
@@ -18,18 +18,18 @@ inline constexpr double k_least_speed = 1. / 64, k_most_speed = 8;
 
 class Player {
  public:
-  /// `most_bytes` of rows are kept.
+  /// At most `most_bytes` of rows are kept (thinning.h).
   Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes = k_most_row_bytes);
 
   /// Takes in what was reported and lets a replay go on by `wall_s`. True when anything changed.
   bool update(double wall_s);
 
-  // Transport. Where the newest state of the live branch is looked at, playing means stepping; elsewhere what
-  // was recorded is played, up to there.
+  // Transport. At the head, the newest state of the live branch, playing means stepping; elsewhere what was
+  // recorded is played, up to there.
   void play();
   void pause();
   void toggle() { playing_ ? pause() : play(); }
-  void step(int rows);  ///< one recorded instant back or on; at the head, one step of the run
+  void step(int rows);  ///< one recorded frame back or on; at the head, one step of the run
   void faster();
   void slower();
   /// From the beginning, in a new branch, with the parameters as they are now. A replay goes to its start.
@@ -43,7 +43,7 @@ class Player {
   bool playing() const { return playing_; }
   double speed() const { return speed_; }
   double time() const { return cursor_; }
-  /// Last instant that there is, and the length of the time axis, s.
+  /// Time of the last frame, and the length of the time axis, s.
   double end() const;
   double length() const;
   bool at_head() const { return following_; }
@@ -69,28 +69,29 @@ class Player {
   void begin_edit() { new_undo_ = true; }
   /// Throws io::InputError for what a scene would be refused for.
   void edit(const Edit& edit);
-  /// Those that make the first instant's parameters what they are now; there must be one.
+  /// The edits that turn the parameters of the first frame, which must exist, into the present ones.
   std::vector<Edit> edits_since_start() const;
   bool can_undo() const { return can_edit() && !undo_.empty(); }
   bool can_redo() const { return can_edit() && !redo_.empty(); }
   void undo();
   void redo();
-  /// At the instant looked at, with edits on their way.
+  /// Of the frame shown, with the edits that the run has not applied yet.
   const Parameters& parameters() const { return parameters_; }
 
   // What is seen.
   const io::Scene& scene() const { return *scene_; }
   const LiveStatus& status() const { return status_; }
-  /// The instant looked at, between two recorded ones while a replay goes on; nothing before the first.
+  /// The frame shown, interpolated between two recorded ones while a replay goes on; nothing before the
+  /// first.
   std::optional<io::FrameRow> row() const;
   /// The same time on the way to the branch that was left last.
   std::optional<io::FrameRow> ghost() const;
-  /// Recorded instants on the way to the branch shown, and what they cover.
+  /// Recorded frames of the branch shown and, before its forks, of those that it comes from; their extent.
   const std::vector<RowPtr>& way() const { return way_; }
   /// The same of the branch that was left last; empty: there is none.
   const std::vector<RowPtr>& ghost_way() const { return ghost_way_; }
   const RunExtent& extent() const { return extent_; }
-  /// Those on the way to the branch shown.
+  /// Recorded on the same branches.
   std::vector<io::RecordedEvent> events() const;
   std::vector<LoggedEdit> edits() const;
 
@@ -127,7 +128,7 @@ class Player {
   std::vector<RowPtr> way_, ghost_way_;
   RunExtent extent_;
   Parameters parameters_;
-  std::vector<Edit> posted_;  // on their way
+  std::vector<Edit> posted_;  // not yet applied by the run
   std::vector<Undo> undo_, redo_;
   bool playing_ = false, loop_ = false, following_ = true;
   bool new_undo_ = true;

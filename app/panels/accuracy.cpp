@@ -9,13 +9,13 @@ namespace {
 // Of all the work, the run at the scene's own steps: the other one makes twice as many.
 constexpr double k_first_share = 1. / 3;
 
-void work(const Setup& setup, Accuracy& desk) {
+void work(const Setup& setup, Accuracy& background) {
   AccuracyResult found;
   const auto outcome_of = [&](const Setup& of, double from, double share) {
     Run run(of);
-    while (!desk.stopped() && run.status().ok() && !run.over()) {
+    while (!background.stopped() && run.status().ok() && !run.over()) {
       if (!run.advance().ok()) break;
-      desk.tell(from + share * run.time() / of.run.duration);
+      background.report_progress(from + share * run.time() / of.run.duration);
     }
     if (!run.status().ok()) found.failure = run.status().message(of.model);
     return run.outcome();
@@ -23,20 +23,21 @@ void work(const Setup& setup, Accuracy& desk) {
   try {
     const Outcome outcome = outcome_of(setup, 0, k_first_share);
     found.bodies = outcome.bodies();
-    if (found.failure.empty() && !desk.stopped()) {
+    if (found.failure.empty() && !background.stopped()) {
       const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
-      if (found.failure.empty() && !desk.stopped()) found.errors = study::errors(setup.model, outcome, finer);
+      if (found.failure.empty() && !background.stopped())
+        found.errors = study::errors(setup.model, outcome, finer);
     }
   } catch (const std::exception& error) {
     found.failure = error.what();
   }
-  if (!desk.stopped()) desk.show(std::move(found));
+  if (!background.stopped()) background.show(std::move(found));
 }
 
 }  // namespace
 
 std::unique_ptr<Accuracy> estimate_accuracy(const Setup& setup) {
-  return std::make_unique<Accuracy>([setup](Accuracy& desk) { work(setup, desk); });
+  return std::make_unique<Accuracy>([setup](Accuracy& background) { work(setup, background); });
 }
 
 std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyResult& result) {

@@ -1,4 +1,4 @@
-// How far a scene's run is from itself at finer steps, computed beside the window.
+// Discretisation error of a scene's run, by a second run at finer steps, on a thread beside the window.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace topple::app {
 
-/// What became of the bodies, and how far that can be trusted.
+/// Outcome of each body, and the estimate of its error.
 struct AccuracyResult {
-  std::string failure;              ///< why there is none; empty: there is
+  std::string failure;              ///< why there is no result; empty: there is one
   std::vector<BodyOutcome> bodies;  ///< at the scene's own steps
   std::vector<study::BodyError> errors;
 };

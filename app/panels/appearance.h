@@ -1,4 +1,4 @@
-// How the window looks to one person, and where that is kept.
+// Scale, theme and language of the window, and the file that keeps them.
 #pragma once
 
 #include <filesystem>
@@ -19,23 +19,23 @@ struct Appearance {
   bool operator==(const Appearance&) const = default;
 };
 
-/// The next larger (1) or smaller (-1) scale of a person's steps; 0: the usual one.
+/// The next larger (1) or smaller (-1) of the scales that can be chosen; 0: the default one.
 double next_scale(double scale, int direction);
 
-/// With letters no larger than a window of width x height px has room for, at least 640 x 360 px at scale 1
-/// times `desktop_scale`, and one of a person's steps; never smaller than usual for that. A size of 0 or less
-/// is not known yet.
+/// `appearance` with its scale limited to the largest one for which a window of width x height px has room
+/// (640 x 360 px times scale and `desktop_scale`), but not to less than 1. Unchanged for a size of 0 or less:
+/// it is not known yet.
 Appearance fitting(Appearance appearance, float desktop_scale, float width, float height);
 
 /// "$XDG_CONFIG_HOME/topple/settings"; empty when there is no place for it.
 std::filesystem::path settings_file();
-/// What is kept there; of what is not, the usual, in the language of the locale. A line that says what cannot
-/// be understood is left in `warning`.
+/// What is kept there, with defaults for the rest and the language of the locale. `warning`: a line about
+/// what cannot be understood; unchanged where all can.
 Appearance read_appearance(const std::filesystem::path& file, std::string& warning);
 /// Throws std::runtime_error.
 void keep_appearance(const std::filesystem::path& file, const Appearance& appearance);
 
-/// Letters for texts in the language of the window and for the names in a scene; null: none.
+/// Characters for texts in the language of the window and for the names in a scene; null: none.
 render::Letters window_letters(const io::Scene* scene);
 
 }  // namespace topple::app

@@ -69,31 +69,31 @@ DemoGuide::DemoGuide(const Demo& demo, Player& player)
 
 const Phrase& DemoGuide::text() const {
   const std::size_t step = reached_.value_or(0);
-  return step < instants_.size() && !instants_[step].came ? k_did_not_come : demo_.steps[step].text;
+  return step < stops_.size() && !stops_[step].occurred ? k_did_not_come : demo_.steps[step].text;
 }
 
-std::optional<DemoGuide::Instant> DemoGuide::instant_of(Until until) const {
-  if (until == Until::start) return Instant{0, true};
-  const double since = instants_.empty() ? 0 : instants_.back().time;
+std::optional<DemoGuide::Stop> DemoGuide::stop_of(Until until) const {
+  if (until == Until::start) return Stop{0, true};
+  const double since = stops_.empty() ? 0 : stops_.back().time;
   if (until == Until::end) {
     const auto b = static_cast<std::size_t>(body_);
     for (const RowPtr& row : player_.way())
-      if (row->time >= since && row->body[b].tilt > k_lying) return Instant{row->time, true};
-    return is_over(player_.status()) ? std::optional(Instant{player_.end(), true}) : std::nullopt;
+      if (row->time >= since && row->body[b].tilt > k_lying) return Stop{row->time, true};
+    return is_over(player_.status()) ? std::optional(Stop{player_.end(), true}) : std::nullopt;
   }
   const Event::Kind kind = until == Until::uplift   ? Event::Kind::uplift
                            : until == Until::impact ? Event::Kind::impact
                                                     : Event::Kind::overturn;
   for (const io::RecordedEvent& event : player_.events())
     if (event.event.kind == kind && event.event.body == body_ && event.time >= since)
-      return Instant{event.time, true};
-  return is_over(player_.status()) ? std::optional(Instant{player_.end(), false}) : std::nullopt;
+      return Stop{event.time, true};
+  return is_over(player_.status()) ? std::optional(Stop{player_.end(), false}) : std::nullopt;
 }
 
 void DemoGuide::show(std::size_t step) {
   reached_ = step;
   going_ = false;
-  player_.scrub(instants_[step].time);
+  player_.scrub(stops_[step].time);
 }
 
 bool DemoGuide::update() {
@@ -101,16 +101,16 @@ bool DemoGuide::update() {
   const bool ready =
       player_.status().branch != branch_before_ && player_.shown_branch() == player_.status().branch;
   if (!ready || player_.way().empty()) return false;
-  const auto at = instant_of(demo_.steps[instants_.size()].until);
+  const auto at = stop_of(demo_.steps[stops_.size()].until);
   if (!at) return false;
-  instants_.push_back(*at);
-  show(instants_.size() - 1);
+  stops_.push_back(*at);
+  show(stops_.size() - 1);
   return true;
 }
 
 void DemoGuide::next() {
   if (going_ || !reached_ || last()) return;
-  if (*reached_ + 1 < instants_.size()) {
+  if (*reached_ + 1 < stops_.size()) {
     show(*reached_ + 1);
     return;
   }

@@ -9,7 +9,7 @@
 
 namespace topple::app {
 
-/// What a step waits for. end: of the run, or that a body lies.
+/// What a step waits for. end: the run is over, or the body lies on the floor.
 enum class Until { start, uplift, impact, critical, end };
 
 struct DemoStep {
@@ -32,7 +32,8 @@ bool can_shake_as_sine(const Player& player);
 /// Makes the first shake a sine from now on. `amplitude`: gal.
 void shake_as_sine(Player& player, double frequency, double amplitude);
 
-/// Takes a player through a demo, in a branch of its own. It follows the first body that stands freely.
+/// Takes a player through a demo, in a branch of its own. Its events are those of the first body that stands
+/// freely.
 class DemoGuide {
  public:
   DemoGuide(const Demo& demo, Player& player);
@@ -51,11 +52,11 @@ class DemoGuide {
   bool last() const { return reached_ && *reached_ + 1 == demo_.steps.size(); }
 
  private:
-  struct Instant {
+  struct Stop {
     double time;
-    bool came;  ///< false: the run ended first
+    bool occurred;  ///< false: the run ended first
   };
-  std::optional<Instant> instant_of(Until until) const;
+  std::optional<Stop> stop_of(Until until) const;
   void show(std::size_t step);
 
   const Demo& demo_;
@@ -64,7 +65,7 @@ class DemoGuide {
   const std::int32_t body_;
   std::optional<std::size_t> reached_;
   bool going_ = true;
-  std::vector<Instant> instants_;  // of the steps reached so far
+  std::vector<Stop> stops_;  // of the steps reached so far
 };
 
 }  // namespace topple::app

@@ -38,15 +38,10 @@ double peak_velocity(const Accelerogram& record) {
 
 ShakePlace place_of(const Shake& shake) {
   const double level = shake.direction.head<2>().norm();
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-    case Shake::Kind::sweep:
-      return {shake.frequency, level * shake.amplitude};
-    case Shake::Kind::pulse:
-      return {traits(shake.shape).cycles / shake.duration, level * shake.amplitude};
-    case Shake::Kind::record:
-      break;
-  }
+  const ShakeTraits& uses = traits(shake.kind);
+  if (!uses.has_record)
+    return {uses.has_shape ? traits(shake.shape).cycles / shake.duration : shake.frequency,
+            level * shake.amplitude};
   const double velocity = peak_velocity(*shake.record);
   return {velocity > 0 ? shake.record->peak / (2 * k_pi * velocity) : k_frequencies.high,
           std::abs(shake.scale) * shake.record->peak};
@@ -156,7 +151,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const Limits limits = *limits_of(player, *state.body);
   draw_criteria_chart(limits, state);
   const ShakePlace now = state.path.back();
-  const bool record = shakes.front().kind == Shake::Kind::record;
+  const bool record = traits(shakes.front().kind).has_record;
   ImGui::TextWrapped("%s", say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal,
                                say(limits.verdict(now)))
                                .c_str());
@@ -174,7 +169,7 @@ void draw_excitation(Player& player, TeachingState& state, std::string& refused)
     return;
   }
   const Shake& shake = shakes.front();
-  if (shake.kind != Shake::Kind::record || state.path.empty() || state.record != shake.record ||
+  if (!traits(shake.kind).has_record || state.path.empty() || state.record != shake.record ||
       state.scale != shake.scale)
     note_place(place_of(shake), state.path);
   state.record = shake.record;

@@ -30,7 +30,7 @@ struct Inspected {
   const io::FrameRow& row;
   Histories& histories;
   Inspection& inspection;
-  const Instant now;
+  const FrameContext now;
   const Model& model;
 
   double value(const Subject& subject, std::size_t k) const {
@@ -225,9 +225,9 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
                                   .c_str());
   } else if (subject.kind == Subject::Kind::body) {
     const Body& body = at.model.bodies[subject.index];
-    ImGui::TextDisabled(
-        "%s",
-        say(k_body_line, body.mass, body.member_count, say(k_levels[at.row.level[subject.index]])).c_str());
+    ImGui::TextDisabled("%s", say(k_body_line, body.mass, body.member_count,
+                                  say(phrase_of(static_cast<ModelLevel>(at.row.level[subject.index]))))
+                                  .c_str());
   } else {
     const Anchor& anchor = at.model.anchors[subject.index];
     ImGui::TextDisabled("%s",
@@ -264,7 +264,7 @@ bool draw_member(const Inspected& at, const Subject& subject) {
 bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,
                     Inspection& inspection) {
   const Model& model = player.scene().setup.model;
-  const Inspected at{player, row, histories, inspection, instant_of(player, row), model};
+  const Inspected at{player, row, histories, inspection, frame_context(player, row), model};
   bool changed = false;
   ImGui::BeginChild("inspector");
   if (inspection.picked) {

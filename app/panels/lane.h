@@ -23,10 +23,10 @@ struct Lane {
   }
 };
 
-/// Of the row of that number.
+/// Value at the row of that index; not finite: none.
 using ValueAt = std::function<double(std::size_t)>;
 
-/// No more than the least and greatest value of each pixel column; open where there is no number.
+/// Draws at most the least and greatest value of each pixel column, with gaps where there is none.
 void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
                ImU32 colour, float thickness);
 

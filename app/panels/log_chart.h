@@ -16,7 +16,7 @@ struct LogAxis {
   float part(double value) const;
 };
 
-/// Where a chart is, px, and what it is over.
+/// Rectangle of a chart, px, and its axes.
 struct LogChart {
   float left, right, top, bottom;
   LogAxis x, y;
@@ -27,15 +27,15 @@ struct LogChart {
 /// A chart of this height at the cursor, with its y axis's title above it.
 LogChart chart_at_cursor(const LogAxis& x, const LogAxis& y, float height, const std::string& y_title);
 
-/// The sheet, lines at 1, 2 and 5 of each decade (of many decades at 1 alone), and numbers where they have
-/// room.
+/// Background, grid lines at 1, 2 and 5 of each decade (of many decades at 1 alone), and numbers where they
+/// have room.
 void draw_log_grid(ImDrawList& list, const LogChart& chart);
 
-/// `dash`: px of a dash and of the gap after it; 0: an unbroken line. A wider line of the sheet's colour
-/// keeps it apart from what is below.
+/// `dash`: px of a dash and of the gap after it; 0: an unbroken line. A wider line of the
+/// background's colour keeps it apart from what is below.
 void add_line(ImDrawList& list, const std::vector<ImVec2>& points, ImU32 colour, float dash);
 
-/// Where things are now.
+/// Marks the present values.
 void add_present(ImDrawList& list, ImVec2 at);
 
 struct LogCurve {
@@ -45,14 +45,14 @@ struct LogCurve {
   std::vector<ImVec2> points;
 };
 
-/// What stands below a chart: the x axis's title, then signs with words, in lines as long as the chart.
+/// The key below a chart: the x axis's title, then signs with words, in lines as long as the chart.
 class ChartKey {
  public:
   ChartKey(ImDrawList& list, const LogChart& chart, const std::string& x_title);
   void begin_line();
-  /// Writes words with room for a sign before them; where its middle is.
+  /// Writes words with room for a sign before them. Returns the centre of the sign, px.
   ImVec2 entry(const std::string& words);
-  /// Names of lines: on the lines they would meet other words.
+  /// An entry for each curve.
   void lines(const std::vector<LogCurve>& curves);
   /// Takes the room of chart and key in the panel.
   void end();

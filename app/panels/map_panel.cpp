@@ -34,7 +34,7 @@ std::string title_of(const Axis& axis) {
 
 Edit edit_of(const Axis& axis, const Parameters& now) {
   Edit edit = *io::parse_edit_key(axis.key);
-  edit.value = edited_value(now, edit.key, edit.shake);
+  edit.value = edited_value(now, edit.key, edit.index);
   return edit;
 }
 
@@ -184,8 +184,7 @@ bool can_have_map(const Player& player) {
   const Parameters& now = player.parameters();
   const Setup& setup = player.scene().setup;
   return !player.way().empty() && setup.run.analysis == Analysis::dynamic &&
-         setup.model.furniture_total() > 0 &&
-         (now.shakes[0].kind == Shake::Kind::sine || now.shakes[0].kind == Shake::Kind::pulse);
+         setup.model.furniture_total() > 0 && study::usual_axes(now.shakes) != nullptr;
 }
 
 }  // namespace

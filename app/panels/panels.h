@@ -24,9 +24,9 @@ struct Box {
   }
 };
 
-/// Letters and looks of the current Dear ImGui context, in the language of `appearance`. `scale`: 1 for 720
-/// lines, times that of `appearance`. `scene`: whose names are shown; null: none. Throws std::runtime_error
-/// without the font.
+/// Sets fonts and style of the current Dear ImGui context, in the language of `appearance`. `scale`: 1 for
+/// 720 lines, times that of `appearance`. `scene`: whose names are shown; null: none. Throws
+/// std::runtime_error without the font.
 render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
                                       const io::Scene* scene);
 
@@ -66,7 +66,7 @@ struct PlottedValue {
   bool operator==(const PlottedValue&) const = default;
 };
 
-/// What a person looks at closely.
+/// What the inspector shows.
 struct Inspection {
   std::optional<Subject> picked;
   std::vector<Subject> pinned;
@@ -74,7 +74,7 @@ struct Inspection {
   std::vector<PlottedValue> plots;
 };
 
-/// What is picked and what is pinned, at `row`. True when what the picture shows of it has changed.
+/// Values of what is picked and pinned, at `row`. True when what the picture shows of it has changed.
 bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& histories,
                     Inspection& inspection);
 
@@ -89,7 +89,7 @@ float plots_height(const Inspection& inspection);
 /// Only the lanes of the plots, with their axis, for a picture.
 void draw_plot_lanes(ImDrawList& list, const Player& player, Histories& histories,
                      const Inspection& inspection, const Box& box);
-/// A line for each recorded instant: time and plotted values, as they are shown.
+/// A line for each recorded frame: time and plotted values, in the units shown.
 std::string plots_csv(const Player& player, Histories& histories, const Inspection& inspection);
 
 }  // namespace topple::app

@@ -55,7 +55,7 @@ constexpr Phrase k_as_in_scenes{"{0}", "{0}"};
 
 /// A parameter without a row above is called as in scenes, and all that is legal is usual.
 Slider slider_of(Edit::Key key) {
-  const auto* const own = std::ranges::find(k_sliders, key, [](const Slider& look) { return look.key; });
+  const auto* const own = std::ranges::find(k_sliders, key, &Slider::key);
   if (own != std::end(k_sliders)) return *own;
   const io::Key& of = io::key_of(key);
   const double unit = io::unit_value(of.unit, of.dimension);
@@ -200,7 +200,7 @@ class Row {
     post(value);
   }
   void post(const Vec3& value) {
-    const Edit edit{edit_.key, edit_.shake, value};
+    const Edit edit{edit_.key, edit_.index, value};
     try {
       player_.edit(edit);
       refused_.clear();
@@ -216,41 +216,71 @@ class Row {
   std::string& refused_;
 };
 
-void draw_row(Player& player, Edit::Key key, int index, std::string& refused) {
-  const Setup& setup = player.scene().setup;
-  Row row(player, key, index, refused);
-  switch (key) {
-    case Edit::Key::on:
-      return row.tick(say(k_on), say(k_on_about));
-    case Edit::Key::type:
-      row.choice(say(k_type), k_type_about,
-                 [](int k) { return shake_kinds()[static_cast<std::size_t>(k)].has_amplitude; });
-      return row.button(k_shake_once, place_of(shake_kinds(), Shake::Kind::pulse), k_shake_once_about);
-    case Edit::Key::law:
-      return row.choice(say(k_law), k_law_about, [](int) { return true; });
-    case Edit::Key::integrator:
-      return row.choice(say(k_integrator), k_integrator_about, [](int k) { return k > 0; });
-    case Edit::Key::want:
-      return row.tick(say(k_stresses_wanted), say(k_stresses_wanted_about));
-    case Edit::Key::model:
-      ImGui::TextUnformatted(setup.model.bodies[static_cast<std::size_t>(index)].name.c_str());
-      return row.choice(say(k_model), k_model_about, [&](int k) {
-        return can_be(setup.model, index, body_models()[static_cast<std::size_t>(k)].kind);
-      });
-    case Edit::Key::anchor: {
-      const Anchor& anchor = setup.model.anchors[static_cast<std::size_t>(index)];
-      return row.tick(anchor.name,
-                      say(k_anchor_about, setup.model.bodies[static_cast<std::size_t>(anchor.body)].name));
-    }
-    case Edit::Key::frequency:
-      if (traits(player.parameters().shakes[static_cast<std::size_t>(index)].kind).sweeps) {
-        for (const Slider& look : k_sweep) Row(player, key, index, refused).slider(look);
-        return;
-      }
-      [[fallthrough]];
-    default:
-      row.slider(slider_of(key));
-  }
+/// One that is edited, and where the refusal of an edit goes.
+struct Parameter {
+  Player& player;
+  Edit::Key key;
+  int index;
+  std::string& refused;
+
+  Row row() const { return {player, key, index, refused}; }
+  const Model& model() const { return player.scene().setup.model; }
+};
+
+void draw_slider(const Parameter& of) {
+  of.row().slider(slider_of(of.key));
+}
+
+void draw_frequency(const Parameter& of) {
+  if (!traits(of.player.parameters().shakes[static_cast<std::size_t>(of.index)].kind).sweeps)
+    return draw_slider(of);
+  for (const Slider& look : k_sweep) of.row().slider(look);
+}
+
+void draw_type(const Parameter& of) {
+  Row row = of.row();
+  row.choice(say(k_type), k_type_about,
+             [](int k) { return shake_kinds()[static_cast<std::size_t>(k)].has_amplitude; });
+  row.button(k_shake_once, place_of(shake_kinds(), Shake::Kind::pulse), k_shake_once_about);
+}
+
+void draw_model(const Parameter& of) {
+  ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
+  of.row().choice(say(k_model), k_model_about, [&](int k) {
+    return can_be(of.model(), of.index, body_models()[static_cast<std::size_t>(k)].kind);
+  });
+}
+
+void draw_anchor(const Parameter& of) {
+  const Anchor& anchor = of.model().anchors[static_cast<std::size_t>(of.index)];
+  of.row().tick(anchor.name,
+                say(k_anchor_about, of.model().bodies[static_cast<std::size_t>(anchor.body)].name));
+}
+
+/// What sets a parameter; one without a row has a slider.
+struct Control {
+  Edit::Key key;
+  void (*draw)(const Parameter&);
+};
+constexpr Control k_controls[] = {
+    {Edit::Key::on, [](const Parameter& of) { of.row().tick(say(k_on), say(k_on_about)); }},
+    {Edit::Key::type, draw_type},
+    {Edit::Key::frequency, draw_frequency},
+    {Edit::Key::law,
+     [](const Parameter& of) { of.row().choice(say(k_law), k_law_about, [](int) { return true; }); }},
+    {Edit::Key::model, draw_model},
+    {Edit::Key::anchor, draw_anchor},
+    {Edit::Key::integrator,
+     [](const Parameter& of) {
+       of.row().choice(say(k_integrator), k_integrator_about, [](int k) { return k > 0; });
+     }},
+    {Edit::Key::want,
+     [](const Parameter& of) { of.row().tick(say(k_stresses_wanted), say(k_stresses_wanted_about)); }},
+};
+
+void draw_row(const Parameter& of) {
+  const auto* const own = std::ranges::find(k_controls, of.key, &Control::key);
+  (own == std::end(k_controls) ? draw_slider : own->draw)(of);
 }
 
 /// False: what stands below it is folded away.
@@ -300,7 +330,7 @@ bool draw_parameters(Player& player, std::string& refused) {
     const std::pair below{of, of == Edit::Of::shake ? index : 0};
     if (heading != below) open = draw_heading(of, index, parameters);
     heading = below;
-    if (open) draw_row(player, key, index, refused);
+    if (open) draw_row({player, key, index, refused});
     if (key == Edit::Key::time_step) precision = draw_precision_button();
   }
   ImGui::EndDisabled();

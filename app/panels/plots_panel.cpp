@@ -42,7 +42,7 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
   const ImFont& font = *ImGui::GetFont();
   const float width = lane.left - 6 - label_left;
   const std::string now =
-      row ? value_text(value.at(instant_of(player, *row), plot.subject.index)) + " " + value.unit : "";
+      row ? value_text(value.at(frame_context(player, *row), plot.subject.index)) + " " + value.unit : "";
   float y = lane.top;
   for (const std::string& words : {name_of(player.scene().setup.model, plot.subject), say(value.name), now}) {
     add_text(list, label_left, y, theme().text, render::shortened(font, words, width));

@@ -232,9 +232,8 @@ void draw_controls(const Player& player, PrecisionState& state, const PrecisionF
   ImGui::TextUnformatted(say(k_precision_progress, found->study.run, found->study.of).c_str());
 }
 
-/// How it is computed.
 bool is_setting(Edit::Key key, int) {
-  return key == Edit::Key::model || key == Edit::Key::integrator || key == Edit::Key::time_step;
+  return traits(key).setting;
 }
 
 }  // namespace

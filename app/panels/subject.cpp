@@ -21,7 +21,7 @@ constexpr double k_no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// The value of greatest magnitude at the ends of a member's elements: between them it is linear, or less.
 template <typename At>
-double greatest(const Instant& now, std::size_t index, At at) {
+double greatest(const FrameContext& now, std::size_t index, At at) {
   const Member& member = now.model.members[index];
   double most = 0;
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
@@ -33,7 +33,7 @@ double greatest(const Instant& now, std::size_t index, At at) {
 }
 
 template <BeamQuantity quantity>
-double beam_value(const Instant& now, std::size_t index) {
+double beam_value(const FrameContext& now, std::size_t index) {
   return greatest(now, index,
                   [&](std::size_t e, const SectionForces& forces) {
                     return traits(quantity).value(now.model, e, forces);
@@ -41,27 +41,27 @@ double beam_value(const Instant& now, std::size_t index) {
          traits(quantity).per_unit;
 }
 
-double yield_ratio(const Instant& now, std::size_t index) {
+double yield_ratio(const FrameContext& now, std::size_t index) {
   const Element& element = now.model.elements[now.model.members[index].first_element];
   return std::isfinite(element.capacity[0]) ? beam_value<BeamQuantity::yield_ratio>(now, index) : k_no_value;
 }
 
 template <std::size_t component>
-double force_value(const Instant& now, std::size_t index) {
+double force_value(const FrameContext& now, std::size_t index) {
   return greatest(now, index,
                   [](std::size_t, const SectionForces& forces) { return component_of(forces, component); });
 }
 
-double tilt_value(const Instant& now, std::size_t index) {
+double tilt_value(const FrameContext& now, std::size_t index) {
   return now.row.body[index].tilt * k_degrees;
 }
 
-double slide_value(const Instant& now, std::size_t index) {
+double slide_value(const FrameContext& now, std::size_t index) {
   return 1e3 * now.row.body[index].slide;
 }
 
 /// From the turn between the neighbours.
-double angular_velocity(const Instant& now, std::size_t index) {
+double angular_velocity(const FrameContext& now, std::size_t index) {
   const io::FrameRow& from = now.before ? *now.before : now.row;
   const io::FrameRow& to = now.after ? *now.after : now.row;
   if (!(to.time > from.time)) return k_no_value;
@@ -69,26 +69,26 @@ double angular_velocity(const Instant& now, std::size_t index) {
          (to.time - from.time);
 }
 
-double kinetic_value(const Instant& now, std::size_t index) {
+double kinetic_value(const FrameContext& now, std::size_t index) {
   return io::kinetic_energy(now.model, now.gravity, now.row, static_cast<int>(index));
 }
 
-OverturnBarrier barrier(const Instant& now, std::size_t index) {
+OverturnBarrier barrier(const FrameContext& now, std::size_t index) {
   return overturn_barrier(now.model, static_cast<int>(index),
                           {now.row.body[index].centre(), now.row.body[index].rotation()}, now.gravity.norm());
 }
 
-double margin_value(const Instant& now, std::size_t index) {
+double margin_value(const FrameContext& now, std::size_t index) {
   const double left = barrier(now, index).left;
   return std::isfinite(left) ? left : k_no_value;
 }
 
-double margin_share(const Instant& now, std::size_t index) {
+double margin_share(const FrameContext& now, std::size_t index) {
   const OverturnBarrier b = barrier(now, index);
   return std::isfinite(b.whole) && b.whole > 0 ? 100 * b.left / b.whole : k_no_value;
 }
 
-double displacement_value(const Instant& now, std::size_t index) {
+double displacement_value(const FrameContext& now, std::size_t index) {
   const Body& body = now.model.bodies[index];
   const RigidFit fit = rigid_fit(now.model, now.row);
   double most = 0;
@@ -98,11 +98,11 @@ double displacement_value(const Instant& now, std::size_t index) {
 }
 
 template <float io::AnchorNumbers::*number>
-double anchor_value(const Instant& now, std::size_t index) {
+double anchor_value(const FrameContext& now, std::size_t index) {
   return now.row.anchor[index].*number;
 }
 
-double stretch_value(const Instant& now, std::size_t index) {
+double stretch_value(const FrameContext& now, std::size_t index) {
   const io::AnchorNumbers& anchor = now.row.anchor[index];
   if (anchor.state == io::k_anchor_away || anchor.state == io::k_anchor_broken) return k_no_value;
   const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) - now.model.anchors[index].to;
@@ -191,8 +191,8 @@ Subject subject_named(const Model& model, const std::string& name) {
                                    names_of(model.bodies, 0, model.bodies.size())));
 }
 
-Instant instant_of(const Player& player, const io::FrameRow& row) {
-  Instant now{player.scene().setup.model, player.scene().setup.parameters.gravity, row};
+FrameContext frame_context(const Player& player, const io::FrameRow& row) {
+  FrameContext now{player.scene().setup.model, player.scene().setup.parameters.gravity, row};
   const std::vector<RowPtr>& way = player.way();
   const auto earlier = [](const RowPtr& r, double time) { return r->time < time; };
   const auto at = std::lower_bound(way.begin(), way.end(), row.time, earlier);
@@ -235,10 +235,10 @@ const std::vector<float>& Histories::of(const Player& player, const Subject& sub
   if (!samples.empty()) samples.pop_back();  // it has a neighbour now
   const SubjectValue& asked = values_of(subject.kind)[value];
   for (std::size_t i = samples.size(); i < way.size(); ++i) {
-    const Instant instant{player.scene().setup.model, player.scene().setup.parameters.gravity, *way[i],
-                          i > 0 ? way[i - 1].get() : nullptr,
-                          i + 1 < way.size() ? way[i + 1].get() : nullptr};
-    samples.push_back(static_cast<float>(asked.at(instant, subject.index)));
+    const FrameContext frame{player.scene().setup.model, player.scene().setup.parameters.gravity, *way[i],
+                             i > 0 ? way[i - 1].get() : nullptr,
+                             i + 1 < way.size() ? way[i + 1].get() : nullptr};
+    samples.push_back(static_cast<float>(asked.at(frame, subject.index)));
   }
   if (!way.empty()) {
     history.first = way.front();

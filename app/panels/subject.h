@@ -1,4 +1,4 @@
-// Members, bodies and anchors that are looked at closely, and what is to be known of them.
+// Members, bodies and anchors that can be inspected, and their values.
 #pragma once
 
 #include <compare>
@@ -24,29 +24,29 @@ std::string name_of(const Model& model, const Subject& subject);
 /// The body that it is, belongs to, or holds.
 std::size_t body_of(const Model& model, const Subject& subject);
 
-/// Has it outlined.
+/// Marks it to be outlined in the picture.
 void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame);
 
 /// From BODY or BODY/MEMBER. Throws io::InputError that says what there is.
 Subject subject_named(const Model& model, const std::string& name);
 
-/// An instant with its neighbours; null: there is none.
-struct Instant {
+/// A recorded frame and, for differences in time, its neighbours; null: there is none.
+struct FrameContext {
   const Model& model;
   const Vec3& gravity;  ///< m/s^2
   const io::FrameRow& row;
   const io::FrameRow* before = nullptr;
   const io::FrameRow* after = nullptr;
 };
-/// That of `row` among the recorded instants.
-Instant instant_of(const Player& player, const io::FrameRow& row);
+/// `row` between its neighbours among the recorded frames.
+FrameContext frame_context(const Player& player, const io::FrameRow& row);
 
-/// One number of a subject, in `unit`; not a number where it means nothing. Of a member the greatest along
+/// One number of a subject, in `unit`; NaN where it is not defined. Of a member the greatest magnitude along
 /// it, with its sign.
 struct SubjectValue {
   Phrase name;
   const char* unit;
-  double (*at)(const Instant& instant, std::size_t index);
+  double (*at)(const FrameContext& frame, std::size_t index);
 };
 std::span<const SubjectValue> values_of(Subject::Kind kind);
 
@@ -56,11 +56,11 @@ inline constexpr std::size_t k_stress_value = 0, k_first_component_value = 2;
 /// "0.013", "12.3", "1.23e+06", or a dash for what is not a number.
 std::string value_text(double value);
 
-/// Contacts press on nodes in the middle of pairs of the member's elements, whose own bending they then give
-/// only roughly.
+/// Whether section forces of the member are rough at `row`: a contact force acts on the middle node of a pair
+/// of its elements, and bending within the pair is not resolved.
 bool is_approximate(const Model& model, const io::FrameRow& row, std::size_t member);
 
-/// Values at all instants on the way to the branch shown, kept up as the run goes on.
+/// Values at all frames of Player::way(), extended as the run goes on.
 class Histories {
  public:
   /// One for each row of Player::way().

@@ -24,7 +24,7 @@ struct TeachingState {
   std::shared_ptr<const Accelerogram> record;  ///< of the present place
   double scale = 1;                            ///< likewise
   std::optional<DemoGuide> guide;
-  std::optional<std::size_t> wanted;  ///< of demos(): it was asked for in the last frame
+  std::optional<std::size_t> wanted;  ///< index into demos(): asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
   MapState map;
 };
@@ -32,7 +32,7 @@ struct TeachingState {
 /// Amplitude over frequency with the present shake: criteria of overturning, or the map.
 void draw_excitation(Player& player, TeachingState& state, std::string& refused);
 
-/// All of the panel.
+/// The whole panel.
 void draw_teaching(Player& player, TeachingState& state, std::string& refused);
 
 }  // namespace topple::app

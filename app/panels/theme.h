@@ -6,7 +6,7 @@
 namespace topple::app {
 
 /// A cell of the overturning map and the mark in it.
-struct CellLook {
+struct CellStyle {
   ImU32 fill, mark;
 };
 
@@ -16,11 +16,11 @@ struct Theme {
   ImU32 veil;         ///< behind words over the scene
   ImU32 frame, axis, faint, cursor;
   ImU32 line, chosen, positive, negative, hinge, edit, ghost, other;
-  ImU32 floor[3];       ///< its components
-  CellLook verdict[6];  ///< by study::Verdict
+  ImU32 floor[3];        ///< its components
+  CellStyle verdict[6];  ///< by study::Verdict
 };
 
-/// That of the window: a light one until a dark one is chosen.
+/// Whether the window has the dark theme; it begins with the light one.
 inline bool& window_is_dark() {
   static bool dark = false;
   return dark;

@@ -178,8 +178,8 @@ std::string event_text(const Player& player, const io::RecordedEvent& event) {
                                                                    : k_passes;
   const std::string words =
       event.event.kind == Event::Kind::model
-          ? say(k_computed_as, say(k_levels[static_cast<std::size_t>(event.event.value)]),
-                say(k_level_reasons[static_cast<std::size_t>(event.event.reason)]))
+          ? say(k_computed_as, say(phrase_of(static_cast<ModelLevel>(event.event.value))),
+                say(phrase_of(event.event.reason)))
           : say(what);
   const Model& model = player.scene().setup.model;
   return say(k_event, when(player, event.step, event.time),
@@ -187,14 +187,8 @@ std::string event_text(const Player& player, const io::RecordedEvent& event) {
 }
 
 std::string edit_text(const Player& player, const LoggedEdit& edit) {
-  const io::Key& key = io::key_of(edit.edit.key);
-  const Vec3& v = edit.edit.value;
-  const std::string value =
-      edit.edit.key == Edit::Key::direction ? fmt::format("[{:.3g}, {:.3g}, {:.3g}]", v.x(), v.y(), v.z())
-      : key.type == io::KeyType::boolean
-          ? std::string(v.x() != 0 ? "true" : "false")
-          : fmt::format("{:.4g} {}", v.x() / io::unit_value(key.unit, key.dimension), key.unit);
-  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit), value);
+  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit),
+             io::edit_value_text(edit.edit, io::EditSpelling::shown));
 }
 
 struct Mark {

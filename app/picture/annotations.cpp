@@ -207,7 +207,7 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
     }
     add(b.base, b.edge(scale));
   }
-  // One that is the same all along is told once, in the middle.
+  // One that is the same all along is written once, in the middle.
   const auto label = [&](const Ordinate& at) {
     out.labels.push_back({to_float(at.edge(scale)), value_text(component, at.value)});
   };

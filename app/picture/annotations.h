@@ -1,8 +1,6 @@
 // What a picture shows beside the bodies: hinges, forces at contacts, paths, and a diagram of forces.
 #pragma once
 
-#include <vector>
-
 #include "app/picture/picture_settings.h"
 #include "app/picture/run_extent.h"
 #include "render/scene/scene_frame.h"

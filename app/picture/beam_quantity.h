@@ -28,7 +28,7 @@ struct BeamQuantityTraits {
   bool is_signed;
   /// Of element `e` under these forces, SI; null: of displacements, not of forces.
   double (*value)(const Model& model, std::size_t e, const SectionForces& forces);
-  /// Where it stands at a yield stress, SI; null: it does not tell of yielding.
+  /// Its value at a yield stress, SI; null: it has none.
   double (*at_yield)(double stress);
 };
 std::span<const BeamQuantityTraits> beam_quantities();

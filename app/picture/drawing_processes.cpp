@@ -11,8 +11,10 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "app/support/interrupt.h"
+#include "solver/io/host/process.h"
 
 namespace topple::app {
 namespace {
@@ -59,11 +61,13 @@ void send_answer(int to, const void* bytes, std::size_t size, bool failed) {
 }
 
 /// Reaps them; those that still draw end with the picture that they are at, so that no file is half written.
+/// Forked, and not programs as those of host::Process: they go on with what `open` holds in memory (scene,
+/// rows, settings), which no command line could name, and must not be killed in the middle of a file.
 class Processes {
  public:
   Processes() = default;
   ~Processes() {
-    for (const Process& process : all_) close(process.from);
+    for (Process& process : all_) process.from.close();
     for (const Process& process : all_)
       while (waitpid(process.id, nullptr, 0) < 0 && errno == EINTR) {
       }
@@ -74,27 +78,23 @@ class Processes {
   void start(int number, int step, int count, const std::function<DrawPicture()>& open) {
     int ends[2];
     if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "drawing: pipe");
+    host::Descriptor from(ends[0]);
+    const host::Descriptor to(ends[1]);
     const pid_t parent = getpid(), id = fork();
-    if (id < 0) {
-      const int error = errno;
-      close(ends[0]);
-      close(ends[1]);
-      throw std::system_error(error, std::generic_category(), "drawing: fork");
-    }
+    if (id < 0) throw std::system_error(errno, std::generic_category(), "drawing: fork");
     if (id == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       if (getppid() != parent) _exit(1);
-      for (const Process& other : all_) close(other.from);
-      close(ends[0]);
-      draw_some(number, step, count, open, ends[1]);
+      for (Process& other : all_) other.from.close();
+      from.close();
+      draw_some(number, step, count, open, to.get());
     }
-    close(ends[1]);
-    all_.push_back({id, ends[0]});
+    all_.push_back({id, std::move(from)});
   }
 
   /// False: interrupted.
   bool receive(int number, std::vector<std::uint8_t>& answer) {
-    const int from = all_[static_cast<std::size_t>(number) % all_.size()].from;
+    const int from = all_[static_cast<std::size_t>(number) % all_.size()].from.get();
     Header header;
     if (!read_all(from, &header, sizeof header)) return false;
     answer.resize(static_cast<std::size_t>(header.size));
@@ -106,7 +106,7 @@ class Processes {
  private:
   struct Process {
     pid_t id;
-    int from;
+    host::Descriptor from;
   };
 
   static bool read_all(int from, void* bytes, std::size_t size) {

@@ -146,7 +146,7 @@ int draw_ghost_video(const host::Target& target, const NamedReplay& of_a, const 
     // Ctrl+C on a terminal reaches ffmpeg as well: that its pipe broke is then no error.
     if (!interrupted()) throw;
   }
-  say("interrupted; " + target.path.string() + " is not written");
+  log_message("interrupted; " + target.path.string() + " is not written");
   return k_interrupted;
 }
 

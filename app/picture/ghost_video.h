@@ -4,7 +4,6 @@
 #include <string>
 
 #include "app/picture/replay.h"
-#include "render/output/image.h"
 #include "solver/io/host/staged_file.h"
 #include "solver/io/scene/scene.h"
 

@@ -8,8 +8,8 @@
 
 namespace topple::app {
 
-/// Of the rows that can be looked at, and of the states that a run can be taken back to. What is older is
-/// then known at fewer instants; a recording keeps them all.
+/// Of the rows that can be shown, and of the states that a run can return to. Older ones are thinned out; a
+/// recording keeps them all.
 inline constexpr std::size_t k_most_row_bytes = std::size_t{512} << 20;
 inline constexpr std::size_t k_most_point_bytes = std::size_t{16} << 20;
 

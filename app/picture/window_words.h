@@ -1,7 +1,11 @@
 // Texts of the window, in its languages. Numbers are of those languages alike.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
+
 #include "app/support/language.h"
+#include "solver/body/model_level.h"
 
 namespace topple::app {
 
@@ -140,16 +144,33 @@ inline constexpr Phrase k_hinges{"forms a plastic hinge", "塑性ヒンジ発生
 inline constexpr Phrase k_breaks{"breaks a member", "部材破断"};
 inline constexpr Phrase k_passes{"passes its critical angle", "転倒限界角を超過"};
 inline constexpr Phrase k_computed_as{"is computed as {0} ({1})", "計算モデル {0}（{1}）に変更"};
-inline constexpr Phrase k_levels[] = {{"rigid", "剛体"}, {"elastic", "弾性"}, {"frame", "骨組"}};
-inline constexpr Phrase k_level_reasons[] = {
-    {"asked for", "指定による"},
-    {"only motion is wanted", "運動のみ必要"},
-    {"stresses are wanted", "応力が必要"},
-    {"contacts are nearly as stiff as the body", "接触剛性が家具の剛性に近い"},
-    {"a section is near yield", "断面が降伏に近い"},
-    {"deformations are no longer small", "微小変形でない"},
-    {"another body is near", "他の家具が近い"},
-    {"calm again", "静穏に戻った"}};
+
+/// Japanese of what the solver has English words for, which stand where there is no row.
+template <class Kind>
+struct Japanese {
+  Kind kind;
+  std::string_view words;
+};
+inline constexpr Japanese<ModelLevel> k_levels[] = {
+    {ModelLevel::rigid, "剛体"}, {ModelLevel::elastic, "弾性"}, {ModelLevel::frame, "骨組"}};
+inline constexpr Japanese<LevelReason> k_level_reasons[] = {
+    {LevelReason::asked, "指定による"},       {LevelReason::motion, "運動のみ必要"},
+    {LevelReason::stress, "応力が必要"},      {LevelReason::contact_frequency, "接触剛性が家具の剛性に近い"},
+    {LevelReason::yield, "断面が降伏に近い"}, {LevelReason::deformation, "微小変形でない"},
+    {LevelReason::near, "他の家具が近い"},    {LevelReason::calm, "静穏に戻った"}};
+
+template <class Table, class Kind>
+Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {
+  const auto* const row = std::ranges::find_if(table, [kind](const auto& of) { return of.kind == kind; });
+  return {english, row == std::end(table) ? english : row->words};
+}
+inline Phrase phrase_of(ModelLevel level) {
+  return phrase_of(traits(level).word, k_levels, level);
+}
+inline Phrase phrase_of(LevelReason reason) {
+  return phrase_of(name(reason), k_level_reasons, reason);
+}
+
 inline constexpr Phrase k_edited{"{0}: {1} = {2}", "{0}：{1} = {2}"};
 inline constexpr Phrase k_mark_lifts{"lifts off", "浮き上がり"};
 inline constexpr Phrase k_mark_strikes{"strikes", "衝突"};

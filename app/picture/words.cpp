@@ -10,6 +10,7 @@
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 
 namespace topple::app {
 namespace {
@@ -32,6 +33,22 @@ Stance stance(const io::FrameRow& row, std::size_t body) {
          : tilt > k_upright ? Stance::rocking
                             : Stance::standing;
 }
+
+/// Kinds of shakes that have words.
+struct ShakeWords {
+  Shake::Kind kind;
+  std::string (*say_it)(const Shake&);
+};
+constexpr ShakeWords k_shake_words[] = {
+    {Shake::Kind::sine, [](const Shake& s) { return say(k_floor_sine, s.frequency, s.amplitude / k_gal); }},
+    {Shake::Kind::sweep,
+     [](const Shake& s) { return say(k_floor_sweep, s.frequency, s.last_frequency, s.amplitude / k_gal); }},
+    {Shake::Kind::pulse, [](const Shake& s) { return say(k_floor_pulse, s.duration, s.amplitude / k_gal); }},
+    {Shake::Kind::record,
+     [](const Shake& s) {
+       return say(k_floor_record, s.record->duration, std::abs(s.scale) * s.record->peak / k_gal);
+     }},
+};
 
 /// Of the angle at which it would topple; of a body without one, of that at which it lies.
 double share_of_critical(const io::FrameRow& row, std::size_t body) {
@@ -149,18 +166,9 @@ std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
 std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
-  const double gal = shake.amplitude / k_gal;
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-      return say(k_floor_sine, shake.frequency, gal);
-    case Shake::Kind::sweep:
-      return say(k_floor_sweep, shake.frequency, shake.last_frequency, gal);
-    case Shake::Kind::pulse:
-      return say(k_floor_pulse, shake.duration, gal);
-    case Shake::Kind::record:
-      return say(k_floor_record, shake.record->duration, std::abs(shake.scale) * shake.record->peak / k_gal);
-  }
-  return "";
+  for (const ShakeWords& words : k_shake_words)
+    if (words.kind == shake.kind) return words.say_it(shake);
+  return traits(shake.kind).word;
 }
 
 }  // namespace topple::app

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/report_words.h"
+#include "app/support/language.h"
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/intensity.h"
 #include "solver/study/common/spread.h"
@@ -20,7 +20,7 @@ struct TiltCurve {
   std::optional<double> critical;
 };
 
-/// A picture of one instant.
+/// A picture of one frame.
 struct KeyPicture {
   enum class Kind { start, falling, most_tilted, end };
   Kind kind = Kind::start;
@@ -36,7 +36,7 @@ struct KeyPicture {
   std::vector<Label> labels = {};
 };
 
-/// All that the page tells.
+/// All that the page shows.
 struct Report {
   const io::Scene* scene = nullptr;
   std::string command;                 ///< that made it

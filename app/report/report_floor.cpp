@@ -26,26 +26,46 @@ std::string shape_name(const ReportPage& page, Shake::Shape shape) {
   return traits(shape).word;
 }
 
+std::string gal_of(const Shake& shake) {
+  return short_shown(shake.amplitude / k_gal);
+}
+
+/// Kinds of shakes that have a sentence.
+struct ShakeSentence {
+  Shake::Kind kind;
+  std::string (*in_words)(const ReportPage&, const Shake&);
+};
+constexpr ShakeSentence k_sentences[] = {
+    {Shake::Kind::sine,
+     [](const ReportPage& page, const Shake& shake) {
+       return page.text(words::k_sine, short_shown(shake.frequency), gal_of(shake),
+                        direction(shake.direction), short_shown(shake.start),
+                        shake.cycles > 0 ? page.text(words::k_cycles, short_shown(shake.cycles))
+                                         : page.text(words::k_endless));
+     }},
+    {Shake::Kind::sweep,
+     [](const ReportPage& page, const Shake& shake) {
+       return page.text(words::k_sweep, short_shown(shake.frequency), short_shown(shake.last_frequency),
+                        gal_of(shake), direction(shake.direction), short_shown(shake.start),
+                        short_shown(shake.duration));
+     }},
+    {Shake::Kind::pulse,
+     [](const ReportPage& page, const Shake& shake) {
+       return page.text(words::k_pulse, shape_name(page, shake.shape), gal_of(shake),
+                        direction(shake.direction), short_shown(shake.start), short_shown(shake.duration));
+     }},
+    {Shake::Kind::record,
+     [](const ReportPage& page, const Shake& shake) {
+       return page.text(words::k_record, short_shown(shake.record->duration), shake.record->components.size(),
+                        short_shown(std::abs(shake.scale) * shake.record->peak / k_gal),
+                        short_shown(shake.scale), short_shown(shake.start));
+     }},
+};
+
 std::string in_words(const ReportPage& page, const Shake& shake) {
-  const std::string gal = short_shown(shake.amplitude / k_gal), along = direction(shake.direction);
-  const std::string start = short_shown(shake.start);
-  switch (shake.kind) {
-    case Shake::Kind::sine:
-      return page.text(words::k_sine, short_shown(shake.frequency), gal, along, start,
-                       shake.cycles > 0 ? page.text(words::k_cycles, short_shown(shake.cycles))
-                                        : page.text(words::k_endless));
-    case Shake::Kind::sweep:
-      return page.text(words::k_sweep, short_shown(shake.frequency), short_shown(shake.last_frequency), gal,
-                       along, start, short_shown(shake.duration));
-    case Shake::Kind::pulse:
-      return page.text(words::k_pulse, shape_name(page, shake.shape), gal, along, start,
-                       short_shown(shake.duration));
-    case Shake::Kind::record:
-      return page.text(words::k_record, short_shown(shake.record->duration), shake.record->components.size(),
-                       short_shown(std::abs(shake.scale) * shake.record->peak / k_gal),
-                       short_shown(shake.scale), start);
-  }
-  return "";
+  for (const ShakeSentence& sentence : k_sentences)
+    if (sentence.kind == shake.kind) return sentence.in_words(page, shake);
+  return traits(shake.kind).word;
 }
 
 double peak_along(const study::Motion& motion, int axis) {
@@ -89,7 +109,7 @@ std::string floor_section(ReportPage& page) {
   for (const Shake& shake : shakes) out += "<li>" + escaped(in_words(page, shake)) + "</li>\n";
   out += "</ul>\n";
   if (std::ranges::any_of(shakes, [](const Shake& s) {
-        return s.kind == Shake::Kind::sine && s.initial_velocity == Shake::Start::jump;
+        return traits(s.kind).steady && s.initial_velocity == Shake::Start::jump;
       }))
     out += page.paragraph(page.say(words::k_jump), "note");
   out += page.figure(charts(page), page.say(words::k_floor_chart, page.next_figure()));

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/report/report_parts.h"
+#include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 
 namespace topple::app {
@@ -19,9 +20,13 @@ std::string plain(double value) {
   return value < 1e5 ? short_shown(value, 5) : shown(value, 0);
 }
 
-std::string model_in_words(const ReportPage& page, const std::string& model) {
-  return page.say(model == "rigid" ? words::k_rigid : model == "elastic" ? words::k_elastic : words::k_frame);
-}
+struct LevelPhrase {
+  ModelLevel kind;
+  const Phrase& phrase;
+};
+constexpr LevelPhrase k_levels[] = {{ModelLevel::rigid, words::k_rigid},
+                                    {ModelLevel::elastic, words::k_elastic},
+                                    {ModelLevel::frame, words::k_frame}};
 
 /// All models that a body was computed as.
 std::string models(const ReportPage& page, const ordered_json& body) {
@@ -29,7 +34,8 @@ std::string models(const ReportPage& page, const ordered_json& body) {
   for (const ordered_json& change : body["model_changes"]) seen.insert(change["model"]);
   if (seen.empty()) seen.insert(body["model"]);
   std::string out;
-  for (const std::string& model : seen) out += (out.empty() ? "" : "; ") + model_in_words(page, model);
+  for (const std::string& model : seen)
+    out += (out.empty() ? "" : "; ") + page.say(row_of(k_levels, level_called(model).kind).phrase);
   return out;
 }
 

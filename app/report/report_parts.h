@@ -2,11 +2,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/report/report.h"
+#include "app/report/report_words.h"
 #include "app/report/svg_chart.h"
 
 namespace topple::app {

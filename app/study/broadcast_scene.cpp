@@ -2,20 +2,20 @@
 
 namespace topple::app {
 
-std::vector<std::string> told(const io::Scene& scene) {
+std::vector<std::string> broadcast_parts(const io::Scene& scene) {
   std::vector<std::string> parts{scene.name, scene.text};
   for (const io::SceneFile& file : scene.files) parts.insert(parts.end(), {file.name, file.bytes});
   return parts;
 }
 
-io::Scene scene_from(const std::vector<std::string>& told) {
-  const auto read = [&told](const std::string& name) {
-    for (std::size_t k = 2; k + 1 < told.size(); k += 2)
-      if (told[k] == name) return told[k + 1];
+io::Scene scene_from(const std::vector<std::string>& parts) {
+  const auto read = [&parts](const std::string& name) {
+    for (std::size_t k = 2; k + 1 < parts.size(); k += 2)
+      if (parts[k] == name) return parts[k + 1];
     throw io::InputError(name + ": is not among the files of the scene");
   };
-  io::Scene scene = io::parse_scene(told[1], told[0], {}, read);
-  scene.name = told[0];
+  io::Scene scene = io::parse_scene(parts[1], parts[0], {}, read);
+  scene.name = parts[0];
   return scene;
 }
 

@@ -1,4 +1,4 @@
-// A scene as rank 0 tells it to the others.
+// A scene as rank 0 broadcasts it to the others.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace topple::app {
 
 /// Name, text, then name and bytes of each file.
-std::vector<std::string> told(const io::Scene& scene);
-io::Scene scene_from(const std::vector<std::string>& told);
+std::vector<std::string> broadcast_parts(const io::Scene& scene);
+io::Scene scene_from(const std::vector<std::string>& parts);
 
 }  // namespace topple::app

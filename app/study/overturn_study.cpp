@@ -46,20 +46,20 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
                             study::valued(other, other.values[static_cast<std::size_t>(map.own_column)]) +
                             ":";
   if (!at.fit) return where + " none, " + at.why_not + "\n";
-  const auto told = [](const study::Lognormal& fit, const std::string& what, const std::string& unit) {
+  const auto line_of = [](const study::Lognormal& fit, const std::string& what, const std::string& unit) {
     const study::Interval median = fit.median_interval(), beta = fit.beta_interval();
     return fmt::format("  {} median {:.4g}{} (95 %: {:.4g} to {:.4g}), beta {:.3g} ({:.2g} to {:.2g})\n",
                        what, fit.median, unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta,
                        beta.low, beta.high);
   };
-  std::string text = where + "\n" + told(*at.fit, along.key + ":", along.unit);
+  std::string text = where + "\n" + line_of(*at.fit, along.key + ":", along.unit);
   const std::vector<study::FloorPeak> peaks = floor_peaks(plan, map, map.own_column);
   if (peaks.empty()) return text;
   for (const study::GroundMeasure& measure : study::k_ground_measures)
     if (const study::Fragility over =
             study::fit_fragility(levels_over(measure, levels(plan, map, map.own_column), peaks));
         over.fit)
-      text += told(*over.fit, std::string(measure.title) + ":", measure.unit);
+      text += line_of(*over.fit, std::string(measure.title) + ":", measure.unit);
   return text;
 }
 

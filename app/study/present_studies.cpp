@@ -24,15 +24,15 @@ io::Scene changed_scene(const io::Scene& scene, const Parameters& now) {
 
 /// Works through the cases in this order; `gather` makes of the rows what is shown.
 template <class Found>
-void work_through(Background<Found>& desk, const std::vector<int>& order, int jobs, const MakeWork& make,
-                  const std::function<bool()>& give_up,
+void work_through(Background<Found>& background, const std::vector<int>& order, int jobs,
+                  const MakeWork& make, const std::function<bool()>& give_up,
                   const std::function<Found(const StudyRows&)>& gather) {
   std::vector<CaseWork> works;
   works.reserve(static_cast<std::size_t>(jobs));
   for (int worker = 0; worker < jobs; ++worker) works.push_back(make());
   StudyRows rows(order.size());
   std::mutex keeping;
-  desk.show(gather(rows));
+  background.show(gather(rows));
   Clock::time_point shown = Clock::now();
   study::for_each_case(
       static_cast<int>(order.size()), jobs,
@@ -43,24 +43,24 @@ void work_through(Background<Found>& desk, const std::vector<int>& order, int jo
         rows[static_cast<std::size_t>(k)] = std::move(row);
       },
       [&](int done) {
-        desk.tell(static_cast<double>(done) / static_cast<double>(order.size()));
+        background.report_progress(static_cast<double>(done) / static_cast<double>(order.size()));
         if (seconds_since(shown) > k_between) {
           const std::lock_guard lock(keeping);
-          desk.show(gather(rows));
+          background.show(gather(rows));
           shown = Clock::now();
         }
         return !give_up();
       });
-  desk.show(gather(rows));
+  background.show(gather(rows));
 }
 
 template <class Found>
 std::unique_ptr<Background<Found>> search(const std::function<void(Background<Found>&)>& work) {
-  return std::make_unique<Background<Found>>([work](Background<Found>& desk) {
+  return std::make_unique<Background<Found>>([work](Background<Found>& background) {
     try {
-      work(desk);
+      work(background);
     } catch (const std::exception& error) {
-      desk.show({.failure = error.what()});
+      background.show({.failure = error.what()});
     }
   });
 }
@@ -76,12 +76,12 @@ MakeWork work_on(const study::OverturnPlan& plan) {
 }
 
 std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now) {
-  return search<OverturnFound>([scene, now](OverturnSearch& desk) {
+  return search<OverturnFound>([scene, now](OverturnSearch& background) {
     const auto plan = std::make_shared<const study::OverturnPlan>(
         study::plan_overturn(changed_scene(scene, now), "", "", 1, 0));
     const int jobs = std::max(1, study::core_count() - 1);  // one is for what the window shows
     work_through<OverturnFound>(
-        desk, case_order(*plan), jobs, work_on(*plan), [&] { return desk.stopped(); },
+        background, case_order(*plan), jobs, work_on(*plan), [&] { return background.stopped(); },
         [&](const StudyRows& rows) {
           return OverturnFound{.failure = "", .plan = plan, .map = gather(*plan, rows)};
         });
@@ -89,7 +89,7 @@ std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const
 }
 
 std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const Parameters& now) {
-  return search<PrecisionFound>([scene, now](PrecisionSearch& desk) {
+  return search<PrecisionFound>([scene, now](PrecisionSearch& background) {
     const auto start = Clock::now();
     study::PrecisionPlan own = study::plan_precision(changed_scene(scene, now));
     own.laws.resize(1);
@@ -99,8 +99,8 @@ std::unique_ptr<PrecisionSearch> search_precision(const io::Scene& scene, const 
     parameters.reserve(static_cast<std::size_t>(plan->cases()));
     for (int k = 0; k < plan->cases(); ++k) parameters.push_back(plan->setup_of(k).parameters);
     work_through<PrecisionFound>(
-        desk, case_order(*plan), 1, work_on(*plan),
-        [&] { return desk.stopped() || seconds_since(start) > k_quick; },
+        background, case_order(*plan), 1, work_on(*plan),
+        [&] { return background.stopped() || seconds_since(start) > k_quick; },
         [&](const StudyRows& rows) {
           return PrecisionFound{
               .failure = "", .plan = plan, .parameters = parameters, .study = gather(*plan, rows)};

@@ -1,7 +1,6 @@
 // This process among those that mpirun started.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -26,7 +25,7 @@ class Ranks {
   void send(int to, int tag, const std::string& bytes);
   /// What has come, the oldest first; does not wait.
   std::optional<std::string> take(int from, int tag);
-  /// Waits, asleep between looks.
+  /// Waits, asleep between two polls.
   std::string wait(int from, int tag);
 
  private:

@@ -91,7 +91,7 @@ const Study k_stability_study = {
         plan->horizon = study::find_horizon(plan->scene.setup, interrupted);
         return fmt::format("{}", plan->horizon);
       };
-      sweep.hear = [plan](const std::string& horizon) { plan->horizon = std::stod(horizon); };
+      sweep.receive = [plan](const std::string& horizon) { plan->horizon = std::stod(horizon); };
       return sweep;
     }};
 

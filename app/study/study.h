@@ -33,9 +33,9 @@ struct Findings {
 struct Sweep {
   std::function<SweepPlan()> cases;  ///< but for kind, stem and start
   std::function<Findings(const std::vector<std::string>& rows)> gather;
-  /// What rank 0 finds out before the cases, and how the others hear of it. Absent: nothing.
+  /// What rank 0 finds out before the cases, and how the others receive it. Absent: nothing.
   std::function<std::string()> prepare = {};
-  std::function<void(const std::string& prepared)> hear = {};
+  std::function<void(const std::string& prepared)> receive = {};
 };
 
 /// A study that is not shared among ranks. go_on(done, of) as for_each_case (parallel.h).
@@ -67,7 +67,7 @@ Sweep sweep_of(const std::shared_ptr<Plan>& plan, const MakeWork& make,
               [plan, make] {
                 return SweepPlan{.settings = settings_of(*plan),
                                  .order = case_order(*plan),
-                                 .told = told(plan->scene),
+                                 .broadcast = broadcast_parts(plan->scene),
                                  .make = make};
               },
           .gather =

@@ -39,7 +39,7 @@ Crew::Crew(std::optional<int> jobs) : jobs_(jobs.value_or(study::core_count())) 
 
 Crew::~Crew() {
   if (!ranks_ || !leads()) return;
-  if (!told_)
+  if (!broadcast_sent_)
     for (int rank = 1; rank < ranks(); ++rank) {
       ranks_->wait(rank, k_common);
       ranks_->send(rank, k_common, "0");
@@ -58,22 +58,22 @@ int Crew::ranks() const {
   return ranks_ ? ranks_->count() : 1;
 }
 
-int Crew::gather_workers(const std::vector<std::string>& told) {
-  told_ = true;
+int Crew::gather_workers(const std::vector<std::string>& broadcast) {
+  broadcast_sent_ = true;
   for (int rank = 1; rank < ranks(); ++rank) {
     const int workers = std::stoi(ranks_->wait(rank, k_common));
     for (int worker = 1; worker <= workers; ++worker) remote_.push_back({rank, worker});
-    ranks_->send(rank, k_common, std::to_string(told.size()));
-    for (const std::string& part : told) ranks_->send(rank, k_common, part);
+    ranks_->send(rank, k_common, std::to_string(broadcast.size()));
+    for (const std::string& part : broadcast) ranks_->send(rank, k_common, part);
   }
   return jobs_ + static_cast<int>(remote_.size());
 }
 
-std::optional<std::vector<std::string>> Crew::listen() {
+std::optional<std::vector<std::string>> Crew::receive_broadcast() {
   ranks_->send(0, k_common, std::to_string(jobs_));
-  std::vector<std::string> told(std::stoul(ranks_->wait(0, k_common)));
-  for (std::string& part : told) part = ranks_->wait(0, k_common);
-  return told.empty() ? std::nullopt : std::optional(std::move(told));
+  std::vector<std::string> broadcast(std::stoul(ranks_->wait(0, k_common)));
+  for (std::string& part : broadcast) part = ranks_->wait(0, k_common);
+  return broadcast.empty() ? std::nullopt : std::optional(std::move(broadcast));
 }
 
 void Crew::serve(const MakeWork& make, bool quick) {
@@ -111,7 +111,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
     if (kept.rows()[static_cast<std::size_t>(k)].empty()) left.push_back(k);
   end.kept = kept.count();
   if (!left.empty()) {
-    const int workers = crew.gather_workers(plan.told);
+    const int workers = crew.gather_workers(plan.broadcast);
     std::vector<CaseWork> works;
     works.reserve(static_cast<std::size_t>(workers));
     for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
@@ -141,8 +141,8 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
   end.rows = kept.rows();
   end.run = kept.count();
   if (!interrupted()) return end;
-  say(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
-                  end.rows.size(), end.file));
+  log_message(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
+                          end.rows.size(), end.file));
   return std::nullopt;
 }
 

@@ -30,7 +30,7 @@ MakeWork work_on(const Plan& plan) {
 }
 
 /// The workers of a sweep: threads of this process, and under mpirun those of the other ranks, to which rank
-/// 0 hands out cases. They need nothing but the same command line: rank 0 tells them the rest.
+/// 0 hands out cases. They need nothing but the same command line: rank 0 broadcasts the rest.
 class Crew {
  public:
   /// `jobs`: threads of this process; absent: one per core that it may run on. Under mpirun joins the other
@@ -42,10 +42,10 @@ class Crew {
   bool leads() const;
   int ranks() const;
   int jobs() const { return jobs_; }
-  /// Rank 0, once: what the others listen for. Returns the number of workers.
-  int gather_workers(const std::vector<std::string>& told);
+  /// Rank 0, once: broadcasts this to the others. Returns the number of workers.
+  int gather_workers(const std::vector<std::string>& broadcast);
   /// The others: none when rank 0 has no work.
-  std::optional<std::vector<std::string>> listen();
+  std::optional<std::vector<std::string>> receive_broadcast();
   /// The others: works until rank 0 says that it was all. With `quick` runs are given up when its time is
   /// over.
   void serve(const MakeWork& make, bool quick);
@@ -59,15 +59,15 @@ class Crew {
   int jobs_;
   std::unique_ptr<Ranks> ranks_;  ///< null: alone
   std::vector<Remote> remote_;
-  bool told_ = false;
+  bool broadcast_sent_ = false;
 };
 
 struct SweepPlan {
-  std::string kind = {};            ///< of study
-  std::string stem = {};            ///< of its results; rows are kept in STEM.rows while it goes on
-  nlohmann::ordered_json settings;  ///< that rows depend on, besides the version
-  std::vector<int> order;           ///< of all cases, as they are begun
-  std::vector<std::string> told;    ///< to other ranks
+  std::string kind = {};               ///< of study
+  std::string stem = {};               ///< of its results; rows are kept in STEM.rows while it goes on
+  nlohmann::ordered_json settings;     ///< that rows depend on, besides the version
+  std::vector<int> order;              ///< of all cases, as they are begun
+  std::vector<std::string> broadcast;  ///< to the other ranks, in this order
   MakeWork make;
   Clock::time_point start = Clock::now();  ///< of the study, from which the time of --quick counts
 };

@@ -39,7 +39,7 @@ class Background {
 
   // For the work.
   bool stopped() const { return stopped_; }
-  void tell(double progress) { progress_ = progress; }
+  void report_progress(double progress) { progress_ = progress; }
   void show(Result result) {
     auto shown = std::make_shared<const Result>(std::move(result));
     const std::lock_guard lock(mutex_);

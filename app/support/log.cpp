@@ -6,7 +6,7 @@
 
 namespace topple::app {
 
-void say(const std::string& message) {
+void log_message(const std::string& message) {
   std::string line = "topple: ";
   for (const char c : message) {
     if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f)

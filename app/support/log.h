@@ -7,6 +7,6 @@ namespace topple::app {
 
 /// One line on stderr after the program's name. Control characters, which names of files may hold, are
 /// written out, so that it stays one line.
-void say(const std::string& message);
+void log_message(const std::string& message);
 
 }  // namespace topple::app

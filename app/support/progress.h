@@ -1,4 +1,4 @@
-// Progress of long work on stderr, or told to the process that started this one.
+// Progress of long work on stderr, or reported to the process that started this one.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,8 @@
 // What all parts of the program say of a scene in the same way.
 #pragma once
 
+#include "solver/io/scene/scene_words.h"
+#include "solver/model/table.h"
 #include "solver/run/run.h"
 
 namespace topple::app {
@@ -9,8 +11,7 @@ inline constexpr double k_degrees = 180 / k_pi;  ///< in a radian
 
 /// "strap", "bracket" or "pole", as files name it.
 inline const char* anchor_type(const Anchor& anchor) {
-  static const char* const k_types[] = {"strap", "bracket", "pole"};
-  return k_types[static_cast<std::size_t>(anchor.type)];
+  return row_of(io::k_anchor_types, anchor.type).word;
 }
 
 /// Its rows go by load step and load factor, not by time.

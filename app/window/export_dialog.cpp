@@ -13,6 +13,7 @@
 #include "app/picture/row.h"
 #include "app/support/files.h"
 #include "app/support/terms.h"
+#include "app/window/message.h"
 
 namespace topple::app {
 namespace {

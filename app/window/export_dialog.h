@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/window/export_job.h"
-#include "app/window/message.h"
 #include "app/window/viewer.h"
 
 namespace topple::app {

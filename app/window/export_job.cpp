@@ -17,7 +17,7 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_looks = 200;  // times 10 ms, with a process that was asked to end
+constexpr int k_polls = 200;  // times 10 ms, with a process that was asked to end
 
 /// What it said last, without the program's name; empty: nothing.
 std::string last_words(const std::string& errors) {
@@ -47,7 +47,7 @@ ExportJob::ExportJob(const std::string& program, std::vector<std::string> argume
 
 ExportJob::~ExportJob() {
   cancel();
-  for (int i = 0; i < k_looks && !done(); ++i) {
+  for (int i = 0; i < k_polls && !done(); ++i) {
     update();
     if (!done()) usleep(10000);
   }

@@ -16,8 +16,8 @@ class ExportJob {
  public:
   enum class Makes { file, folder };
 
-  /// A process writes a file, `result`, by itself; it is told the place of a folder behind `arguments`.
-  /// Throws std::runtime_error when it cannot be started.
+  /// file: the process writes `result` itself. folder: the path of a staging folder is appended to
+  /// `arguments`. Throws std::runtime_error when it cannot be started.
   ExportJob(const std::string& program, std::vector<std::string> arguments, std::string result,
             Makes makes = Makes::file);
   ~ExportJob();
@@ -32,7 +32,7 @@ class ExportJob {
   /// Of a process that is done: why it failed; empty: it did not.
   const std::string& failure() const { return failure_; }
   const std::string& result() const { return result_; }
-  double part() const { return part_; }                  ///< 0..1, as far as it tells
+  double part() const { return part_; }                  ///< 0..1, as last reported
   const std::string& progress() const { return line_; }  ///< "40 of 300 pictures, 23/s, 11 s left"
 
  private:

@@ -1,4 +1,4 @@
-// Panels over the window's content, and what they tell when something went wrong.
+// Modal panels over the window's content, and messages about what went wrong.
 #pragma once
 
 #include <string>

@@ -8,6 +8,7 @@
 
 #include "app/panels/shell_words.h"
 #include "app/support/files.h"
+#include "app/window/message.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_save.h"
 

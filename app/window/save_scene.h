@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/window/message.h"
+#include "app/panels/panels.h"
 #include "render/gl/key_press.h"
 #include "solver/io/scene/scene.h"
 
@@ -25,7 +25,7 @@ class SaveDialog {
   bool is_open() const { return open_; }
   /// Enter saves.
   void press(const render::KeyPress& press);
-  /// Returns what to tell when it has saved; then it is closed.
+  /// Returns a message when it has saved; then it is closed.
   std::string draw(const io::Scene& scene, const Parameters& now, const Box& window,
                    const render::OverlayFonts& fonts);
 

@@ -1,4 +1,4 @@
-// What is open in the window: a run or a recording, and how it is looked at.
+// What is open in the window: a run or a recording, its player and its viewer.
 #pragma once
 
 #include <functional>

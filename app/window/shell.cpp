@@ -72,8 +72,8 @@ void Shell::show(LiveSource source, const std::string& path) {
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);
-  told_failure_.clear();
-  told_trouble_.clear();
+  shown_failure_.clear();
+  shown_trouble_.clear();
   message_.reset();
   chooser_.close();
   save_.close();
@@ -126,7 +126,7 @@ bool Shell::finish_opening() {
 }
 
 bool Shell::update(double wall_s) {
-  const bool told_before = message_.has_value();
+  const bool had_message = message_.has_value();
   bool news = finish_opening();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != applied_) {
@@ -137,7 +137,7 @@ bool Shell::update(double wall_s) {
   if (chooser_.is_open()) news = chooser_.update() || news;
   news = export_.update() || news;
   if (const std::string words = export_.take_news(); !words.empty() && session_)
-    session_->viewer().tell(words);
+    session_->viewer().show_message(words);
   std::erase_if(closing_, [&](std::future<LiveStatus>& one) {
     if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
     if (const LiveStatus status = one.get(); !status.record_failure.empty())
@@ -147,7 +147,7 @@ bool Shell::update(double wall_s) {
   const bool seen = session_ && session_->viewer().update(wall_s);
   if (session_) watch_trouble();
   if (demo_) start_demo();
-  if (news || message_.has_value() != told_before) frames_due_ = k_frames_of_news;
+  if (news || message_.has_value() != had_message) frames_due_ = k_frames_of_news;
   if (frames_due_ > 0) --frames_due_;
   return news || seen || opening_ || frames_due_ > 0;
 }
@@ -168,14 +168,15 @@ void Shell::start_demo() {
   }
 }
 
-// Each trouble is told once.
+// Each is shown once.
 void Shell::watch_trouble() {
   const LiveStatus& status = session_->player().status();
-  if (status.record_failure != std::exchange(told_failure_, status.record_failure) && !told_failure_.empty())
-    message_ = {say(ww::k_record_broke_off), told_failure_, say(ww::k_record_kept)};
+  if (status.record_failure != std::exchange(shown_failure_, status.record_failure) &&
+      !shown_failure_.empty())
+    message_ = {say(ww::k_record_broke_off), shown_failure_, say(ww::k_record_kept)};
   const bool failed = status.kind == LiveStatus::Kind::failed, ended = status.kind == LiveStatus::Kind::ended;
   const std::string trouble = failed || ended ? status.message : "";
-  if (trouble == std::exchange(told_trouble_, trouble) || trouble.empty()) return;
+  if (trouble == std::exchange(shown_trouble_, trouble) || trouble.empty()) return;
   message_ = {say(failed ? ww::k_diverged : ww::k_program_failed), trouble,
               failed ? say(ww::k_diverged_about) : "", session_->player().can_halve_step()};
 }
@@ -242,8 +243,8 @@ void Shell::build_over() {
     chooser_.draw(window, fonts());
     if (const auto choice = chooser_.take_choice()) open(*choice);
   } else if (save_.is_open()) {
-    const std::string told = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
-    if (!told.empty()) session_->viewer().tell(told);
+    const std::string saved = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
+    if (!saved.empty()) session_->viewer().show_message(saved);
   } else if (export_.is_open()) {
     export_.draw(session_->player(), session_->viewer(), session_->recording(), window, fonts());
   }

@@ -20,8 +20,8 @@ namespace topple::app {
 
 class Shell {
  public:
-  /// `scale` as of Viewer. `wake` makes a waiting window look; any thread calls it. `program` draws exports
-  /// and reads recordings first. The others as of Viewer.
+  /// `scale` as of Viewer. `wake` ends the wait of an idle window; any thread calls it. `program` draws
+  /// exports and reads recordings first. The others as of Viewer.
   Shell(render::Stage& stage, float scale, std::function<void()> wake, std::string program = "/proc/self/exe",
         const Appearance& appearance = {}, Viewer::Keep keep = {});
   ~Shell();
@@ -87,7 +87,7 @@ class Shell {
   std::string opening_path_;
   std::unique_ptr<Session> session_;
   std::vector<std::future<LiveStatus>> closing_;
-  std::string told_failure_, told_trouble_;  ///< what a message was shown for
+  std::string shown_failure_, shown_trouble_;  ///< for which a message was shown
   struct WantedDemo {
     std::size_t which;  ///< of demos()
     bool opened;        ///< its scene

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr double k_longest = 3;                       // s, simulated
 constexpr double k_tilt = 0.2;                        // rad, of a body: something happens
 constexpr double k_statics = 0.7;                     // of the way through the loads
-constexpr int k_steps_at_once = 20;                   // between two looks
+constexpr int k_steps_at_once = 20;                   // between two tests for it
 constexpr float k_room_above = 0.1f;                  // of the height, for what tilts
 constexpr std::chrono::milliseconds k_patience{300};  // with a step under way when nobody wants them any more
 
@@ -45,7 +45,7 @@ bool something_tilts(const Model& model, const io::FrameRow& row, const io::Fram
 }
 
 /// The first instant at which something happens.
-std::optional<render::SceneFrame> telling_frame(const io::Scene& scene, const std::atomic<bool>& stop) {
+std::optional<render::SceneFrame> eventful_frame(const io::Scene& scene, const std::atomic<bool>& stop) {
   const Setup& setup = scene.setup;
   Run run(setup);
   if (!run.status().ok()) return std::nullopt;
@@ -88,7 +88,7 @@ struct Thumbnails::Shared {
   std::deque<Ready> ready;
   std::promise<void> ended;
 
-  void tell(Ready one) {
+  void publish(Ready one) {
     {
       const std::lock_guard lock(mutex);
       ready.push_back(std::move(one));
@@ -119,7 +119,7 @@ void Thumbnails::work(const std::shared_ptr<Shared>& shared) {
     const fs::path file = cache_file(scene);
     std::optional<render::Image> image = render::load_png(file);
     if (image)
-      shared->tell({std::string(scene.name), {}, std::move(image)});
+      shared->publish({std::string(scene.name), {}, std::move(image)});
     else
       missing.push_back(scene);
   }
@@ -127,8 +127,8 @@ void Thumbnails::work(const std::shared_ptr<Shared>& shared) {
     if (shared->stop) break;
     try {
       const io::Scene scene = io::load_scene(std::string(builtin.name));
-      if (auto frame = telling_frame(scene, shared->stop))
-        shared->tell({std::string(builtin.name), cache_file(builtin), std::nullopt, std::move(frame)});
+      if (auto frame = eventful_frame(scene, shared->stop))
+        shared->publish({std::string(builtin.name), cache_file(builtin), std::nullopt, std::move(frame)});
     } catch (const std::exception&) {  // a card without a picture
     }
   }

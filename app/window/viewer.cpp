@@ -102,10 +102,10 @@ void Viewer::choose_appearance(const Appearance& appearance) {
   try {
     if (keep_) keep_(appearance_);
   } catch (const std::runtime_error& error) {
-    told_ = say(window_words::k_not_written, error.what());
+    message_ = say(window_words::k_not_written, error.what());
   }
   if (const double scale = fitting().scale; scale < appearance_.scale)
-    told_ = say(window_words::k_letters_too_large, 100 * appearance_.scale, 100 * scale);
+    message_ = say(window_words::k_letters_too_large, 100 * appearance_.scale, 100 * scale);
 }
 
 bool Viewer::update(double wall_s) {
@@ -175,7 +175,7 @@ void Viewer::build(const std::function<void()>& over) {
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
       refused_.clear();
-      told_.clear();
+      message_.clear();
     }
   std::optional<io::FrameRow> row = player_.row();
   const LiveStatus& status = player_.status();
@@ -216,9 +216,9 @@ void Viewer::draw_scene() {
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
   }
-  if (follows_ && scene_changed_) go_along();
+  if (follows_ && scene_changed_) move_with_followed();
   if (!fitted_) {
-    look(view_);
+    fit_view(view_);
     flight_ = 1;
     orbit_ = to_;
     fitted_ = true;
@@ -240,7 +240,7 @@ void Viewer::follow(const std::optional<std::size_t>& body) {
   if (body && row_) follows_ = Followed{*body, centre_of(*row_, *body)};
 }
 
-void Viewer::go_along() {
+void Viewer::move_with_followed() {
   if (!is_finite(*row_)) return;
   const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
   for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
@@ -249,7 +249,7 @@ void Viewer::go_along() {
 
 // What may still fall needs room beside it; words lie above, below and at the right. Where they leave little
 // height, bodies stand beside them.
-void Viewer::look(render::NamedView view) {
+void Viewer::fit_view(render::NamedView view) {
   render::SceneFrame frame = frame_;
   if (!player_.replay()) {
     const float room = k_falling_room * (frame.bounds_max[2] - frame.bounds_min[2]);

@@ -13,6 +13,7 @@
 #include "app/panels/panels.h"
 #include "app/panels/precision_panel.h"
 #include "app/panels/teaching_panel.h"
+#include "app/picture/bridge.h"
 #include "render/gl/key_press.h"
 #include "render/output/stage.h"
 #include "render/scene/font.h"
@@ -26,7 +27,7 @@ class Viewer {
   /// What the side panel shows.
   enum class Tab { parameters, picture, inspect, teach };
 
-  /// Keeps how the window looks for the next start. May throw std::runtime_error.
+  /// Keeps the appearance for the next start. May throw std::runtime_error.
   using Keep = std::function<void(const Appearance&)>;
 
   /// Adds its letters to the atlas of the current Dear ImGui context and uploads them. `scale`: of letters
@@ -35,14 +36,14 @@ class Viewer {
   Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view = render::NamedView::iso,
          const PictureSettings& settings = {}, const Appearance& appearance = {}, Keep keep = {});
 
-  /// Looks closely at it; nothing: at none.
+  /// Shows it in the inspector; nothing: none.
   void inspect(const std::optional<Subject>& subject);
 
   void show(Tab tab) { tab_ = tab; }
 
-  /// From the instant that was drawn last on the camera goes along with this body; nothing: it stays.
+  /// From the frame drawn last on the camera follows this body; nothing: it stays.
   void follow(const std::optional<std::size_t>& body);
-  /// The body that the camera goes along with.
+  /// The body that the camera follows.
   std::optional<std::size_t> followed() const {
     return follows_ ? std::optional(follows_->body) : std::nullopt;
   }
@@ -83,7 +84,7 @@ class Viewer {
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
   /// In the status line until the next click.
-  void tell(const std::string& words) { told_ = words; }
+  void show_message(const std::string& words) { message_ = words; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
@@ -97,12 +98,12 @@ class Viewer {
   void next_colour();
   void turn(bool& on);
   void toggle_following();
-  void go_along();
+  void move_with_followed();
   void lay_out();
   void handle_characters();
   void handle_mouse();
   void pick(const std::optional<render::Pick>& found);
-  void look(render::NamedView view);
+  void fit_view(render::NamedView view);
   void move_camera(double wall_s);
   void draw_scene();
   void draw_words(const io::FrameRow& row);
@@ -132,9 +133,9 @@ class Viewer {
   render::Orbit orbit_, from_, to_;
   double flight_ = 1;                    // of the camera from one place to the other, 0..1
   bool fitted_ = false, moved_ = false;  // moved_: by hand since it was fitted
-  bool words_due_ = false;               // they were written for another camera or instant
+  bool words_due_ = false;               // they were written for another camera or frame
   bool computes_ = false;                // beside the window
-  /// What the camera goes along with, and where that was when it last did.
+  /// The body that the camera follows, and its centre when the camera last moved with it, m.
   struct Followed {
     std::size_t body;
     Eigen::Vector3f centre;
@@ -159,7 +160,7 @@ class Viewer {
   ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true;
   std::string refused_;
-  std::string told_;  // what was written, or why it was not
+  std::string message_;  // what was written, or why it was not
   double frame_ms_ = 0;
 };
 

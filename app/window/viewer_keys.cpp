@@ -39,11 +39,11 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {{"Ctrl+Z", "Ctrl+Z"}, k_key_undo, 'Z', true, false, [](Viewer& v) { v.player_.undo(); }},
       {{"Ctrl+Shift+Z", "Ctrl+Shift+Z"}, k_key_redo, 'Z', true, true, [](Viewer& v) { v.player_.redo(); }},
       {k_ctrl_click, k_key_type},
-      {{"1", "1"}, k_key_front, '1', false, false, [](Viewer& v) { v.look(render::NamedView::front); }},
-      {{"2", "2"}, k_key_side, '2', false, false, [](Viewer& v) { v.look(render::NamedView::side); }},
-      {{"3", "3"}, k_key_top, '3', false, false, [](Viewer& v) { v.look(render::NamedView::top); }},
-      {{"4", "4"}, k_key_corner, '4', false, false, [](Viewer& v) { v.look(render::NamedView::iso); }},
-      {{"F", "F"}, k_key_fit, 'F', false, false, [](Viewer& v) { v.look(v.view_); }},
+      {{"1", "1"}, k_key_front, '1', false, false, [](Viewer& v) { v.fit_view(render::NamedView::front); }},
+      {{"2", "2"}, k_key_side, '2', false, false, [](Viewer& v) { v.fit_view(render::NamedView::side); }},
+      {{"3", "3"}, k_key_top, '3', false, false, [](Viewer& v) { v.fit_view(render::NamedView::top); }},
+      {{"4", "4"}, k_key_corner, '4', false, false, [](Viewer& v) { v.fit_view(render::NamedView::iso); }},
+      {{"F", "F"}, k_key_fit, 'F', false, false, [](Viewer& v) { v.fit_view(v.view_); }},
       {{"T", "T"}, k_key_follow, 'T', false, false, [](Viewer& v) { v.toggle_following(); }},
       {{"Q", "Q"}, k_key_quantity, 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
       {{"A", "A"}, k_key_forces, 'A', false, false, [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
@@ -108,14 +108,14 @@ void Viewer::press(const render::KeyPress& press) {
 
 void Viewer::toggle_following() {
   const Model& model = player_.scene().setup.model;
-  told_.clear();
+  message_.clear();
   if (follows_ || !row_ || model.furniture_total() == 0) {
     follow(std::nullopt);
     return;
   }
   const std::size_t body = body_of(model, inspection_.picked.value_or(Subject{Subject::Kind::body, 0}));
   follow(body);
-  told_ = say(k_follows, model.bodies[body].name);
+  message_ = say(k_follows, model.bodies[body].name);
 }
 
 void Viewer::next_colour() {

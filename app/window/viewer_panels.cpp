@@ -138,7 +138,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
     const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) /
                         static_cast<float>(std::size(views));
     for (const auto& [name, view] : views) {
-      if (ImGui::Button(say(name).c_str(), {width, 0})) look(view);
+      if (ImGui::Button(say(name).c_str(), {width, 0})) fit_view(view);
       if (view != render::NamedView::iso) ImGui::SameLine();
     }
     ImGui::Separator();
@@ -175,9 +175,9 @@ void Viewer::write_plots(PlotRequest request) {
       write_whole_file(path, host::FileKind::csv, plots_csv(player_, histories_, inspection_));
     else
       write_png(path, picture_of_plots());
-    told_ = say(k_written, std::filesystem::absolute(path, ignored).string());
+    message_ = say(k_written, std::filesystem::absolute(path, ignored).string());
   } catch (const std::runtime_error& error) {
-    told_ = say(k_not_written, error.what());
+    message_ = say(k_not_written, error.what());
   }
 }
 
@@ -210,7 +210,7 @@ render::Image Viewer::picture_of_plots() {
 void Viewer::write_status() {
   const LiveStatus& status = player_.status();
   std::string words = status_in_words(player_);
-  if (!told_.empty()) words = told_;
+  if (!message_.empty()) words = message_;
   if (!refused_.empty()) words = say(k_refused, refused_);
   if (!status.record_failure.empty()) words += say(k_no_longer_recorded, status.record_failure);
   const float gap = ImGui::GetStyle().ItemSpacing.x;

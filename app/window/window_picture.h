@@ -16,7 +16,7 @@ namespace topple::app {
 /// Shows a recording as `topple view` does, in the language of the window.
 class WindowPicture {
  public:
-  /// followed: body that the camera goes along with from the first instant on. Throws io::InputError, and
+  /// followed: body that the camera follows from the first frame on. Throws io::InputError, and
   /// std::runtime_error when it cannot draw. `context` is current and outlives it.
   WindowPicture(render::Context& context, const std::shared_ptr<const io::Scene>& scene,
                 const std::string& recording, render::NamedView view, const PictureSettings& settings,
@@ -26,7 +26,7 @@ class WindowPicture {
   WindowPicture(const WindowPicture&) = delete;
   WindowPicture& operator=(const WindowPicture&) = delete;
 
-  /// The recorded instant nearest to `time`.
+  /// The recorded frame nearest to `time`, s.
   render::Image at(double time);
 
  private:

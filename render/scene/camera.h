@@ -31,7 +31,7 @@ struct Camera {
   Eigen::Vector3f eye;         ///< m
 };
 
-/// Opening of the lens from bottom to top, radians: long enough to keep upright things upright.
+/// Vertical field of view, radians; narrow, so that upright edges stay nearly parallel.
 inline constexpr float k_vertical_fov = 0.42f;
 
 /// Camera at `eye` whose right, up and towards-the-viewer directions are the rows of `axes`.
@@ -44,8 +44,8 @@ Camera camera_at(const Eigen::Vector3f& eye, const Eigen::Matrix3f& axes, float 
 Camera look_at(const Eigen::Vector3f& eye, const Eigen::Vector3f& target, const Eigen::Vector3f& up,
                float aspect, float near, float far);
 
-/// Direction of sight, by the line from what is looked at to the eye, radians. At an elevation of a
-/// right angle the azimuth still tells which way is up in the picture.
+/// View direction, as that of the line from the target to the eye, radians. At an elevation of a
+/// right angle the azimuth still says which way is up in the picture.
 struct Sight {
   float azimuth;    ///< about z, 0 on the +x side, positive towards +y
   float elevation;  ///< above the floor's plane
@@ -65,10 +65,10 @@ struct Room {
 Camera fit_box(const Eigen::Matrix3f& axes, const Eigen::Vector3f& low, const Eigen::Vector3f& high,
                const Room& room, float aspect);
 
-/// The same camera, carried `by`, m.
+/// The same camera, translated `by`, m.
 Camera carried(const Camera& camera, const Eigen::Vector3f& by);
 
-/// No number of it is infinite or not a number.
+/// Whether all its numbers are finite.
 bool finite(const Camera& camera);
 
 /// The named camera, as near as it can be with the frame's whole bounds between the title, the

@@ -1,4 +1,4 @@
-// The letters of the overlay: DejaVu Sans, with the Latin, Greek and technical signs that captions use, and
+// The fonts of the overlay: DejaVu Sans, with the Latin, Greek and technical signs that captions use, and
 // Japanese ones from VL PGothic.
 #pragma once
 
@@ -16,10 +16,10 @@ struct OverlayFonts {
   ImFont* small = nullptr;
 };
 
-/// What is written besides captions in Latin letters.
+/// Characters to load besides those of Latin captions.
 struct Letters {
-  std::string more = {};  ///< holds every other letter
-  bool needed = false;    ///< nothing can be read without those
+  std::string more = {};  ///< text that holds each of them
+  bool needed = false;    ///< without their font there is an error, else signs for missing characters
   float smallest = 9;     ///< px
 };
 

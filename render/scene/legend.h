@@ -16,7 +16,7 @@ namespace topple::render {
 
 struct Layout;
 
-/// There is a legend, and its range can be shown.
+/// Whether there is a legend with a range that can be drawn; counts one that cannot in `left_out`.
 bool can_be_drawn(const Legend& legend, LeftOut& left_out);
 
 /// Where a legend may lie, px, and how long its bar may be.

@@ -1,4 +1,4 @@
-// The camera that a person moves: around a point, towards it, and along the picture.
+// The camera moved by hand: orbit about a point, zoom and pan.
 #pragma once
 
 #include <Eigen/Core>

@@ -135,8 +135,8 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.Enable(GL_CULL_FACE);
   gl_.BlendEquation(GL_FUNC_ADD);
   upload(frame, camera, target.height, left_out);
-  Look& look = this->look(quality);
-  look.shadows.draw(low_, high_, floor_plane(frame, low_.z()), [this] { draw(solids_); });
+  Lighting& lighting = this->lighting(quality);
+  lighting.shadows.draw(low_, high_, floor_plane(frame, low_.z()), [this] { draw(solids_); });
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl_.Viewport(0, 0, target.width, target.height);
@@ -151,7 +151,7 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
 
   bind(k_colour_unit, colour_maps_[static_cast<std::size_t>(map)]);
-  look.shadows.bind();
+  lighting.shadows.bind();
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthFunc(GL_LEQUAL);
   gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
@@ -159,8 +159,8 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   draw_grounds(frame, camera, quality, target.height, left_out);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
-  use_lit(look.solid, look, camera);
-  look.solid.set("u_colour_map", static_cast<int>(k_colour_unit));
+  use_lit(lighting.solid, lighting, camera);
+  lighting.solid.set("u_colour_map", static_cast<int>(k_colour_unit));
   draw(solids_);
   draw_flat(shells_);
   gl_.Enable(GL_BLEND);
@@ -176,7 +176,7 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
-  use_lit(look.solid, look, camera);
+  use_lit(lighting.solid, lighting, camera);
   draw(arrows_);
   gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_DEPTH_TEST);
@@ -218,30 +218,30 @@ void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int hei
                  GL_STREAM_DRAW);
 }
 
-ScenePainter::Look::Look(const Gl& gl, std::string_view constants, const ShadowSize& size)
+ScenePainter::Lighting::Lighting(const Gl& gl, std::string_view constants, const ShadowSize& size)
     : ground(gl, "ground.vert", {constants, "light.glsl", "ground.frag"}),
       solid(gl, "solid.vert", {constants, "light.glsl", "solid.frag"}),
       shadows(gl, size) {}
 
-ScenePainter::Look& ScenePainter::look(Quality quality) {
-  std::unique_ptr<Look>& look = looks_[static_cast<std::size_t>(quality)];
-  if (look == nullptr) {
-    look = quality == Quality::still
-               ? std::make_unique<Look>(gl_, "look_still.glsl", ShadowSize{2048, 1024})
-               : std::make_unique<Look>(gl_, "look_interactive.glsl", ShadowSize{1024, 256});
+ScenePainter::Lighting& ScenePainter::lighting(Quality quality) {
+  std::unique_ptr<Lighting>& lighting = lightings_[static_cast<std::size_t>(quality)];
+  if (lighting == nullptr) {
+    lighting = quality == Quality::still
+                   ? std::make_unique<Lighting>(gl_, "look_still.glsl", ShadowSize{2048, 1024})
+                   : std::make_unique<Lighting>(gl_, "look_interactive.glsl", ShadowSize{1024, 256});
   }
-  return *look;
+  return *lighting;
 }
 
 void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
                                 LeftOut& left_out) {
-  const Look& look = this->look(quality);
+  const Lighting& lighting = this->lighting(quality);
   const auto [low, high] = drawable_bounds(frame);
-  use_lit(look.ground, look, camera);
-  look.ground.set("u_focus", ((low + high) / 2).eval());
-  look.ground.set("u_wall", wall_before_which_the_floor_lies(frame, camera.eye));
-  look.ground.set("u_fade_radius", 2.2f * (high - low).norm());
-  look.ground.set("u_line_width", std::max(1.0f, static_cast<float>(height) / 720));
+  use_lit(lighting.ground, lighting, camera);
+  lighting.ground.set("u_focus", ((low + high) / 2).eval());
+  lighting.ground.set("u_wall", wall_before_which_the_floor_lies(frame, camera.eye));
+  lighting.ground.set("u_fade_radius", 2.2f * (high - low).norm());
+  lighting.ground.set("u_line_width", std::max(1.0f, static_cast<float>(height) / 720));
   gl_.BindVertexArray(empty_array_.id());
   // Floors first: walls stand on them and fade out over them. A wall that hides the floor goes first
   // when pixels that are not seen should not be shaded.
@@ -262,15 +262,15 @@ void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Q
         std::swap(half.x(), half.y());
       }
       if (upright && axes.across.z() < 0) axes.across = -axes.across;
-      look.ground.set("u_centre", Vector3f(ground.centre.data()));
-      look.ground.set("u_along", axes.along);
-      look.ground.set("u_across", axes.across);
-      look.ground.set("u_normal", axes.normal);
-      look.ground.set("u_half", half);
-      look.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
-      look.ground.set("u_dark", frame.dark ? 1 : 0);
-      look.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
-      look.ground.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
+      lighting.ground.set("u_centre", Vector3f(ground.centre.data()));
+      lighting.ground.set("u_along", axes.along);
+      lighting.ground.set("u_across", axes.across);
+      lighting.ground.set("u_normal", axes.normal);
+      lighting.ground.set("u_half", half);
+      lighting.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
+      lighting.ground.set("u_dark", frame.dark ? 1 : 0);
+      lighting.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
+      lighting.ground.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
       gl_.DepthMask(seen_from_behind ? GL_FALSE : GL_TRUE);
       gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
@@ -321,11 +321,11 @@ void ScenePainter::draw_panels(const Camera& camera) {
   gl_.DepthMask(GL_TRUE);
 }
 
-void ScenePainter::use_lit(const Program& program, const Look& look, const Camera& camera) {
+void ScenePainter::use_lit(const Program& program, const Lighting& lighting, const Camera& camera) {
   program.use();
   program.set("u_view_projection", view_projection_);
   program.set("u_eye", camera.eye);
-  look.shadows.set(program);
+  lighting.shadows.set(program);
 }
 
 void ScenePainter::bind(GLuint unit, const GlObject& texture) {

@@ -25,7 +25,7 @@ struct Target {
 };
 
 /// interactive: shadows from fewer and coarser samples, for a software rasteriser that has to keep up
-/// with a person; still: as good as it gets.
+/// with a person; still: full quality.
 enum class Quality { interactive, still };
 
 /// Holds shaders, buffers and shadow maps for one context. Any call needs that context current.
@@ -39,14 +39,14 @@ class ScenePainter {
             const Target& target, LeftOut& left_out);
 
  private:
-  /// Programs and shadow maps of one quality.
-  struct Look {
-    Look(const Gl& gl, std::string_view constants, const ShadowSize& size);
+  /// Lit programs and shadow maps of one quality.
+  struct Lighting {
+    Lighting(const Gl& gl, std::string_view constants, const ShadowSize& size);
     Program ground, solid;
     Shadows shadows;
   };
 
-  Look& look(Quality quality);
+  Lighting& lighting(Quality quality);
   void upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
   void draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
                     LeftOut& left_out);
@@ -54,12 +54,12 @@ class ScenePainter {
   void draw_ghosts(const Camera& camera);
   void draw_panels(const Camera& camera);
   void draw_flat(const IndexRange& part);
-  void use_lit(const Program& program, const Look& look, const Camera& camera);
+  void use_lit(const Program& program, const Lighting& lighting, const Camera& camera);
   void bind(GLuint unit, const GlObject& texture);
 
   const Gl& gl_;
   Program backdrop_, panel_, ghost_, outline_;
-  std::array<std::unique_ptr<Look>, 2> looks_;  // made when first drawn with
+  std::array<std::unique_ptr<Lighting>, 2> lightings_;  // made when first drawn with
   GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
   std::array<GlObject, 3> colour_maps_;
   IndexRange solids_, ghosts_, shells_, trails_, bands_, arrows_;

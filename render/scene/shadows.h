@@ -1,4 +1,4 @@
-// What the key light does not reach, and what stands near the floor, as maps for the shaders.
+// Shadow maps: of the key light, and of contact with the floor.
 #pragma once
 
 #include <functional>

@@ -7,6 +7,7 @@
 
 #include "solver/body/elastic_basis.h"
 #include "solver/contact/coulomb.h"
+#include "solver/contact/penalty.h"
 #include "solver/math/elementary.h"
 
 namespace topple {
@@ -15,22 +16,7 @@ namespace {
 constexpr double k_same_line = 1e-6;  // m
 constexpr double k_bend = 0.05;       // of the reach: more than an elastic body deforms
 
-[[gnu::always_inline]] inline Four power(Four depth, double q) {
-  if (q == 1) return depth;
-  if (q == 2) return depth * depth;
-  for (int i = 0; i < 4; ++i) depth.set(i, elementary::pow(depth[i], q));
-  return depth;
-}
-
 }  // namespace
-
-PreparedLaw::PreparedLaw(const ContactLaw& law)
-    : ContactLaw(law),
-      root_alpha(std::sqrt(law.alpha)),
-      loss(normal_loss(law.restitution)),
-      bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed),
-      in_packs(traits(law).in_packs),
-      plain(in_packs && law.q == 1 && !(law.excess() > 0)) {}
 
 BodyContacts::BodyContacts(const Model& model, int body)
     : model_(model),
@@ -194,7 +180,7 @@ template <bool with_slope, bool plain, class Normal>
                                                                  Touch& touch) const {
   const Side& here = side(touch);
   const Four zero = Four(0);
-  const Four depth = plain ? touch.depth : power(touch.depth, law.q);
+  const Four depth = plain ? touch.depth : penalty_power(touch.depth, law.q);
   touch.conservative = choose(touch.touching, touch.alpha * depth, zero);
   const Four k = touch.stick_stiffness, c = law.root_alpha * here.damping;
   const bool weakens = !plain && law.excess() > 0;
@@ -208,7 +194,7 @@ template <bool with_slope, bool plain, class Normal>
     Four slope = normal_slope(law, law.loss, touch.conservative, f.inverse), across = c;
     if (gamma_dt > 0) {
       Four stiffness = touch.alpha / here.L;
-      if (!plain && law.q != 1) stiffness = law.q * stiffness * power(touch.depth, law.q - 1);
+      if (!plain) stiffness = stiffness * penalty_slope(touch.depth, law.q);
       slope -= choose(touch.touching, gamma_dt * stiffness * f.factor, zero);
       across += gamma_dt * k;
     }

@@ -27,15 +27,6 @@ namespace topple {
 using PackVec3 = PackVector<double>;
 using PackMat3 = PackMatrix<double>;
 
-/// A contact law with what is the same at all contacts.
-struct PreparedLaw : ContactLaw {
-  double root_alpha, loss;  ///< sqrt(alpha), normal_loss()
-  double bend;              ///< m/s, least smoothing speed of the law: how far a tangent by velocity is good
-  bool in_packs;            ///< ContactLawTraits
-  bool plain;               ///< in_packs, q = 1, static friction no higher than dynamic
-  explicit PreparedLaw(const ContactLaw& law);
-};
-
 /// Velocity of a body.
 struct BodyVelocity {
   PackVec3 linear, angular;  ///< m/s of the centre of gravity, rad/s

@@ -14,9 +14,6 @@ constexpr double k_iterate_share = 0.01;
 constexpr double k_contracts = 0.5;  // from one fixed-point iteration to the next, at least
 constexpr int k_most_iterates = 3;
 constexpr double k_velocity_error = 1e-7;  // of the speed, by Newton
-constexpr double k_good_rate = 0.1;        // of Newton with an old matrix
-constexpr double k_slow = 1e-3;            // m/s, below it errors are absolute
-constexpr int k_most_iterations = 20;
 
 // In place. Damping makes the matrix more than M, so that nothing needs a pivot.
 void factor(ModeMatrix& a, int n) {
@@ -47,22 +44,11 @@ void set_block(ModeMatrix& a, int row, int column, const PackMat3& block) {
   }
 }
 
-// m/s, of a linear and an angular velocity.
-double size_of(double reach, const PackVec3& x, const PackVec3& y) {
-  const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-  return sum_of(x) + reach * sum_of(y);
-}
-
-double speed_of(double reach, const BodyVelocity& u) {
-  return k_slow + size_of(reach, u.linear, u.angular);
-}
-
 }  // namespace
 
-// By fixed-point iteration, to `error` of the speed; false: that does not contract.
-[[gnu::always_inline]] inline bool ReducedBody::iterate_velocity(const ContactImpulse& impulse, double error,
-                                                                 BodyVelocity& u, ContactLoads& loads,
-                                                                 Amplitudes& load) {
+// By fixed-point iteration, to `error` of the speed; none: that does not contract.
+[[gnu::always_inline]] inline ReducedBody::Solution ReducedBody::iterate_velocity(
+    const ContactImpulse& impulse, double error, BodyVelocity& u, ContactLoads& loads, Amplitudes& load) {
   const auto& [law, r, h, free, m] = impulse;
   const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
   double last = 0;
@@ -71,7 +57,7 @@ double speed_of(double reach, const BodyVelocity& u) {
     BodyVelocity next{mul_add(h / 2 / mass_, now.force, free.linear),
                       free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * now.moment)),
                       {}};
-    double size = size_of(reach_, u.linear - next.linear, u.angular - next.angular);
+    double size = velocity_size(reach_, u.linear - next.linear, u.angular - next.angular);
     if (m > 0) contacts_.modal_loads(m, load);
     for (int k = 0; k < m; ++k) {
       next.rate[k] = free.rate[k] + h / 2 * kick_[k] * load[k];
@@ -79,9 +65,9 @@ double speed_of(double reach, const BodyVelocity& u) {
     }
     // what is left is a geometric series
     const double rate = last > 0 ? size / last : k_contracts;
-    if (size * rate <= (1 - rate) * error * speed_of(reach_, u)) {
+    if (size * rate <= (1 - rate) * error * velocity_scale(reach_, u)) {
       loads = now;
-      return true;
+      return Solution::found;
     }
     if (rate > k_contracts) break;
     u.linear = next.linear;
@@ -89,7 +75,7 @@ double speed_of(double reach, const BodyVelocity& u) {
     for (int k = 0; k < m; ++k) u.rate[k] = next.rate[k];
     last = size;
   }
-  return false;
+  return Solution::none;
 }
 
 // Factors of Newton's matrix for the forces found last with slopes.
@@ -115,16 +101,16 @@ void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat
 }
 
 // By Newton, with an old matrix while that serves.
-[[gnu::always_inline]] inline bool ReducedBody::correct_velocity(const ContactImpulse& impulse,
-                                                                 BodyVelocity& u, ContactLoads& loads,
-                                                                 Amplitudes& load, ReducedScratch& w) {
+[[gnu::always_inline]] inline ReducedBody::Solution ReducedBody::correct_velocity(
+    const ContactImpulse& impulse, BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
+    ReducedScratch& w) {
   const auto& [law, r, h, free, m] = impulse;
   const double per_root_mass = m > 0 ? 1 / std::sqrt(mass_) : 0;
   const PackMat3 inertia = inertia_at(r);
   std::optional<RigidSolver> rigid;
   bool fresh = m == 0 || w.substep != h || w.touching != contacts_.hash();
   double last = 0;
-  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < k_newton_iterations; ++iteration) {
     loads = fresh ? contacts_.evaluate_forces<true>(law, u, 0)
                   : contacts_.evaluate_forces<false, ContactSums::loads>(law, u, 0);
     PackVec3 x = mass_ * (u.linear - free.linear) - h / 2 * loads.force,
@@ -149,29 +135,32 @@ void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat
     }
     u.linear = u.linear - x;
     u.angular = u.angular - y;
-    size += size_of(reach_, x, y);
+    size += velocity_size(reach_, x, y);
     // what is left after the correction: its rate, or its square over that of the smoothing
     const double rate = fresh ? std::min(1., size / law.bend) : last > 0 ? size / last : 1;
-    if (size * rate <= k_velocity_error * speed_of(reach_, u)) {
+    if (size * rate <= k_velocity_error * velocity_scale(reach_, u)) {
       loads.force = 2 / h * mass_ * (u.linear - free.linear);
       loads.moment = 2 / h * (inertia * (u.angular - free.angular));
       for (int k = 0; k < m; ++k) load[k] = 2 / h / kick_[k] * (u.rate[k] - free.rate[k]);
-      return true;
+      return Solution::found;
     }
-    fresh = iteration > 0 && rate > k_good_rate;
+    fresh = iteration > 0 && rate > k_newton_good_rate;
     last = size;
   }
-  return false;
+  return Solution::none;
 }
 
 // The velocity u that half a step of the contact forces at it leaves, and these forces:
 //   u = free + (h/2) M^-1 F(u)
 // Begins with the u that is expected; by fixed-point iteration where that contracts, else by Newton.
-bool ReducedBody::solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
-                                 ContactLoads& loads, Amplitudes& load, ReducedScratch& w) {
+ReducedBody::Solution ReducedBody::solve_velocity(const Parameters& parameters, const ContactImpulse& impulse,
+                                                  BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
+                                                  ReducedScratch& w) {
   const double error = parameters.adaptive ? std::min(k_iterate_error, k_iterate_share * parameters.tolerance)
                                            : k_iterate_error;
-  return iterate_velocity(impulse, error, u, loads, load) || correct_velocity(impulse, u, loads, load, w);
+  return iterate_velocity(impulse, error, u, loads, load) == Solution::found
+             ? Solution::found
+             : correct_velocity(impulse, u, loads, load, w);
 }
 
 }  // namespace topple

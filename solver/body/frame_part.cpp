@@ -51,13 +51,10 @@ BodyEnergy FramePart::balance(const Parameters& parameters, const StepInputs& no
   BodySystem& s = system_;
   s.load(state, motion_);
   s.load_memory(state);
-  s.evaluate(parameters, state.time, motion_, state.stick, motion_.position);
+  s.evaluate(parameters, now, motion_, state.stick, motion_.position);
   for (int i = 0; i < s.count; ++i) {
     const int g = s.node[i];
-    for (int k = 0; k < 3; ++k) {
-      if (s.fixed[i] >> k & 1) s.force[i][k] = 0;
-      if (s.fixed[i] >> (3 + k) & 1) s.moment[i][k] = 0;
-    }
+    s.clear_fixed(i, s.force[i], s.moment[i]);
     const Mat3& j = s.model.node_inertia[g];
     const Vec3& omega = state.angular_velocity[g];
     state.acceleration[g] = state.algorithmic_acceleration[g] = s.force[i] / s.model.node_mass[g];
@@ -69,12 +66,9 @@ BodyEnergy FramePart::balance(const Parameters& parameters, const StepInputs& no
 
 void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
   IntegratorScratch& w = scratch.frame;
-  const double t = span.start.time;
   {
     const InPhase phase(w.profile, Phase::forces);
-    outcome.status =
-        traits(span.parameters.integrator)
-            .advance(system_, span.parameters, next, t, span.h, span.halvings, w, outcome.exchanged);
+    outcome.status = traits(span.parameters.integrator).advance(system_, span, next, w, outcome.exchanged);
   }
   if (!outcome.status.ok()) return;
   const InPhase phase(w.profile, Phase::energy);

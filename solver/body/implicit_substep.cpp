@@ -15,15 +15,12 @@ namespace {
 constexpr double k_gamma = 0.29289321881345254;  // 1 - 1/sqrt(2)
 constexpr double k_error_constant = 3 * k_gamma * k_gamma - 2 * k_gamma * k_gamma * k_gamma - 1. / 6;
 constexpr double k_stage_error = 1e-7;    // of the speed
-constexpr double k_good_rate = 0.1;       // of Newton with an old matrix
-constexpr double k_slow = 1e-3;           // m/s, below it errors of a stage are absolute
 constexpr double k_substep_error = 0.03;  // of the tolerance times the speed: local error of the velocity
 constexpr double k_speed_floor = 0.01;    // of the speed of a fall through the reach
 constexpr double k_resolved = 0.3;        // rad, of a contact's bounce, in the first substep after a touch
 constexpr double k_safety = 0.9, k_most_growth = 3, k_most_shrinking = 5;
 constexpr double k_least_substep = 1e-4;  // of the first one
 constexpr double k_no_stage = 1e3;        // counts as this error
-constexpr int k_most_iterations = 20;
 
 // |a''| times h^2/2, from what acts at the ends of the stages.
 PackVec3 bend(const PackVec3& start, const PackVec3& first, const PackVec3& second) {
@@ -71,11 +68,12 @@ ContactLoads ReducedBody::reach_stage(const ImplicitSubstep& substep, const Prep
 }
 
 // Newton for the velocity of a stage:  M u = momentum of `from` + gamma_dt (field + contacts).
-bool ReducedBody::solve_stage(ImplicitSubstep& substep, const StepInputs& now, const PackVec3& field,
-                              const Origin& from, BodyState& at, Stage& stage) {
+ReducedBody::Solution ReducedBody::solve_stage(ImplicitSubstep& substep, const StepInputs& now,
+                                               const PackVec3& field, const Origin& from, BodyState& at,
+                                               Stage& stage) {
   BodyVelocity& u = stage.u;
   double last = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < k_newton_iterations; ++iteration) {
     PackMat3 r;
     const ContactLoads loads = reach_stage(substep, now.law, from, substep.fresh, at, stage, r);
     const auto spin = [&] { return r * (inertia_ * transposed_times(r, u.angular)); };
@@ -90,22 +88,20 @@ bool ReducedBody::solve_stage(ImplicitSubstep& substep, const StepInputs& now, c
     substep.solver.solve(x, y);
     u.linear = u.linear - x;
     u.angular = u.angular - y;
-    const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-    const double size = sum_of(x) + reach_ * sum_of(y),
-                 speed = k_slow + sum_of(u.linear) + reach_ * sum_of(u.angular);
+    const double size = velocity_size(reach_, x, y);
     // what is left after the correction: its rate, or its square over that of the smoothing
     const double rate = substep.fresh ? std::min(1., size / now.law.bend) : size / last;
-    if (size * rate <= k_stage_error * speed) {
+    if (size * rate <= k_stage_error * velocity_scale(reach_, u)) {
       substep.fresh = false;
       stage.spin = spin();
       stage.damping_power = loads.damping_power;
       stage.friction_power = loads.friction_power;
-      return true;
+      return Solution::found;
     }
-    substep.fresh = rate > k_good_rate && (!substep.fresh || iteration > 0);
+    substep.fresh = rate > k_newton_good_rate && (!substep.fresh || iteration > 0);
     last = size;
   }
-  return false;
+  return Solution::none;
 }
 
 // too_long: the error of the velocity is greater than allowed, m/s. unsolved: a stage is not found.
@@ -137,7 +133,8 @@ ReducedBody::ImplicitOutcome ReducedBody::implicit_substep(const Parameters& par
   Stage one;
   one.u.linear = mul_add(gamma_dt / mass_, force0, packed(before.velocity));
   one.u.angular = omega0 + gamma_dt * (inverse_inertia * moment0);
-  if (!solve_stage(substep, middle, gravity - floor1, from, s, one)) return give_up(k_no_stage);
+  if (solve_stage(substep, middle, gravity - floor1, from, s, one) == Solution::none)
+    return give_up(k_no_stage);
   const PackVec3 force1 = 1 / gamma_dt * (mass_ * one.u.linear - from.momentum),
                  moment1 = 1 / gamma_dt * (one.spin - from.spin);
 
@@ -146,7 +143,7 @@ ReducedBody::ImplicitOutcome ReducedBody::implicit_substep(const Parameters& par
   Stage two;
   two.u.linear = 1 / mass_ * mul_add(gamma_dt, force1, from.momentum);
   two.u.angular = omega0 + h * (inverse_inertia * moment1);
-  if (!solve_stage(substep, end, gravity - floor2, from, s, two)) return give_up(k_no_stage);
+  if (solve_stage(substep, end, gravity - floor2, from, s, two) == Solution::none) return give_up(k_no_stage);
   const PackVec3 force2 = 1 / gamma_dt * (mass_ * two.u.linear - from.momentum),
                  moment2 = 1 / gamma_dt * (two.spin - from.spin);
 

@@ -61,6 +61,10 @@ const char* name(LevelReason reason) {
   return "";
 }
 
+const LevelTraits& level_called(std::string_view word) {
+  return *std::ranges::find(k_model_levels, word, &LevelTraits::word);
+}
+
 std::span<const BodyModelTraits> body_models() {
   return k_models;
 }

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
@@ -33,6 +34,9 @@ inline constexpr double k_negligible = 1e-4;      ///< strain energy over m g re
 
 /// A few words: "a section is near yield".
 const char* name(LevelReason reason);
+
+/// The level that has this word.
+const LevelTraits& level_called(std::string_view word);
 
 /// The level on which a body begins, and to which it comes back.
 struct LevelChoice {

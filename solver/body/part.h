@@ -17,15 +17,6 @@ struct PartScratch {
   IntegratorScratch frame;
 };
 
-/// A step of size h, s, from `start` to `end`.
-struct StepSpan {
-  const Parameters& parameters;
-  const StepInputs& start;
-  const StepInputs& end;
-  double h;
-  int halvings;  ///< how often the implicit methods of frames may halve h when Newton does not converge
-};
-
 /// What became of a part in a step.
 struct PartOutcome {
   StepEnergy exchanged;

@@ -11,7 +11,6 @@
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
-#include "solver/model/excitation.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
@@ -41,14 +40,6 @@ template <class F>
 }
 
 }  // namespace
-
-StepInputs::StepInputs(const Parameters& parameters, double t)
-    : time(t), law(contact_law(parameters, t)), floor(floor_acceleration(parameters.shakes, t)) {}
-
-StepInputs::StepInputs(const Parameters& parameters, double t, const StepInputs& before)
-    : time(t),
-      law(parameters.contact_ramp.over > 0 ? PreparedLaw(contact_law(parameters, t)) : before.law),
-      floor(floor_acceleration(parameters.shakes, t)) {}
 
 ReducedBody::ReducedBody(const Model& model, int body)
     : model_(model),
@@ -109,16 +100,16 @@ double ReducedBody::stable_substep(const Parameters& parameters, const ContactLa
   const int m = modes(s);
   const double free_limit =
       m > 0 ? k_free_turn / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (!contacts_.any() && !anchors_.any()) return free_limit / parameters.finer_parts;
+  if (!contacts_.any() && !anchors_.any()) return free_limit / parameters.substep_refinement;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.level == s.level)
-      return known.step / parameters.finer_parts;
+      return known.step / parameters.substep_refinement;
   const double step = find_stable_substep(law, s, free_limit);
   known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, step};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
-  return step / parameters.finer_parts;
+  return step / parameters.substep_refinement;
 }
 
 // Not above `free_limit`, with springs and stick springs as implicit as they get, in all directions.
@@ -250,11 +241,12 @@ struct ReducedBody::ExplicitSubstep {
   return substep;
 }
 
-// Half an impulse of what acts at the end, with contacts at the velocity that they leave. False: that is not
+// Half an impulse of what acts at the end, with contacts at the velocity that they leave. None: that is not
 // found.
-[[gnu::always_inline]] inline bool ReducedBody::push_at_end(const Parameters& parameters,
-                                                            const ExplicitSubstep& substep, BodyState& s,
-                                                            ReducedScratch& w) {
+[[gnu::always_inline]] inline ReducedBody::Solution ReducedBody::push_at_end(const Parameters& parameters,
+                                                                             const ExplicitSubstep& substep,
+                                                                             BodyState& s,
+                                                                             ReducedScratch& w) {
   const double h = substep.h;
   const PackMat3& r = substep.r;
   const BodyState& before = substep.before;
@@ -280,8 +272,9 @@ struct ReducedBody::ExplicitSubstep {
       free.angular = free.angular + r * (inverse_inertia_ * transposed_times(r, h / 2 * packed(twist)));
       if (bends) add_product(h / 2, kick_, anchor_loads, free.rate);
     }
-    if (!solve_velocity(parameters, {substep.end.law, r, h, free, modes(s)}, u, loads, s.load, w))
-      return false;
+    if (solve_velocity(parameters, {substep.end.law, r, h, free, modes(s)}, u, loads, s.load, w) ==
+        Solution::none)
+      return Solution::none;
   }
   s.force = mass_ * field + unpacked(loads.force);
   s.moment = unpacked(loads.moment);
@@ -293,7 +286,7 @@ struct ReducedBody::ExplicitSubstep {
   s.velocity += h / 2 / mass_ * s.force;
   s.angular_velocity += unpacked(h / 2 * (inverse_inertia_ * transposed_times(r, packed(s.moment))));
   if (bends) add_product(h / 2, kick_, s.load, s.rate);
-  return true;
+  return Solution::found;
 }
 
 // As book_work, and what the method itself takes out, from its own kinematics.
@@ -347,7 +340,7 @@ ReducedBody::ExplicitOutcome ReducedBody::explicit_substep(const Parameters& par
       return give_up(SubstepEnd::too_long, stable);
   contacts_.follow(substep.before, substep.r0, s, substep.r);
   anchors_.find(s);
-  if (!push_at_end(parameters, substep, s, w)) return give_up(SubstepEnd::unsolved, h);
+  if (push_at_end(parameters, substep, s, w) == Solution::none) return give_up(SubstepEnd::unsolved, h);
   book_explicit(parameters, substep, s, booked);
   contacts_.book_law_change(start.law, end.law, booked);
   contacts_.keep_sticks(end.law, stick);

@@ -30,20 +30,11 @@
 #include "solver/body/body_anchors.h"
 #include "solver/body/body_contacts.h"
 #include "solver/body/elastic_basis.h"
+#include "solver/frame/step_span.h"
 #include "solver/state/energy.h"
 #include "solver/state/step_result.h"
 
 namespace topple {
-
-/// What all bodies share at an instant of a step.
-struct StepInputs {
-  double time;  ///< s
-  PreparedLaw law;
-  Vec3 floor;  ///< m/s^2, acceleration
-  StepInputs(const Parameters& parameters, double t);
-  /// The same, for an instant after `before` with the same parameters: cheaper.
-  StepInputs(const Parameters& parameters, double t, const StepInputs& before);
-};
 
 /// Scratch of a step, for one body after the other: factors of Newton's matrix, a right side, and the ends of
 /// a substep. Factors serve the substeps of one step, no longer: a run that goes on from a state has none,
@@ -77,8 +68,8 @@ class ReducedBody {
   StepStatus::Kind advance(const Parameters& parameters, const StepInputs& start, const StepInputs& end,
                            double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy,
                            ReducedScratch& scratch);
-  /// Brings it to rest under gravity on planes; false: it has no rest, or tips over by itself.
-  bool settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
+  /// Brings it to rest under gravity on planes; not_settled: it has no rest, or tips over by itself.
+  StepStatus::Kind settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// Longest step that resolves contacts and turning, s. Elastic: BodyContacts::look_ahead. Rigid:
   /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
@@ -121,6 +112,8 @@ class ReducedBody {
     SubstepEnd end;
     double error;  // local error over the allowed one
   };
+  /// What became of an iteration, or of a substep's equations.
+  enum class Solution { found, none };
   /// Half a substep's impulse of contacts, (h/2) F(u), on a body that moves at `free` without it.
   struct ContactImpulse {
     const PreparedLaw& law;
@@ -140,17 +133,17 @@ class ReducedBody {
   template <class F>
   void each_force(const BodyState& s, F f) const;
 
-  bool solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
-                      ContactLoads& loads, Amplitudes& load, ReducedScratch& w);
-  bool iterate_velocity(const ContactImpulse& impulse, double error, BodyVelocity& u, ContactLoads& loads,
-                        Amplitudes& load);
-  bool correct_velocity(const ContactImpulse& impulse, BodyVelocity& u, ContactLoads& loads, Amplitudes& load,
-                        ReducedScratch& w);
+  Solution solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
+                          ContactLoads& loads, Amplitudes& load, ReducedScratch& w);
+  Solution iterate_velocity(const ContactImpulse& impulse, double error, BodyVelocity& u, ContactLoads& loads,
+                            Amplitudes& load);
+  Solution correct_velocity(const ContactImpulse& impulse, BodyVelocity& u, ContactLoads& loads,
+                            Amplitudes& load, ReducedScratch& w);
   void factor_with_modes(const ContactImpulse& impulse, const PackMat3& inertia, ReducedScratch& w) const;
   ExplicitSubstep move_freely(const Parameters& parameters, const StepInputs& start, const StepInputs& end,
                               double h, BodyState& s);
-  bool push_at_end(const Parameters& parameters, const ExplicitSubstep& substep, BodyState& s,
-                   ReducedScratch& w);
+  Solution push_at_end(const Parameters& parameters, const ExplicitSubstep& substep, BodyState& s,
+                       ReducedScratch& w);
   void book_explicit(const Parameters& parameters, const ExplicitSubstep& substep, const BodyState& s,
                      StepEnergy& energy) const;
   ExplicitOutcome explicit_substep(const Parameters& parameters, const StepInputs& start,
@@ -166,8 +159,8 @@ class ReducedBody {
                                     StepEnergy& energy);
   ContactLoads reach_stage(const ImplicitSubstep& substep, const PreparedLaw& law, const Origin& from,
                            bool with_slope, BodyState& at, Stage& stage, PackMat3& r);
-  bool solve_stage(ImplicitSubstep& substep, const StepInputs& now, const PackVec3& field, const Origin& from,
-                   BodyState& at, Stage& stage);
+  Solution solve_stage(ImplicitSubstep& substep, const StepInputs& now, const PackVec3& field,
+                       const Origin& from, BodyState& at, Stage& stage);
   ImplicitOutcome implicit_substep(const Parameters& parameters, const StepInputs& start,
                                    const StepInputs& end, double h, double allowed, BodyState& s,
                                    std::span<Vec3> stick, StepEnergy& energy);

@@ -15,8 +15,8 @@ StepStatus ReducedPart::settle(const Parameters& parameters, State& state, PartS
   StepStatus status;
   for (const auto& [index, body] : bodies_) {
     body->remember(state.anchors);
-    if (body->settle(parameters, state.bodies[index], state.stick)) continue;
-    status.kind = StepStatus::Kind::not_settled;
+    status.kind = body->settle(parameters, state.bodies[index], state.stick);
+    if (status.ok()) continue;
     status.time = state.time;
     status.body = index;
     break;

@@ -129,11 +129,11 @@ class ReducedBody::RestOnPlanes {
   Matrix stiffness_, inertia_;
 };
 
-bool ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick) {
+StepStatus::Kind ReducedBody::settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick) {
   std::vector<BodyContacts::TouchBuffer> buffers;
   const BodyContacts::ScratchLease lease(contacts_, buffers);
   RestOnPlanes body(*this, parameters, s, stick);
-  return find_rest(body);
+  return find_rest(body) == Balance::rest ? StepStatus::Kind::ok : StepStatus::Kind::not_settled;
 }
 
 }  // namespace topple

@@ -1,9 +1,25 @@
 // Newton's six equations of a rigid body, solved in blocks of three.
 #pragma once
 
+#include <cmath>
+
 #include "solver/body/body_contacts.h"
 
 namespace topple {
+
+inline constexpr int k_newton_iterations = 20;     ///< of Newton, for a velocity
+inline constexpr double k_newton_good_rate = 0.1;  ///< of Newton with an old matrix
+inline constexpr double k_slow_speed = 1e-3;       ///< m/s, below it errors of a velocity are absolute
+
+/// m/s, of a linear and an angular velocity; reach: m.
+inline double velocity_size(double reach, const PackVec3& linear, const PackVec3& angular) {
+  const auto sum_of = [](const PackVec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  return sum_of(linear) + reach * sum_of(angular);
+}
+/// What the errors of a velocity are measured by, m/s.
+inline double velocity_scale(double reach, const BodyVelocity& u) {
+  return k_slow_speed + velocity_size(reach, u.linear, u.angular);
+}
 
 /// Solves (M - factor slope) (x, y) = right side with M = diag(m 1, inertia). factor: s. Right side: N s and
 /// N m s; x, y: m/s and rad/s.

@@ -6,7 +6,7 @@
 
 #include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
-#include "solver/frame/generalized_alpha.h"
+#include "solver/frame/integrator.h"
 #include "solver/model/excitation.h"
 
 namespace topple {
@@ -40,6 +40,15 @@ double member_limit(const Model& model, const ContactLaw& law, const State& stat
   return limit;
 }
 
+// Of an implicit method's local error of the velocity over h times the change of the acceleration.
+double error_factor(const Parameters& parameters) {
+  const auto coefficients = traits(parameters.integrator).coefficients;
+  if (!coefficients) return 0;
+  const GeneralizedAlpha c = coefficients(parameters);
+  const double delta = c.alpha_m - c.alpha_f;
+  return std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
+}
+
 }  // namespace
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
@@ -50,9 +59,7 @@ double look_ahead(const Model& model, const Parameters& parameters, const State&
 
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
                   double h) {
-  const GeneralizedAlpha c(parameters);
-  const double delta = c.alpha_m - c.alpha_f;
-  const double factor = std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
+  const double factor = error_factor(parameters);
   double total_mass = 0, small_fall = 0, greatest = 0;
   for (const Body& body : model.bodies) {
     total_mass += body.mass;
@@ -90,7 +97,7 @@ double next_kink(const Model& model, const Parameters& parameters, double t) {
   for (const Shake& shake : parameters.shakes) {
     consider(shake.start);
     consider(shake_end(shake));
-    if (shake.kind == Shake::Kind::pulse)
+    if (traits(shake.kind).has_shape)
       for (const double kink : traits(shake.shape).kinks) consider(shake.start + kink * shake.duration);
   }
   for (const Load& load : model.loads)

@@ -4,16 +4,11 @@
 #include <cmath>
 
 #include "solver/contact/coulomb.h"
+#include "solver/contact/penalty.h"
 #include "solver/math/elementary.h"
 
 namespace topple {
 namespace {
-
-double power(double x, double q) {
-  if (q == 1) return x;
-  if (q == 2) return x * x;
-  return elementary::pow(x, q);
-}
 
 // Hardening between members over alpha, as a function of x = (depth - 0.8)/0.2.
 constexpr double k_hardening = 10, k_hardening_range = 1 - k_hardening_depth, k_steepest = 0.98;
@@ -231,8 +226,7 @@ Parameters at_rest(Parameters parameters) {
 }
 
 StiffnessBound stiffness_bound(const ContactLaw& law) {
-  const double normal = law.q < 1 ? law.q * elementary::pow(0.01, law.q - 1) : law.q;
-  return {normal, traits(law).sticks ? k_stick_stiffness : 0};
+  return {law.q < 1 ? penalty_slope(0.01, law.q) : law.q, traits(law).sticks ? k_stick_stiffness : 0};
 }
 
 ContactLaw contact_law(const Parameters& parameters, double t) {
@@ -251,13 +245,13 @@ ContactLaw contact_law(const Parameters& parameters, double t) {
 
 double penalty_force(const ContactLaw& law, double depth, bool between_members) {
   if (!(depth > 0)) return 0;
-  double force = power(depth, law.q);
+  double force = penalty_power(depth, law.q);
   if (const double x = hardening_place(depth); between_members && x > 0) force += hardening_force(x);
   return law.alpha * force;
 }
 
 double penalty_stiffness(const ContactLaw& law, double depth, double L, bool between_members) {
-  double slope = law.q == 1 ? 1 : law.q * power(depth, law.q - 1);
+  double slope = penalty_slope(depth, law.q);
   if (const double x = hardening_place(depth); between_members && x > 0)
     slope += hardening_slope(x) / k_hardening_range;
   return law.alpha * slope / L;
@@ -265,7 +259,7 @@ double penalty_stiffness(const ContactLaw& law, double depth, double L, bool bet
 
 double penalty_energy(const ContactLaw& law, double depth, double L, bool between_members) {
   if (!(depth > 0)) return 0;
-  double energy = depth * power(depth, law.q) / (law.q + 1);
+  double energy = depth * penalty_power(depth, law.q) / (law.q + 1);
   if (const double x = hardening_place(depth); between_members && x > 0)
     energy += k_hardening_range * hardening_energy(x);
   return law.alpha * L * energy;
@@ -275,6 +269,14 @@ double normal_loss(double restitution) {
   const double e2 = restitution * restitution;
   return (1 - e2) / (1 + e2);
 }
+
+PreparedLaw::PreparedLaw(const ContactLaw& law)
+    : ContactLaw(law),
+      root_alpha(std::sqrt(law.alpha)),
+      loss(normal_loss(law.restitution)),
+      bend(law.excess() > 0 ? std::min(law.normal_speed, law.slip_speed) : law.normal_speed),
+      in_packs(traits(law).in_packs),
+      plain(in_packs && law.q == 1 && !(law.excess() > 0)) {}
 
 ContactOutput contact_force(const ContactLaw& law, const ContactInput& input) {
   return evaluate(law, input, {});

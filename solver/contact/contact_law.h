@@ -110,6 +110,15 @@ ContactLaw law_at_rest(ContactLaw law);
 /// `parameters` with that law and without shakes.
 Parameters at_rest(Parameters parameters);
 
+/// A contact law with what is the same at all contacts.
+struct PreparedLaw : ContactLaw {
+  double root_alpha, loss;  ///< sqrt(alpha), normal_loss()
+  double bend;              ///< m/s, least smoothing speed of the law: how far a tangent by velocity is good
+  bool in_packs;            ///< ContactLawTraits
+  bool plain;               ///< in_packs, q = 1, static friction no higher than dynamic
+  explicit PreparedLaw(const ContactLaw& law);
+};
+
 /// Greatest stiffness of a law's springs over alpha/L, along the normal (before hardening; q < 1: at a depth
 /// of 0.01) and tangential.
 struct StiffnessBound {

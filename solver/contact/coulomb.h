@@ -21,18 +21,18 @@ T friction_coefficient(const ContactLaw& law, T speed2) {
 template <class P>
 using MaskOf = decltype(P() <= P());
 
-/// `Across`: type of tangential vectors.
-template <class P, class Across>
+/// Tangential: type of vectors along the plane.
+template <class P, class Tangential>
 struct CoulombForce {
-  P inverse;           ///< s/m, 1/sqrt(v_n^2 + eps_n^2)
-  P factor, normal;    ///< N/P; N, in newtons
-  Across stick, slip;  ///< tangential parts of travel, m, and velocity, m/s
-  Across trial;        ///< k stick + c slip, N: minus the force if it sticks
-  P mu, limit;         ///< mu; mu N, in newtons
-  MaskOf<P> sticks;    ///< |trial| <= limit
-  bool slips;          ///< some contact that touches does not stick
-  P scale;             ///< T = -scale trial; 0 where nothing touches
-  P inverse_size;      ///< 1/|trial|; 0 where it sticks
+  P inverse;               ///< s/m, 1/sqrt(v_n^2 + eps_n^2)
+  P factor, normal;        ///< N/P; N, in newtons
+  Tangential stick, slip;  ///< tangential parts of travel, m, and velocity, m/s
+  Tangential trial;        ///< k stick + c slip, N: minus the force if it sticks
+  P mu, limit;             ///< mu; mu N, in newtons
+  MaskOf<P> sticks;        ///< |trial| <= limit
+  bool slips;              ///< some contact that touches does not stick
+  P scale;                 ///< T = -scale trial; 0 where nothing touches
+  P inverse_size;          ///< 1/|trial|; 0 where it sticks
 };
 
 /// loss: normal_loss; weakens: law.excess() > 0; n: normal; v: m/s; stick: m, travel since sticking began; p:
@@ -78,11 +78,11 @@ template <class P>
 ///   (normal + across) n n^T - across I,
 /// normal: dN by motion along n; across: scale times that of trial (k, c or a mix of them). weakens: adds
 /// d(mu)/dv; only by velocity.
-template <class P, class Across, class Normal>
+template <class P, class Tangential, class Normal>
 [[gnu::always_inline]] inline PackMatrix<P> slip_slope(const ContactLaw& law, bool weakens,
-                                                       const CoulombForce<P, Across>& f, const Normal& n,
+                                                       const CoulombForce<P, Tangential>& f, const Normal& n,
                                                        P normal, P across) {
-  const Across along = f.inverse_size * f.trial;
+  const Tangential along = f.inverse_size * f.trial;
   PackVector<P> side_way = sum_of(across, along, -(f.mu * normal), n);
   if (weakens) {
     const P above = f.mu - P(law.friction);

@@ -20,8 +20,9 @@ struct SectionForces {
 };
 
 /// Where an element has its plastic hinge, at which its section flows (plasticity.h): at an end, or in the
-/// middle with the midpoint scheme. broken: it carries nothing.
-enum class Hinge : std::int64_t { none, first, second, broken, middle };
+/// middle with the midpoint scheme. broken: it carries nothing. Recordings hold these
+/// numbers.
+enum class Hinge : std::int64_t { none = 0, first = 1, second = 2, broken = 3, middle = 4 };
 
 /// Part of State, one per element.
 struct ElementState {

@@ -10,7 +10,6 @@
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/element/damping.h"
-#include "solver/model/excitation.h"
 
 namespace topple {
 double load_factor(const Load& load, double t) {
@@ -203,14 +202,14 @@ void BodySystem::damp(const Parameters& parameters) {
   }
 }
 
-void BodySystem::start_forces(const Parameters& parameters, double t) {
-  const Vec3 field = parameters.gravity - floor_acceleration(parameters.shakes, t);
+void BodySystem::start_forces(const Parameters& parameters, const StepInputs& now) {
+  const Vec3 field = parameters.gravity - now.floor;
   for (int i = 0; i < count; ++i) {
     const Vec3 weight = model.node_mass[node[i]] * field;
     node_force_[i] = {{weight.x(), weight.y(), weight.z(), 0}, {}};
   }
   for (const auto& [load, i] : loads) {
-    const double factor = loads_grow && load->history.empty() ? t : load_factor(*load, t);
+    const double factor = loads_grow && load->history.empty() ? now.time : load_factor(*load, now.time);
     for (int k = 0; k < 3; ++k) {
       node_force_[i].force[k] += factor * load->force[k];
       node_force_[i].moment[k] += factor * load->moment[k];
@@ -307,27 +306,28 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
   if constexpr (with_tangent) add_tangent(law, contacts.members, member_pairs_, velocity_factor, lu);
 }
 
-void BodySystem::evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
+void BodySystem::evaluate(const Parameters& parameters, const StepInputs& now, const BodyMotion& motion,
                           std::span<const Vec3> stick_start, std::span<const Vec3> start) {
-  evaluate_free(parameters, t, motion);
-  add_contacts<false>(contact_law(parameters, t), motion, stick_start, start, 0);
+  evaluate_free(parameters, now, motion);
+  add_contacts<false>(now.law, motion, stick_start, start, 0);
 }
 
-void BodySystem::evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion) {
-  start_forces(parameters, t);
+void BodySystem::evaluate_free(const Parameters& parameters, const StepInputs& now,
+                               const BodyMotion& motion) {
+  start_forces(parameters, now);
   beams_.subtract_gradient(elements, motion, node_force_);
   take_forces();
   add_anchors<false>(motion);
 }
 
-void BodySystem::evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
-                                       std::span<const Vec3> stick_start, std::span<const Vec3> start,
-                                       double velocity_factor) {
-  start_forces(parameters, t);
+void BodySystem::evaluate_with_tangent(const Parameters& parameters, const StepInputs& now,
+                                       const BodyMotion& motion, std::span<const Vec3> stick_start,
+                                       std::span<const Vec3> start, double velocity_factor) {
+  start_forces(parameters, now);
   beams_.subtract_gradient(elements, motion, velocity_factor, node_force_, lu);
   take_forces();
   add_anchors<true>(motion);
-  add_contacts<true>(contact_law(parameters, t), motion, stick_start, start, velocity_factor);
+  add_contacts<true>(now.law, motion, stick_start, start, velocity_factor);
 }
 
 BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, const Contacts& now,

@@ -9,6 +9,7 @@
 #include "solver/contact/member_contact.h"
 #include "solver/element/beam_pack.h"
 #include "solver/element/section_forces.h"
+#include "solver/frame/step_span.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/copy_values.h"
 #include "solver/model/model.h"
@@ -69,16 +70,16 @@ class BodySystem {
   /// the other to a held body.
   BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs);
 
-  /// Fills `force`, `moment` and `contacts` at time t: sum of gravity, -m a(t), loads, beams, anchors and
+  /// Fills `force`, `moment` and `contacts`: sum of gravity, -m a of the floor, loads, beams, anchors and
   /// contacts, in world axes; no inertia forces. `stick_start`: State::stick where the step began; `start`:
   /// positions of the nodes there.
-  void evaluate(const Parameters& parameters, double t, const BodyMotion& motion,
+  void evaluate(const Parameters& parameters, const StepInputs& now, const BodyMotion& motion,
                 std::span<const Vec3> stick_start, std::span<const Vec3> start);
   /// The same without contacts.
-  void evaluate_free(const Parameters& parameters, double t, const BodyMotion& motion);
+  void evaluate_free(const Parameters& parameters, const StepInputs& now, const BodyMotion& motion);
   /// As evaluate, and adds -d(force)/d(motion) - velocity_factor (1/s) d(force)/d(velocity) of beams, anchors
   /// and contacts to `lu`; motion: position and spatial spin.
-  void evaluate_with_tangent(const Parameters& parameters, double t, const BodyMotion& motion,
+  void evaluate_with_tangent(const Parameters& parameters, const StepInputs& now, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start,
                              double velocity_factor);
   /// Where points touch planes, without forces.
@@ -125,6 +126,16 @@ class BodySystem {
   ContactInput plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start) const;
   const std::vector<MemberPair>& member_pairs() const { return member_pairs_; }
+  /// Whether a support holds direction k of node i of the system: 0..2 translation, 3..5 rotation.
+  bool is_fixed(int i, int k) const { return fixed[i] >> k & 1; }
+  /// Sets what supports hold of two vectors of node i to zero.
+  void clear_fixed(int i, Eigen::Ref<Vec3> translation, Eigen::Ref<Vec3> rotation) const {
+    if (fixed[i] == 0) return;
+    for (int k = 0; k < 3; ++k) {
+      if (is_fixed(i, k)) translation[k] = 0;
+      if (is_fixed(i, 3 + k)) rotation[k] = 0;
+    }
+  }
   /// Number of a node within the system, -1: it is not in it.
   int local(int node) const;
   /// An element of this system (index into the model) at a node of the model, for messages; -1: none.
@@ -154,7 +165,7 @@ class BodySystem {
   double size;                      ///< m, greatest distance of a node from its body's centre of gravity
   double mass;                      ///< kg, of the bodies
   std::vector<unsigned> fixed;      ///< per node, bits as in Support
-  bool loads_grow = false;          ///< statics: t is the load factor, in which loads without history grow
+  bool loads_grow = false;          ///< statics: time is the load factor, in which loads without history grow
   std::vector<Vec3> force, moment;  ///< N, N m
   Contacts contacts;
   BlockLu lu;
@@ -186,7 +197,7 @@ class BodySystem {
   void add_packs();
   MemberPair member_pair(const ElementPair& pair) const;
   void damp(const Parameters& parameters);
-  void start_forces(const Parameters& parameters, double t);
+  void start_forces(const Parameters& parameters, const StepInputs& now);
   void take_forces();
   template <bool with_tangent>
   void add_anchors(const BodyMotion& motion);

@@ -8,25 +8,14 @@
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/frame/hinges.h"
+#include "solver/frame/start_vector.h"
 #include "solver/frame/work.h"
-#include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
 namespace {
 
 constexpr int k_power_iterations = 400;
-
-bool fixed_direction(const BodySystem& s, int node, int direction) {
-  return s.fixed[node] >> direction & 1;
-}
-
-void clear_fixed(const BodySystem& s, int node, Vec3& translation, Vec3& rotation) {
-  for (int k = 0; k < 3; ++k) {
-    if (fixed_direction(s, node, k)) translation[k] = 0;
-    if (fixed_direction(s, node, 3 + k)) rotation[k] = 0;
-  }
-}
 
 // Velocity v of a touching node with mass/(h/2) (v - v_half) = rest + contact forces at v.
 Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double mass, double h,
@@ -46,7 +35,7 @@ Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double
     const Vec3 correction = slope.inverse() * residual;
     v -= correction;
     for (int k = 0; k < 3; ++k)
-      if (fixed_direction(s, node, k)) v[k] = 0;
+      if (s.is_fixed(node, k)) v[k] = 0;
     if (!(correction.norm() > 1e-12 * (1 + v.norm()))) break;
   }
   return v;
@@ -167,9 +156,9 @@ void half_step(const BodySystem& s, const State& state, double h, IntegratorScra
   }
 }
 
-// New accelerations and velocities from `force` and `moment`, and the new motion into `state`; false when it
-// is not finite.
-bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, State& state) {
+// New accelerations and velocities from `force` and `moment`, and the new motion into `state`: ok, or
+// not_finite.
+StepStatus::Kind take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, State& state) {
   BodyMotion& trial = w.trial;
   const Four half(h / 2);
   PackVector<Four> odd{0, 0, 0};
@@ -197,7 +186,7 @@ bool take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, Sta
   for (auto* array : {&state.acceleration, &state.algorithmic_acceleration}) s.put(w.acceleration, *array);
   for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
     s.put(w.angular_acceleration, *array);
-  return !any_above(dot(odd, odd), 0);
+  return any_above(dot(odd, odd), 0) ? StepStatus::Kind::not_finite : StepStatus::Kind::ok;
 }
 
 // First node of the model whose motion is not finite.
@@ -209,32 +198,30 @@ int first_lost(const BodySystem& s, const State& state) {
 
 }  // namespace
 
-StepStatus advance_central_difference(BodySystem& s, const Parameters& p, State& state, double t, double h,
-                                      IntegratorScratch& w, StepEnergy& energy) {
+StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State& state, IntegratorScratch& w,
+                                      StepEnergy& energy) {
   s.load(state, w.start);
   s.load_memory(state);
   const std::span<const Vec3> stick(state.stick);
-  const ContactLaw law = contact_law(p, t + h);
-  s.find_contacts(contact_law(p, t), w.start, stick, w.start.position, w.contacts_start);
-  half_step(s, state, h, w);
+  const ContactLaw& law = span.end.law;
+  s.find_contacts(span.start.law, w.start, stick, w.start.position, w.contacts_start);
+  half_step(s, state, span.h, w);
   w.hinges.clear();
-  do s.evaluate_free(p, t + h, w.trial);
+  do s.evaluate_free(span.parameters, span.end, w.trial);
   while (update_hinges(s, w.trial, w.hinges));
   s.ends_here = true;
   s.find_plane_contacts(w.trial, s.contacts.planes);
-  if (!s.candidate_pairs.empty()) add_member_contacts(s, law, h, w);
-  add_plane_contacts(s, law, stick, h, w);
-  for (int i = 0; i < s.count; ++i)
-    if (s.fixed[i]) clear_fixed(s, i, s.force[i], s.moment[i]);
-  const bool finite = take_accelerations(s, h, w, state);
-  book_work(s, p, t, h, w.start, w.trial, w.contacts_start, s.contacts, energy);
+  if (!s.candidate_pairs.empty()) add_member_contacts(s, law, span.h, w);
+  add_plane_contacts(s, law, stick, span.h, w);
+  for (int i = 0; i < s.count; ++i) s.clear_fixed(i, s.force[i], s.moment[i]);
+  StepStatus status;
+  status.kind = take_accelerations(s, span.h, w, state);
+  status.time = span.end.time;
+  status.body = s.index;
+  book_work(s, span, w.start, w.trial, w.contacts_start, s.contacts, energy);
   energy.plastic += commit_hinges(s, w.start, w.trial, state);
   s.store_stick(s.contacts, state);
-  StepStatus status;
-  status.time = t + h;
-  status.body = s.index;
-  if (!finite) {
-    status.kind = StepStatus::Kind::not_finite;
+  if (!status.ok()) {
     status.node = first_lost(s, state);
     status.element = s.element_at(status.node);
   }
@@ -251,8 +238,7 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
   std::vector<Mat3> inverse(n);
   for (int i = 0; i < n; ++i) inverse[i] = s.model.node_inertia[s.node[i]].inverse();
   Eigen::VectorXd v(6 * n), kv(6 * n);
-  for (int i = 0; i < 6 * n; ++i)
-    v[i] = elementary::sin(1 + 2.7 * i);  // any start that no symmetry of a body shares
+  for (int i = 0; i < 6 * n; ++i) v[i] = start_entry(i);
   double value = 0;
   for (int iteration = 0; iteration < k_power_iterations; ++iteration) {
     kv.setZero();
@@ -275,7 +261,7 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
       Vec3 translation =
           (kv.segment<3>(6 * i) + held[i] * v.segment<3>(6 * i)) / s.model.node_mass[s.node[i]];
       Vec3 rotation = inverse[i] * kv.segment<3>(6 * i + 3);
-      clear_fixed(s, i, translation, rotation);
+      s.clear_fixed(i, translation, rotation);
       kv.segment<3>(6 * i) = translation;
       kv.segment<3>(6 * i + 3) = rotation;
     }

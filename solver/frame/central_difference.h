@@ -8,12 +8,12 @@
 
 namespace topple {
 
-/// Advances the bodies of `system` in `state` by h (s) from time t with central differences in velocity form
-/// (velocity Verlet), rotations likewise in material axes. Contact forces are taken at the new velocity: with
-/// planes node by node, between members by Gauss-Seidel sweeps. not_finite: the new motion is not; their part
-/// of `state` is then undefined.
-StepStatus advance_central_difference(BodySystem& system, const Parameters& parameters, State& state,
-                                      double t, double h, IntegratorScratch& scratch, StepEnergy& energy);
+/// Advances the bodies of `system` in `state` with central differences in velocity form (velocity Verlet),
+/// rotations likewise in material axes; StepSpan::halvings is of no use to it. Contact forces are taken at
+/// the new velocity: with planes node by node, between members by Gauss-Seidel sweeps. not_finite: the new
+/// motion is not; their part of `state` is then undefined.
+StepStatus advance_central_difference(BodySystem& system, const StepSpan& span, State& state,
+                                      IntegratorScratch& scratch, StepEnergy& energy);
 
 /// Greatest stable step of central differences, s: 2/w, w the highest angular frequency of the unloaded
 /// reference pose with its anchors, by power iteration on M^-1 K.

@@ -8,8 +8,9 @@ namespace topple {
 
 inline constexpr double k_balance = 1e-10;  ///< greatest unbalanced force at rest over the weight
 
-/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section yields.
-enum class Balance { rest, tips_over, yields };
+/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section yields; none
+/// was found.
+enum class Balance { rest, tips_over, yields, none };
 
 /// Greatest displacement of a node, m.
 struct RestStep {
@@ -18,15 +19,15 @@ struct RestStep {
 };
 
 /// Newton's method with K + M/sigma^2 for a balance of forces; sigma, s, doubles after short steps and halves
-/// after long ones. False: no balance was found, or it is not stable. `body` has:
+/// after long ones. Returns rest, tips_over or none. `body` has:
 ///   double size            m
 ///   double balanced        N, greatest unbalanced force that counts as balance
 ///   double unbalance()     N, the unbalanced force; finds forces and tangent
-///   Balance look()         judges a balance
+///   Balance look()         judges a balance: rest, tips_over or yields
 ///   optional<RestStep> step(sigma)    solves for a step; null: singular or not finite
 ///   void follow()          takes the step, stick springs included
 template <class Body>
-bool find_rest(Body& body) {
+Balance find_rest(Body& body) {
   constexpr int k_most_rounds = 400;
   constexpr double k_first_sigma = 1e-3, k_last_sigma = 1e3;  // s
   constexpr double k_furthest = 0.25;                         // of the size: more is falling, not settling
@@ -35,17 +36,17 @@ bool find_rest(Body& body) {
   for (int round = 0; round < k_most_rounds; ++round) {
     if (body.unbalance() < body.balanced && sigma > 1) {
       const Balance balance = body.look();
-      if (balance != Balance::yields) return balance == Balance::rest;
+      if (balance != Balance::yields) return balance;
       sigma = k_first_sigma;
       continue;
     }
     const std::optional<RestStep> step = body.step(sigma);
-    if (!step || !(step->furthest <= k_furthest * body.size)) return false;
+    if (!step || !(step->furthest <= k_furthest * body.size)) return Balance::none;
     body.follow();
     sigma =
         std::clamp(sigma * (step->length < k_short * body.size ? 2 : 0.5), k_first_sigma / 16, k_last_sigma);
   }
-  return false;
+  return Balance::none;
 }
 
 }  // namespace topple

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "solver/frame/hinges.h"
 #include "solver/frame/work.h"
@@ -42,9 +43,9 @@ Eigen::Map<Eigen::ArrayXd> numbers(std::vector<Vec3>& vectors) {
 
 class ImplicitStep {
  public:
-  ImplicitStep(BodySystem& system, const Parameters& parameters, State& state, double t, double h,
+  ImplicitStep(BodySystem& system, const StepSpan& span, const GeneralizedAlpha& coefficients, State& state,
                IntegratorScratch& scratch)
-      : s_(system), p_(parameters), state_(state), t_(t), h_(h), c_(parameters), w_(scratch) {}
+      : s_(system), span_(span), h_(span.h), c_(coefficients), state_(state), w_(scratch) {}
 
   Attempt solve();
   /// Solves again until the hinges agree with the solution.
@@ -53,7 +54,7 @@ class ImplicitStep {
 
  private:
   void predict();
-  void hold_supports(int i, Eigen::Ref<Vec3> shift, Eigen::Ref<Vec3> spin) const;
+  void evaluate();
   bool beyond_reach() const;
   void start_from_pose();
   void update_trial();
@@ -65,10 +66,10 @@ class ImplicitStep {
   void fill_residual();
 
   BodySystem& s_;
-  const Parameters& p_;
+  const StepSpan& span_;
+  const double h_;
+  const GeneralizedAlpha& c_;
   State& state_;
-  const double t_, h_;
-  const GeneralizedAlpha c_;
   IntegratorScratch& w_;
   bool predicted_ = false;
   bool every_tangent_ = false;
@@ -100,18 +101,15 @@ void ImplicitStep::predict() {
   for (int i = 0; i < n; ++i) {
     if (s_.fixed[i] == 0) continue;
     Vec3 spin = w_.start.rotation[i] * w_.turn[i];
-    hold_supports(i, w_.travel[i], spin);
+    s_.clear_fixed(i, w_.travel[i], spin);
     w_.turn[i] = w_.start.rotation[i].conjugate() * spin;
   }
   predicted_ = true;
 }
 
-// No stiffness brings back what rounding moves a support.
-void ImplicitStep::hold_supports(int i, Eigen::Ref<Vec3> shift, Eigen::Ref<Vec3> spin) const {
-  for (int k = 0; k < 3; ++k) {
-    if (s_.fixed[i] >> k & 1) shift[k] = 0;
-    if (s_.fixed[i] >> (3 + k) & 1) spin[k] = 0;
-  }
+// Forces at the end of the step.
+void ImplicitStep::evaluate() {
+  s_.evaluate(span_.parameters, span_.end, w_.trial, state_.stick, w_.start.position);
 }
 
 // Where the step is long for stiff members, velocities and accelerations ring about the motion, and what
@@ -195,16 +193,15 @@ void ImplicitStep::fill_residual() {
   }
   for (int i = 0; i < s_.count; ++i)
     for (int k = 0; s_.fixed[i] != 0 && k < 6; ++k)
-      if (s_.fixed[i] >> k & 1) w_.right_hand_side[6 * i + k] = 0;
+      if (s_.is_fixed(i, k)) w_.right_hand_side[6 * i + k] = 0;
 }
 
 // Applies the solution; returns its greatest length, rotations times the body's size.
 double ImplicitStep::correct(int& node) {
-  double greatest = 0;  // squared
-  for (int i = 0; i < s_.count; ++i)
-    if (s_.fixed[i] != 0)
-      hold_supports(i, Eigen::Map<Vec3>(&w_.right_hand_side[6 * i]),
-                    Eigen::Map<Vec3>(&w_.right_hand_side[6 * i + 3]));
+  double greatest = 0;                // squared
+  for (int i = 0; i < s_.count; ++i)  // no stiffness brings back what rounding moves a support
+    s_.clear_fixed(i, Eigen::Map<Vec3>(&w_.right_hand_side[6 * i]),
+                   Eigen::Map<Vec3>(&w_.right_hand_side[6 * i + 3]));
   const Four size2(s_.size * s_.size);
   for (const NodePack& pack : s_.node_packs) {
     const auto part = [&](int which) {
@@ -247,7 +244,7 @@ double ImplicitStep::share_of_correction() {
     int node = 0;
     correct(node);
     update_trial();
-    s_.evaluate(p_, t_ + h_, w_.trial, state_.stick, w_.start.position);
+    evaluate();
     fill_residual();
     const double left = along(w_.right_hand_side);
     w_.travel = w_.kept_travel;
@@ -282,15 +279,15 @@ Attempt ImplicitStep::solve_with_hinges() {
 void ImplicitStep::form_tangent() {
   const InPhase phase(w_.profile, Phase::tangent);
   s_.lu.set_zero();
-  s_.evaluate_with_tangent(p_, t_ + h_, w_.trial, state_.stick, w_.start.position, c_.gamma / (c_.beta * h_));
+  s_.evaluate_with_tangent(span_.parameters, span_.end, w_.trial, state_.stick, w_.start.position,
+                           c_.gamma / (c_.beta * h_));
   add_inertia_tangent();
   for (int i = 0; i < s_.count; ++i)
     for (int k = 0; k < 6; ++k)
-      if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
+      if (s_.is_fixed(i, k)) s_.lu.fix(i, k);
 }
 
 Attempt ImplicitStep::solve() {
-  const std::span<const Vec3> stick(state_.stick);
   const double tolerance = k_convergence * s_.size;
   double last = 0;
   bool fresh = true, cycling = false;
@@ -316,7 +313,7 @@ Attempt ImplicitStep::solve() {
         return {finite ? Outcome::singular : Outcome::not_finite, iteration, s_.node[singular]};
       }
     } else {
-      s_.evaluate(p_, t_ + h_, w_.trial, stick, w_.start.position);
+      evaluate();
     }
     fill_residual();
     if (cycling) w_.kept_residual = w_.right_hand_side;
@@ -344,9 +341,9 @@ Attempt ImplicitStep::solve() {
 
 void ImplicitStep::accept(StepEnergy& energy) {
   const std::span<const Vec3> stick(state_.stick);
-  s_.find_contacts(contact_law(p_, t_), w_.start, stick, w_.start.position, w_.contacts_start);
-  s_.find_contacts(contact_law(p_, t_ + h_), w_.trial, stick, w_.start.position, s_.contacts);
-  book_work(s_, p_, t_, h_, w_.start, w_.trial, w_.contacts_start, s_.contacts, energy);
+  s_.find_contacts(span_.start.law, w_.start, stick, w_.start.position, w_.contacts_start);
+  s_.find_contacts(span_.end.law, w_.trial, stick, w_.start.position, s_.contacts);
+  book_work(s_, span_, w_.start, w_.trial, w_.contacts_start, s_.contacts, energy);
   energy.plastic += commit_hinges(s_, w_.start, w_.trial, state_);
   // Work of the inertia forces over the travel against the gain of kinetic energy: what the method itself
   // takes out.
@@ -385,22 +382,18 @@ GeneralizedAlpha GeneralizedAlpha::newmark(double beta, double gamma) {
   return c;
 }
 
-GeneralizedAlpha::GeneralizedAlpha(const Parameters& p)
-    : GeneralizedAlpha(p.integrator == Integrator::newmark ? newmark(p.beta, p.gamma)
-                                                           : GeneralizedAlpha(p.spectral_radius)) {}
-
-StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
-                                     double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy) {
+StepStatus advance_generalized_alpha(BodySystem& system, const StepSpan& span, const GeneralizedAlpha& c,
+                                     State& state, IntegratorScratch& scratch, StepEnergy& energy) {
   StepStatus status;
-  status.time = t + h;
-  ImplicitStep implicit(system, parameters, state, t, h, scratch);
+  status.time = span.end.time;
+  ImplicitStep implicit(system, span, c, state, scratch);
   const Attempt attempt = implicit.solve_with_hinges();
   status.newton_iterations = attempt.iterations;
   if (attempt.outcome == Outcome::converged) {
     implicit.accept(energy);
     return status;
   }
-  if (halvings == 0) {
+  if (span.halvings == 0) {
     status.kind = attempt.outcome == Outcome::not_finite ? StepStatus::Kind::not_finite
                   : attempt.outcome == Outcome::singular ? StepStatus::Kind::singular
                   : attempt.outcome == Outcome::too_far  ? StepStatus::Kind::passed_through
@@ -411,9 +404,11 @@ StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& param
     return status;
   }
   int iterations = attempt.iterations, rejected = 1;
-  for (int half = 0; half < 2; ++half) {
-    status = advance_generalized_alpha(system, parameters, state, t + half * h / 2, h / 2, halvings - 1,
-                                       scratch, energy);
+  const double half = span.h / 2;
+  const StepInputs middle(span.parameters, span.start.time + half), end(span.parameters, middle.time + half);
+  for (const auto& [from, to] : {std::pair(&span.start, &middle), std::pair(&middle, &end)}) {
+    const StepSpan part{span.parameters, *from, *to, half, span.halvings - 1};
+    status = advance_generalized_alpha(system, part, c, state, scratch, energy);
     status.newton_iterations = iterations += status.newton_iterations;
     status.rejected = rejected += status.rejected;
     if (!status.ok()) return status;

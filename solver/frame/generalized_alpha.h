@@ -21,8 +21,6 @@ struct GeneralizedAlpha {
         gamma(0.5 + alpha_f - alpha_m),
         beta(0.25 * (gamma + 0.5) * (gamma + 0.5)) {}
   static GeneralizedAlpha newmark(double beta, double gamma);
-  /// Of the implicit method that `parameters` choose.
-  explicit GeneralizedAlpha(const Parameters& parameters);
 };
 
 /// Scratch of the integrators for one system.
@@ -41,11 +39,12 @@ struct IntegratorScratch {
   HingeStep hinges;
 };
 
-/// Advances the bodies of `system` in `state` by h (s) from time t with the balance of forces taken at the
-/// end of the step (Brüls & Cardona 2010). Newton's method to convergence; a step that does not converge is
-/// halved, at most `halvings` times. Failures: newton_diverged, not_finite, singular, passed_through; their
-/// part of `state` is then undefined.
-StepStatus advance_generalized_alpha(BodySystem& system, const Parameters& parameters, State& state, double t,
-                                     double h, int halvings, IntegratorScratch& scratch, StepEnergy& energy);
+/// Advances the bodies of `system` in `state` with the balance of forces taken at the end of the step (Brüls
+/// & Cardona 2010). Newton's method to convergence; a step that does not converge is halved, at most
+/// StepSpan::halvings times. Failures: newton_diverged, not_finite, singular, passed_through; their part of
+/// `state` is then undefined.
+StepStatus advance_generalized_alpha(BodySystem& system, const StepSpan& span,
+                                     const GeneralizedAlpha& coefficients, State& state,
+                                     IntegratorScratch& scratch, StepEnergy& energy);
 
 }  // namespace topple

@@ -5,14 +5,25 @@
 namespace topple {
 namespace {
 
+GeneralizedAlpha by_spectral_radius(const Parameters& p) {
+  return GeneralizedAlpha(p.spectral_radius);
+}
+
+GeneralizedAlpha newmark(const Parameters& p) {
+  return GeneralizedAlpha::newmark(p.beta, p.gamma);
+}
+
+template <GeneralizedAlpha (*coefficients)(const Parameters&)>
+StepStatus advance(BodySystem& system, const StepSpan& span, State& state, IntegratorScratch& scratch,
+                   StepEnergy& energy) {
+  return advance_generalized_alpha(system, span, coefficients(span.parameters), state, scratch, energy);
+}
+
 constexpr IntegratorTraits k_integrators[] = {
-    {Integrator::generalized_alpha, "generalized-alpha", false, advance_generalized_alpha},
-    {Integrator::central_difference, "central-difference", true,
-     [](BodySystem& system, const Parameters& parameters, State& state, double t, double h, int,
-        IntegratorScratch& scratch, StepEnergy& energy) {
-       return advance_central_difference(system, parameters, state, t, h, scratch, energy);
-     }},
-    {Integrator::newmark, "newmark", false, advance_generalized_alpha},
+    {Integrator::generalized_alpha, "generalized-alpha", false, by_spectral_radius,
+     advance<by_spectral_radius>},
+    {Integrator::central_difference, "central-difference", true, nullptr, advance_central_difference},
+    {Integrator::newmark, "newmark", false, newmark, advance<newmark>},
 };
 
 }  // namespace

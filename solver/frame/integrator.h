@@ -14,9 +14,10 @@ struct IntegratorTraits {
   Integrator kind;
   const char* word;  ///< in scenes
   bool is_explicit;  ///< no equations to solve, but a stability limit (explicit_limit)
-  /// As advance_generalized_alpha(); explicit ones do not halve steps.
-  StepStatus (*advance)(BodySystem&, const Parameters&, State&, double t, double h, int halvings,
-                        IntegratorScratch&, StepEnergy&);
+  /// Of an implicit method; explicit ones have none.
+  GeneralizedAlpha (*coefficients)(const Parameters&);
+  /// As advance_generalized_alpha().
+  StepStatus (*advance)(BodySystem&, const StepSpan&, State&, IntegratorScratch&, StepEnergy&);
 };
 /// In the order of the words of the scene key `run.integrator`, of which the first is auto.
 std::span<const IntegratorTraits> integrators();

@@ -8,8 +8,8 @@
 
 #include "solver/element/beam.h"
 #include "solver/frame/body_system.h"
+#include "solver/frame/start_vector.h"
 #include "solver/math/block_lu.h"
-#include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -33,7 +33,7 @@ class Pencil {
       tangents_[e] = beam_stiffness(model, model.elements[b.first_element + e]);
     for (int i = 0; i < s_.count; ++i)
       for (int k = 0; k < 6; ++k)
-        if (!(s_.fixed[i] >> k & 1)) free_.push_back(6 * i + k);
+        if (!s_.is_fixed(i, k)) free_.push_back(6 * i + k);
   }
 
   const BodySystem& system() const { return s_; }
@@ -101,7 +101,7 @@ class Pencil {
       block.bottomRightCorner<3, 3>() = shift * s_.model.node_inertia[s_.first + i];
       s_.lu.add(i, i, block);
       for (int k = 0; k < 6; ++k)
-        if (s_.fixed[i] >> k & 1) s_.lu.fix(i, k);
+        if (s_.is_fixed(i, k)) s_.lu.fix(i, k);
     }
     s_.lu.factor();
   }
@@ -113,7 +113,7 @@ class Pencil {
   MatrixXd clear_fixed(MatrixXd v) const {
     for (int i = 0; i < s_.count; ++i)
       for (int k = 0; k < 6; ++k)
-        if (s_.fixed[i] >> k & 1) v.row(6 * i + k).setZero();
+        if (s_.is_fixed(i, k)) v.row(6 * i + k).setZero();
     return v;
   }
 
@@ -191,7 +191,7 @@ Pairs elastic_pairs(Pencil& p, const MatrixXd& rigid, int count) {
   double shift = 1e-9 * p.highest();
   MatrixXd start(p.rows(), count + k_guard);
   for (int c = 0; c < start.cols(); ++c)
-    for (int r = 0; r < p.rows(); ++r) start(r, c) = elementary::sin(1 + 2.7 * r + 1.3 * c * (r % 7));
+    for (int r = 0; r < p.rows(); ++r) start(r, c) = start_entry(r, c);
   start = p.clear_fixed(std::move(start));
   Pairs found;
   for (int restart = 0; restart < k_most_restarts; ++restart) {

@@ -7,7 +7,7 @@
 #include "solver/contact/contact_law.h"
 #include "solver/frame/find_rest.h"
 #include "solver/frame/hinges.h"
-#include "solver/math/elementary.h"
+#include "solver/frame/start_vector.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -34,38 +34,36 @@ void add_mass(BodySystem& s, double sigma) {
     block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
     s.lu.add(i, i, block);
     for (int k = 0; k < 6; ++k)
-      if (s.fixed[i] >> k & 1) s.lu.fix(i, k);
+      if (s.is_fixed(i, k)) s.lu.fix(i, k);
   }
 }
 
 // A balance that tips over by itself: (K + M/sigma^2)^-1 M/sigma^2 enlarges some small motion. Newton finds
 // such balances as readily as stable ones. sigma: half the time in which a body of this size falls over.
-bool tips_over(BodySystem& s, const Parameters& still, const State& state, IntegratorScratch& w) {
+bool tips_over(BodySystem& s, const Parameters& still, const StepInputs& now, const State& state,
+               IntegratorScratch& w) {
   constexpr int k_rounds = 60;
   const double g = still.gravity.norm();
   if (!(g > 0)) return false;
   const double sigma = 0.5 * std::sqrt(s.size / g);
   s.lu.set_zero();
-  s.evaluate_with_tangent(still, 0, w.start, state.stick, w.start.position, 0);
+  s.evaluate_with_tangent(still, now, w.start, state.stick, w.start.position, 0);
   add_mass(s, sigma);
   if (s.lu.factor() >= 0) return true;
   std::vector<double>& v = w.right_hand_side;
-  for (int i = 0; i < 6 * s.count; ++i)
-    v[i] = elementary::sin(1 + 2.7 * i);  // no symmetry of a body shares it
+  for (int i = 0; i < 6 * s.count; ++i) v[i] = start_entry(i);
   double growth = 1;
   for (int round = 0; round < k_rounds; ++round) {
     double before = 0, after = 0;
     for (int i = 0; i < s.count; ++i) {
       Eigen::Map<Vec3> shift(&v[6 * i]), spin(&v[6 * i + 3]);
-      for (int k = 0; k < 6; ++k)
-        if (s.fixed[i] >> k & 1) v[6 * i + k] = 0;
+      s.clear_fixed(i, shift, spin);
       const Vec3 impulse = s.model.node_mass[s.node[i]] * shift,
                  turn = s.model.node_inertia[s.node[i]] * spin;
       before += impulse.dot(shift) + turn.dot(spin);
       shift = impulse / (sigma * sigma);
       spin = turn / (sigma * sigma);
-      for (int k = 0; k < 6; ++k)
-        if (s.fixed[i] >> k & 1) v[6 * i + k] = 0;
+      s.clear_fixed(i, shift, spin);
     }
     s.lu.solve(v.data());
     for (int i = 0; i < s.count; ++i) {
@@ -84,7 +82,12 @@ bool tips_over(BodySystem& s, const Parameters& still, const State& state, Integ
 class FrameRest {
  public:
   FrameRest(BodySystem& system, const Parameters& parameters, State& state, IntegratorScratch& scratch)
-      : size(system.size), s_(system), still_(at_rest(parameters)), state_(state), w_(scratch) {
+      : size(system.size),
+        s_(system),
+        still_(at_rest(parameters)),
+        now_(still_, 0),
+        state_(state),
+        w_(scratch) {
     s_.load(state, w_.start);
     s_.load_memory(state);
     std::fill(w_.start.velocity.begin(), w_.start.velocity.end(), Vec3::Zero());
@@ -99,15 +102,14 @@ class FrameRest {
 
   double unbalance() {
     s_.lu.set_zero();
-    s_.evaluate_with_tangent(still_, 0, w_.start, state_.stick, w_.start.position, 0);
+    s_.evaluate_with_tangent(still_, now_, w_.start, state_.stick, w_.start.position, 0);
     double left = 0;
     for (int i = 0; i < s_.count; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        w_.right_hand_side[6 * i + k] = s_.fixed[i] >> k & 1 ? 0 : s_.force[i][k];
-        w_.right_hand_side[6 * i + 3 + k] = s_.fixed[i] >> (3 + k) & 1 ? 0 : s_.moment[i][k];
-        left = std::max({left, std::abs(w_.right_hand_side[6 * i + k]),
-                         std::abs(w_.right_hand_side[6 * i + 3 + k]) / size});
-      }
+      Eigen::Map<Vec3> force(&w_.right_hand_side[6 * i]), moment(&w_.right_hand_side[6 * i + 3]);
+      force = s_.force[i];
+      moment = s_.moment[i];
+      s_.clear_fixed(i, force, moment);
+      left = std::max({left, force.cwiseAbs().maxCoeff(), moment.cwiseAbs().maxCoeff() / size});
     }
     s_.store_stick(s_.contacts, state_);
     s_.load_sticks(state_);
@@ -116,7 +118,7 @@ class FrameRest {
 
   Balance look() {
     if (!s_.loads_grow && update_hinges(s_, w_.start, hinges_)) return Balance::yields;
-    return tips_over(s_, still_, state_, w_) ? Balance::tips_over : Balance::rest;
+    return tips_over(s_, still_, now_, state_, w_) ? Balance::tips_over : Balance::rest;
   }
 
   std::optional<RestStep> step(double sigma) {
@@ -182,6 +184,7 @@ class FrameRest {
 
   BodySystem& s_;
   const Parameters still_;
+  const StepInputs now_;
   State& state_;
   IntegratorScratch& w_;
   BodyMotion before_;
@@ -193,7 +196,7 @@ class FrameRest {
 
 StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
   FrameRest body(s, parameters, state, w);
-  return find_rest(body) ? body.accept() : body.status();
+  return find_rest(body) == Balance::rest ? body.accept() : body.status();
 }
 
 }  // namespace topple

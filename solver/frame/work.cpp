@@ -1,7 +1,6 @@
 #include "solver/frame/work.h"
 
 #include "solver/math/rotation.h"
-#include "solver/model/excitation.h"
 
 namespace topple {
 namespace {
@@ -16,19 +15,17 @@ void book_contact(const ContactOutput& out, const Vec3& normal, const Vec3& trav
 
 }  // namespace
 
-void book_work(const BodySystem& s, const Parameters& parameters, double t, double h, const BodyMotion& start,
-               const BodyMotion& end, const Contacts& contacts_start, const Contacts& contacts_end,
-               StepEnergy& energy) {
-  const Vec3 floor =
-      0.5 * (floor_acceleration(parameters.shakes, t) + floor_acceleration(parameters.shakes, t + h));
+void book_work(const BodySystem& s, const StepSpan& span, const BodyMotion& start, const BodyMotion& end,
+               const Contacts& contacts_start, const Contacts& contacts_end, StepEnergy& energy) {
+  const Vec3 floor = 0.5 * (span.start.floor + span.end.floor);
   for (int i = 0; i < s.count; ++i) {
     const Vec3 travel = end.position[i] - start.position[i];
     const double m = s.model.node_mass[s.node[i]];
-    energy.gravity -= m * parameters.gravity.dot(travel);
+    energy.gravity -= m * span.parameters.gravity.dot(travel);
     energy.input -= m * floor.dot(travel);
   }
   for (const auto& [load, i] : s.loads) {
-    const double factor = 0.5 * (load_factor(*load, t) + load_factor(*load, t + h));
+    const double factor = 0.5 * (load_factor(*load, span.start.time) + load_factor(*load, span.end.time));
     const Vec3 spin = start.rotation[i] * log_quaternion(start.rotation[i].conjugate() * end.rotation[i]);
     energy.input += factor * (load->force.dot(end.position[i] - start.position[i]) + load->moment.dot(spin));
   }
@@ -46,7 +43,7 @@ void book_work(const BodySystem& s, const Parameters& parameters, double t, doub
   book(contacts_start, -1);
   book(contacts_end, 1);
 
-  const ContactLaw law0 = contact_law(parameters, t), law1 = contact_law(parameters, t + h);
+  const ContactLaw &law0 = span.start.law, &law1 = span.end.law;
   if (law0.alpha == law1.alpha && law0.q == law1.q) return;
   LawChange change(law0, law1, energy);
   for (const TouchingPair& pair : contacts_start.planes)

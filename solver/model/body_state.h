@@ -10,8 +10,8 @@
 namespace topple {
 
 /// rigid: six unknowns. elastic: rigid motion and the lowest modes of small deformations in the body's frame.
-/// frame: every node, with large rotations, hinges and fracture.
-enum class ModelLevel : std::uint8_t { rigid, elastic, frame };
+/// frame: every node, with large rotations, hinges and fracture. Recordings hold these numbers.
+enum class ModelLevel : std::uint8_t { rigid = 0, elastic = 1, frame = 2 };
 
 struct LevelTraits {
   ModelLevel kind;
@@ -26,16 +26,16 @@ constexpr const LevelTraits& traits(ModelLevel level) {
   return row_of(k_model_levels, level);
 }
 
-/// Why a body is on its level (rules: model_level.h).
+/// Why a body is on its level (rules: model_level.h). Recordings hold these numbers.
 enum class LevelReason : std::uint8_t {
-  asked,              ///< the scene or an edit names it
-  motion,             ///< nothing but motion is asked for
-  stress,             ///< stresses are asked for
-  contact_frequency,  ///< the body bounces on its contacts almost as fast as it vibrates
-  yield,              ///< a section comes near its yield surface
-  deformation,        ///< it deforms too much for linear elasticity
-  near,               ///< another body may touch it (State::candidate_pairs)
-  calm                ///< no reason for a higher level is left, and no hinge has formed
+  asked = 0,              ///< the scene or an edit names it
+  motion = 1,             ///< nothing but motion is asked for
+  stress = 2,             ///< stresses are asked for
+  contact_frequency = 3,  ///< the body bounces on its contacts almost as fast as it vibrates
+  yield = 4,              ///< a section comes near its yield surface
+  deformation = 5,        ///< it deforms too much for linear elasticity
+  near = 6,               ///< another body may touch it (State::candidate_pairs)
+  calm = 7                ///< no reason for a higher level is left, and no hinge has formed
 };
 
 inline constexpr int k_modes = 12;  ///< most modes of a body on the level elastic

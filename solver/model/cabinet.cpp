@@ -86,10 +86,8 @@ struct Placing {
 };
 
 Placing place(const CabinetSpec& spec, double width) {
-  Mat3 pose = Mat3::Identity();
-  if (spec.pose == CabinetSpec::Pose::on_back) pose << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-  if (spec.pose == CabinetSpec::Pose::on_front) pose << 0, 0, 1, 0, 1, 0, -1, 0, 0;
-  if (spec.pose == CabinetSpec::Pose::on_side) pose << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  Mat3 pose;
+  for (int k = 0; k < 3; ++k) pose.row(k) = Eigen::RowVector3d(row_of(k_poses, spec.pose).turn[k]);
   const Vec3 half = spec.size / 2;
   const Vec3 posed_half = (pose * half).cwiseAbs();
   const Mat3 rotation = exp_quaternion(spec.yaw * Vec3::UnitZ()).toRotationMatrix() * pose;

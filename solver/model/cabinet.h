@@ -42,6 +42,20 @@ struct CabinetSpec {
   int divisions = 1;                ///< members per edge; posts: from one shelf to the next
 };
 
+/// How a cabinet stands or lies.
+struct PoseTraits {
+  CabinetSpec::Pose kind;
+  const char* word;   ///< in scenes
+  double turn[3][3];  ///< from upright, about the axes of the cabinet
+};
+/// A new one is a CabinetSpec::Pose and a row here.
+inline constexpr PoseTraits k_poses[] = {
+    {CabinetSpec::Pose::upright, "upright", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+    {CabinetSpec::Pose::on_back, "on-back", {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}},
+    {CabinetSpec::Pose::on_front, "on-front", {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
+    {CabinetSpec::Pose::on_side, "on-side", {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}},
+};
+
 struct FrameMember {
   int node[2];
   int section, material;

@@ -78,6 +78,9 @@ constexpr ShakeTraits k_kinds[] = {
      .has_amplitude = true,
      .has_frequency = true,
      .has_duration = false,
+     .has_shape = false,
+     .has_record = false,
+     .steady = true,
      .sweeps = false,
      .acceleration = periodic,
      .end = end_of_sine,
@@ -88,6 +91,9 @@ constexpr ShakeTraits k_kinds[] = {
      .has_amplitude = true,
      .has_frequency = true,
      .has_duration = true,
+     .has_shape = false,
+     .has_record = false,
+     .steady = false,
      .sweeps = true,
      .acceleration = periodic,
      .end = end_by_duration,
@@ -102,6 +108,9 @@ constexpr ShakeTraits k_kinds[] = {
      .has_amplitude = true,
      .has_frequency = false,
      .has_duration = true,
+     .has_shape = true,
+     .has_record = false,
+     .steady = false,
      .sweeps = false,
      .acceleration = pulse,
      .end = end_by_duration,
@@ -112,6 +121,9 @@ constexpr ShakeTraits k_kinds[] = {
      .has_amplitude = false,
      .has_frequency = false,
      .has_duration = false,
+     .has_shape = false,
+     .has_record = true,
+     .steady = false,
      .sweeps = false,
      .acceleration = recorded,
      .end = [](const Shake& shake) { return shake.start + shake.record->duration; },
@@ -171,7 +183,7 @@ double shake_end(const Shake& shake) {
 double sample_interval(const std::vector<Shake>& shakes, double t) {
   double least = std::numeric_limits<double>::infinity();
   for (const Shake& shake : shakes)
-    if (shake.kind == Shake::Kind::record && t >= shake.start && t < shake_end(shake))
+    if (traits(shake.kind).has_record && t >= shake.start && t < shake_end(shake))
       least = std::min(least, shake.record->interval);
   return least;
 }
@@ -189,7 +201,7 @@ Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1) {
   Vec3 sum = Vec3::Zero();
   for (const Shake& shake : shakes)
-    if (shake.on && shake.kind == Shake::Kind::sine && shake.initial_velocity == Shake::Start::jump &&
+    if (shake.on && traits(shake.kind).steady && shake.initial_velocity == Shake::Start::jump &&
         shake.start >= t0 && shake.start < t1)
       sum -= shake.amplitude / (2 * k_pi * shake.frequency) * shake.direction;
   return sum;

@@ -23,12 +23,16 @@ inline const PulseTraits& traits(Shake::Shape shape) {
   return row_of(pulse_shapes(), shape);
 }
 
-/// A kind of shake.
+/// A kind of shake. A new one is a Shake::Kind and a row of the table in excitation.cpp.
 struct ShakeTraits {
   Shake::Kind kind;
   const char* word;  ///< in scenes
-  // Which numbers of Shake it uses; a record has a scale instead of amplitude and direction.
-  bool has_amplitude, has_frequency, has_duration;
+  // Which members of Shake it uses.
+  bool has_amplitude;  ///< amplitude, direction
+  bool has_frequency;  ///< frequency, taper
+  bool has_duration, has_shape;
+  bool has_record;                               ///< record, scale
+  bool steady;                                   ///< cycles, initial_velocity: one frequency, which may go on
   bool sweeps;                                   ///< the frequency goes from `frequency` to `last_frequency`
   Vec3 (*acceleration)(const Shake&, double t);  ///< m/s^2, t not before its start
   double (*end)(const Shake&);                   ///< see shake_end, s

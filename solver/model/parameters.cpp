@@ -42,10 +42,10 @@ double sum_of(const Shake& shake) {
 
 bool is_finite(const Parameters& parameters) {
   const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, gravity,
-               integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance, finer_parts] =
+               integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance, substep_refinement] =
       parameters;
   double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
-                 sum(spectral_radius, beta, gamma, time_step, tolerance, finer_parts);
+                 sum(spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
   for (const Shake& shake : shakes) total += sum_of(shake);
   for (const double ratio : damping) total += sum(ratio);
   return std::isfinite(total);

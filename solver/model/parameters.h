@@ -95,7 +95,7 @@ struct Parameters {
   double tolerance = 1e-3;          ///< of the adaptive step, relative to the speed (step_control.h)
   /// Explicit substeps of rigid and elastic bodies (reduced_body.h) are this many times shorter than
   /// stability asks for.
-  double finer_parts = 1;
+  double substep_refinement = 1;
   bool operator==(const Parameters&) const = default;
 };
 

@@ -42,50 +42,63 @@ double box_shear(double poisson, double along, double across) {
           10 * m * m * ((3 + n) * m + 3 * m * m));
 }
 
+// n: Poisson's ratio.
+void complete_box(Section& section, double n) {
+  const double a = section.size_y, b = section.size_z, t = section.thickness;
+  const Inertia outer = rectangle(a, b), inner = rectangle(a - 2 * t, b - 2 * t);
+  section.area = outer.area - inner.area;
+  section.iy = outer.iy - inner.iy;
+  section.iz = outer.iz - inner.iz;
+  section.j = 2 * t * (a - t) * (a - t) * (b - t) * (b - t) / (a + b - 2 * t);
+  section.ky = box_shear(n, a - t, b - t);
+  section.kz = box_shear(n, b - t, a - t);
+  section.zy = rectangle_plastic(a, b) - rectangle_plastic(a - 2 * t, b - 2 * t);
+  section.zz = rectangle_plastic(b, a) - rectangle_plastic(b - 2 * t, a - 2 * t);
+  section.zt = 2 * (a - t) * (b - t) * t;
+}
+
+void complete_solid(Section& section, double n) {
+  const double a = section.size_y, b = section.size_z;
+  const Inertia outer = rectangle(a, b);
+  section.area = outer.area;
+  section.iy = outer.iy;
+  section.iz = outer.iz;
+  section.j = rectangle_torsion(a, b);
+  section.ky = section.kz = 10 * (1 + n) / (12 + 11 * n);
+  section.zy = rectangle_plastic(a, b);
+  section.zz = rectangle_plastic(b, a);
+  section.zt = std::min(a, b) * std::min(a, b) * (3 * std::max(a, b) - std::min(a, b)) / 6;
+}
+
+void complete_pipe(Section& section, double n) {
+  const double a = section.size_y, t = section.thickness;
+  const double outer = a / 2, inner = outer - t, m = inner / outer, m2 = 1 + m * m;
+  section.size_z = a;
+  section.area = k_pi * (outer * outer - inner * inner);
+  section.iy = section.iz = k_pi / 4 * (elementary::pow(outer, 4) - elementary::pow(inner, 4));
+  section.j = 2 * section.iy;
+  section.ky = section.kz = 6 * (1 + n) * m2 * m2 / ((7 + 6 * n) * m2 * m2 + (20 + 12 * n) * m * m);
+  section.zy = section.zz = 4. / 3 * (elementary::pow(outer, 3) - elementary::pow(inner, 3));
+  section.zt = k_pi / 2 * section.zy;
+}
+
+constexpr SectionTraits k_shapes[] = {
+    {Section::Shape::box, "box", false, true, complete_box},
+    {Section::Shape::solid, "solid", false, false, complete_solid},
+    {Section::Shape::pipe, "pipe", true, true, complete_pipe},
+    {Section::Shape::custom, "custom", false, false, nullptr},
+};
+
 }  // namespace
 
+std::span<const SectionTraits> section_shapes() {
+  return k_shapes;
+}
+
 void complete_section(Section& section, double poisson) {
-  const double a = section.size_y, b = section.size_z, t = section.thickness, n = poisson;
-  switch (section.shape) {
-    case Section::Shape::box: {
-      const Inertia outer = rectangle(a, b), inner = rectangle(a - 2 * t, b - 2 * t);
-      section.area = outer.area - inner.area;
-      section.iy = outer.iy - inner.iy;
-      section.iz = outer.iz - inner.iz;
-      section.j = 2 * t * (a - t) * (a - t) * (b - t) * (b - t) / (a + b - 2 * t);
-      section.ky = box_shear(n, a - t, b - t);
-      section.kz = box_shear(n, b - t, a - t);
-      section.zy = rectangle_plastic(a, b) - rectangle_plastic(a - 2 * t, b - 2 * t);
-      section.zz = rectangle_plastic(b, a) - rectangle_plastic(b - 2 * t, a - 2 * t);
-      section.zt = 2 * (a - t) * (b - t) * t;
-      break;
-    }
-    case Section::Shape::solid: {
-      const Inertia outer = rectangle(a, b);
-      section.area = outer.area;
-      section.iy = outer.iy;
-      section.iz = outer.iz;
-      section.j = rectangle_torsion(a, b);
-      section.ky = section.kz = 10 * (1 + n) / (12 + 11 * n);
-      section.zy = rectangle_plastic(a, b);
-      section.zz = rectangle_plastic(b, a);
-      section.zt = std::min(a, b) * std::min(a, b) * (3 * std::max(a, b) - std::min(a, b)) / 6;
-      break;
-    }
-    case Section::Shape::pipe: {
-      const double outer = a / 2, inner = outer - t, m = inner / outer, m2 = 1 + m * m;
-      section.size_z = a;
-      section.area = k_pi * (outer * outer - inner * inner);
-      section.iy = section.iz = k_pi / 4 * (elementary::pow(outer, 4) - elementary::pow(inner, 4));
-      section.j = 2 * section.iy;
-      section.ky = section.kz = 6 * (1 + n) * m2 * m2 / ((7 + 6 * n) * m2 * m2 + (20 + 12 * n) * m * m);
-      section.zy = section.zz = 4. / 3 * (elementary::pow(outer, 3) - elementary::pow(inner, 3));
-      section.zt = k_pi / 2 * section.zy;
-      break;
-    }
-    case Section::Shape::custom:
-      return;
-  }
+  const auto complete = traits(section.shape).complete;
+  if (!complete) return;
+  complete(section, poisson);
   section.width = (section.size_y + section.size_z) / 2;
 }
 

@@ -1,7 +1,10 @@
 // Cross-sections and materials of members.
 #pragma once
 
+#include <span>
 #include <string>
+
+#include "solver/model/table.h"
 
 namespace topple {
 
@@ -38,6 +41,20 @@ struct Section {
   double fibre_y() const { return size_y / 2; }
   double fibre_z() const { return size_z / 2; }
 };
+
+/// A shape of section. A new one is a Section::Shape and a row of the table in section.cpp.
+struct SectionTraits {
+  Section::Shape kind;
+  const char* word;  ///< in scenes
+  bool is_round;     ///< size_y is the diameter, size_z as well
+  bool has_wall;     ///< uses thickness
+  /// complete_section() but for the width; null: all numbers are given.
+  void (*complete)(Section&, double poisson);
+};
+std::span<const SectionTraits> section_shapes();
+inline const SectionTraits& traits(Section::Shape shape) {
+  return row_of(section_shapes(), shape);
+}
 
 /// Fills area, iy, iz, j, ky, kz, width from shape, sizes and thickness (thin-walled Bredt torsion for the
 /// box, Saint-Venant series for the solid, shear coefficients after Cowper 1966; width: mean of the sizes),

@@ -44,6 +44,10 @@ Vec3 number(double x) {
   return {x, 0, 0};
 }
 
+int one(const Model&, const Parameters&) {
+  return 1;
+}
+
 bool always(const Model&, const Parameters&, int) {
   return true;
 }
@@ -60,13 +64,13 @@ Vec3 of_shake(const Parameters& p, int index) {
 
 template <auto value>
 void set_through_ramp(const Edit& edit, const Model&, double t, Parameters& p) {
-  Shake& shake = p.shakes[edit.shake];
+  Shake& shake = p.shakes[edit.index];
   start_ramp(shake, t);
   shake.*value = edit.value.x();
 }
 
 void set_type(const Edit& edit, const Model&, double t, Parameters& p) {
-  Shake& shake = p.shakes[edit.shake];
+  Shake& shake = p.shakes[edit.index];
   const ShakeTraits &before = traits(shake.kind), &after = shake_kinds()[static_cast<int>(edit.value.x())];
   if (after.complete && before.has_frequency && !before.has_duration) after.complete(shake);
   shake.kind = after.kind;
@@ -79,7 +83,7 @@ Vec3 frequencies(const Parameters& p, int index) {
 }
 
 void set_frequency(const Edit& edit, const Model&, double t, Parameters& p) {
-  Shake& shake = p.shakes[edit.shake];
+  Shake& shake = p.shakes[edit.index];
   if (traits(shake.kind).sweeps) {
     shake.last_frequency = edit.value.y();
     begin_anew(shake, t);
@@ -91,8 +95,8 @@ void set_frequency(const Edit& edit, const Model&, double t, Parameters& p) {
 }
 
 void set_direction(const Edit& edit, const Model&, double t, Parameters& p) {
-  start_ramp(p.shakes[edit.shake], t);
-  p.shakes[edit.shake].direction = edit.value.stableNormalized();
+  start_ramp(p.shakes[edit.index], t);
+  p.shakes[edit.index].direction = edit.value.stableNormalized();
 }
 
 bool has_restitution(const Model&, const Parameters& p, int) {
@@ -113,11 +117,22 @@ void set_contact(const Edit& edit, const Model& model, double t, Parameters& p) 
 
 using K = Edit::Key;
 using Of = Edit::Of;
+constexpr EditTableTraits k_tables[] = {
+    {Of::shake, "shake", "shake", true,
+     [](const Model&, const Parameters& p) { return static_cast<int>(p.shakes.size()); }},
+    {Of::contact, "contact", "contact", false, one},
+    {Of::body, "body", "cabinet", true,
+     [](const Model& model, const Parameters&) { return model.furniture_total(); }},
+    {Of::anchor, "anchor", "anchor", true,
+     [](const Model&, const Parameters& p) { return static_cast<int>(p.anchors.size()); }},
+    {Of::run, "run", "run", false, one},
+};
+
 constexpr EditTraits k_edits[] = {
     {K::on, Of::shake, "on", false, always, of_shake<&Shake::on>,
      [](const Edit& edit, const Model&, double t, Parameters& p) {
-       start_ramp(p.shakes[edit.shake], t);
-       p.shakes[edit.shake].on = edit.value.x() != 0;
+       start_ramp(p.shakes[edit.index], t);
+       p.shakes[edit.index].on = edit.value.x() != 0;
      }},
     {K::type, Of::shake, "type", false, of_shakes_with<&ShakeTraits::has_amplitude>,
      [](const Parameters& p, int index) { return number(place_of(shake_kinds(), p.shakes[index].kind)); },
@@ -131,7 +146,7 @@ constexpr EditTraits k_edits[] = {
     {K::duration, Of::shake, "duration", false, of_shakes_with<&ShakeTraits::has_duration>,
      of_shake<&Shake::duration>,
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.shakes[edit.shake].duration = edit.value.x();
+       p.shakes[edit.index].duration = edit.value.x();
      }},
     {K::scale, Of::shake, "scale", false,
      [](const Model&, const Parameters& p, int index) { return !traits(p.shakes[index].kind).has_amplitude; },
@@ -158,25 +173,27 @@ constexpr EditTraits k_edits[] = {
      },
      [](const Edit& edit, const Model& model, double, Parameters& p) {
        p.models.resize(model.bodies.size(), BodyModel::frame);
-       p.models[edit.shake] = body_models()[static_cast<int>(edit.value.x())].kind;
-     }},
+       p.models[edit.index] = body_models()[static_cast<int>(edit.value.x())].kind;
+     },
+     true},
     {K::damping, Of::body, "damping", true,
      [](const Model& model, const Parameters&, int b) { return model.bodies[b].first_frequency > 0; },
      [](const Parameters& p, int b) { return number(p.damping.empty() ? 0 : p.damping[b]); },
      [](const Edit& edit, const Model& model, double, Parameters& p) {
        p.damping.resize(model.bodies.size(), 0);
-       p.damping[edit.shake] = edit.value.x();
+       p.damping[edit.index] = edit.value.x();
      }},
     {K::anchor, Of::anchor, "on", false, always,
      [](const Parameters& p, int index) { return number(p.anchors[index]); },
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.anchors[edit.shake] = edit.value.x() != 0;
+       p.anchors[edit.index] = edit.value.x() != 0;
      }},
     {K::integrator, Of::run, "integrator", true, always,
      [](const Parameters& p, int) { return number(1 + place_of(integrators(), p.integrator)); },
      [](const Edit& edit, const Model&, double, Parameters& p) {
        p.integrator = chosen_integrator(static_cast<int>(edit.value.x()));
-     }},
+     },
+     true},
     {K::want, Of::run, "want", true, always, [](const Parameters& p, int) { return number(p.want_stress); },
      [](const Edit& edit, const Model&, double, Parameters& p) { p.want_stress = edit.value.x() != 0; }},
     {K::time_step, Of::run, "time_step", true, always,
@@ -184,25 +201,15 @@ constexpr EditTraits k_edits[] = {
      [](const Edit& edit, const Model&, double, Parameters& p) {
        p.time_step = edit.value.x();
        p.adaptive = false;
-     }},
+     },
+     true},
 };
 
-int count(Edit::Of of, const Model& model, const Parameters& parameters) {
-  switch (of) {
-    case Of::shake:
-      return static_cast<int>(parameters.shakes.size());
-    case Of::body:
-      return model.furniture_total();
-    case Of::anchor:
-      return static_cast<int>(parameters.anchors.size());
-    case Of::contact:
-    case Of::run:
-      break;
-  }
-  return 1;
-}
-
 }  // namespace
+
+std::span<const EditTableTraits> edit_tables() {
+  return k_tables;
+}
 
 std::span<const EditTraits> edits() {
   return k_edits;
@@ -214,7 +221,7 @@ std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parame
   for (const auto* first = std::begin(k_edits); first != end;) {
     const auto* const last =
         std::find_if(first, end, [&](const EditTraits& row) { return row.of != first->of; });
-    for (int index = 0; index < count(first->of, model, parameters); ++index)
+    for (int index = 0; index < traits(first->of).count(model, parameters); ++index)
       for (const EditTraits& row : std::span(first, last))
         if (row.exists(model, parameters, index)) keys.emplace_back(row.kind, index);
     first = last;

@@ -39,9 +39,22 @@ struct Edit {
   /// Table of the scene that the key is in. There is one `contact` and one `run`.
   enum class Of { shake, contact, body, anchor, run };
   Key key;
-  int shake = 0;  ///< index of the shake, body or anchor; else 0
+  int index = 0;  ///< of the shake, body or anchor; else 0
   Vec3 value = Vec3::Zero();
 };
+
+/// A table of the scene that has keys that can be edited.
+struct EditTableTraits {
+  Edit::Of kind;
+  const char* word;  ///< in names of edits; "body" is a cabinet, a frame or a copy of one
+  const char* keys;  ///< in the scene
+  bool numbered;     ///< else there is one
+  int (*count)(const Model&, const Parameters&);
+};
+std::span<const EditTableTraits> edit_tables();
+inline const EditTableTraits& traits(Edit::Of of) {
+  return row_of(edit_tables(), of);
+}
 
 /// A parameter that can be edited while it runs. A new one is an Edit::Key and a row of the table in
 /// edit.cpp, whose range, unit and words are those of the scene's key of the same name.
@@ -53,6 +66,7 @@ struct EditTraits {
   bool (*exists)(const Model&, const Parameters&, int index);  ///< whether it can be edited there
   Vec3 (*get)(const Parameters&, int index);
   void (*set)(const Edit&, const Model&, double t, Parameters&);  ///< from time t on, see apply()
+  bool setting = false;                                           ///< how it is computed, not what
 };
 /// In the order of lists; rows of one Edit::Of stand together.
 std::span<const EditTraits> edits();
@@ -64,7 +78,7 @@ inline const EditTraits& traits(Edit::Key key) {
 std::vector<std::pair<Edit::Key, int>> editable(const Model& model, const Parameters& parameters);
 
 /// The value that an edit of this key and shake, body or anchor sets.
-Vec3 edited_value(const Parameters& parameters, Edit::Key key, int shake);
+Vec3 edited_value(const Parameters& parameters, Edit::Key key, int index);
 
 /// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase; amplitude, direction, scale,
 /// on and off change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),

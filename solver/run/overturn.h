@@ -41,7 +41,8 @@ double slide(const Model& model, int body, const BodyPose& pose);
 
 /// Something that happened to a body, at the end of a step.
 struct Event {
-  enum class Kind { uplift, impact, overturn, hinge, fracture, model, anchor };
+  /// Recordings hold these numbers.
+  enum class Kind { uplift = 0, impact = 1, overturn = 2, hinge = 3, fracture = 4, model = 5, anchor = 6 };
   Kind kind;
   std::int64_t step;
   double time;  ///< s

@@ -16,27 +16,47 @@
 namespace topple {
 namespace {
 
-// The choice that a number of a checkpoint stands for.
+/// A choice and its number in checkpoints.
 template <class Choice>
-Choice as(double number, Choice last) {
-  for (int k = 0; k <= static_cast<int>(last); ++k)
-    if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(double(k)))
-      return static_cast<Choice>(k);
-  throw std::invalid_argument("a checkpoint of another version");
+struct Stored {
+  Choice kind;
+  std::int64_t number;
+};
+constexpr Stored<ModelLevel> k_levels[] = {
+    {ModelLevel::rigid, 0}, {ModelLevel::elastic, 1}, {ModelLevel::frame, 2}};
+constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},  {LevelReason::motion, 1},
+                                             {LevelReason::stress, 2}, {LevelReason::contact_frequency, 3},
+                                             {LevelReason::yield, 4},  {LevelReason::deformation, 5},
+                                             {LevelReason::near, 6},   {LevelReason::calm, 7}};
+constexpr Stored<Hinge> k_hinges[] = {
+    {Hinge::none, 0}, {Hinge::first, 1}, {Hinge::second, 2}, {Hinge::broken, 3}, {Hinge::middle, 4}};
+constexpr Stored<AnchorHold> k_holds[] = {
+    {AnchorHold::in_place, 0}, {AnchorHold::away, 1}, {AnchorHold::broken, 2}};
+
+template <class Choice>
+double as_number(const Stored<Choice>& row) {
+  return static_cast<double>(row.number);
+}
+double as_number(const Stored<Hinge>& row) {
+  return std::bit_cast<double>(row.number);
+}
+double as_number(const ContactLawTraits& law) {
+  return static_cast<double>(law.kind);
 }
 
-ContactLawKind law_of(double number) {
-  for (const ContactLawTraits& law : contact_laws())
-    if (std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(static_cast<double>(law.kind)))
-      return law.kind;
-  throw std::invalid_argument("a checkpoint of another version");
-}
-
-Hinge as_hinge(double number) {
-  const auto hinge = std::bit_cast<std::int64_t>(number);
-  if (hinge < 0 || hinge > static_cast<std::int64_t>(Hinge::middle))
+// Calls f on the number of a choice; one that may change becomes what f makes of the number.
+template <class Table, class Choice, class F>
+void each_choice(const Table& table, Choice& choice, F& f) {
+  double number = as_number(row_of(table, choice));
+  f(number);
+  if constexpr (!std::is_const_v<Choice>) {
+    for (const auto& row : table)
+      if (std::bit_cast<std::uint64_t>(as_number(row)) == std::bit_cast<std::uint64_t>(number)) {
+        choice = row.kind;
+        return;
+      }
     throw std::invalid_argument("a checkpoint of another version");
-  return static_cast<Hinge>(hinge);
+  }
 }
 
 // Calls f on every number of the state, in the order of a checkpoint; `step` and counts are handled by the
@@ -59,13 +79,8 @@ void each_number(AnyState& s, F f) {
   each(s.algorithmic_angular_acceleration);
   each(s.stick);
   for (auto& b : s.bodies) {
-    double level = static_cast<double>(b.level), reason = static_cast<double>(b.reason);
-    f(level);
-    f(reason);
-    if constexpr (!std::is_const_v<AnyState>) {
-      b.level = as<ModelLevel>(level, ModelLevel::frame);
-      b.reason = as<LevelReason>(reason, LevelReason::calm);
-    }
+    each_choice(k_levels, b.level, f);
+    each_choice(k_reasons, b.reason, f);
     f(b.calm_since);
     f(b.substep);
     for (auto* v : {&b.position, &b.velocity, &b.angular_velocity, &b.force, &b.moment})
@@ -75,9 +90,7 @@ void each_number(AnyState& s, F f) {
       for (int k = 0; k < k_modes; ++k) f((*v)[k]);
   }
   for (auto& e : s.elements) {
-    double hinge = std::bit_cast<double>(e.hinge);
-    f(hinge);
-    if constexpr (!std::is_const_v<AnyState>) e.hinge = as_hinge(hinge);
+    each_choice(k_hinges, e.hinge, f);
     for (auto* strain : {&e.offset.gamma, &e.offset.kappa})
       for (int k = 0; k < 3; ++k) f((*strain)[k]);
   }
@@ -86,9 +99,7 @@ void each_number(AnyState& s, F f) {
   f(s.step_size);
   f(s.load_factor);
   f(s.candidate_margin);
-  double law = static_cast<double>(s.law);
-  f(law);
-  if constexpr (!std::is_const_v<AnyState>) s.law = law_of(law);
+  each_choice(contact_laws(), s.law, f);
   auto& e = s.energy;
   for (auto* number :
        {&e.input, &e.kinetic, &e.strain, &e.gravity, &e.contact, &e.friction, &e.normal_damping, &e.numerical,
@@ -99,9 +110,7 @@ void each_number(AnyState& s, F f) {
   f(e.released);
   for (auto& anchor : s.anchors) {
     f(anchor.length);
-    double hold = static_cast<double>(anchor.hold);
-    f(hold);
-    if constexpr (!std::is_const_v<AnyState>) anchor.hold = as<AnchorHold>(hold, AnchorHold::broken);
+    each_choice(k_holds, anchor.hold, f);
   }
 }
 

@@ -31,7 +31,7 @@ double fit(double h, double left) {
 }  // namespace
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, const State& state,
-                         Workspace::Impl& w, double until) {
+                         Workspace::Impl& w, double until, const TryStep& try_step) {
   if (traits(parameters.integrator).is_explicit) w.find_explicit_limit(parameters, state);
   const bool by_limit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
@@ -42,7 +42,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
   StepStatus status;
   int iterations = 0, rejected = 0;
   for (;;) {
-    status = try_step(model, parameters, state, h, 0, w);
+    status = try_step(h);
     iterations += status.newton_iterations;
     const double error = status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h) : 0;
     if (status.ok() && error <= 1) {

@@ -19,10 +19,6 @@ constexpr double k_furthest = 1;         // of the body's size, travel within a 
 constexpr double k_most_turn = 1.5;      // rad, within a load step: more is another equilibrium
 constexpr double k_least_part = 1. / 1024;  // of a load step
 
-bool is_fixed(const BodySystem& s, int node, int direction) {
-  return s.fixed[node] >> direction & 1;
-}
-
 // Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
 // does the tangent tell whether an equilibrium is stable.
 bool is_conservative(const BodySystem& s) {
@@ -149,14 +145,13 @@ int LoadPath::controlled_direction() const {
 void LoadPath::evaluate(BodySystem& s, const Parameters& still, const State& state, double factor) {
   const BodyMotion& trial = trial_[s.index];
   s.lu.set_zero();
-  s.evaluate_with_tangent(still, factor, trial, state.stick, start_[s.index].position, 0);
+  s.evaluate_with_tangent(still, StepInputs(still, factor), trial, state.stick, start_[s.index].position, 0);
   distribute_weight(s, still.gravity, trial.position);
-  for (int i = 0; i < s.count; ++i)
+  for (int i = 0; i < s.count; ++i) {
+    s.clear_fixed(i, s.force[i], s.moment[i]);
     for (int k = 0; k < 6; ++k)
-      if (is_fixed(s, i, k)) {
-        s.lu.fix(i, k);
-        (k < 3 ? s.force[i][k] : s.moment[i][k - 3]) = 0;
-      }
+      if (s.is_fixed(i, k)) s.lu.fix(i, k);
+  }
 }
 
 // Derivative of the applied forces by the load factor, six numbers per node.
@@ -164,7 +159,7 @@ std::vector<double> LoadPath::growing_loads(const BodySystem& s) const {
   std::vector<double> loads(6 * s.count, 0.);
   for (const auto& [load, i] : s.loads)
     for (int k = 0; k < 6; ++k)
-      if (load->history.empty() && !is_fixed(s, i, k))
+      if (load->history.empty() && !s.is_fixed(i, k))
         loads[6 * i + k] += k < 3 ? load->force[k] : load->moment[k - 3];
   return loads;
 }

@@ -1,5 +1,7 @@
 #include "solver/step/step.h"
 
+#include <functional>
+
 #include "solver/body/anchors.h"
 #include "solver/body/candidates.h"
 #include "solver/step/adaptive_step.h"
@@ -13,6 +15,8 @@ constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes mov
 
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
                         Workspace::Impl& w);
+StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
+                    int halvings, Workspace::Impl& w);
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w);
 
 }  // namespace
@@ -22,12 +26,19 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   Workspace::Impl& w = workspace.impl();
   StepStatus status = check_inputs(model, parameters, state, w);
   if (!status.ok()) return status;
-  status = parameters.adaptive ? adaptive_step(model, parameters, state, w, until)
-                               : try_step(model, parameters, state, parameters.time_step, k_halvings, w);
+  if (parameters.adaptive) {
+    const auto try_adaptive = [&](double h) { return try_step(model, parameters, state, h, 0, w); };
+    status = adaptive_step(model, parameters, state, w, until, std::ref(try_adaptive));
+  } else {
+    status = try_step(model, parameters, state, parameters.time_step, k_halvings, w);
+  }
   if (status.ok()) accept(model, parameters, state, w);
   return status;
 }
 
+namespace {
+
+// One step of size h into w.next. passed_through: nodes moved too far for the pairs looked at.
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w) {
   const bool alone = model.bodies.size() < 2;
@@ -55,8 +66,6 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   status.time = w.next.time;
   return status;
 }
-
-namespace {
 
 // Looks at the numbers of parameters that are new, and of a state that is not finite.
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,

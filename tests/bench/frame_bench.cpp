@@ -218,7 +218,8 @@ double factor_and_solve(const Setup& setup, const State& state) {
   double best = 1e300;
   for (int repeat = 0; repeat < 2000; ++repeat) {
     system.lu.set_zero();
-    system.evaluate_with_tangent(setup.parameters, 0, motion, state.stick, motion.position, 0);
+    system.evaluate_with_tangent(setup.parameters, {setup.parameters, 0}, motion, state.stick,
+                                 motion.position, 0);
     const double inertia = 4 / (k_implicit_step * k_implicit_step);
     for (int i = 0; i < system.count; ++i) {
       Mat6 block = inertia * setup.model.node_mass[i] * Mat6::Identity();

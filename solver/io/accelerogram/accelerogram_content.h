@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace topple::io {
@@ -11,6 +12,9 @@ inline constexpr double k_most_samples = 1e7;        ///< of one component
 inline constexpr double k_shortest_interval = 1e-5;  ///< s between samples
 inline constexpr double k_longest_interval = 1;      ///< s
 inline constexpr double k_highest_peak = 5;          ///< g; above it the unit is taken to be wrong
+
+/// Units of samples that scenes and files may name.
+inline constexpr std::string_view k_sample_units[] = {"g", "gal", "m/s^2", "cm/s^2"};
 
 /// Components that were sampled together.
 struct AccelerogramFile {

@@ -82,7 +82,7 @@ Columns read_header(const Lines& lines, char separator, const AccelerogramNotes&
     const std::string_view unit = acceleration_unit(column.unit);
     if (unit.empty() && notes.unit.empty())
       lines.fail(key + shown(cell) + " does not end in a unit of acceleration, such as ax_gal; " +
-                 k_known_units + "; or give unit in the scene");
+                 known_units() + "; or give unit in the scene");
     columns.at.push_back(index);
     columns.units.push_back(chosen_unit(lines, unit, notes));
   }

@@ -52,7 +52,7 @@ std::string_view at2_unit(const Lines& lines) {
   std::string_view rest = trimmed(std::string_view(line).substr(at + k_units_of.size()));
   rest = rest.substr(0, rest.find_first_of(" ,.;("));
   const std::string_view unit = acceleration_unit(rest);
-  if (unit.empty()) lines.fail("unit: " + shown(rest) + " is not one of an acceleration; " + k_known_units);
+  if (unit.empty()) lines.fail("unit: " + shown(rest) + " is not one of an acceleration; " + known_units());
   return unit;
 }
 
@@ -79,18 +79,9 @@ AccelerogramFile read_at2(std::string_view text, const std::string& name, const 
 
   AccelerogramFile file{AccelerogramFile::Format::at2, *interval, {{}}};
   std::vector<double>& samples = file.components[0];
-  samples.reserve(std::min(static_cast<std::size_t>(*count), lines.bytes_left()));
   Largest largest;
-  double found = 0;
-  while (lines.next()) {
-    for (std::string_view rest = trimmed(lines.line()); !rest.empty(); rest = trimmed(rest)) {
-      const auto end = std::min(rest.find_first_of(" \t"), rest.size());
-      const double value = finite_number(rest.substr(0, end), lines, "");
-      rest.remove_prefix(end);
-      largest.update(value, lines.number());
-      if (++found <= *count) samples.push_back(value);
-    }
-  }
+  const double found = read_samples(
+      lines, *count, samples, [&](double value, std::string_view) { largest.update(value, lines.number()); });
   if (found != *count)
     lines.fail_at(header_line,
                   "NPTS: says " + count_text(*count) + " samples, the file holds " + count_text(found));
@@ -173,18 +164,9 @@ AccelerogramFile read_knet(std::string_view text, const std::string& name, const
 
   AccelerogramFile file{AccelerogramFile::Format::knet, 1 / frequency, {{}}};
   std::vector<double>& samples = file.components[0];
-  samples.reserve(std::min(static_cast<std::size_t>(count), lines.bytes_left()));
-  double found = 0;
-  while (lines.next()) {
-    for (std::string_view rest = trimmed(lines.line()); !rest.empty(); rest = trimmed(rest)) {
-      const auto end = std::min(rest.find_first_of(" \t"), rest.size());
-      const double value = finite_number(rest.substr(0, end), lines, "");
-      if (value != std::floor(value))
-        lines.fail(shown(rest.substr(0, end)) + " is not a whole number of counts");
-      rest.remove_prefix(end);
-      if (++found <= count) samples.push_back(value);
-    }
-  }
+  const double found = read_samples(lines, count, samples, [&](double value, std::string_view word) {
+    if (value != std::floor(value)) lines.fail(shown(word) + " is not a whole number of counts");
+  });
   if (found != count)
     lines.fail_at(12, "Duration Time(s): " + short_number(seconds) + " s at " + short_number(frequency) +
                           " Hz are " + count_text(count) + " samples, the file holds " + count_text(found));

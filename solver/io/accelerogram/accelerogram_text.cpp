@@ -92,6 +92,13 @@ void check_interval(const Lines& lines, int line, const std::string& key, double
                             " s");
 }
 
+std::string known_units() {
+  std::string text;
+  for (const std::string_view unit : k_sample_units)
+    text += (text.empty() ? "known: " : ", ") + std::string(unit);
+  return text;
+}
+
 std::string_view acceleration_unit(std::string_view text) {
   std::string plain = upper(text);
   std::erase(plain, ' ');

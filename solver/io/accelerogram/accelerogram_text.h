@@ -66,7 +66,8 @@ void check_interval(const Lines& lines, int line, const std::string& key, double
 /// `size`: in `unit`. Fails above k_highest_peak, where the unit is taken to be wrong.
 void check_peak(const Lines& lines, int line, double size, std::string_view unit);
 
-inline constexpr const char* k_known_units = "known: g, gal, m/s^2, cm/s^2";
+/// "known: g, gal, ...": k_sample_units, for a message.
+std::string known_units();
 
 /// The symbol of a unit as files spell it; empty when it is none that is known.
 std::string_view acceleration_unit(std::string_view text);
@@ -85,6 +86,24 @@ struct Largest {
     }
   }
 };
+
+/// The numbers on the lines that are left, the first `count` of them as samples; returns how many there are.
+/// Calls each(value, text) for every one. Fails at what is no finite number.
+template <class Each>
+double read_samples(Lines& lines, double count, std::vector<double>& samples, Each each) {
+  samples.reserve(std::min(static_cast<std::size_t>(count), lines.bytes_left()));
+  double found = 0;
+  while (lines.next()) {
+    for (std::string_view rest = trimmed(lines.line()); !rest.empty(); rest = trimmed(rest)) {
+      const std::string_view text = rest.substr(0, rest.find_first_of(" \t"));
+      const double value = finite_number(text, lines, "");
+      each(value, text);
+      rest.remove_prefix(text.size());
+      if (++found <= count) samples.push_back(value);
+    }
+  }
+  return found;
+}
 
 /// `factor`: SI value of one unit.
 void to_si(std::vector<double>& values, double factor);

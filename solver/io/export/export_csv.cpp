@@ -146,11 +146,10 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
   CsvFile elements(within("elements.csv"),
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
   CsvFile floor(within("floor.csv"), "time_s,ax,ay,az,dx,dy,dz");
-  const std::string energies =
-      "time_s,input_J,kinetic_J,strain_J,gravity_J,contact_J,friction_J,normal_damping_J,numerical_J,"
-      "plastic_J,damping_J,model_switch_J,balance_error";
-  CsvFile energy(within("energy.csv"),
-                 (model.anchors.empty() ? energies : energies + ",anchor_J,released_J").c_str());
+  std::string energies = "time_s";
+  for (const EnergyTraits& column : energy_columns(!model.anchors.empty()))
+    energies += std::string(",") + column.name + (column.kind == k_balance_error ? "" : "_J");
+  CsvFile energy(within("energy.csv"), energies.c_str());
   std::optional<CsvFile> anchors;
   if (!model.anchors.empty())
     anchors.emplace(within("anchors.csv"), "time_s,anchor,tension_N,energy_J,natural_length_m,state");

@@ -14,6 +14,28 @@ const char* anchor_word(float state) {
 
 namespace {
 
+constexpr EnergyTraits k_energies[] = {
+    {k_input, "input", "J", [](const EnergyLedger& e) { return e.input; }},
+    {k_kinetic, "kinetic", "J", [](const EnergyLedger& e) { return e.kinetic; }},
+    {k_strain, "strain", "J", [](const EnergyLedger& e) { return e.strain; }},
+    {k_gravity, "gravity", "J", [](const EnergyLedger& e) { return e.gravity; }},
+    {k_contact, "contact", "J", [](const EnergyLedger& e) { return e.contact; }},
+    {k_friction, "friction", "J", [](const EnergyLedger& e) { return e.friction; }},
+    {k_normal_damping, "normal_damping", "J", [](const EnergyLedger& e) { return e.normal_damping; }},
+    {k_numerical, "numerical", "J", [](const EnergyLedger& e) { return e.numerical; }},
+    {k_plastic, "plastic", "J", [](const EnergyLedger& e) { return e.plastic; }},
+    {k_damping, "damping", "J", [](const EnergyLedger& e) { return e.damping; }},
+    {k_model_switch, "model_switch", "J", [](const EnergyLedger& e) { return e.model_switch; }},
+    {k_balance_error, "balance_error", "1", [](const EnergyLedger& e) { return e.balance_error(); }},
+    {k_anchor, "anchor", "J", [](const EnergyLedger& e) { return e.anchor; }},
+    {k_released, "released", "J", [](const EnergyLedger& e) { return e.released; }},
+};
+static_assert([] {
+  for (std::size_t column = 0; column < std::size(k_energies); ++column)
+    if (k_energies[column].kind != column) return false;
+  return true;
+}());
+
 template <typename Numbers>
 bool all_finite(const Numbers& numbers) {
   return std::all_of(std::begin(numbers), std::end(numbers), [](auto x) { return std::isfinite(x); });
@@ -25,6 +47,10 @@ bool all_finite(const std::vector<Row>& rows) {
 }
 
 }  // namespace
+
+std::span<const EnergyTraits> energy_columns(bool anchors) {
+  return std::span(k_energies).first(anchors ? std::size(k_energies) : std::size_t{k_anchor});
+}
 
 bool is_finite(const FrameRow& row) {
   return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
@@ -54,7 +80,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
   row.member_contact.resize(4 * shape.touched);
-  row.energy.resize(shape.anchors > 0 ? k_released + 1 : k_anchor);
+  row.energy.resize(energy_columns(shape.anchors > 0).size());
   row.body.resize(shape.bodies);
   row.level.resize(shape.bodies);
   row.anchor.resize(shape.anchors);

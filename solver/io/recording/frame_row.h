@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/model/model.h"
+#include "solver/state/state.h"
 
 namespace topple::io {
 
@@ -61,6 +63,14 @@ enum EnergyColumn : std::size_t {
   k_anchor,
   k_released
 };
+struct EnergyTraits {
+  EnergyColumn kind;
+  const char* name;  ///< in recordings and exports
+  const char* unit;
+  double (*value)(const EnergyLedger&);
+};
+/// In the order of the columns; the last two where there are anchors.
+std::span<const EnergyTraits> energy_columns(bool anchors);
 
 /// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes (index: point times
 /// planes plus plane), b bodies, a anchors, t elements that other bodies' members can touch: e, or 0 of a

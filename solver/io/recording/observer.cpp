@@ -149,9 +149,6 @@ void fill_anchors(const Run& run, FrameRow& row) {
                      .natural_length = static_cast<float>(anchor.length),
                      .state = look};
   }
-  if (forces.empty()) return;
-  row.energy[k_anchor] = state.energy.anchor;
-  row.energy[k_released] = state.energy.released;
 }
 
 }  // namespace
@@ -189,11 +186,8 @@ FrameRow frame_row(const Run& run) {
   fill_contacts(run, row);
   fill_member_contacts(run, row);
   fill_bodies(run, row);
-  const EnergyLedger& e = state.energy;
-  const double energies[] = {e.input,   e.kinetic,  e.strain,         e.gravity,
-                             e.contact, e.friction, e.normal_damping, e.numerical,
-                             e.plastic, e.damping,  e.model_switch,   e.balance_error()};
-  std::copy(std::begin(energies), std::end(energies), row.energy.begin());
+  for (const EnergyTraits& column : energy_columns(!run.setup().model.anchors.empty()))
+    row.energy[column.kind] = column.value(state.energy);
   fill_anchors(run, row);
   row.load_factor = state.load_factor;
   const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);

@@ -1,6 +1,7 @@
 #include "solver/io/recording/recording_format.h"
 
 #include <algorithm>
+#include <string>
 
 namespace topple::io {
 namespace {
@@ -39,6 +40,18 @@ Handle event_kind(int kinds, bool anchors) {
   insert("anchor", Event::Kind::anchor);
   return type;
 }
+
+/// Names and units of energies, comma-separated.
+struct EnergyColumns {
+  std::string names, units;
+  explicit EnergyColumns(std::span<const EnergyTraits> columns) {
+    for (const EnergyTraits& column : columns) {
+      const char* const comma = names.empty() ? "" : ",";
+      names += std::string(comma) + column.name;
+      units += std::string(comma) + column.unit;
+    }
+  }
+};
 
 }  // namespace
 
@@ -144,6 +157,8 @@ Handle record_type<ResultRecord>() {
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
   const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, t = shape.touched;
   const hsize_t b = shape.bodies, a = shape.anchors;
+  static const EnergyColumns k_without(energy_columns(false)), k_with(energy_columns(true));
+  const EnergyColumns& energies = a > 0 ? k_with : k_without;
   const hid_t f32 = H5T_IEEE_F32LE, f64 = H5T_IEEE_F64LE, u8 = H5T_STD_U8LE;
   return {
       {{"position", f32, {n, 3}, "m", "x,y,z"},
@@ -158,16 +173,7 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_depth", f32, {c}, "1", ""},
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"member_contact", f32, {t, 4}, "N,N,N,1", "x,y,z,place"},
-       {"energy",
-        f64,
-        {a > 0 ? 14u : 12u},
-        a > 0 ? "J,J,J,J,J,J,J,J,J,J,J,1,J,J" : "J,J,J,J,J,J,J,J,J,J,J,1",
-        a > 0 ? "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,damping,"
-                "model_switch,"
-                "balance_error,anchor,released"
-              : "input,kinetic,strain,gravity,contact,friction,normal_damping,numerical,plastic,damping,"
-                "model_switch,"
-                "balance_error"},
+       {"energy", f64, {energy_columns(a > 0).size()}, energies.units.c_str(), energies.names.c_str()},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
        {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},

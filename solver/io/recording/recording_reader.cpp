@@ -27,6 +27,13 @@ constexpr unsigned k_metadata_attempts = 20;
 constexpr int k_open_attempts = 5;
 constexpr const char* k_not_finite = " holds a number that is not finite";
 
+bool is_level_change(const EventRecord& event) {
+  return std::ranges::any_of(
+             k_model_levels,
+             [&](const LevelTraits& row) { return static_cast<double>(row.kind) == event.value[0]; }) &&
+         event.value[1] >= 0 && event.value[1] <= static_cast<double>(LevelReason::calm);
+}
+
 /// What the file's first bytes say, before HDF5 sees it.
 struct FirstBytes {
   bool exists = false, is_hdf5 = false, being_written = false;
@@ -272,6 +279,9 @@ struct Recording::Impl {
     frames = read_records<FrameRecord>(frame_index, "frames/index");
     checkpoints = read_checkpoints();
     recorded_events = read_records<EventRecord>(event_rows, "events");
+    for (const EventRecord& event : recorded_events)
+      if (event.kind == static_cast<int>(Event::Kind::model) && !is_level_change(event))
+        throw Hdf5Error("events is damaged (a body has a model that there is not)");
     for (const std::size_t i : held) frames.resize(std::min<std::size_t>(frames.size(), fields[i].rows()));
     const auto numbers = static_cast<std::int64_t>(checkpoint_state.rows() * state_row.value_or(1));
     for (const CheckpointRecord& record : checkpoints)

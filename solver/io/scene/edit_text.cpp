@@ -1,69 +1,111 @@
 #include "solver/io/scene/edit_text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "solver/body/model_level.h"
-#include "solver/contact/contact_law.h"
 #include "solver/io/common/errors.h"
 #include "solver/model/excitation.h"
 
 namespace topple::io {
 namespace {
 
-// The table of the scene's path. A body may be a frame or a copy of one: its edits say "body" and its number.
-std::string_view table_of(Edit::Of of) {
-  switch (of) {
-    case Edit::Of::shake:
-      return "shake";
-    case Edit::Of::contact:
-      return "contact";
-    case Edit::Of::body:
-      return "body";
-    case Edit::Of::anchor:
-      return "anchor";
-    case Edit::Of::run:
-      break;
+/// How many numbers a value has at least: of a frequency, which a sweep has two of, one.
+int least_count(const Key& key) {
+  if (key.type != KeyType::numbers) return 1;
+  return key.least_count > 0 ? key.least_count : key.count;
+}
+
+std::string every_digit(double x) {
+  char digits[40];
+  std::string text(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+/// In the unit of the key where that reads back the same, else in SI.
+std::string exact_text(const Key& key, double si) {
+  if (!key.unit.empty()) {
+    const std::string text = value_text(key, si);
+    if (parse_quantity(text, key.dimension).si == si) return '"' + text + '"';
   }
-  return "run";
+  return every_digit(si);
 }
 
-bool is_numbered(Edit::Of of) {
-  return of != Edit::Of::contact && of != Edit::Of::run;
-}
-
-// How many values an edit has.
-int value_count(const Edit& edit, const Key& key) {
-  return edit.key == Edit::Key::direction ? key.count : 1;
+std::string list_text(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "[" : ", ") + item;
+  return text + "]";
 }
 
 [[noreturn]] void fail(const Edit& edit, const std::string& message) {
   throw InputError(edit_key(edit) + ": " + message);
 }
 
-/// Refuses the key of a choice that was not made: `word` was, of the choices of `key.of`.
-void expect_choice(const Edit& edit, std::string_view word) {
+/// Refuses the key of a choice that was not made.
+void expect_choice(const Edit& edit, const Parameters& parameters) {
   const Key& key = key_of(edit.key);
+  const auto choice = std::ranges::find_if(
+      edits(), [&](const EditTraits& row) { return row.of == traits(edit.key).of && row.word == key.of; });
+  if (choice == edits().end()) return;
+  const double number = choice->get(parameters, edit.index).x();
+  const std::string_view made = key_of(choice->kind).choices[static_cast<std::size_t>(number)];
   std::string words;
-  for (const std::string_view other : key.when) {
-    if (other == word) return;
-    words += (words.empty() ? "" : " or ") + std::string(other);
+  for (const std::string_view word : key.when) {
+    if (word == made) return;
+    words += (words.empty() ? "" : " or ") + std::string(word);
   }
   const std::string of(key.of);
-  fail(edit, "belongs to " + of + " = " + words + ", but " + of + " is " + std::string(word));
+  fail(edit, "belongs to " + of + " = " + words + ", but " + of + " is " + std::string(made));
 }
+
+void check_type(const Edit& edit, const Parameters& parameters, const Model&) {
+  const auto& asked = shake_kinds()[static_cast<std::size_t>(edit.value.x())];
+  if (!traits(parameters.shakes[edit.index].kind).has_amplitude || !asked.has_amplitude)
+    fail(edit, "a record stays one, and nothing else becomes one");
+}
+
+void check_frequency(const Edit& edit, const Parameters& parameters, const Model&) {
+  if (traits(parameters.shakes[edit.index].kind).sweeps)
+    check_edit_value({edit.key, edit.index, Vec3(edit.value.y(), 0, 0)});
+}
+
+void check_model(const Edit& edit, const Parameters&, const Model& model) {
+  const auto asked = static_cast<std::size_t>(edit.value.x());
+  if (!can_be(model, edit.index, body_models()[asked].kind))
+    fail(edit, "\"" + model.bodies[edit.index].name + "\" cannot be " + body_models()[asked].word +
+                   "; supports and loads take a frame, elastic and auto a scene that says so");
+}
+
+void check_damping(const Edit& edit, const Parameters&, const Model& model) {
+  const Body& body = model.bodies[edit.index];
+  if (body.first_frequency == 0)
+    fail(edit, "\"" + body.name + "\" has no known elastic mode; give it a damping in the scene");
+}
+
+/// What range and choice of a key do not tell; most keys need no row.
+struct EditCheck {
+  Edit::Key key;
+  void (*check)(const Edit&, const Parameters&, const Model&);
+};
+constexpr EditCheck k_checks[] = {{Edit::Key::type, check_type},
+                                  {Edit::Key::frequency, check_frequency},
+                                  {Edit::Key::model, check_model},
+                                  {Edit::Key::damping, check_damping}};
 
 }  // namespace
 
 const Key& key_of(Edit::Key key) {
   const EditTraits& row = traits(key);
-  return *find_key(row.of == Edit::Of::body ? "cabinet" : table_of(row.of), row.word);
+  return *find_key(traits(row.of).keys, row.word);
 }
 
 std::string edit_key(const Edit& edit) {
   const EditTraits& row = traits(edit.key);
-  const std::string number = is_numbered(row.of) ? std::to_string(edit.shake + 1) + "." : "";
-  return std::string(table_of(row.of)) + "." + number + row.word;
+  const EditTableTraits& table = traits(row.of);
+  return std::string(table.word) + "." + (table.numbered ? std::to_string(edit.index + 1) + "." : "") +
+         row.word;
 }
 
 std::optional<Edit> parse_edit_key(std::string_view text) {
@@ -72,15 +114,37 @@ std::optional<Edit> parse_edit_key(std::string_view text) {
   if (dot != std::string_view::npos)
     std::from_chars(text.data() + dot + 1, text.data() + text.size(), number);
   for (const EditTraits& row : edits()) {
-    const Edit edit{.key = row.kind, .shake = is_numbered(row.of) ? number - 1 : 0};
-    if (edit.shake >= 0 && edit_key(edit) == text) return edit;
+    const Edit edit{.key = row.kind, .index = traits(row.of).numbered ? number - 1 : 0};
+    if (edit.index >= 0 && edit_key(edit) == text) return edit;
   }
   return std::nullopt;
 }
 
+std::string edit_value_text(const Edit& edit, EditSpelling spelling) {
+  const Key& key = key_of(edit.key);
+  const bool in_scene = spelling == EditSpelling::in_scene;
+  const double number = edit.value.x();
+  const auto word = [&](std::size_t k) {
+    const std::string text(key.choices[k]);
+    return in_scene ? '"' + text + '"' : text;
+  };
+  if (key.type == KeyType::boolean) return number != 0 ? "true" : "false";
+  if (key.type == KeyType::choice) return word(static_cast<std::size_t>(number));
+  std::vector<std::string> items;
+  if (key.type == KeyType::choices) {
+    for (std::size_t k = 0; k < (number != 0 ? key.choices.size() : 1); ++k) items.push_back(word(k));
+    return list_text(items);
+  }
+  int count = least_count(key);
+  while (count < key.count && edit.value[count] != 0) ++count;
+  for (int i = 0; i < count; ++i)
+    items.push_back(in_scene ? exact_text(key, edit.value[i]) : value_text(key, edit.value[i]));
+  return count == 1 ? items[0] : list_text(items);
+}
+
 void check_edit_value(const Edit& edit) {
   const Key& key = key_of(edit.key);
-  for (int i = 0; i < value_count(edit, key); ++i) {
+  for (int i = 0; i < least_count(key); ++i) {
     const double value = edit.value[i];
     if (!std::isfinite(value)) fail(edit, short_number(value) + " is not a finite number");
     // conversion of units may round the end of a range outwards
@@ -94,54 +158,19 @@ void check_edit_value(const Edit& edit) {
     fail(edit, short_number(number) + " is not the number of a choice, 0.." + std::to_string(choices - 1));
   if ((key.type == KeyType::boolean || key.type == KeyType::choices) && number != 0 && number != 1)
     fail(edit, short_number(number) + " is neither 0 nor 1");
-  if (edit.key == Edit::Key::direction && !(edit.value.stableNorm() > 0))
+  if (least_count(key) == 3 && !(edit.value.stableNorm() > 0))  // of vectors, only directions are edited
     fail(edit, "a zero vector has no direction");
 }
 
-namespace {
-
-void expect_index(const Edit& edit, std::size_t count, const char* what) {
-  if (edit.shake < 0 || edit.shake >= static_cast<int>(count))
-    fail(edit, std::string("there is no such ") + what + "; the scene has " + std::to_string(count));
-}
-
-void check_shake_edit(const Edit& edit, const Shake& shake) {
-  if (edit.key == Edit::Key::on) return;
-  if (edit.key == Edit::Key::type) {
-    const auto& asked = shake_kinds()[static_cast<std::size_t>(edit.value.x())];
-    if (!traits(shake.kind).has_amplitude || !asked.has_amplitude)
-      fail(edit, "a record stays one, and nothing else becomes one");
-    return;
-  }
-  expect_choice(edit, traits(shake.kind).word);
-  if (edit.key == Edit::Key::frequency && traits(shake.kind).sweeps)
-    check_edit_value({edit.key, edit.shake, Vec3(edit.value.y(), 0, 0)});
-}
-
-void check_body_edit(const Edit& edit, const Model& model) {
-  const Body& body = model.bodies[edit.shake];
-  if (edit.key == Edit::Key::damping && body.first_frequency == 0)
-    fail(edit, "\"" + body.name + "\" has no known elastic mode; give it a damping in the scene");
-  if (edit.key == Edit::Key::model) {
-    const int asked = static_cast<int>(edit.value.x());
-    if (can_be(model, edit.shake, body_models()[static_cast<std::size_t>(asked)].kind)) return;
-    const std::string word(key_of(edit.key).choices[static_cast<std::size_t>(asked)]);
-    fail(edit, "\"" + body.name + "\" cannot be " + word +
-                   "; supports and loads take a frame, elastic and auto a scene that says so");
-  }
-}
-
-}  // namespace
-
 void check_edit(const Edit& edit, const Parameters& parameters, const Model& model) {
-  const Edit::Of of = traits(edit.key).of;
-  if (of == Edit::Of::shake) expect_index(edit, parameters.shakes.size(), "shake");
-  if (of == Edit::Of::anchor) expect_index(edit, model.anchors.size(), "anchor");
-  if (of == Edit::Of::body) expect_index(edit, model.furniture_total(), "body");
+  const EditTableTraits& table = traits(traits(edit.key).of);
+  const int count = table.count(model, parameters);
+  if (table.numbered && (edit.index < 0 || edit.index >= count))
+    fail(edit, std::string("there is no such ") + table.word + "; the scene has " + std::to_string(count));
   check_edit_value(edit);
-  if (of == Edit::Of::shake) check_shake_edit(edit, parameters.shakes[edit.shake]);
-  if (of == Edit::Of::body) check_body_edit(edit, model);
-  if (key_of(edit.key).of == "law") expect_choice(edit, traits(parameters.contact).word);
+  expect_choice(edit, parameters);
+  for (const EditCheck& row : k_checks)
+    if (row.key == edit.key) row.check(edit, parameters, model);
 }
 
 }  // namespace topple::io

@@ -21,6 +21,15 @@ std::optional<Edit> parse_edit_key(std::string_view text);
 /// The row of the table of keys: range, unit and default.
 const Key& key_of(Edit::Key key);
 
+/// How a value is written.
+enum class EditSpelling {
+  shown,    ///< for people: newmark, [motion, stress], 50 kgf, to six digits
+  in_scene  ///< TOML that reads back the same: "newmark", ["motion", "stress"], "50 kgf"
+};
+
+/// The value of an edit that check_edit_value() passes, in the words and the unit of its key.
+std::string edit_value_text(const Edit& edit, EditSpelling spelling);
+
 /// Refuses a value that is not finite, out of range, no choice or no direction. Throws InputError with one
 /// line: "contact.friction: 2.4 is outside 0..1.5".
 void check_edit_value(const Edit& edit);

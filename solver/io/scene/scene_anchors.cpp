@@ -84,7 +84,7 @@ void read_anchors(const Entry& root, Setup& setup) {
     if (body.ground) entry.fail("body", "\"" + body.name + "\" is no furniture");
     const Vec3 point = entry.vector("point");
     anchor.to = entry.vector("to");
-    anchor.type = entry.choice_as<Anchor::Type>("type");
+    anchor.type = entry.chosen("type", k_anchor_types);
     anchor.stiffness = entry.number("stiffness");
     if (entry.has("strength")) anchor.strength = entry.number("strength");
     anchor.length = (point - anchor.to).norm();

@@ -77,7 +77,7 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
     entry.fail("cg_height", short_number(1e3 * spec.cg_height) + " mm is not below the top, " +
                                 short_number(1e3 * spec.size.z()) + " mm");
   if (entry.is_word("inertia")) {
-    spec.inertia = entry.choice_as<CabinetSpec::Inertia>("inertia");
+    spec.inertia = entry.chosen("inertia", k_inertias);
   } else {
     spec.inertia = CabinetSpec::Inertia::given;
     spec.inertia_given = entry.vector("inertia");
@@ -85,14 +85,14 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   const std::vector<double> at = entry.numbers("at");
   spec.at = Vec3(at[0], at[1], at.size() > 2 ? at[2] : 0);
   spec.yaw = entry.number("yaw");
-  spec.pose = entry.choice_as<CabinetSpec::Pose>("pose");
+  spec.pose = entry.chosen("pose", k_poses);
   spec.tilt = entry.number("tilt");
   spec.velocity = entry.vector("velocity");
   spec.angular_velocity = entry.vector("angular_velocity");
   spec.section = library.section(entry);
   spec.material = library.material(entry);
   spec.shelves = entry.integer("shelves");
-  spec.bracing = entry.choice_as<CabinetSpec::Bracing>("bracing");
+  spec.bracing = entry.chosen("bracing", k_bracings);
   spec.panel_thickness = entry.number("panel_thickness");
   spec.divisions = entry.integer("divisions");
   return spec;
@@ -126,12 +126,12 @@ FrameMember read_member(const Entry& entry, const FrameSpec& spec, const Library
 }
 
 unsigned read_fix(const Entry& entry) {
-  static const std::string k_letters = "xyzXYZ";
   unsigned fixed = 0;
   for (const char c : entry.text("fix")) {
-    const auto bit = k_letters.find(c);
-    if (bit == std::string::npos) {
-      entry.fail("fix", "expected letters of " + k_letters + ", found \"" + entry.text("fix") + "\"");
+    const auto bit = k_directions.find(c);
+    if (bit == k_directions.npos) {
+      entry.fail("fix", "expected letters of " + std::string(k_directions) + ", found \"" +
+                            entry.text("fix") + "\"");
     }
     fixed |= 1u << bit;
   }
@@ -311,9 +311,9 @@ void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const 
 // What the last `count` bodies are computed as.
 void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) {
   Model& model = setup.model;
-  BodyModel asked = body_models()[entry.choice("model")].kind;
+  BodyModel asked = entry.chosen("model", body_models());
   const Entry run = root.entry("run");
-  const bool named = run.choice("integrator") != 0;
+  const bool named = run.word("integrator") != "auto";
   if (asked == BodyModel::automatic && (named || setup.run.analysis != Analysis::dynamic))
     asked = BodyModel::frame;
   if (asked == BodyModel::rigid || asked == BodyModel::elastic) {

@@ -46,12 +46,10 @@ std::vector<std::string> Entry::texts(std::string_view key) const {
   return values;
 }
 
-int Entry::choice(std::string_view key) const {
+std::string_view Entry::word(std::string_view key) const {
   const Key& spec = *find_key(table_, key);
   const Node* node = find(key);
-  if (!node) return static_cast<int>(spec.fallback.at(0));
-  return static_cast<int>(std::find(spec.choices.begin(), spec.choices.end(), node->text) -
-                          spec.choices.begin());
+  return node ? node->text : spec.choices.at(static_cast<std::size_t>(spec.fallback.at(0)));
 }
 
 bool Entry::is_word(std::string_view key) const {

@@ -1,6 +1,7 @@
 // A table of a checked scene, read key by key with the defaults of the table of keys.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,11 +26,13 @@ class Entry {
   bool flag(std::string_view key) const;
   std::string text(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
-  /// Index of the chosen word in the table's choices.
-  int choice(std::string_view key) const;
-  template <typename E>
-  E choice_as(std::string_view key) const {
-    return static_cast<E>(choice(key));
+  /// The word of a choice.
+  std::string_view word(std::string_view key) const;
+  /// What it stands for in `table` (model/table.h), the words of which are the key's choices.
+  template <class Table>
+  auto chosen(std::string_view key, const Table& table) const {
+    return std::ranges::find(table, word(key), [](const auto& row) { return std::string_view(row.word); })
+        ->kind;
   }
   /// True when the key holds a word of its choices (or its default is one) instead of numbers.
   bool is_word(std::string_view key) const;

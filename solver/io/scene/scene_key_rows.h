@@ -3,12 +3,12 @@
 
 #include <limits>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "solver/io/scene/scene_key.h"
 #include "solver/math/types.h"
+#include "solver/model/table.h"
 
 namespace topple::io {
 
@@ -23,9 +23,6 @@ class Row {
   Row& absent(std::vector<double> values) { return key_.fallback = std::move(values), *this; }
   Row& absent(double value) { return absent(std::vector<double>{value}); }
   Row& absent(const Vec3& v) { return absent(std::vector<double>{v.x(), v.y(), v.z()}); }
-  /// Default: a word, given as the enumerator in the order of the choices.
-  template <typename E>
-  requires std::is_enum_v<E> Row& absent(E value) { return absent(static_cast<double>(value)); }
   Row& absent_means(std::string_view text) { return key_.otherwise = text, *this; }
   /// Belongs to these choices of another key of the table.
   Row& only(std::string_view of, Words when) { return key_.of = of, key_.when = std::move(when), *this; }
@@ -80,6 +77,12 @@ class Rows {
   }
   Row word(std::string_view name, Words choices, std::string_view about) {
     return plain(name, KeyType::choice, about).or_word(std::move(choices));
+  }
+  /// One of the words of a table (model/table.h); `absent`: the default.
+  template <class Table, class Kind>
+  Row word(std::string_view name, const Table& table, Kind absent, std::string_view about) {
+    Row row = word(name, words_of(table), about);
+    return row.absent(place_of(table, absent));
   }
   Row words(std::string_view name, Words choices, std::string_view about) {
     return plain(name, KeyType::choices, about).or_word(std::move(choices));

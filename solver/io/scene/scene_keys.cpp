@@ -1,9 +1,12 @@
 #include "solver/io/scene/scene_keys.h"
 
+#include <functional>
+
 #include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/scene/scene_key_rows.h"
+#include "solver/io/scene/scene_words.h"
 #include "solver/model/cabinet.h"
 #include "solver/model/excitation.h"
 #include "solver/model/model.h"
@@ -18,6 +21,21 @@ using D = Dimension;
 
 constexpr double k_far = 1e3;   // m
 constexpr double k_large = 10;  // m
+
+// The words of the rows for which `holds`.
+template <class Table, class Holds>
+Words words_where(const Table& table, Holds holds) {
+  Words words;
+  for (const auto& row : table)
+    if (std::invoke(holds, row)) words.emplace_back(row.word);
+  return words;
+}
+
+Words letters(std::string_view text) {
+  Words words;
+  for (std::size_t k = 0; k < text.size(); ++k) words.push_back(text.substr(k, 1));
+  return words;
+}
 
 void add_top(std::vector<Key>& keys) {
   Rows rows(keys, "");
@@ -41,7 +59,7 @@ void add_run(std::vector<Key>& keys) {
   Rows rows(keys, "run");
   const Parameters parameters{};
   const RunSettings run{};
-  rows.word("analysis", {"dynamic", "static", "modes"}, "what is computed").absent(run.analysis);
+  rows.word("analysis", k_analyses, run.analysis, "what is computed");
   rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time")
       .absent(run.duration)
       .only_in({"dynamic"});
@@ -81,9 +99,8 @@ void add_run(std::vector<Key>& keys) {
   rows.plain("control", T::table, "a node that moves in equal parts while the loads follow")
       .absent_means("the loads grow by themselves")
       .only("analysis", {"static"});
-  rows.word("elements", words_of(k_schemes),
-            "where the integration points stand; asi: in the middle while elastic; midpoint: always")
-      .absent(place_of(k_schemes, Scheme::asi_gauss));
+  rows.word("elements", k_schemes, Scheme::asi_gauss,
+            "where the integration points stand; asi: in the middle while elastic; midpoint: always");
   rows.plain("settle", T::boolean,
              "start from rest under gravity and the loads at t = 0 (static: load factor 0)")
       .absent(run.settle);
@@ -91,9 +108,8 @@ void add_run(std::vector<Key>& keys) {
       .absent(run.output_rate)
       .only_in({"dynamic"});
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
-  rows.word("stop_when", {"never", "all-overturned", "at-rest"},
+  rows.word("stop_when", k_stops, run.stop_when,
             "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
-      .absent(run.stop_when)
       .only_in({"dynamic"});
 }
 
@@ -101,30 +117,24 @@ void add_control(std::vector<Key>& keys) {
   Rows rows(keys, "run.control");
   rows.plain("body", T::text, "a frame, or a copy").absent_means("the first frame");
   rows.integer("node", 0, 1e6, "node of the frame's list").required();
-  rows.word("dof", {"x", "y", "z", "X", "Y", "Z"},
-            "its direction: lower case translations, upper case rotations")
+  rows.word("dof", letters(k_directions), "its direction: lower case translations, upper case rotations")
       .required();
   rows.number("to", D::length, "m", -k_far, k_far, "travel over all load steps")
       .absent_means("each load step as far as its share of the loads moves it at first")
-      .only("dof", {"x", "y", "z"});
+      .only("dof", letters(k_directions.substr(0, 3)));
   rows.number("to_angle", D::angle, "deg", -1e3, 1e3, "turn over all load steps")
       .absent_means("as `to`")
-      .only("dof", {"X", "Y", "Z"});
+      .only("dof", letters(k_directions.substr(3)));
 }
 
 void add_shake(std::vector<Key>& keys) {
   Rows rows(keys, "shake");
   const Shake shake{};
-  const auto kinds_with = [](bool ShakeTraits::*has) {
-    Words words;
-    for (const ShakeTraits& kind : shake_kinds())
-      if (kind.*has) words.emplace_back(kind.word);
-    return words;
-  };
-  const Words pushing = kinds_with(&ShakeTraits::has_amplitude);
+  const auto kinds_with = [](bool ShakeTraits::*has) { return words_where(shake_kinds(), has); };
+  const Words pushing = kinds_with(&ShakeTraits::has_amplitude),
+              recorded = kinds_with(&ShakeTraits::has_record), steady = kinds_with(&ShakeTraits::steady);
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
-  rows.word("type", words_of(shake_kinds()), "form of the acceleration")
-      .absent(place_of(shake_kinds(), shake.kind));
+  rows.word("type", shake_kinds(), shake.kind, "form of the acceleration");
   rows.numbers("frequency", 2, D::frequency, "Hz", 1e-3, 1e3,
                "frequency; of a sweep [first, last]: each octave takes as long")
       .or_one()
@@ -138,16 +148,15 @@ void add_shake(std::vector<Key>& keys) {
       .only("type", pushing);
   rows.number("start", D::time, "s", 0, 3600, "begin").absent(shake.start);
   rows.plain("on", T::boolean, "false: it does not shake the floor until switched on").absent(1);
-  rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", {"sine"});
+  rows.number("cycles", 1e-3, 1e6, "length in periods").absent_means("until the end").only("type", steady);
   rows.number("taper", 0, 1e6, "periods of smooth rise and fall")
       .absent(shake.taper)
       .only("type", kinds_with(&ShakeTraits::has_frequency));
-  rows.word("initial_velocity", {"rest", "jump"}, "jump: the floor starts with the velocity of a pure sine")
-      .absent(shake.initial_velocity)
-      .only("type", {"sine"});
-  rows.word("shape", words_of(pulse_shapes()), "form of the pulse")
-      .absent(place_of(pulse_shapes(), shake.shape))
-      .only("type", {"pulse"});
+  rows.word("initial_velocity", k_shake_starts, shake.initial_velocity,
+            "jump: the floor starts with the velocity of a pure sine")
+      .only("type", steady);
+  rows.word("shape", pulse_shapes(), shake.shape, "form of the pulse")
+      .only("type", kinds_with(&ShakeTraits::has_shape));
   rows.number("duration", D::time, "s", 1e-6, 3600, "length of the pulse or sweep")
       .required()
       .only("type", kinds_with(&ShakeTraits::has_duration));
@@ -155,38 +164,35 @@ void add_shake(std::vector<Key>& keys) {
              "accelerograms: PEER AT2, K-NET or KiK-net ASCII, CSV (accelerogram_file.h), one to three "
              "components together, equally long; paths from the folder of the scene, or a built-in record")
       .required()
-      .only("type", {"record"});
+      .only("type", recorded);
   rows.vectors("directions", D::none, {}, -1e6, 1e6, "of the components; made unit vectors")
       .absent_means("x, y, z, in the order of the components")
-      .only("type", {"record"});
-  rows.number("scale", -100, 100, "factor on the record").absent(shake.scale).only("type", {"record"});
-  rows.word("unit", {"g", "gal", "m/s^2", "cm/s^2"}, "of the samples, where a file does not state it")
+      .only("type", recorded);
+  rows.number("scale", -100, 100, "factor on the record").absent(shake.scale).only("type", recorded);
+  rows.word("unit", Words(std::begin(k_sample_units), std::end(k_sample_units)),
+            "of the samples, where a file does not state it")
       .absent_means("as the files state")
-      .only("type", {"record"});
+      .only("type", recorded);
   rows.number("dt", D::time, "s", k_shortest_interval, k_longest_interval,
               "time between the samples of a CSV without a column of times")
       .absent_means("as the files state")
-      .only("type", {"record"});
+      .only("type", recorded);
   rows.word("mean", {"kept", "removed"}, "mean of each component; of a K-NET file always removed")
       .absent(0)
-      .only("type", {"record"});
+      .only("type", recorded);
   rows.word("baseline", {"none", "parabola"},
             "correction of each component: parabola subtracts the one that leaves the least mean square "
             "velocity "
             "(Berg and Housner 1961; accelerogram.h)")
       .absent(0)
-      .only("type", {"record"});
+      .only("type", recorded);
 }
 
 void add_contact(std::vector<Key>& keys) {
   Rows rows(keys, "contact");
   const ContactLaw law{};
-  Words with_restitution;
-  for (const ContactLawTraits& of : contact_laws())
-    if (of.has_restitution) with_restitution.emplace_back(of.word);
-  rows.word("law", words_of(contact_laws()), "contact_law.h")
-      .absent(place_of(contact_laws(), law.kind))
-      .only_in({"dynamic"});
+  const Words with_restitution = words_where(contact_laws(), &ContactLawTraits::has_restitution);
+  rows.word("law", contact_laws(), law.kind, "contact_law.h").only_in({"dynamic"});
   rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
               "penalty coefficient of Eq. 2")
       .absent(law.alpha)
@@ -216,9 +222,10 @@ void add_contact(std::vector<Key>& keys) {
       .only_in({"dynamic"});
 }
 
-// Of a floor or wall made of members; `extent`: how far it goes by default, m.
+// Of a floor or wall, a plane or made of members; `extent`: how far it goes by default, m.
 void add_beams(Rows& rows, double extent) {
   const GridSpec grid{};
+  rows.word("type", {"plane", "beams"}, "plane, or a two-way grid of members").absent(0);
   rows.number("width", D::length, "mm", 0, k_large, "contact width; 0: that of the touching member")
       .absent(0)
       .only("type", {"plane"});
@@ -234,7 +241,6 @@ void add_beams(Rows& rows, double extent) {
 
 void add_floor(std::vector<Key>& keys) {
   Rows rows(keys, "floor");
-  rows.word("type", {"plane", "beams"}, "plane, or a two-way grid of members").absent(0);
   add_beams(rows, 2.5);
 }
 
@@ -243,7 +249,6 @@ void add_wall(std::vector<Key>& keys) {
   rows.plain("name", T::text, "not \"floor\"").absent_means("wall-1, ...");
   rows.numbers("at", 2, D::length, "m", -k_far, k_far, "x and y of a point on its face, at z = 0").required();
   rows.numbers("normal", 3, -1e6, 1e6, "towards the bodies; made a unit vector").required();
-  rows.word("type", {"plane", "beams"}, "plane, or a two-way grid of members").absent(0);
   add_beams(rows, 0.5);
 }
 
@@ -262,7 +267,9 @@ void add_material(std::vector<Key>& keys) {
 void add_section(std::vector<Key>& keys) {
   Rows rows(keys, "section");
   rows.plain("name", T::text, "what cabinets and members call it").required();
-  rows.word("shape", {"box", "solid", "pipe", "custom"}, "form").required();
+  const Words walled = words_where(section_shapes(), &SectionTraits::has_wall),
+              custom = words_where(section_shapes(), std::not_fn(&SectionTraits::complete));
+  rows.word("shape", words_of(section_shapes()), "form").required();
   rows.numbers("size", 2, D::length, "mm", 1e-3, k_large,
                "[a, b] along local y and z, outside; pipe: the outer diameter alone, `\"30 mm\"` or `[\"30 "
                "mm\"]`; custom: twice the distances of the extreme fibres")
@@ -270,32 +277,30 @@ void add_section(std::vector<Key>& keys) {
       .absent_means("required; custom: width by width");
   rows.number("thickness", D::length, "mm", 1e-5, k_large, "of the wall; less than half of the smaller size")
       .required()
-      .only("shape", {"box", "pipe"});
-  rows.number("area", D::area, "m^2", 1e-12, 100, "area").required().only("shape", {"custom"});
+      .only("shape", walled);
+  rows.number("area", D::area, "m^2", 1e-12, 100, "area").required().only("shape", custom);
   rows.number("iy", D::second_moment, "m^4", 1e-18, 100, "resists bending in the local x-z plane")
       .required()
-      .only("shape", {"custom"});
+      .only("shape", custom);
   rows.number("iz", D::second_moment, "m^4", 1e-18, 100, "resists bending in the local x-y plane")
       .required()
-      .only("shape", {"custom"});
-  rows.number("j", D::second_moment, "m^4", 1e-18, 100, "torsion constant")
-      .required()
-      .only("shape", {"custom"});
-  rows.number("ky", 1e-3, 1e3, "shear coefficient in y").required().only("shape", {"custom"});
-  rows.number("kz", 1e-3, 1e3, "shear coefficient in z").required().only("shape", {"custom"});
-  rows.number("width", D::length, "mm", 1e-3, k_large, "contact width").required().only("shape", {"custom"});
+      .only("shape", custom);
+  rows.number("j", D::second_moment, "m^4", 1e-18, 100, "torsion constant").required().only("shape", custom);
+  rows.number("ky", 1e-3, 1e3, "shear coefficient in y").required().only("shape", custom);
+  rows.number("kz", 1e-3, 1e3, "shear coefficient in z").required().only("shape", custom);
+  rows.number("width", D::length, "mm", 1e-3, k_large, "contact width").required().only("shape", custom);
   rows.number("zy", D::section_modulus, "m^3", 1e-15, 100,
               "plastic modulus of bending in the local x-z plane")
       .absent_means("needed where the material yields")
-      .only("shape", {"custom"});
+      .only("shape", custom);
   rows.number("zz", D::section_modulus, "m^3", 1e-15, 100,
               "plastic modulus of bending in the local x-y plane")
       .absent_means("needed where the material yields")
-      .only("shape", {"custom"});
+      .only("shape", custom);
   rows.number("zt", D::section_modulus, "m^3", 1e-15, 100,
               "plastic modulus of torsion: full torque over yield / sqrt(3)")
       .absent_means("needed where the material yields")
-      .only("shape", {"custom"});
+      .only("shape", custom);
 }
 
 void add_anchor(std::vector<Key>& keys) {
@@ -307,9 +312,8 @@ void add_anchor(std::vector<Key>& keys) {
       .required();
   rows.numbers("to", 3, D::length, "m", -k_far, k_far, "on a wall or the floor: fixed to the floor's frame")
       .required();
-  rows.word("type", {"strap", "bracket", "pole"},
-            "strap: pulls only; bracket: both ways; pole: pushes only (anchor.h)")
-      .absent(Anchor::Type::strap);
+  rows.word("type", k_anchor_types, Anchor::Type::strap,
+            "strap: pulls only; bracket: both ways; pole: pushes only (anchor.h)");
   rows.number("stiffness", D::stiffness, "kN/m", 1, 1e12, "along the line from `to` to `point`").required();
   rows.number("strength", D::force, "kN", 1e-3, 1e12, "breaks above it")
       .absent_means("never breaks")

@@ -1,5 +1,6 @@
 #include "solver/body/model_level.h"
 #include "solver/io/scene/scene_key_rows.h"
+#include "solver/io/scene/scene_words.h"
 #include "solver/model/cabinet.h"
 #include "solver/model/parameters.h"
 
@@ -15,11 +16,10 @@ constexpr double k_large = 10;  // m
 constexpr double k_degree = k_pi / 180;
 
 void add_model(Rows& rows, BodyModel absent) {
-  rows.word("model", words_of(body_models()),
+  rows.word("model", body_models(), absent,
             "what the body is computed as; auto: the least that answers `run.want`, frame with an integrator "
             "that "
             "is named. A body is a frame while another is within 50 mm")
-      .absent(place_of(body_models(), absent))
       .only_in({"dynamic"});
 }
 
@@ -47,16 +47,15 @@ void add_cabinet(std::vector<Key>& keys) {
       .absent_means("half of the height");
   rows.numbers("inertia", 3, D::inertia, "kg m^2", 1e-9, 1e7,
                "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
-      .or_word({"panels", "solid"})
-      .absent(cabinet.inertia);
+      .or_word(words_of(k_inertias))
+      .absent(place_of(k_inertias, cabinet.inertia));
   rows.numbers("at", 3, D::length, "m", -k_far, k_far,
                "centre of the footprint in its pose, and the height that it stands on")
       .at_least(2)
       .absent(std::vector{0., 0.});
   rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical")
       .absent(cabinet.yaw);
-  rows.word("pose", {"upright", "on-back", "on-front", "on-side"}, "how it stands or lies")
-      .absent(cabinet.pose);
+  rows.word("pose", k_poses, cabinet.pose, "how it stands or lies");
   rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
               "about the bottom edge on the +x side before yaw; negative: on the -x side")
       .absent(cabinet.tilt);
@@ -69,8 +68,7 @@ void add_cabinet(std::vector<Key>& keys) {
   rows.plain("section", T::text, "a [[section]]").required();
   rows.plain("material", T::text, "a [[material]]").required();
   rows.integer("shelves", 0, 20, "shelves").absent(cabinet.shelves);
-  rows.word("bracing", {"panels", "none"}, "panels: diagonals as stiff as thin sheets")
-      .absent(cabinet.bracing);
+  rows.word("bracing", k_bracings, cabinet.bracing, "panels: diagonals as stiff as thin sheets");
   rows.number("panel_thickness", D::length, "mm", 1e-5, 0.1, "of the sheets that the diagonals replace")
       .absent(cabinet.panel_thickness)
       .only("bracing", {"panels"});

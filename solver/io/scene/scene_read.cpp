@@ -24,22 +24,24 @@ void check_wall(const Entry& entry, const Section& section) {
 Section read_section(const Entry& entry) {
   Section section;
   section.name = entry.name();
-  section.shape = entry.choice_as<Section::Shape>("shape");
-  const bool pipe = section.shape == Section::Shape::pipe, custom = section.shape == Section::Shape::custom;
+  section.shape = entry.chosen("shape", section_shapes());
+  const SectionTraits& shape = traits(section.shape);
   if (entry.has("size")) {
     const std::vector<double> size = entry.numbers("size");
-    if (pipe && size.size() != 1) entry.fail("size", "a pipe has one size, its outer diameter");
-    if (!pipe && size.size() != 2) entry.fail("size", "expected [a, b], the sizes along local y and z");
+    if (shape.is_round && size.size() != 1)
+      entry.fail("size", "a " + std::string(shape.word) + " has one size, its outer diameter");
+    if (!shape.is_round && size.size() != 2)
+      entry.fail("size", "expected [a, b], the sizes along local y and z");
     section.size_y = size.front();
     section.size_z = size.back();
-  } else if (!custom) {
+  } else if (shape.complete) {
     entry.fail("size", "missing (outer sizes along local y and z; pipe: the diameter)");
   }
-  if (section.shape == Section::Shape::box || pipe) {
+  if (shape.has_wall) {
     section.thickness = entry.number("thickness");
     check_wall(entry, section);
   }
-  if (custom) {
+  if (!shape.complete) {
     section.area = entry.number("area");
     section.iy = entry.number("iy");
     section.iz = entry.number("iz");
@@ -114,14 +116,14 @@ void check_pointer(const Entry& entry, const std::string& pointer) {
 
 void read_run(const Entry& root, Setup& setup) {
   const Entry run = root.entry("run");
-  setup.model.scheme = k_schemes[run.choice("elements")].kind;
+  setup.model.scheme = run.chosen("elements", k_schemes);
   setup.run.duration = run.number("duration");
   setup.run.settle = run.flag("settle");
   setup.run.output_rate = run.number("output_rate");
-  setup.run.stop_when = run.choice_as<StopWhen>("stop_when");
+  setup.run.stop_when = run.chosen("stop_when", k_stops);
   setup.parameters.want_stress = !run.has("want") || run.names("want", "stress");
   setup.parameters.gravity = run.vector("gravity");
-  setup.parameters.integrator = chosen_integrator(run.choice("integrator"));
+  if (run.word("integrator") != "auto") setup.parameters.integrator = run.chosen("integrator", integrators());
   setup.parameters.spectral_radius = run.number("spectral_radius");
   setup.parameters.beta = run.number("beta");
   setup.parameters.gamma = run.number("gamma");
@@ -132,7 +134,7 @@ void read_run(const Entry& root, Setup& setup) {
                                         (root.entry("floor").present() || !root.entries("wall").empty());
   if (!setup.parameters.adaptive) setup.parameters.time_step = run.number("time_step");
   setup.parameters.tolerance = run.number("tolerance");
-  setup.run.analysis = run.choice_as<Analysis>("analysis");
+  setup.run.analysis = run.chosen("analysis", k_analyses);
   setup.run.statics.load_steps = run.integer("load_steps");
   if (setup.run.analysis != Analysis::dynamic) {
     setup.run.duration = 1;
@@ -155,7 +157,7 @@ std::string laws_that_slide() {
 void read_contact(const Entry& root, Setup& setup) {
   const Entry contact = root.entry("contact");
   ContactLaw& law = setup.parameters.contact;
-  law.kind = contact_laws()[contact.choice("law")].kind;
+  law.kind = contact.chosen("law", contact_laws());
   law.alpha = contact.number("alpha");
   law.q = contact.number("q");
   law.friction = contact.number("friction");
@@ -182,7 +184,7 @@ void choose_alpha(const Entry& root, Setup& setup) {
 }
 
 bool is_beams(const Entry& entry) {
-  return entry.choice("type") == 1;
+  return entry.word("type") == "beams";
 }
 
 void read_planes(const Entry& root, Setup& setup) {
@@ -208,9 +210,7 @@ void read_materials_and_sections(const Entry& root, Setup& setup) {
   }
   for (const Entry& entry : root.entries("section")) {
     Section section = read_section(entry);
-    if (section.shape != Section::Shape::custom) {
-      complete_section(section, poisson_of_section(root, setup, section.name));
-    }
+    complete_section(section, poisson_of_section(root, setup, section.name));
     setup.model.sections.push_back(section);
   }
 }
@@ -243,7 +243,7 @@ void read_control(const Entry& root, Setup& setup) {
   if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
   DisplacementControl control;
   control.node = find_node(root, entry, model, body, "; control takes a frame");
-  control.direction = entry.choice("dof");
+  control.direction = static_cast<int>(k_directions.find(entry.word("dof")));
   for (const Support& support : model.supports) {
     if (support.node == control.node && support.fixed >> control.direction & 1)
       entry.fail("dof", "the node is supported in this direction");

@@ -3,6 +3,7 @@
 
 #include "solver/io/scene/scene_content.h"
 #include "solver/io/scene/scene_entry.h"
+#include "solver/io/scene/scene_words.h"
 #include "solver/run/run.h"
 
 namespace topple::io {

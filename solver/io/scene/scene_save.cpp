@@ -1,7 +1,6 @@
 #include "solver/io/scene/scene_save.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "solver/contact/contact_law.h"
@@ -17,44 +16,11 @@ namespace {
 
 constexpr int k_most_rounds = 4;  // a value that was written may change what absent ones mean
 
-std::string every_digit(double x) {
-  char digits[40];
-  std::string text(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
-/// In the unit of the key where that reads back the same, else in SI.
-std::string number_text(const Key& key, double si) {
-  if (!key.unit.empty()) {
-    const std::string text = value_text(key, si);
-    if (parse_quantity(text, key.dimension).si == si) return '"' + text + '"';
-  }
-  return every_digit(si);
-}
-
-std::string toml_of(const Edit& edit, const Parameters& now) {
-  const Key& key = key_of(edit.key);
-  const Vec3& value = edit.value;
-  switch (edit.key) {
-    case Edit::Key::direction:
-      return "[" + every_digit(value.x()) + ", " + every_digit(value.y()) + ", " + every_digit(value.z()) +
-             "]";
-    case Edit::Key::frequency:
-      if (traits(now.shakes[static_cast<std::size_t>(edit.shake)].kind).sweeps)
-        // A sweep that does not change is refused; the number next to it is not.
-        return "[" + number_text(key, value.x()) + ", " +
-               number_text(key, value.y() == value.x() ? std::nextafter(value.y(), 1e9) : value.y()) + "]";
-      return number_text(key, value.x());
-    case Edit::Key::want:
-      return value.x() != 0 ? "[\"motion\", \"stress\"]" : "[\"motion\"]";
-    default:
-      break;
-  }
-  if (key.type == KeyType::boolean) return value.x() != 0 ? "true" : "false";
-  if (key.type == KeyType::choice)
-    return '"' + std::string(key.choices[static_cast<std::size_t>(value.x())]) + '"';
-  return number_text(key, value.x());
+std::string toml_of(Edit edit) {
+  // A sweep that does not change is refused; the number next to it is not.
+  if (edit.key == Edit::Key::frequency && edit.value.y() == edit.value.x())
+    edit.value.y() = std::nextafter(edit.value.y(), 1e9);
+  return edit_value_text(edit, EditSpelling::in_scene);
 }
 
 /// The entry that a body was built from.
@@ -128,11 +94,11 @@ class Rewriting {
   }
 
   void change(const Node& root, const Edit& edit) {
-    std::string value = toml_of(edit, now_);
+    std::string value = toml_of(edit);
     if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
     const Edit::Of of = traits(edit.key).of;
     if (of == Edit::Of::body) {
-      const BodyEntry entry = entry_of_body(root, static_cast<std::size_t>(edit.shake));
+      const BodyEntry entry = entry_of_body(root, static_cast<std::size_t>(edit.index));
       for (std::size_t b = entry.first_body; b < entry.first_body + entry.bodies; ++b)
         if (edited_value(now_, edit.key, static_cast<int>(b)) != edit.value)
           throw InputError(edit_key(edit) + ": \"" + model_.bodies[b].name + "\" is a copy of the same [[" +
@@ -141,8 +107,8 @@ class Rewriting {
       return;
     }
     const Key& key = key_of(edit.key);
-    if (of == Edit::Of::shake || of == Edit::Of::anchor)
-      add({std::string(key.table), std::to_string(edit.shake + 1), std::string(key.name)}, value);
+    if (traits(of).numbered)
+      add({std::string(key.table), std::to_string(edit.index + 1), std::string(key.name)}, value);
     else
       add({std::string(key.table), std::string(key.name)}, value);
   }

@@ -19,28 +19,16 @@ void read_taper(const Entry& entry, Shake& shake) {
     entry.fail("taper", "rise and fall together are longer than the cycles");
 }
 
-void read_sine(const Entry& entry, Shake& shake) {
+void read_frequency(const Entry& entry, Shake& shake) {
   const std::vector<double> frequency = entry.numbers("frequency");
-  if (frequency.size() != 1) entry.fail("frequency", "a sine has one; a sweep goes from one to another");
+  if (traits(shake.kind).sweeps) {
+    if (frequency.size() != 2) entry.fail("frequency", "expected [first, last], the frequencies of a sweep");
+    if (frequency[0] == frequency[1]) entry.fail("frequency", "does not change; write type = \"sine\"");
+    shake.last_frequency = frequency[1];
+  } else if (frequency.size() != 1) {
+    entry.fail("frequency", "a sine has one; a sweep goes from one to another");
+  }
   shake.frequency = frequency[0];
-  if (entry.has("cycles")) shake.cycles = entry.number("cycles");
-  shake.initial_velocity = entry.choice_as<Shake::Start>("initial_velocity");
-  read_taper(entry, shake);
-}
-
-void read_sweep(const Entry& entry, Shake& shake) {
-  const std::vector<double> frequency = entry.numbers("frequency");
-  if (frequency.size() != 2) entry.fail("frequency", "expected [first, last], the frequencies of a sweep");
-  if (frequency[0] == frequency[1]) entry.fail("frequency", "does not change; write type = \"sine\"");
-  shake.frequency = frequency[0];
-  shake.last_frequency = frequency[1];
-  shake.duration = entry.number("duration");
-  read_taper(entry, shake);
-}
-
-void read_pulse(const Entry& entry, Shake& shake) {
-  shake.shape = pulse_shapes()[entry.choice("shape")].kind;
-  shake.duration = entry.number("duration");
 }
 
 const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
@@ -70,8 +58,8 @@ std::vector<AccelerogramComponent> read_components(const Entry& entry, const Rea
                                                    std::vector<SceneFile>& files) {
   AccelerogramNotes notes{entry.text("unit"), std::nullopt};
   if (entry.has("dt")) notes.interval = entry.number("dt");
-  const bool keep_mean = entry.has("mean") && entry.choice("mean") == 0;
-  const bool without_mean = entry.choice("mean") == 1, parabola = entry.choice("baseline") == 1;
+  const bool keep_mean = entry.has("mean") && entry.word("mean") == "kept";
+  const bool without_mean = entry.word("mean") == "removed", parabola = entry.word("baseline") == "parabola";
   const std::vector<std::string> names = entry.texts("files");
   std::vector<AccelerogramComponent> components;
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -125,27 +113,21 @@ void read_record(const Entry& entry, const ReadSceneFile& read, Scene& scene, Sh
 void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene) {
   for (const Entry& entry : root.entries("shake")) {
     Shake shake;
-    shake.kind = shake_kinds()[entry.choice("type")].kind;
+    shake.kind = entry.chosen("type", shake_kinds());
+    const ShakeTraits& uses = traits(shake.kind);
     shake.start = entry.number("start");
     shake.on = entry.flag("on");
-    if (traits(shake.kind).has_amplitude) {
+    if (uses.has_amplitude) {
       shake.amplitude = entry.number("amplitude");
       shake.direction = entry.direction("direction");
     }
-    switch (shake.kind) {
-      case Shake::Kind::sine:
-        read_sine(entry, shake);
-        break;
-      case Shake::Kind::sweep:
-        read_sweep(entry, shake);
-        break;
-      case Shake::Kind::pulse:
-        read_pulse(entry, shake);
-        break;
-      case Shake::Kind::record:
-        read_record(entry, read, scene, shake);
-        break;
-    }
+    if (uses.has_frequency) read_frequency(entry, shake);
+    if (uses.steady && entry.has("cycles")) shake.cycles = entry.number("cycles");
+    if (uses.steady) shake.initial_velocity = entry.chosen("initial_velocity", k_shake_starts);
+    if (uses.has_duration) shake.duration = entry.number("duration");
+    if (uses.has_frequency) read_taper(entry, shake);
+    if (uses.has_shape) shake.shape = entry.chosen("shape", pulse_shapes());
+    if (uses.has_record) read_record(entry, read, scene, shake);
     scene.setup.parameters.shakes.push_back(std::move(shake));
   }
 }

@@ -15,7 +15,7 @@ double error(double coarse, double fine, double least) {
 Setup refined(const Setup& setup) {
   Setup finer = setup;
   finer.parameters.tolerance /= k_finer_tolerance;
-  finer.parameters.finer_parts *= k_finer_step;
+  finer.parameters.substep_refinement *= k_finer_step;
   if (!finer.parameters.adaptive) finer.parameters.time_step /= k_finer_step;
   return finer;
 }

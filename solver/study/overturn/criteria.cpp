@@ -74,7 +74,7 @@ constexpr KnownPulse k_known[] = {
 
 /// Null: no formula is known.
 const Pulse* pulse_of(const Shake& shake) {
-  if (shake.kind == Shake::Kind::sine) return &k_one_cycle;
+  if (traits(shake.kind).steady) return &k_one_cycle;
   const auto* const known =
       std::ranges::find(k_known, shake.shape, [](const KnownPulse& pulse) { return pulse.kind; });
   return known == std::end(k_known) ? nullptr : known;
@@ -82,7 +82,7 @@ const Pulse* pulse_of(const Shake& shake) {
 
 /// Greatest velocity of the floor, of amplitude 1, s; of one cycle that of the steady sine.
 double floor_velocity(const Shake& shake, double x) {
-  return shake.kind == Shake::Kind::sine ? 1 / (2 * k_pi * x) : traits(shake.shape).velocity * x;
+  return traits(shake.kind).steady ? 1 / (2 * k_pi * x) : traits(shake.shape).velocity * x;
 }
 
 Criterion curve(const std::string& name, const std::string& label, const std::string& about, const Axis& x,
@@ -140,7 +140,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   const Standing& body = out.body;
   out.list.push_back(curve("west", "West", "a = g b/h, above which it lifts", x, y,
                            [&](double) { return west_acceleration(body); }));
-  if (shake.kind != Shake::Kind::sine && shake.kind != Shake::Kind::pulse) return out;
+  if (!traits(shake.kind).steady && !traits(shake.kind).has_shape) return out;
   out.list.push_back(
       curve("ishiyama", "Ishiyama",
             "v = 0.4 (8 g R (1 - cos α)/(3 cos^2 α))^{1/2} of the floor; above it and West's it may overturn",

@@ -9,7 +9,7 @@ namespace topple::study {
 
 FloorPeak floor_peak(std::vector<Shake> shakes, double duration) {
   for (Shake& shake : shakes)
-    if (shake.kind == Shake::Kind::sine && shake.taper == 0) shake.initial_velocity = Shake::Start::jump;
+    if (traits(shake.kind).steady && shake.taper == 0) shake.initial_velocity = Shake::Start::jump;
   const Motion motion = floor_motion(shakes, duration);
   FloorPeak peak;
   Vec3 velocity = Vec3::Zero();

@@ -16,25 +16,17 @@ namespace {
 using io::InputError;
 using nlohmann::ordered_json;
 
-constexpr const char* k_frequencies = "shake.1.frequency=0.2 Hz..5 Hz:24";
-constexpr const char* k_amplitudes = "shake.1.amplitude=50 gal..1000 gal:24";
-constexpr const char* k_durations = "shake.1.duration=0.1 s..2 s:24";
-constexpr const char* k_pulses = "shake.1.amplitude=100 gal..3000 gal:24";
+constexpr UsualAxes k_usual_axes[] = {
+    {Shake::Kind::sine, "shake.1.frequency=0.2 Hz..5 Hz:24", "shake.1.amplitude=50 gal..1000 gal:24"},
+    {Shake::Kind::pulse, "shake.1.duration=0.1 s..2 s:24", "shake.1.amplitude=100 gal..3000 gal:24"},
+};
 
-/// The axis that nobody named.
-std::string usual_axis(const io::Scene& scene, bool is_x) {
-  const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
-  if (!shakes.empty()) switch (shakes[0].kind) {
-      case Shake::Kind::sine:
-        return is_x ? k_frequencies : k_amplitudes;
-      case Shake::Kind::pulse:
-        return is_x ? k_durations : k_pulses;
-      case Shake::Kind::sweep:
-      case Shake::Kind::record:
-        break;
-    }
-  throw InputError(std::string(is_x ? "--x" : "--y") +
-                   " KEY=FROM..TO:N is required: the first shake is neither a sine nor a pulse");
+Axis axis_named(const std::string& option, const std::string& text, const char* UsualAxes::*usual,
+                const io::Scene& scene) {
+  const UsualAxes* const axes = usual_axes(scene.setup.parameters.shakes);
+  if (text.empty() && !axes)
+    throw InputError(option + " KEY=FROM..TO:N is required: the first shake is neither a sine nor a pulse");
+  return axis_of(option, text.empty() ? axes->*usual : text, scene);
 }
 
 /// What the scene leaves out of [run].
@@ -49,6 +41,12 @@ std::vector<std::string> additions(const io::Scene& scene) {
 
 }  // namespace
 
+const UsualAxes* usual_axes(const std::vector<Shake>& shakes) {
+  for (const UsualAxes& axes : k_usual_axes)
+    if (!shakes.empty() && axes.kind == shakes.front().kind) return &axes;
+  return nullptr;
+}
+
 OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
                            double spread) {
   if (scene.setup.run.analysis != Analysis::dynamic)
@@ -59,8 +57,8 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
     throw InputError("--ensemble: " + scene.name + " has no shake, whose amplitude would be varied");
   OverturnPlan plan{
       .scene = std::move(scene), .x = {}, .y = {}, .ensemble = ensemble, .spread = spread, .set = {}};
-  plan.x = axis_of("--x", x.empty() ? usual_axis(plan.scene, true) : x, plan.scene);
-  plan.y = axis_of("--y", y.empty() ? usual_axis(plan.scene, false) : y, plan.scene);
+  plan.x = axis_named("--x", x, &UsualAxes::x, plan.scene);
+  plan.y = axis_named("--y", y, &UsualAxes::y, plan.scene);
   check_axes(plan.scene, plan.x, plan.y);
   plan.set = additions(plan.scene);
   return plan;
@@ -238,7 +236,7 @@ std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& 
       if (axis->table != "shake") continue;
       std::optional<Edit> edit = io::parse_edit_key(axis->key);
       if (!edit) return {};
-      edit->value = edited_value(parameters, edit->key, edit->shake);
+      edit->value = edited_value(parameters, edit->key, edit->index);
       edit->value.x() = axis->in_si(place);
       apply(*edit, model, k_before, parameters);
     }

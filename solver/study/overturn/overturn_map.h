@@ -30,6 +30,14 @@ struct OverturnPlan {
   int cases() const { return points() * ensemble; }  ///< point ensemble + member
 };
 
+/// Axes of --x and --y for a kind of shake that has usual ones.
+struct UsualAxes {
+  Shake::Kind kind;
+  const char *x, *y;
+};
+/// Those of the first shake; null: there are none.
+const UsualAxes* usual_axes(const std::vector<Shake>& shakes);
+
 /// `x`, `y`: as of --x and --y; empty: frequency (of a pulse: duration) and amplitude of the first shake,
 /// 24 by 24. Throws io::InputError when the scene is not dynamic, an axis is refused, or there is no shake to
 /// perturb.

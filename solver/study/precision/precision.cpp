@@ -28,20 +28,25 @@ constexpr int k_explicit_steps = 3;      // below the limit
 constexpr double k_most_samples = 1000;  // of a run
 
 constexpr MethodMeaning k_meanings[k_methods] = {
-    {"scene's own", "as the scene is", BodyModel::automatic, Integrator::generalized_alpha, false},
-    {"rigid", "rigid, fixed steps", BodyModel::rigid, Integrator::generalized_alpha, false},
-    {"rigid auto", "rigid, by tolerance", BodyModel::rigid, Integrator::generalized_alpha, true},
-    {"elastic", "elastic, fixed steps", BodyModel::elastic, Integrator::generalized_alpha, false},
-    {"elastic auto", "elastic, by tolerance", BodyModel::elastic, Integrator::generalized_alpha, true},
-    {"frame generalized-alpha", "frame, generalized-alpha", BodyModel::frame, Integrator::generalized_alpha,
-     false},
-    {"frame generalized-alpha auto", "frame, generalized-alpha, by tolerance", BodyModel::frame,
-     Integrator::generalized_alpha, true},
-    {"frame newmark", "frame, Newmark 1/4, 1/2", BodyModel::frame, Integrator::newmark, false},
-    {"frame newmark 5/6", "frame, Newmark 4/9, 5/6", BodyModel::frame, Integrator::newmark, false, 4. / 9,
-     5. / 6},
-    {"frame central-difference", "frame, central differences", BodyModel::frame,
-     Integrator::central_difference, false}};
+    {Method::scene, "scene's own", "as the scene is", BodyModel::automatic, Integrator::generalized_alpha,
+     false, 3.5},
+    {Method::rigid, "rigid", "rigid, fixed steps", BodyModel::rigid, Integrator::generalized_alpha, false, 1},
+    {Method::rigid_auto, "rigid auto", "rigid, by tolerance", BodyModel::rigid, Integrator::generalized_alpha,
+     true, 1},
+    {Method::elastic, "elastic", "elastic, fixed steps", BodyModel::elastic, Integrator::generalized_alpha,
+     false, 3.5},
+    {Method::elastic_auto, "elastic auto", "elastic, by tolerance", BodyModel::elastic,
+     Integrator::generalized_alpha, true, 3.5},
+    {Method::generalized_alpha, "frame generalized-alpha", "frame, generalized-alpha", BodyModel::frame,
+     Integrator::generalized_alpha, false, 19},
+    {Method::generalized_alpha_auto, "frame generalized-alpha auto", "frame, generalized-alpha, by tolerance",
+     BodyModel::frame, Integrator::generalized_alpha, true, 19},
+    {Method::newmark, "frame newmark", "frame, Newmark 1/4, 1/2", BodyModel::frame, Integrator::newmark,
+     false, 19},
+    {Method::newmark_damped, "frame newmark 5/6", "frame, Newmark 4/9, 5/6", BodyModel::frame,
+     Integrator::newmark, false, 19, 4. / 9, 5. / 6},
+    {Method::central_difference, "frame central-difference", "frame, central differences", BodyModel::frame,
+     Integrator::central_difference, false, 5.5}};
 
 bool moves_as(const Model& model, BodyModel asked) {
   for (int b = 0; b < model.furniture_total(); ++b)
@@ -84,35 +89,19 @@ std::vector<ContactLaw> laws_of(const Setup& setup) {
   return laws;
 }
 
-/// What a step costs, in steps of a rigid body.
-double step_cost(Method method) {
-  switch (method) {
-    case Method::rigid:
-    case Method::rigid_auto:
-      return 1;
-    case Method::scene:
-    case Method::elastic:
-    case Method::elastic_auto:
-      return 3.5;
-    case Method::central_difference:
-      return 5.5;
-    default:
-      return 19;
-  }
-}
-
 /// CPU time of a run to its end, s.
 double expected_cost(const Setup& setup, const Setting& setting) {
   constexpr double k_rigid_step = 1e-6;  // s
   const double step =
       setting.step > 0 ? setting.step : k_usual_step * std::sqrt(setting.tolerance / k_usual_tolerance);
-  return k_rigid_step * step_cost(setting.method) * setup.model.furniture_total() * setup.run.duration / step;
+  return k_rigid_step * meaning(setting.method).step_cost * setup.model.furniture_total() *
+         setup.run.duration / step;
 }
 
 }  // namespace
 
 const MethodMeaning& meaning(Method method) {
-  return k_meanings[static_cast<int>(method)];
+  return row_of(k_meanings, method);
 }
 
 PrecisionPlan plan_precision(io::Scene scene) {

@@ -35,11 +35,13 @@ inline constexpr int k_methods = 10;
 
 /// What a Method stands for.
 struct MethodMeaning {
+  Method kind;
   const char* name;   ///< "frame newmark"
   const char* about;  ///< "frame, Newmark 1/4, 1/2": in a chart
   BodyModel model;    ///< of bodies that can be
   Integrator integrator;
   bool adaptive;
+  double step_cost;                 ///< of a step, in steps of a rigid body
   double beta = 0.25, gamma = 0.5;  ///< of newmark
 };
 const MethodMeaning& meaning(Method method);

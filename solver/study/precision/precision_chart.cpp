@@ -20,26 +20,36 @@ constexpr int k_tables = 196;  // top of the tables
 constexpr double k_width = (k_sheet.width - k_left - k_right - (k_columns - 1) * k_gap) / double{k_columns};
 
 // Colours of Okabe and Ito; fixed steps are filled marks on lines, steps by tolerance open ones on dashes.
-constexpr const char* k_style[k_methods] = {"",
-                                            "lc rgb '#d55e00' lw 2 dt 1 pt 7 ps 1.3",
-                                            "lc rgb '#d55e00' lw 2 dt (5,5) pt 6 ps 1.4",
-                                            "lc rgb '#009e73' lw 2 dt 1 pt 5 ps 1.3",
-                                            "lc rgb '#009e73' lw 2 dt (5,5) pt 4 ps 1.4",
-                                            "lc rgb '#0072b2' lw 2 dt 1 pt 9 ps 1.5",
-                                            "lc rgb '#0072b2' lw 2 dt (5,5) pt 8 ps 1.6",
-                                            "lc rgb '#cc79a7' lw 2 dt 1 pt 13 ps 1.6",
-                                            "lc rgb '#8c6d00' lw 2 dt 1 pt 11 ps 1.5",
-                                            "lc rgb '#111111' lw 2 dt 1 pt 2 ps 1.4"};
+struct MethodStyle {
+  Method kind;
+  const char* style;
+};
+constexpr MethodStyle k_styles[] = {
+    {Method::rigid, "lc rgb '#d55e00' lw 2 dt 1 pt 7 ps 1.3"},
+    {Method::rigid_auto, "lc rgb '#d55e00' lw 2 dt (5,5) pt 6 ps 1.4"},
+    {Method::elastic, "lc rgb '#009e73' lw 2 dt 1 pt 5 ps 1.3"},
+    {Method::elastic_auto, "lc rgb '#009e73' lw 2 dt (5,5) pt 4 ps 1.4"},
+    {Method::generalized_alpha, "lc rgb '#0072b2' lw 2 dt 1 pt 9 ps 1.5"},
+    {Method::generalized_alpha_auto, "lc rgb '#0072b2' lw 2 dt (5,5) pt 8 ps 1.6"},
+    {Method::newmark, "lc rgb '#cc79a7' lw 2 dt 1 pt 13 ps 1.6"},
+    {Method::newmark_damped, "lc rgb '#8c6d00' lw 2 dt 1 pt 11 ps 1.5"},
+    {Method::central_difference, "lc rgb '#111111' lw 2 dt 1 pt 2 ps 1.4"},
+};
 constexpr const char* k_front_style = "lc rgb '#f5d76e' lw 9 dt 1";
 constexpr const char* k_own_style = "pt 6 ps 2.6 lw 3 lc rgb '#000000'";
 constexpr const char* k_law_colour[] = {"#0072b2", "#d55e00", "#555555"};                // by law
 constexpr const char* k_alpha_look[] = {"dt 1 pt 7", "dt (8,4) pt 5", "dt (2,4) pt 9"};  // by factor
 
-constexpr const char* k_titles[k_measures] = {"Tilt", "Time of overturning", "Peak stress", "Energy balance"};
-constexpr const char* k_subtitles[k_measures] = {"root mean square difference, over the critical angle",
-                                                 "difference, over the time",
-                                                 "difference, over the stress; rigid bodies have none",
-                                                 "energy that nothing explains, over the largest exchanged"};
+struct MeasureTitle {
+  Measure kind;
+  const char *title, *subtitle;
+};
+constexpr MeasureTitle k_titles[] = {
+    {Measure::tilt, "Tilt", "root mean square difference, over the critical angle"},
+    {Measure::overturn_time, "Time of overturning", "difference, over the time"},
+    {Measure::peak_stress, "Peak stress", "difference, over the stress; rigid bodies have none"},
+    {Measure::energy, "Energy balance", "energy that nothing explains, over the largest exchanged"},
+};
 
 struct Place {
   double left, top;  // px, of the panel
@@ -143,9 +153,9 @@ class Chart {
 
   std::string legend() const {
     Plot keys;
-    for (int m = 1; m < k_methods; ++m)
-      if (const auto method = static_cast<Method>(m); has(method))
-        keys.layers.push_back(fmt::format("NaN with linespoints {} title {} noenhanced", k_style[m],
+    for (const auto& [method, style] : k_styles)
+      if (has(method))
+        keys.layers.push_back(fmt::format("NaN with linespoints {} title {} noenhanced", style,
                                           gnuplot_quoted(meaning(method).about)));
     keys.layers.push_back(std::string("NaN with lines ") + k_front_style + " title 'Pareto front'");
     keys.layers.push_back(std::string("NaN with points ") + k_own_style + " title 'the scene as it is'");
@@ -157,13 +167,14 @@ class Chart {
   /// Adds the methods, but those of no point.
   template <typename X>
   void add_curves(Plot& plot, Measure measure, X x_of) const {
-    for (int m = 1; m < k_methods; ++m) {
+    for (const auto& [method, style] : k_styles) {
       std::string rows;
       for (int k = 0; k < plan_.cases() && plan_.law_of(k) == 0; ++k)
-        if (const Setting& setting = plan_.setting_of(k); setting.method == static_cast<Method>(m))
+        if (const Setting& setting = plan_.setting_of(k); setting.method == method)
           if (const auto x = x_of(k), e = error(k, measure); x && e) rows += point_row(*x, *e);
       if (!rows.empty())
-        plot.add(fmt::format("method{}", m), rows, fmt::format("with linespoints {} notitle", k_style[m]));
+        plot.add(fmt::format("method{}", plot.layers.size()), rows,
+                 fmt::format("with linespoints {} notitle", style));
     }
   }
 
@@ -191,7 +202,7 @@ class Chart {
   std::string cost_panel(Measure measure) const {
     const Place at = place(static_cast<int>(measure));
     const auto cost = [&](int k) { return row(k).cost ? std::optional(1e3 * *row(k).cost) : std::nullopt; };
-    std::string out = titles(at, k_titles[index(measure)], k_subtitles[index(measure)]);
+    std::string out = titles(at, row_of(k_titles, measure).title, row_of(k_titles, measure).subtitle);
     const std::string range = ranges(measure, cost);
     if (range.empty())
       return out + at.axes() + "unset tics\nset xrange [1:2]\nset yrange [1:2]\n" +

@@ -191,8 +191,15 @@ double floored(const Reference& reference, Measure measure, double error) {
 }  // namespace
 
 const char* name(Measure measure) {
-  constexpr const char* k_names[] = {"tilt", "overturn time", "peak stress", "energy"};
-  return k_names[index(measure)];
+  struct Name {
+    Measure kind;
+    const char* name;
+  };
+  constexpr Name k_names[] = {{Measure::tilt, "tilt"},
+                              {Measure::overturn_time, "overturn time"},
+                              {Measure::peak_stress, "peak stress"},
+                              {Measure::energy, "energy"}};
+  return row_of(k_names, measure).name;
 }
 
 PrecisionStudy gather(const PrecisionPlan& plan, const std::vector<std::string>& rows) {

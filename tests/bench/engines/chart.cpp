@@ -25,7 +25,6 @@ constexpr Style k_style[] = {{"#d55e00", "#f1c6a8", 7, 1},
                              {"#009e73", "#a8dccd", 9, 3},
                              {"#333333", "#bdbdbd", 13, 4}};
 constexpr const char* k_dashes[] = {"1", "(14,4)", "(4,4)", "(14,4,3,4)"};
-constexpr const char* k_grey = "textcolor rgb '#444444'";
 
 std::string line_style(int e) {
   const Style& style = k_style[e];
@@ -36,32 +35,28 @@ std::string line_style(int e) {
 std::string header(const Results& results) {
   const double top = k_height;
   std::string versions;
-  for (const Engine& engine : results.engines)
+  study::Plot keys;
+  for (int e = 0; e < static_cast<int>(results.engines.size()); ++e) {
+    const Engine& engine = results.engines[e];
     versions += (versions.empty() ? "" : ", ") + engine.name + " " + engine.version;
-  std::string out =
-      k_sheet.label(study::bold("A rigid block that rocks: error against time, by engine", 1.35), k_left,
-                    top - 32, "") +
-      k_sheet.label(
-          fmt::format("Uniform, {:g} × {:g} × {:g} m, {:g} kg, friction {:g}. Reference: Housner's block, "
-                      "which does not slide or bounce.",
-                      k_size[0], k_size[1], k_size[2], k_mass, k_friction),
-          k_left, top - 70, k_grey) +
-      k_sheet.label(versions + fmt::format(" on {}, one core.", study::processor_name()), k_left, top - 95,
-                    std::string("noenhanced ") + k_grey) +
-      k_sheet.label(
-          "Faint: every setting of the grid. Lines: Pareto fronts, what no other setting of the engine beats "
-          "in time and "
-          "error.",
-          k_left, top - 120, k_grey);
-  out += k_sheet.place(k_left, k_width - k_right, top - 182, top - 146) +
-         "unset border\nunset tics\nset xrange [0:1]\nset yrange [0:1]\n"
-         "set key at graph 0,1 left top horizontal Left reverse samplen 4 width 4\nplot ";
-  for (int e = 0; e < static_cast<int>(results.engines.size()); ++e)
-    out += fmt::format("{}NaN with linespoints {} title {} noenhanced", e == 0 ? "" : ", ", line_style(e),
-                       gnuplot_quoted(results.engines[e].name));
-  return out +
-         "\nunset label\nunset key\nset border 3 lc rgb '#444444' lw 1\nset tics out scale 0.7,0.4\n"
-         "set grid xtics ytics lc rgb '#cccccc' lw 0.8 dt 1\nset logscale xy\n";
+    keys.layers.push_back(fmt::format("NaN with linespoints {} title {} noenhanced", line_style(e),
+                                      gnuplot_quoted(engine.name)));
+  }
+  return k_sheet.label(study::bold("A rigid block that rocks: error against time, by engine", 1.35), k_left,
+                       top - 32) +
+         k_sheet.lines(
+             {fmt::format(
+                  "Uniform, {:g} × {:g} × {:g} m, {:g} kg, friction {:g}. Reference: Housner's block, "
+                  "which does not slide or bounce.",
+                  k_size[0], k_size[1], k_size[2], k_mass, k_friction),
+              versions + fmt::format(" on {}, one core.", study::processor_name()),
+              "Faint: every setting of the grid. Lines: Pareto fronts, what no other setting of the engine "
+              "beats in time and error."},
+             k_left, top - 70, 25, study::k_grey_as_is) +
+         k_sheet.place(k_left, k_width - k_right, top - 182, top - 146) + study::no_axes() +
+         "set key at graph 0,1 left top horizontal Left reverse samplen 4 width 4\n" + keys.command() +
+         "unset label\nunset key\n" + study::k_open_border + "set tics out scale 0.7,0.4\n" +
+         study::grid("#cccccc") + "set logscale xy\n";
 }
 
 /// A panel over columns `from`..`to` of the sheet. `least`, `most`: ends of the axis of errors; what has none
@@ -70,31 +65,32 @@ template <typename Part>
 std::string panel(const Results& results, Part Trial::*part, double unit, double from, double to,
                   const std::string& name, const std::string& title, const std::string& axis, double least,
                   double most, double absent) {
-  std::string data, plot;
+  study::Plot plot;
   for (int e = 0; e < static_cast<int>(results.engines.size()); ++e) {
-    data += fmt::format("${}{} << END\nNaN NaN\n", name, e);
+    std::string points;
     for (const Trial& trial : results.trials) {
       if (trial.engine != e || !(trial.*part).cpu) continue;
       const auto& error = (trial.*part).error;
       if (error || absent > 0)
-        data += fmt::format("{} {}\n", 1e3 * *(trial.*part).cpu, error ? *error / unit : absent);
+        points += study::point_row(1e3 * *(trial.*part).cpu, error ? *error / unit : absent);
     }
-    data += fmt::format("END\n$front_{}{} << END\nNaN NaN\n", name, e);
-    for (const Trial* trial : front(results.trials, e, part))
-      data += fmt::format("{} {}\n", 1e3 * *(trial->*part).cpu, *(trial->*part).error / unit);
-    data += "END\n";
-    plot += fmt::format("{}${}{} with points lc rgb '{}' pt {} ps 0.6 notitle", e == 0 ? "" : ", ", name, e,
-                        k_style[e].faint, k_style[e].mark);
+    plot.add(fmt::format("{}{}", name, e), points,
+             fmt::format("with points lc rgb '{}' pt {} ps 0.6 notitle", k_style[e].faint, k_style[e].mark));
   }
   // ours last: on top
-  for (int e = static_cast<int>(results.engines.size()) - 1; e >= 0; --e)
-    plot += fmt::format(", $front_{}{} with linespoints {} notitle", name, e, line_style(e));
-  std::string out = data + k_sheet.label(study::bold(title, 1.05), from, k_height - k_header + 26, "") +
+  for (int e = static_cast<int>(results.engines.size()) - 1; e >= 0; --e) {
+    std::string points;
+    for (const Trial* trial : front(results.trials, e, part))
+      points += study::point_row(1e3 * *(trial->*part).cpu, *(trial->*part).error / unit);
+    plot.add(fmt::format("front_{}{}", name, e), points,
+             fmt::format("with linespoints {} notitle", line_style(e)));
+  }
+  std::string out = plot.data + k_sheet.label(study::bold(title, 1.05), from, k_height - k_header + 26) +
                     k_sheet.place(from, to, k_bottom, k_height - k_header);
   if (absent > 0)
     out +=
         fmt::format("set label 'does not fall, or gave up' at graph 0.99, first {} right offset 0,0.75 {}\n",
-                    absent, k_grey);
+                    absent, study::k_grey);
   return out +
          fmt::format(
              "set xrange [0.1:300]\nset format x '%g'\nset xtics nomirror (0.1,1,10,100)\nset mxtics 10\n"
@@ -102,21 +98,21 @@ std::string panel(const Results& results, Part Trial::*part, double unit, double
              "mytics 10\n"
              "set xlabel 'CPU time per simulated second, ms' offset 0,0.2\nset ylabel {} offset 0.4,0\n",
              least, most, gnuplot_quoted(axis)) +
-         "plot " + plot + "\nunset label\n";
+         plot.command() + "unset label\n";
 }
 
 }  // namespace
 
 std::string chart(const Results& results, study::ChartFormat format) {
   const double width = (k_width - k_left - k_right - k_gap) / 2.;
-  return k_sheet.begin(format) + header(results) +
-         panel(results, &Trial::rocking, k_degree, k_left, k_left + width, "rocking",
-               fmt::format("Let go at half of the critical angle, {:g} s", k_window),
-               "error of the tilt, root mean square, deg", 5e-4, 200, 0) +
-         panel(results, &Trial::falling, 1., k_left + width + k_gap, k_width - k_right, "falling",
-               "Shaken at 2 Hz: worst of 690, 695, 700 gal", "error of the time of passing 45°, s", 5e-4, 10,
-               6) +
-         "unset multiplot\n";
+  return k_sheet.script(
+      format, header(results) +
+                  panel(results, &Trial::rocking, k_degree, k_left, k_left + width, "rocking",
+                        fmt::format("Let go at half of the critical angle, {:g} s", k_window),
+                        "error of the tilt, root mean square, deg", 5e-4, 200, 0) +
+                  panel(results, &Trial::falling, 1., k_left + width + k_gap, k_width - k_right, "falling",
+                        "Shaken at 2 Hz: worst of 690, 695, 700 gal", "error of the time of passing 45°, s",
+                        5e-4, 10, 6));
 }
 
 }  // namespace topple::bench

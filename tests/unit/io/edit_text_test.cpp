@@ -19,8 +19,8 @@ std::string refusal_of(const Edit& edit, const Setup& setup) {
   }
 }
 
-Edit number(Edit::Key key, double value, int shake = 0) {
-  return {.key = key, .shake = shake, .value = Vec3(value, 0, 0)};
+Edit number(Edit::Key key, double value, int index = 0) {
+  return {.key = key, .index = index, .value = Vec3(value, 0, 0)};
 }
 
 /// A sine and a pulse.
@@ -56,11 +56,11 @@ TEST(EditText, names_are_the_paths_of_the_scene) {
 TEST(EditText, every_name_reads_back_and_has_its_row_in_the_table_of_keys) {
   const topple::Setup setup = all_shakes();
   for (const auto& [key, shake] : editable(setup.model, setup.parameters)) {
-    const Edit edit{.key = key, .shake = shake};
+    const Edit edit{.key = key, .index = shake};
     const std::optional<Edit> read = parse_edit_key(edit_key(edit));
     ASSERT_TRUE(read) << edit_key(edit);
     EXPECT_EQ(read->key, key);
-    EXPECT_EQ(read->shake, shake);
+    EXPECT_EQ(read->index, shake);
     const Key& row = key_of(key);
     EXPECT_TRUE(edit_key(edit).ends_with(row.name));
     EXPECT_TRUE(edit_key(edit).starts_with(row.table == "cabinet" ? "body" : row.table));
@@ -73,7 +73,7 @@ TEST(EditText, anchors_are_switched_by_number) {
   setup.model.anchors.resize(2);
   setup.parameters.anchors = {true, true};
   EXPECT_EQ(edit_key(number(Edit::Key::anchor, 0, 1)), "anchor.2.on");
-  EXPECT_EQ(parse_edit_key("anchor.2.on")->shake, 1);
+  EXPECT_EQ(parse_edit_key("anchor.2.on")->index, 1);
   EXPECT_EQ(parse_edit_key("anchor.2.on")->key, Edit::Key::anchor);
   EXPECT_FALSE(parse_edit_key("anchor.on"));
   EXPECT_FALSE(parse_edit_key("anchor.2.strength"));
@@ -151,7 +151,7 @@ TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
             "shake.3.amplitude: belongs to type = sine or sweep or pulse, but type is record");
   EXPECT_EQ(refusal_of(number(Edit::Key::frequency, 2, 3), all_shakes()),
             "shake.4.frequency: 0 Hz is outside 0.001..1000 Hz");  // the last one of the sweep
-  EXPECT_EQ(refusal_of({.key = Edit::Key::frequency, .shake = 3, .value = Vec3(2, 5, 0)}, all_shakes()), "");
+  EXPECT_EQ(refusal_of({.key = Edit::Key::frequency, .index = 3, .value = Vec3(2, 5, 0)}, all_shakes()), "");
 }
 
 TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
@@ -182,6 +182,31 @@ TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
             "body.2.damping: \"desk\" has no known elastic mode; give it a damping in the scene");
   EXPECT_EQ(refusal_of(number(Edit::Key::damping, 0.1, 2), setup),
             "body.3.damping: there is no such body; the scene has 2");
+}
+
+TEST(EditText, values_are_in_the_words_and_units_of_scenes) {
+  const double third = 1. / 3;
+  const auto expect = [](const Edit& edit, const char* shown, const char* in_scene) {
+    EXPECT_EQ(edit_value_text(edit, EditSpelling::shown), shown) << edit_key(edit);
+    EXPECT_EQ(edit_value_text(edit, EditSpelling::in_scene), in_scene) << edit_key(edit);
+  };
+  expect(number(Edit::Key::type, 2), "pulse", "\"pulse\"");
+  expect(number(Edit::Key::law, 0), "coulomb", "\"coulomb\"");
+  expect(number(Edit::Key::integrator, 3), "newmark", "\"newmark\"");
+  expect(number(Edit::Key::model, 1), "rigid", "\"rigid\"");
+  expect(number(Edit::Key::want, 1), "[motion, stress]", "[\"motion\", \"stress\"]");
+  expect(number(Edit::Key::want, 0), "[motion]", "[\"motion\"]");
+  expect(number(Edit::Key::on, 1), "true", "true");
+  expect(number(Edit::Key::anchor, 0), "false", "false");
+  expect(number(Edit::Key::amplitude, 2), "200 gal", "\"200 gal\"");
+  expect(number(Edit::Key::time_step, third), "0.333333 s", "0.3333333333333333");
+  expect(number(Edit::Key::friction, third), "0.333333", "0.3333333333333333");
+  expect(number(Edit::Key::q, 2), "2", "2.0");
+  expect(number(Edit::Key::frequency, 2), "2 Hz", "\"2 Hz\"");
+  expect({.key = Edit::Key::frequency, .value = Vec3(2, third, 0)}, "[2 Hz, 0.333333 Hz]",
+         "[\"2 Hz\", 0.3333333333333333]");
+  expect({.key = Edit::Key::direction, .value = Vec3(third, 1, 0)}, "[0.333333, 1, 0]",
+         "[0.3333333333333333, 1.0, 0.0]");
 }
 
 TEST(EditText, a_direction_needs_a_length) {

@@ -20,7 +20,7 @@ class AnchorRecordingTest : public RecordingTest {
       recorder.write(observation);
     };
     const auto edit = [&](double on) {
-      const Edit change{.key = Edit::Key::anchor, .shake = 1, .value = Vec3(on, 0, 0)};
+      const Edit change{.key = Edit::Key::anchor, .index = 1, .value = Vec3(on, 0, 0)};
       recorder.write(LoggedEdit{0, run.step(), run.time(), change});
       run.edit(change);
     };

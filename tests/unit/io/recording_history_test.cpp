@@ -91,7 +91,7 @@ TEST_F(HistoryRecordingTest, branches_and_edits_read_back_to_the_last_bit) {
     EXPECT_EQ(history.edits[i].step, edits_[i].step);
     EXPECT_EQ(history.edits[i].time, edits_[i].time);
     EXPECT_EQ(history.edits[i].edit.key, edits_[i].edit.key);
-    EXPECT_EQ(history.edits[i].edit.shake, edits_[i].edit.shake);
+    EXPECT_EQ(history.edits[i].edit.index, edits_[i].edit.index);
     EXPECT_EQ(history.edits[i].edit.value, edits_[i].edit.value);
   }
   EXPECT_EQ(recording.newest_branch(), 2);

@@ -291,7 +291,7 @@ TEST_F(RerunTest, what_does_not_belong_to_its_scene_is_refused) {
     return {};
   };
   EXPECT_EQ(error_of(scene.text, std::nullopt), "");
-  EXPECT_EQ(error_of(scene.text, Edit{.key = Edit::Key::amplitude, .shake = 1}),
+  EXPECT_EQ(error_of(scene.text, Edit{.key = Edit::Key::amplitude, .index = 1}),
             "the recording has an edit that its scene has no place for: shake.2.amplitude: there is no such "
             "shake; the scene has 1");
   std::string other = scene.text;

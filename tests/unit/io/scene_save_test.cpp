@@ -115,7 +115,7 @@ Scene original() {
 
 /// What an edit may set besides the present value.
 Vec3 another_value(const Edit& edit, const Parameters& now) {
-  const Vec3 value = edited_value(now, edit.key, edit.shake);
+  const Vec3 value = edited_value(now, edit.key, edit.index);
   const Key& key = key_of(edit.key);
   if (edit.key == Edit::Key::direction) return Vec3(1, 2, 0.5).normalized();
   if (edit.key == Edit::Key::frequency) return 1.37 * value;
@@ -149,7 +149,7 @@ TEST(SavedScene, every_edit_is_in_the_scene_that_is_saved) {
     SCOPED_TRACE(edit_key(edit));
     if (key == Edit::Key::integrator) now.models.assign(now.models.size(), BodyModel::frame);
     const auto set = [&](int body) {
-      edit.shake = body;
+      edit.index = body;
       ASSERT_NO_THROW(check_edit(edit, now, model));
       apply(edit, model, 0.4, now);
     };
@@ -172,7 +172,7 @@ TEST(SavedScene, all_edits_together_are_in_it) {
     const int body = index == 2 ? 1 : index;  // copies alike
     Edit edit{key, body};
     edit.value = another_value(edit, scene.setup.parameters);
-    edit.shake = index;
+    edit.index = index;
     apply(edit, scene.setup.model, 0.4, now);
   }
   const SavedScene saved = edited_scene(scene, now);

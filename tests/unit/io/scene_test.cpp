@@ -13,6 +13,7 @@
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_entry.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/io/scene/scene_words.h"
 #include "solver/model/cabinet.h"
 
 namespace topple::io {
@@ -69,15 +70,15 @@ TEST(Scene, absent_keys_of_bodies_have_the_defaults_of_the_structs) {
   EXPECT_EQ(entry.number("mass"), spec.mass);
   EXPECT_DOUBLE_EQ(spec.size.z() / 2, spec.cg_height) << "the documented default of cg_height";
   EXPECT_TRUE(entry.is_word("inertia"));
-  EXPECT_EQ(entry.choice_as<CabinetSpec::Inertia>("inertia"), spec.inertia);
+  EXPECT_EQ(entry.chosen("inertia", k_inertias), spec.inertia);
   EXPECT_EQ(entry.numbers("at"), (std::vector<double>{spec.at.x(), spec.at.y()}));
   EXPECT_EQ(entry.number("yaw"), spec.yaw);
-  EXPECT_EQ(entry.choice_as<CabinetSpec::Pose>("pose"), spec.pose);
+  EXPECT_EQ(entry.chosen("pose", k_poses), spec.pose);
   EXPECT_EQ(entry.number("tilt"), spec.tilt);
   EXPECT_EQ(entry.vector("velocity"), spec.velocity);
   EXPECT_EQ(entry.vector("angular_velocity"), spec.angular_velocity);
   EXPECT_EQ(entry.integer("shelves"), spec.shelves);
-  EXPECT_EQ(entry.choice_as<CabinetSpec::Bracing>("bracing"), spec.bracing);
+  EXPECT_EQ(entry.chosen("bracing", k_bracings), spec.bracing);
   EXPECT_EQ(entry.number("panel_thickness"), spec.panel_thickness);
   EXPECT_EQ(entry.integer("divisions"), spec.divisions);
   EXPECT_EQ(find_key("cabinet", "model")->choices.at(0), "auto");

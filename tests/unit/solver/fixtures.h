@@ -131,8 +131,8 @@ inline void shake(Setup& setup, double amplitude, double frequency) {
 }
 
 /// An edit of a number.
-inline Edit set(Edit::Key key, double value, int shake = 0) {
-  return {.key = key, .shake = shake, .value = Vec3(value, 0, 0)};
+inline Edit set(Edit::Key key, double value, int index = 0) {
+  return {.key = key, .index = index, .value = Vec3(value, 0, 0)};
 }
 
 inline Edit turn_to(const Vec3& direction) {
@@ -201,7 +201,7 @@ inline std::vector<double> static_correction(BodySystem& system, const Parameter
   const std::vector<Vec3> stick(system.model.contact_points.size() * system.model.planes.size(),
                                 Vec3::Zero());
   system.lu.set_zero();
-  system.evaluate_with_tangent(parameters, t, motion, stick, motion.position, 0);
+  system.evaluate_with_tangent(parameters, {parameters, t}, motion, stick, motion.position, 0);
   std::vector<double> b(6 * system.count);
   for (int i = 0; i < system.count; ++i)
     for (int k = 0; k < 6; ++k) {

@@ -28,7 +28,7 @@ void expect_stated(const io::Scene& scene, double finer) {
   const Setup& setup = scene.setup;
   Setup exact = setup;
   exact.parameters.time_step /= finer;
-  exact.parameters.finer_parts *= finer;
+  exact.parameters.substep_refinement *= finer;
   exact.parameters.tolerance /= finer * finer;
   const Outcome run = outcome(setup), truth = outcome(exact);
   const std::vector<BodyError> stated = errors(setup.model, run, outcome(refined(setup)));
@@ -49,7 +49,7 @@ void expect_stated(const io::Scene& scene, double finer) {
 TEST(Refinement, halves_a_fixed_step_and_tightens_an_adaptive_one) {
   const io::Scene fixed = io::load_scene("paper-a");
   EXPECT_DOUBLE_EQ(refined(fixed.setup).parameters.time_step, fixed.setup.parameters.time_step / 2);
-  EXPECT_DOUBLE_EQ(refined(fixed.setup).parameters.finer_parts, 2);
+  EXPECT_DOUBLE_EQ(refined(fixed.setup).parameters.substep_refinement, 2);
   const io::Scene adaptive = io::load_scene("paper-a", {"run.time_step=auto"});
   EXPECT_DOUBLE_EQ(refined(adaptive.setup).parameters.tolerance, adaptive.setup.parameters.tolerance / 10);
 }

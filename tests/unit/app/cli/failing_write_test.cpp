@@ -112,7 +112,7 @@ TEST_F(FailingWriteTest, whichever_write_of_other_results_fails_they_appear_whol
   struct Result {
     std::vector<std::string> call;
     std::vector<std::string> made;  ///< all that it may leave
-    const char* told;
+    const char* message;
   };
   std::vector<std::string> vtk = {"vtk"};
   for (int i = 0; i < 31; ++i)
@@ -153,7 +153,7 @@ TEST_F(FailingWriteTest, whichever_write_of_other_results_fails_they_appear_whol
     each_write(result.call, "EIO", [&](const Ended& ended) {
       if (ended.code != 0) {
         EXPECT_EQ(ended.code, 1);
-        EXPECT_NE(ended.err.find(result.told), std::string::npos) << ended.err;
+        EXPECT_NE(ended.err.find(result.message), std::string::npos) << ended.err;
       }
       for (const auto& [file, content] : whole) {
         if (!std::filesystem::exists(file)) {

@@ -21,10 +21,10 @@ TEST_F(RecordingFormatsTest, every_format_is_described_drawn_and_exported) {
   for (int format = 1; format <= 7; ++format) {
     SCOPED_TRACE(format);
     write_bytes("a.h5", kept("format-" + std::to_string(format)));
-    const auto told = info("a.h5");
-    EXPECT_EQ(told["format"], format);
-    EXPECT_EQ(told["arithmetic"], io::k_system_arithmetic);
-    EXPECT_EQ(told["frames"], 7);
+    const auto listed = info("a.h5");
+    EXPECT_EQ(listed["format"], format);
+    EXPECT_EQ(listed["arithmetic"], io::k_system_arithmetic);
+    EXPECT_EQ(listed["frames"], 7);
     EXPECT_EQ(topple({"render", "a.h5", "--still", "a.png", "--at", "0.2", "--size", "160x90"}).code, 0);
     EXPECT_EQ(topple({"export", "a.h5", "--csv", "data"}).code, 0);
     EXPECT_TRUE(std::filesystem::exists("a.png"));

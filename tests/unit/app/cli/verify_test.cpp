@@ -9,8 +9,8 @@ namespace {
 
 class VerifyTest : public ProgramTest {
  protected:
-  /// Two branches with an edit each, the second from 0.1 s of the first. `lie`: its last checkpoint gets
-  /// another hash.
+  /// Two branches with edits, the second from 0.1 s of the first. `lie`: its last checkpoint gets another
+  /// hash.
   static void record_branches(bool lie) {
     const io::Scene scene = io::parse_scene(k_shaken, "s");
     io::Recorder recorder("a.h5", scene.name, scene.text, scene.setup.model);
@@ -18,9 +18,11 @@ class VerifyTest : public ProgramTest {
     io::Observer observer;
     recorder.write(observer.observe(run));
     RunPoint fork = run.point();
-    const auto go_on = [&](std::int32_t branch, const Edit& edit) {
-      recorder.write(LoggedEdit{branch, run.state().step, run.state().time, edit});
-      run.edit(edit);
+    const auto go_on = [&](std::int32_t branch, const std::vector<Edit>& edits) {
+      for (const Edit& edit : edits) {
+        recorder.write(LoggedEdit{branch, run.state().step, run.state().time, edit});
+        run.edit(edit);
+      }
       while (!run.over()) {
         ASSERT_TRUE(run.advance().ok());
         recorder.write(observer.observe(run));
@@ -30,12 +32,15 @@ class VerifyTest : public ProgramTest {
       if (lie && branch == 1) ++last.checkpoint.value().hash;
       recorder.write(last);
     };
-    go_on(0, {.key = Edit::Key::alpha, .value = Vec3(2000, 0, 0)});
+    go_on(0, {{.key = Edit::Key::alpha, .value = Vec3(2000, 0, 0)}});
     recorder.write(Branch{1, 0, 100});
     run = topple::Run(scene.setup, fork);
     observer = io::Observer(1);
     recorder.write(observer.observe(run));
-    go_on(1, {.key = Edit::Key::direction, .value = Vec3(1, 2, 0)});
+    go_on(1, {{.key = Edit::Key::direction, .value = Vec3(1, 2, 0)},
+              {.key = Edit::Key::integrator, .value = Vec3(1, 0, 0)},
+              {.key = Edit::Key::want, .value = Vec3(1, 0, 0)},
+              {.key = Edit::Key::on, .value = Vec3(1, 0, 0)}});
     recorder.finish("completed", "");
   }
 };
@@ -59,7 +64,7 @@ TEST_F(VerifyTest, branches_and_edits_are_listed_and_run_again) {
   record_branches(false);
   const Ended ended = topple({"info", "a.h5", "--verify"});
   EXPECT_EQ(ended.code, 0) << ended.out;
-  EXPECT_NE(ended.out.find("\n2 branches, 2 edits\n"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("\n2 branches, 5 edits\n"), std::string::npos) << ended.out;
   EXPECT_TRUE(ended.out.ends_with("re-run: 4 checkpoints of 2 branches have the same state hashes\n"))
       << ended.out;
   const nlohmann::ordered_json json = info("a.h5");
@@ -68,7 +73,12 @@ TEST_F(VerifyTest, branches_and_edits_are_listed_and_run_again) {
   EXPECT_EQ(json["edits"], json_of(R"([
       {"branch": 0, "step": 0, "time_s": 0.0, "key": "contact.alpha", "value": 2000.0},
       {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "shake.1.direction",
-       "value": [1.0, 2.0, 0.0]}])"));
+       "value": [1.0, 2.0, 0.0]},
+      {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "run.integrator",
+       "value": "generalized-alpha"},
+      {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "run.want",
+       "value": ["motion", "stress"]},
+      {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "shake.1.on", "value": 1.0}])"));
   EXPECT_EQ(json["frames"], 31 + 21);
 }
 
@@ -140,7 +150,7 @@ TEST_F(VerifyTest, edits_that_the_scene_has_no_place_for_are_refused) {
     const io::Scene scene = io::parse_scene(k_shaken, "s");
     io::Recorder recorder("a.h5", scene.name, scene.text, scene.setup.model);
     recorder.write(io::Observer().observe(topple::Run(scene.setup)));
-    recorder.write(LoggedEdit{0, 0, 0, {.key = Edit::Key::amplitude, .shake = 5, .value = Vec3(1, 0, 0)}});
+    recorder.write(LoggedEdit{0, 0, 0, {.key = Edit::Key::amplitude, .index = 5, .value = Vec3(1, 0, 0)}});
     recorder.finish("completed", "");
   }
   const std::string part = "shake.6.amplitude: there is no such shake; the scene has 1";

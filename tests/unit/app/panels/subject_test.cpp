@@ -13,7 +13,7 @@
 namespace topple::app {
 namespace {
 
-double value(const Instant& now, const Subject& subject, const std::string& name) {
+double value(const FrameContext& now, const Subject& subject, const std::string& name) {
   for (const SubjectValue& v : values_of(subject.kind))
     if (name == v.name.english) return v.at(now, subject.index);
   ADD_FAILURE() << name;
@@ -49,7 +49,7 @@ loads = [{ node = 1, force = ["20 N", 0, "-10 N"] }]
 // P L at the clamp, nothing at the tip; P and N all along. The tip turns by 1.5 mrad: 2e-3 of P more in N.
 TEST(Subject, section_forces_of_a_cantilever_are_those_of_theory) {
   const Cantilever beam;
-  const Instant now{beam.scene.setup.model, beam.scene.setup.parameters.gravity, beam.row};
+  const FrameContext now{beam.scene.setup.model, beam.scene.setup.parameters.gravity, beam.row};
   EXPECT_NEAR(std::abs(value(now, k_member, "My")), 10, 0.02);
   EXPECT_NEAR(std::abs(value(now, k_member, "Vz")), 10, 0.04);
   EXPECT_NEAR(value(now, k_member, "N"), 20, 0.04);
@@ -111,7 +111,7 @@ TEST(Subject, a_body_has_the_energy_and_the_angular_velocity_of_its_state) {
       spin = (r * scene.setup.model.bodies[0].inertia * r.transpose()).inverse() * momentum.angular_momentum;
       kinetic = run.state().energy.kinetic;
     }
-    const Instant now{scene.setup.model, scene.setup.parameters.gravity, rows[1], &rows[0], &rows[2]};
+    const FrameContext now{scene.setup.model, scene.setup.parameters.gravity, rows[1], &rows[0], &rows[2]};
     EXPECT_GT(kinetic, 0.01);
     EXPECT_NEAR(value(now, k_body, "kinetic energy"), kinetic, 1e-3 + 1e-3 * kinetic);
     EXPECT_NEAR(value(now, k_body, "angular velocity"), spin.norm(), 0.02 * spin.norm() + 1e-3);

@@ -61,7 +61,7 @@ TEST_F(StudyTest, quick_gives_up_runs_that_are_under_way_when_its_time_is_over) 
                        .stem = "test",
                        .settings = {{"of", "a test"}},
                        .order = {0, 1, 2},
-                       .told = {},
+                       .broadcast = {},
                        .make = [&] { return endless; },
                        .start = Clock::now() - std::chrono::duration_cast<Clock::duration>(Seconds(k_quick))};
   StudyOptions options;

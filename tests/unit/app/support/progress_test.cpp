@@ -43,7 +43,7 @@ class ProgressPipeTest : public ProgramTest {
     for (const int end : ends_) close(end);
     ProgramTest::TearDown();
   }
-  Circumstances told() const { return {.set = {{k_progress_variable, std::to_string(ends_[1])}}}; }
+  Circumstances with_pipe() const { return {.set = {{k_progress_variable, std::to_string(ends_[1])}}}; }
 
   const std::vector<std::string> call_{"run", "s.toml", "--set", "run.duration=600"};
   int ends_[2] = {-1, -1};
@@ -51,7 +51,7 @@ class ProgressPipeTest : public ProgramTest {
 
 TEST_F(ProgressPipeTest, a_process_that_was_given_a_pipe_tells_its_progress_there_alone) {
   const int out = memory(), err = memory();
-  const pid_t child = start(call_, out, err, told());
+  const pid_t child = start(call_, out, err, with_pipe());
   std::string text;
   while (std::count(text.begin(), text.end(), '\n') < 2) {
     char bytes[4096];
@@ -77,10 +77,10 @@ TEST_F(ProgressPipeTest, a_reader_that_has_gone_or_does_not_read_holds_nothing_u
   fcntl(ends_[1], F_SETPIPE_SZ, 4096);
   std::string line(4096, '.');
   ASSERT_EQ(write(ends_[1], line.data(), line.size()), 4096);  // it is full
-  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.duration=20"}, told()).code, 0);
+  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.duration=20"}, with_pipe()).code, 0);
   close(ends_[0]);
   ends_[0] = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.duration=20"}, told()).code, 0);
+  EXPECT_EQ(topple({"run", "s.toml", "--set", "run.duration=20"}, with_pipe()).code, 0);
 }
 
 TEST_F(ProgressPipeTest, what_is_no_pipe_is_not_written_to) {

@@ -216,7 +216,7 @@ TEST_F(ShellTest, a_full_disk_ends_the_recording_and_not_the_run) {
   EXPECT_FALSE(shell_->message().has_value());
   EXPECT_TRUE(until([&] { return player().time() > time || !player().playing(); }));
   for (int i = 0; i < 5; ++i) frame();
-  EXPECT_FALSE(shell_->message().has_value());  // told once
+  EXPECT_FALSE(shell_->message().has_value());  // shown once
   const std::vector<LiveStatus> ends = shell_->close("stopped");
   EXPECT_FALSE(ends.back().record_failure.empty());
   unmount_disk(disk);

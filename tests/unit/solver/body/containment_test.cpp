@@ -293,7 +293,7 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
   }
   [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
                                 want_stress, gravity, integrator, spectral_radius, beta, gamma, time_step,
-                                adaptive, tolerance, finer_parts] = all;
+                                adaptive, tolerance, substep_refinement] = all;
   out["contact_ramp.since"] = [](Parameters& p) -> double& { return p.contact_ramp.since; };
   out["contact_ramp.over"] = [](Parameters& p) -> double& { return p.contact_ramp.over; };
   for (std::size_t b = 0; b < all.damping.size(); ++b)
@@ -308,7 +308,7 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
   add("gamma", &Parameters::gamma);
   add("time_step", &Parameters::time_step);
   add("tolerance", &Parameters::tolerance);
-  add("finer_parts", &Parameters::finer_parts);
+  add("substep_refinement", &Parameters::substep_refinement);
   return out;
 }
 

@@ -101,11 +101,11 @@ void expect_the_same(const MemberPose& pose) {
     for (int i = 0; i < system.count; ++i) g.segment<6>(6 * i) << -system.force[i], -system.moment[i];
     return g;
   };
-  system.evaluate_free(weightless(), 0, pose.motion);
+  system.evaluate_free(weightless(), {weightless(), 0}, pose.motion);
   EXPECT_LT((gradient_of() - scalar.gradient).cwiseAbs().maxCoeff(), rounding);
 
   system.lu.set_zero();
-  system.evaluate_with_tangent(weightless(), 0, pose.motion, {}, pose.motion.position, 0);
+  system.evaluate_with_tangent(weightless(), {weightless(), 0}, pose.motion, {}, pose.motion.position, 0);
   EXPECT_LT((gradient_of() - scalar.gradient).cwiseAbs().maxCoeff(), rounding);
   // unit columns through the factorisation of tangent + shift, well conditioned, against the matrix itself
   const double shift = 100 * stiffness;
@@ -169,7 +169,7 @@ TEST(BeamPack, gradient_is_that_of_its_energy) {
       SCOPED_TRACE(testing::Message() << "angle " << angle << ", trial " << trial);
       BodySystem system(pose.model, 0);
       std::vector<SectionForces> sections(pose.model.elements.size());
-      system.evaluate_free(weightless(), 0, pose.motion);
+      system.evaluate_free(weightless(), {weightless(), 0}, pose.motion);
       const double size = 1e7, h = 1e-5;
       for (int i = 0; i < system.count; ++i)
         for (int k = 0; k < 6; ++k) {

@@ -70,8 +70,8 @@ TEST(Damping, forces_are_those_of_a_times_the_rate_of_the_elastic_stresses) {
     SCOPED_TRACE(angle);
     const BodyMotion motion = any_motion(rng, model, angle);
     BodySystem free(model, 0), system(model, 0);
-    free.evaluate_free(weightless(), 0, motion);
-    system.evaluate_free(damped(0.03), 0, motion);
+    free.evaluate_free(weightless(), {weightless(), 0}, motion);
+    system.evaluate_free(damped(0.03), {damped(0.03), 0}, motion);
 
     const double t = 1e-5;
     Eigen::VectorXd stress =
@@ -112,7 +112,7 @@ TEST(Damping, stiffens_the_tangent_by_a_times_the_velocity_factor) {
     BodySystem system(model, 0);
     const BodyMotion motion = reference_motion(model);
     system.lu.set_zero();
-    system.evaluate_with_tangent(p, 0, motion, {}, motion.position, velocity_factor);
+    system.evaluate_with_tangent(p, {p, 0}, motion, {}, motion.position, velocity_factor);
     for (int i = 0; i < system.count; ++i)
       for (int k = 0; k < 6; ++k)
         if (system.fixed[i] >> k & 1) system.lu.fix(i, k);
@@ -133,8 +133,8 @@ TEST(Damping, of_an_element_with_a_hinge_is_none) {
   BodySystem free(model, 0), system(model, 0);
   for (BodySystem* s : {&free, &system})
     for (ElementState& element : s->elements) element.hinge = Hinge::first;
-  free.evaluate_free(weightless(), 0, motion);
-  system.evaluate_free(damped(0.03), 0, motion);
+  free.evaluate_free(weightless(), {weightless(), 0}, motion);
+  system.evaluate_free(damped(0.03), {damped(0.03), 0}, motion);
   for (int i = 0; i < system.count; ++i) {
     EXPECT_EQ(system.force[i], free.force[i]);
     EXPECT_EQ(system.moment[i], free.moment[i]);
@@ -269,8 +269,10 @@ TEST(Damping, lowers_the_explicit_limit_to_where_the_motion_starts_to_grow) {
     IntegratorScratch scratch;
     StepEnergy energy;
     const double h = share * limit;
-    for (int i = 0; i < 1000; ++i)
-      ASSERT_TRUE(advance_central_difference(system, p, state, i * h, h, scratch, energy).ok());
+    for (int i = 0; i < 1000; ++i) {
+      const StepInputs start(p, i * h), end(p, start.time + h);
+      ASSERT_TRUE(advance_central_difference(system, {p, start, end, h, 0}, state, scratch, energy).ok());
+    }
     const double travel = std::abs(state.position[1].x() - 1);
     EXPECT_TRUE(share < 1 ? travel < 1e-3 : travel > 1) << travel;
   }

@@ -217,7 +217,7 @@ TEST(Edit, sets_the_value_that_is_read_back) {
   p.anchors = {true};
   std::set<Edit::Key> seen;
   for (const auto& [key, shake] : editable(model, p)) {
-    Edit edit{.key = key, .shake = shake, .value = edited_value(p, key, shake)};
+    Edit edit{.key = key, .index = shake, .value = edited_value(p, key, shake)};
     switch (key) {
       case Edit::Key::direction:
         edit.value = Vec3(0, 0, 1);
