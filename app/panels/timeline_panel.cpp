@@ -24,10 +24,10 @@ constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 constexpr double k_headroom = 1.08;  // of the lane of the floor, over its greatest acceleration
 
-constexpr std::size_t k_told = 5;  // bodies with a colour of their own
+constexpr std::size_t k_coloured = 5;  // bodies with a colour of their own
 
 /// Those that tilt most over the run, of the share that they can, in their own order; all of a few.
-std::vector<std::size_t> told_bodies(const Player& player) {
+std::vector<std::size_t> coloured_bodies(const Player& player) {
   const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
   std::vector<std::pair<double, std::size_t>> shares;
   for (std::size_t b = 0; b < furniture; ++b) {
@@ -39,20 +39,20 @@ std::vector<std::size_t> told_bodies(const Player& player) {
     shares.emplace_back(-most, b);
   }
   std::ranges::sort(shares);
-  if (shares.size() > k_told) shares.resize(k_told);
-  std::vector<std::size_t> told;
-  told.reserve(shares.size());
-  for (const auto& [share, b] : shares) told.push_back(b);
-  std::ranges::sort(told);
-  return told;
+  if (shares.size() > k_coloured) shares.resize(k_coloured);
+  std::vector<std::size_t> coloured;
+  coloured.reserve(shares.size());
+  for (const auto& [share, b] : shares) coloured.push_back(b);
+  std::ranges::sort(coloured);
+  return coloured;
 }
 
-ImU32 line_colour(const std::vector<std::size_t>& told, std::size_t body) {
-  const auto at = std::ranges::find(told, body);
-  if (at == told.end()) return theme().other;
-  // Where all are told of, in the colours that their paths have in the scene.
+ImU32 line_colour(const std::vector<std::size_t>& coloured, std::size_t body) {
+  const auto at = std::ranges::find(coloured, body);
+  if (at == coloured.end()) return theme().other;
+  // Where all are coloured, in the colours that their paths have in the scene.
   const auto& [red, green, blue] =
-      body_colour(told.back() < told.size() ? body : static_cast<std::size_t>(at - told.begin()));
+      body_colour(coloured.back() < coloured.size() ? body : static_cast<std::size_t>(at - coloured.begin()));
   return IM_COL32(red, green, blue, 255);
 }
 
@@ -131,27 +131,28 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
     add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
              fmt::format("{:.1f}°", critical));
   }
-  const std::vector<std::size_t> told = told_bodies(player);
-  const auto is_told = [&](std::size_t b) { return std::ranges::find(told, b) != told.end(); };
-  for (const bool one_of_those : {false, true})  // those told of lie on top
+  const std::vector<std::size_t> coloured = coloured_bodies(player);
+  const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
+  for (const bool with_colour : {false, true})  // coloured ones lie on top
     for (std::size_t b = 0; b < furniture; ++b) {
-      if (is_told(b) != one_of_those) continue;
+      if (is_coloured(b) != with_colour) continue;
       add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
-      add_curve(list, lane, rows, tilt(b), one_of_those ? line_colour(told, b) : theme().other, 1.6f);
+      add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other, 1.6f);
     }
   const float line = ImGui::GetTextLineHeight(), room = lane.left - label_left - 4;
   float y = lane.top - 2;
   add_text(list, label_left, y, theme().text, say(k_tilt_lane));
   const auto fits = static_cast<std::size_t>(std::max((lane.bottom - y) / line - 1, 0.f));
-  const bool all = told.size() == furniture && told.size() <= fits;
-  const std::size_t shown = all ? told.size() : std::min(told.size(), fits - std::min<std::size_t>(fits, 1));
+  const bool all = coloured.size() == furniture && coloured.size() <= fits;
+  const std::size_t shown =
+      all ? coloured.size() : std::min(coloured.size(), fits - std::min<std::size_t>(fits, 1));
   const ImFont& font = *ImGui::GetFont();
   for (std::size_t i = 0; i < shown; ++i) {
     y += line;
     list.AddRectFilled({label_left, y + line / 2 - 1.5f}, {label_left + 10, y + line / 2 + 1.5f},
-                       line_colour(told, told[i]));
+                       line_colour(coloured, coloured[i]));
     add_text(list, label_left + 14, y, theme().text,
-             render::shortened(font, bodies[told[i]].name, room - 14));
+             render::shortened(font, bodies[coloured[i]].name, room - 14));
   }
   if (!all && fits > 0) add_text(list, label_left, y + line, theme().text, say(k_more, furniture - shown));
 }
@@ -261,9 +262,9 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
     if (std::abs(mouse.x - x) < size && std::abs(mouse.y - y) < 2 * size) hovered = text();
   };
   const float y = lane.bottom + size + 2;
-  const std::vector<std::size_t> told = told_bodies(player);
+  const std::vector<std::size_t> coloured = coloured_bodies(player);
   for (const io::RecordedEvent& event : player.events()) {
-    const ImU32 colour = line_colour(told, static_cast<std::size_t>(event.event.body));
+    const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));
     mark(
         event.time, y, [&] { return event_text(player, event); },
         [&](ImVec2 p) { add_mark(list, event.event.kind, p, size, colour); });

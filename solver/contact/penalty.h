@@ -2,25 +2,24 @@
 // depth = 1 - l/L > 0.
 #pragma once
 
+#include <type_traits>
+
 #include "solver/math/elementary.h"
 #include "solver/math/pack.h"
 
 namespace topple {
-
-inline Four pow_lanes(Four x, double q) {
-  for (int i = 0; i < 4; ++i) x.set(i, elementary::pow(x[i], q));
-  return x;
-}
-inline double pow_lanes(double x, double q) {
-  return elementary::pow(x, q);
-}
 
 /// depth^q: P over alpha.
 template <class P>
 [[gnu::always_inline]] inline P penalty_power(P depth, double q) {
   if (q == 1) return depth;
   if (q == 2) return depth * depth;
-  return pow_lanes(depth, q);
+  if constexpr (std::is_same_v<P, double>) {
+    return elementary::pow(depth, q);
+  } else {
+    for (int i = 0; i < 4; ++i) depth.set(i, elementary::pow(depth[i], q));
+    return depth;
+  }
 }
 
 /// Its slope by depth, q depth^(q - 1).
