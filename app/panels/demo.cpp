@@ -50,7 +50,7 @@ void shake_as_sine(Player& player, double frequency, double amplitude) {
   const auto post = [&](Edit::Key key, const Vec3& value) {
     if (edited_value(player.parameters(), key, 0) != value) player.edit({key, 0, value});
   };
-  post(Edit::Key::type, Vec3(place_of(shake_kinds(), Shake::Kind::sine), 0, 0));
+  post(Edit::Key::type, Vec3(static_cast<int>(Shake::Kind::sine), 0, 0));
   post(Edit::Key::on, Vec3(1, 0, 0));
   Vec3 number = edited_value(player.parameters(), Edit::Key::frequency, 0);
   number.x() = frequency;

@@ -215,26 +215,13 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
                   2 * ImGui::GetStyle().FramePadding.x);
   const bool pressed = ImGui::SmallButton((words + "##pin").c_str());
   if (ImGui::IsItemHovered() && !pinned) ImGui::SetTooltip("%s", say(k_pin_about).c_str());
-  if (subject.kind == Subject::Kind::member) {
-    const Member& member = at.model.members[subject.index];
-    double length = 0;
-    for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
-      length += at.model.elements[e].length;
-    ImGui::TextDisabled("%s", say(k_member_line, at.model.sections[member.section].name,
-                                  at.model.materials[member.material].name, 1e3 * length)
-                                  .c_str());
-  } else if (subject.kind == Subject::Kind::body) {
-    const Body& body = at.model.bodies[subject.index];
-    ImGui::TextDisabled("%s", say(k_body_line, body.mass, body.member_count,
-                                  say(phrase_of(static_cast<ModelLevel>(at.row.level[subject.index]))))
-                                  .c_str());
-  } else {
-    const Anchor& anchor = at.model.anchors[subject.index];
-    ImGui::TextDisabled("%s",
-                        say(k_anchor_line, anchor_type_in_words(anchor), at.model.bodies[anchor.body].name,
-                            anchor.stiffness / 1e3, 1e3 * at.row.anchor[subject.index].natural_length)
-                            .c_str());
-    ImGui::TextUnformatted(anchor_in_words(at.model, at.row, subject.index).c_str());
+  bool first = true;
+  for (const std::string& line : about(at.now, subject)) {
+    ImGui::PushStyleColor(
+        ImGuiCol_Text,
+        ImGui::GetColorU32(std::exchange(first, false) ? ImGuiCol_TextDisabled : ImGuiCol_Text));
+    ImGui::TextUnformatted(line.c_str());
+    ImGui::PopStyleColor();
   }
   return pressed;
 }

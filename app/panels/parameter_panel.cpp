@@ -126,18 +126,21 @@ class Row {
     end();
   }
 
-  /// One of the choices of the key that `legal` has.
+  /// One of the choices of the key whose numbers are legal.
   template <class F>
   void choice(const std::string& label, const Phrase& tip, F&& legal) {
     begin(label);
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
-    const auto word = [&](int k) { return std::string(key_.choices[static_cast<std::size_t>(k)]); };
+    const std::string shown(*io::choice_of(key_, now));
     const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
-    const bool narrow = ImGui::CalcTextSize(word(now).c_str()).x + ImGui::GetStyle().FramePadding.x > room;
-    if (ImGui::BeginCombo("##value", word(now).c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
-      for (int k = 0; k < static_cast<int>(key_.choices.size()); ++k)
-        if (legal(k) && ImGui::Selectable(word(k).c_str(), k == now) && k != now) post_anew(Vec3(k, 0, 0));
+    const bool narrow = ImGui::CalcTextSize(shown.c_str()).x + ImGui::GetStyle().FramePadding.x > room;
+    if (ImGui::BeginCombo("##value", shown.c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
+      for (const int number : key_.numbers)
+        if (legal(number) &&
+            ImGui::Selectable(std::string(*io::choice_of(key_, number)).c_str(), number == now) &&
+            number != now)
+          post_anew(Vec3(number, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
       ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), say(tip, key_.about)).c_str());
@@ -240,15 +243,14 @@ void draw_frequency(const Parameter& of) {
 void draw_type(const Parameter& of) {
   Row row = of.row();
   row.choice(say(k_type), k_type_about,
-             [](int k) { return shake_kinds()[static_cast<std::size_t>(k)].has_amplitude; });
-  row.button(k_shake_once, place_of(shake_kinds(), Shake::Kind::pulse), k_shake_once_about);
+             [](int number) { return traits(static_cast<Shake::Kind>(number)).has_amplitude; });
+  row.button(k_shake_once, static_cast<int>(Shake::Kind::pulse), k_shake_once_about);
 }
 
 void draw_model(const Parameter& of) {
   ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
-  of.row().choice(say(k_model), k_model_about, [&](int k) {
-    return can_be(of.model(), of.index, body_models()[static_cast<std::size_t>(k)].kind);
-  });
+  of.row().choice(say(k_model), k_model_about,
+                  [&](int number) { return can_be(of.model(), of.index, static_cast<BodyModel>(number)); });
 }
 
 void draw_anchor(const Parameter& of) {
@@ -272,7 +274,8 @@ constexpr Control k_controls[] = {
     {Edit::Key::anchor, draw_anchor},
     {Edit::Key::integrator,
      [](const Parameter& of) {
-       of.row().choice(say(k_integrator), k_integrator_about, [](int k) { return k > 0; });
+       of.row().choice(say(k_integrator), k_integrator_about,
+                       [](int number) { return number != k_automatic_integrator; });
      }},
     {Edit::Key::want,
      [](const Parameter& of) { of.row().tick(say(k_stresses_wanted), say(k_stresses_wanted_about)); }},

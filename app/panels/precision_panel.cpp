@@ -25,6 +25,7 @@ constexpr float k_reach = 0.7f;  // lines of text, from the mouse to a point
 /// A mark; open where steps follow a tolerance.
 enum class Sign { circle, square, triangle, diamond, turned_triangle, cross };
 struct Look {
+  Method kind;
   Sign sign;
   bool open;
   ImU32 light, dark;
@@ -32,20 +33,22 @@ struct Look {
 // Colours of Okabe and Ito, as in `topple study precision`.
 constexpr ImU32 k_vermilion = IM_COL32(213, 94, 0, 255), k_green = IM_COL32(0, 158, 115, 255),
                 k_blue = IM_COL32(0, 114, 178, 255), k_sky = IM_COL32(86, 180, 233, 255);
-constexpr Look k_looks[study::k_methods] = {
-    {Sign::diamond, true, IM_COL32(17, 17, 17, 255), IM_COL32(240, 240, 240, 255)},
-    {Sign::circle, false, k_vermilion, k_vermilion},
-    {Sign::circle, true, k_vermilion, k_vermilion},
-    {Sign::square, false, k_green, k_green},
-    {Sign::square, true, k_green, k_green},
-    {Sign::triangle, false, k_blue, k_sky},
-    {Sign::triangle, true, k_blue, k_sky},
-    {Sign::diamond, false, IM_COL32(204, 121, 167, 255), IM_COL32(204, 121, 167, 255)},
-    {Sign::turned_triangle, false, IM_COL32(140, 109, 0, 255), IM_COL32(230, 190, 60, 255)},
-    {Sign::cross, false, IM_COL32(17, 17, 17, 255), IM_COL32(240, 240, 240, 255)}};
+constexpr Look k_looks[] = {
+    {Method::scene, Sign::diamond, true, IM_COL32(17, 17, 17, 255), IM_COL32(240, 240, 240, 255)},
+    {Method::rigid, Sign::circle, false, k_vermilion, k_vermilion},
+    {Method::rigid_auto, Sign::circle, true, k_vermilion, k_vermilion},
+    {Method::elastic, Sign::square, false, k_green, k_green},
+    {Method::elastic_auto, Sign::square, true, k_green, k_green},
+    {Method::generalized_alpha, Sign::triangle, false, k_blue, k_sky},
+    {Method::generalized_alpha_auto, Sign::triangle, true, k_blue, k_sky},
+    {Method::newmark, Sign::diamond, false, IM_COL32(204, 121, 167, 255), IM_COL32(204, 121, 167, 255)},
+    {Method::newmark_damped, Sign::turned_triangle, false, IM_COL32(140, 109, 0, 255),
+     IM_COL32(230, 190, 60, 255)},
+    {Method::central_difference, Sign::cross, false, IM_COL32(17, 17, 17, 255),
+     IM_COL32(240, 240, 240, 255)}};
 
 void add_sign(ImDrawList& list, ImVec2 at, Method method) {
-  const Look& look = k_looks[static_cast<int>(method)];
+  const Look& look = row_of(k_looks, method);
   const ImU32 ink = window_is_dark() ? look.dark : look.light;
   const float r = 0.32f * ImGui::GetTextLineHeight(), thin = 0.3f * r;
   const auto shape = [&](std::initializer_list<ImVec2> corners) {
@@ -89,7 +92,7 @@ std::optional<double> error_of(const PrecisionFound& found, int k, Measure measu
 
 std::string setting_in_words(const PrecisionFound& found, int k) {
   const study::Setting& setting = found.plan->setting_of(k);
-  const std::string method = say(k_methods[static_cast<int>(setting.method)]);
+  const std::string method = say(row_of(k_methods, setting.method).name);
   return setting.step > 0 ? say(k_with_step, method, 1e3 * setting.step)
                           : say(k_with_tolerance, method, setting.tolerance);
 }
@@ -154,7 +157,7 @@ void draw_chart(const PrecisionFound& found, int present, PrecisionState& state,
     const Method method = found.plan->setting_of(point.k).method;
     add_sign(list, at, method);
     if (std::exchange(named[static_cast<std::size_t>(method)], true)) continue;
-    add_sign(list, key.entry(say(k_methods[static_cast<int>(method)])), method);
+    add_sign(list, key.entry(say(row_of(k_methods, method).name)), method);
   }
   const ImVec2 at = key.entry(front.name);
   list.AddLine({at.x - 0.7f * line, at.y}, {at.x + 0.7f * line, at.y}, front.colour, 0.35f * line);
@@ -210,10 +213,9 @@ void draw_measure(Measure& measure) {
   ImGui::TextUnformatted(say(k_error_of).c_str());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(18 * ImGui::GetFontSize());
-  if (ImGui::BeginCombo("##measure", say(k_measures[index(measure)]).c_str())) {
-    for (int m = 0; m < study::k_measures; ++m)
-      if (ImGui::Selectable(say(k_measures[m]).c_str(), index(measure) == static_cast<std::size_t>(m)))
-        measure = static_cast<Measure>(m);
+  if (ImGui::BeginCombo("##measure", say(row_of(k_measures, measure).name).c_str())) {
+    for (const auto& [kind, name] : k_measures)
+      if (ImGui::Selectable(say(name).c_str(), kind == measure)) measure = kind;
     ImGui::EndCombo();
   }
 }
@@ -252,7 +254,7 @@ std::optional<std::vector<Edit>> edits_to(const Player& player, const Parameters
     if (step ? wanted.adaptive : false) continue;
     if (edit.value == edited_value(now, key, of) && !(step && now.adaptive)) continue;
     if (key == Edit::Key::model &&
-        !can_be(model, of, body_models()[static_cast<std::size_t>(edit.value.x())].kind))
+        !can_be(model, of, static_cast<BodyModel>(static_cast<int>(edit.value.x()))))
       return std::nullopt;
     edits.push_back(edit);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/picture/window_words.h"
+#include "solver/study/precision/precision.h"
 
 namespace topple::app::window_words {
 
@@ -11,23 +12,32 @@ inline constexpr Phrase k_precision_about{
     "error against CPU time",
     "現在の設定のシーンを、ほかの積分法・時間刻み・計算モデルで計算し、\n誤差と CPU 時間の関係を描く"};
 inline constexpr Phrase k_error_of{"error of", "誤差"};
-inline constexpr Phrase k_measures[] = {
-    {"tilt, rms over the critical angle", "傾斜（限界角に対する二乗平均）"},
-    {"time of overturning", "転倒時刻"},
-    {"peak stress", "最大応力"},
-    {"energy balance", "エネルギー収支"}};
+
+template <class Kind>
+struct Named {
+  Kind kind;
+  Phrase name;
+};
+inline constexpr Named<study::Measure> k_measures[] = {
+    {study::Measure::tilt, {"tilt, rms over the critical angle", "傾斜（限界角に対する二乗平均）"}},
+    {study::Measure::overturn_time, {"time of overturning", "転倒時刻"}},
+    {study::Measure::peak_stress, {"peak stress", "最大応力"}},
+    {study::Measure::energy, {"energy balance", "エネルギー収支"}}};
+inline constexpr Named<study::Method> k_methods[] = {
+    {study::Method::scene, {"the scene's own", "シーンの設定"}},
+    {study::Method::rigid, {"rigid", "剛体"}},
+    {study::Method::rigid_auto, {"rigid, by tolerance", "剛体（許容誤差）"}},
+    {study::Method::elastic, {"elastic", "弾性"}},
+    {study::Method::elastic_auto, {"elastic, by tolerance", "弾性（許容誤差）"}},
+    {study::Method::generalized_alpha, {"frame, generalized-α", "骨組・一般化α法"}},
+    {study::Method::generalized_alpha_auto,
+     {"frame, generalized-α, by tolerance", "骨組・一般化α法（許容誤差）"}},
+    {study::Method::newmark, {"frame, Newmark 1/4, 1/2", "骨組・Newmark 1/4, 1/2"}},
+    {study::Method::newmark_damped, {"frame, Newmark 4/9, 5/6", "骨組・Newmark 4/9, 5/6"}},
+    {study::Method::central_difference, {"frame, central differences", "骨組・中央差分法"}}};
+
 inline constexpr Phrase k_error_axis{"error, %", "誤差 [%]"};
 inline constexpr Phrase k_cost_axis{"CPU time per simulated second, ms", "1秒分の計算の CPU 時間 [ms]"};
-inline constexpr Phrase k_methods[] = {{"the scene's own", "シーンの設定"},
-                                       {"rigid", "剛体"},
-                                       {"rigid, by tolerance", "剛体（許容誤差）"},
-                                       {"elastic", "弾性"},
-                                       {"elastic, by tolerance", "弾性（許容誤差）"},
-                                       {"frame, generalized-α", "骨組・一般化α法"},
-                                       {"frame, generalized-α, by tolerance", "骨組・一般化α法（許容誤差）"},
-                                       {"frame, Newmark 1/4, 1/2", "骨組・Newmark 1/4, 1/2"},
-                                       {"frame, Newmark 4/9, 5/6", "骨組・Newmark 4/9, 5/6"},
-                                       {"frame, central differences", "骨組・中央差分法"}};
 inline constexpr Phrase k_with_step{"{0}, {1:.3g} ms", "{0}、{1:.3g} ms"};
 inline constexpr Phrase k_with_tolerance{"{0}, tolerance {1:.2g}", "{0}、許容誤差 {1:.2g}"};
 inline constexpr Phrase k_setting{"{0}: {1:.3g} ms per simulated s, off by {2:.2g} %",

@@ -10,8 +10,10 @@
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
+#include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "solver/math/rotation.h"
+#include "solver/model/table.h"
 #include "solver/run/overturn.h"
 
 namespace topple::app {
@@ -130,6 +132,73 @@ constexpr SubjectValue k_anchor_values[] = {
     {window_words::k_stretch, "mm", stretch_value},
     {window_words::k_energy, "J", anchor_value<&io::AnchorNumbers::energy>}};
 
+// What its kind makes of a subject; `index` is that of Subject.
+struct SubjectTraits {
+  Subject::Kind kind;
+  std::string (*name)(const Model& model, std::size_t index);
+  std::size_t (*body)(const Model& model, std::size_t index);
+  void (*highlight)(const Model& model, std::size_t index, render::SceneFrame& frame);
+  std::vector<std::string> (*about)(const FrameContext& now, std::size_t index);
+  std::span<const SubjectValue> values;
+};
+
+std::vector<std::string> about_member(const FrameContext& now, std::size_t index) {
+  const Member& member = now.model.members[index];
+  double length = 0;
+  for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
+    length += now.model.elements[e].length;
+  return {say(window_words::k_member_line, now.model.sections[member.section].name,
+              now.model.materials[member.material].name, 1e3 * length)};
+}
+
+std::vector<std::string> about_body(const FrameContext& now, std::size_t index) {
+  const Body& body = now.model.bodies[index];
+  return {say(window_words::k_body_line, body.mass, body.member_count,
+              say(window_words::phrase_of(static_cast<ModelLevel>(now.row.level[index]))))};
+}
+
+std::vector<std::string> about_anchor(const FrameContext& now, std::size_t index) {
+  const Anchor& anchor = now.model.anchors[index];
+  return {say(window_words::k_anchor_line, anchor_type_in_words(anchor), now.model.bodies[anchor.body].name,
+              anchor.stiffness / 1e3, 1e3 * now.row.anchor[index].natural_length),
+          anchor_in_words(now.model, now.row, index)};
+}
+
+constexpr SubjectTraits k_subjects[] = {
+    {.kind = Subject::Kind::member,
+     .name =
+         [](const Model& model, std::size_t index) {
+           const Member& member = model.members[index];
+           return model.bodies[member.body].name + "/" + member.name;
+         },
+     .body = [](const Model& model,
+                std::size_t index) { return static_cast<std::size_t>(model.members[index].body); },
+     .highlight =
+         [](const Model&, std::size_t index, render::SceneFrame& frame) {
+           frame.highlighted_member = static_cast<std::int64_t>(index);
+         },
+     .about = about_member,
+     .values = k_member_values},
+    {.kind = Subject::Kind::body,
+     .name = [](const Model& model, std::size_t index) { return model.bodies[index].name; },
+     .body = [](const Model&, std::size_t index) { return index; },
+     .highlight =
+         [](const Model&, std::size_t index, render::SceneFrame& frame) {
+           frame.highlighted_body = static_cast<std::int64_t>(index);
+         },
+     .about = about_body,
+     .values = k_body_values},
+    {.kind = Subject::Kind::anchor,
+     .name = [](const Model& model, std::size_t index) { return model.anchors[index].name; },
+     .body = [](const Model& model,
+                std::size_t index) { return static_cast<std::size_t>(model.anchors[index].body); },
+     .highlight =
+         [](const Model& model, std::size_t index, render::SceneFrame& frame) {  // drawn after the members
+           frame.highlighted_member = static_cast<std::int64_t>(model.members.size() + index);
+         },
+     .about = about_anchor,
+     .values = k_anchor_values}};
+
 template <typename Named>
 std::string names_of(const std::vector<Named>& all, std::size_t first, std::size_t count) {
   constexpr std::size_t k_most = 30;
@@ -142,35 +211,19 @@ std::string names_of(const std::vector<Named>& all, std::size_t first, std::size
 }  // namespace
 
 std::string name_of(const Model& model, const Subject& subject) {
-  switch (subject.kind) {
-    case Subject::Kind::member: {
-      const Member& member = model.members[subject.index];
-      return model.bodies[member.body].name + "/" + member.name;
-    }
-    case Subject::Kind::body:
-      return model.bodies[subject.index].name;
-    case Subject::Kind::anchor:
-      return model.anchors[subject.index].name;
-  }
-  return "";
+  return row_of(k_subjects, subject.kind).name(model, subject.index);
 }
 
 std::size_t body_of(const Model& model, const Subject& subject) {
-  if (subject.kind == Subject::Kind::member)
-    return static_cast<std::size_t>(model.members[subject.index].body);
-  if (subject.kind == Subject::Kind::anchor)
-    return static_cast<std::size_t>(model.anchors[subject.index].body);
-  return subject.index;
+  return row_of(k_subjects, subject.kind).body(model, subject.index);
 }
 
 void highlight(const Model& model, const Subject& subject, render::SceneFrame& frame) {
-  const auto index = static_cast<std::int64_t>(subject.index);
-  if (subject.kind == Subject::Kind::body)
-    frame.highlighted_body = index;
-  else if (subject.kind == Subject::Kind::member)
-    frame.highlighted_member = index;
-  else
-    frame.highlighted_member = index + static_cast<std::int64_t>(model.members.size());
+  row_of(k_subjects, subject.kind).highlight(model, subject.index, frame);
+}
+
+std::vector<std::string> about(const FrameContext& now, const Subject& subject) {
+  return row_of(k_subjects, subject.kind).about(now, subject.index);
 }
 
 Subject subject_named(const Model& model, const std::string& name) {
@@ -203,9 +256,7 @@ FrameContext frame_context(const Player& player, const io::FrameRow& row) {
 }
 
 std::span<const SubjectValue> values_of(Subject::Kind kind) {
-  if (kind == Subject::Kind::member) return k_member_values;
-  if (kind == Subject::Kind::body) return k_body_values;
-  return k_anchor_values;
+  return row_of(k_subjects, kind).values;
 }
 
 std::string value_text(double value) {

@@ -49,6 +49,8 @@ struct SubjectValue {
   double (*at)(const FrameContext& frame, std::size_t index);
 };
 std::span<const SubjectValue> values_of(Subject::Kind kind);
+/// What it is, in a line or two.
+std::vector<std::string> about(const FrameContext& frame, const Subject& subject);
 
 /// Of the values of a member: its stress, and N, the first of the components.
 inline constexpr std::size_t k_stress_value = 0, k_first_component_value = 2;

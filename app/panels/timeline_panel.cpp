@@ -166,63 +166,74 @@ std::string when(const Player& player, std::int64_t step, double time) {
                                   : instant_in_words(player.scene().setup, **at);
 }
 
-std::string event_text(const Player& player, const io::RecordedEvent& event) {
-  if (event.event.kind == Event::Kind::anchor) {
-    const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
-    return say(k_anchor_breaks, when(player, event.step, event.time), anchor.name,
-               std::abs(event.event.value));
-  }
-  const Phrase& what = event.event.kind == Event::Kind::uplift     ? k_lifts
-                       : event.event.kind == Event::Kind::impact   ? k_strikes
-                       : event.event.kind == Event::Kind::hinge    ? k_hinges
-                       : event.event.kind == Event::Kind::fracture ? k_breaks
-                                                                   : k_passes;
-  const std::string words =
-      event.event.kind == Event::Kind::model
-          ? say(k_computed_as, say(phrase_of(static_cast<ModelLevel>(event.event.value))),
-                say(phrase_of(event.event.reason)))
-          : say(what);
-  const Model& model = player.scene().setup.model;
-  return say(k_event, when(player, event.step, event.time),
-             model.bodies[static_cast<std::size_t>(event.event.body)].name, words);
-}
-
 std::string edit_text(const Player& player, const LoggedEdit& edit) {
   return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit),
              io::edit_value_text(edit.edit, io::EditSpelling::shown));
 }
 
-struct Mark {
-  Event::Kind kind;
-  const Phrase& words;
-};
-constexpr Mark k_marks[] = {{Event::Kind::uplift, k_mark_lifts},    {Event::Kind::impact, k_mark_strikes},
-                            {Event::Kind::hinge, k_mark_hinge},     {Event::Kind::fracture, k_mark_breaks},
-                            {Event::Kind::overturn, k_mark_passes}, {Event::Kind::model, k_mark_model}};
-
-void add_mark(ImDrawList& list, Event::Kind kind, ImVec2 p, float size, ImU32 colour) {
-  switch (kind) {
-    case Event::Kind::uplift:
-      list.AddTriangleFilled({p.x - size, p.y + size}, {p.x, p.y - size}, {p.x + size, p.y + size}, colour);
-      break;
-    case Event::Kind::impact:
-      list.AddLine({p.x, p.y - size}, {p.x, p.y + size}, colour, 2);
-      break;
-    case Event::Kind::hinge:
-      list.AddCircle(p, size, colour, 12, 1.5f);
-      break;
-    case Event::Kind::fracture:
-    case Event::Kind::anchor:
-      list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour, 1.5f);
-      list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, colour, 1.5f);
-      break;
-    case Event::Kind::model:
-      list.AddRect({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
-      break;
-    case Event::Kind::overturn:
-      list.AddRectFilled({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
-  }
+std::string with_body(const Player& player, const io::RecordedEvent& event, const std::string& what) {
+  const Model& model = player.scene().setup.model;
+  return say(k_event, when(player, event.step, event.time),
+             model.bodies[static_cast<std::size_t>(event.event.body)].name, what);
 }
+
+template <const Phrase& what>
+std::string body_text(const Player& player, const io::RecordedEvent& event) {
+  return with_body(player, event, say(what));
+}
+
+std::string anchor_text(const Player& player, const io::RecordedEvent& event) {
+  const Anchor& anchor = player.scene().setup.model.anchors[static_cast<std::size_t>(event.event.anchor)];
+  return say(k_anchor_breaks, when(player, event.step, event.time), anchor.name, std::abs(event.event.value));
+}
+
+std::string model_text(const Player& player, const io::RecordedEvent& event) {
+  return with_body(player, event,
+                   say(k_computed_as, say(phrase_of(static_cast<ModelLevel>(event.event.value))),
+                       say(phrase_of(event.event.reason))));
+}
+
+using Draw = void (*)(ImDrawList& list, ImVec2 p, float size, ImU32 colour);
+
+void add_triangle(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddTriangleFilled({p.x - size, p.y + size}, {p.x, p.y - size}, {p.x + size, p.y + size}, colour);
+}
+
+void add_bar(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddLine({p.x, p.y - size}, {p.x, p.y + size}, colour, 2);
+}
+
+void add_circle(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddCircle(p, size, colour, 12, 1.5f);
+}
+
+void add_cross(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour, 1.5f);
+  list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, colour, 1.5f);
+}
+
+void add_square(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddRectFilled({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+}
+
+void add_open_square(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  list.AddRect({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
+}
+
+struct EventMark {
+  Event::Kind kind;
+  Draw draw;
+  const Phrase& words;  ///< in the key
+  std::string (*text)(const Player& player, const io::RecordedEvent& event);
+};
+constexpr EventMark k_event_marks[] = {
+    {Event::Kind::uplift, add_triangle, k_mark_lifts, body_text<k_lifts>},
+    {Event::Kind::impact, add_bar, k_mark_strikes, body_text<k_strikes>},
+    {Event::Kind::hinge, add_circle, k_mark_hinge, body_text<k_hinges>},
+    {Event::Kind::fracture, add_cross, k_mark_breaks, body_text<k_breaks>},
+    {Event::Kind::anchor, add_cross, k_mark_breaks, anchor_text},
+    {Event::Kind::overturn, add_square, k_mark_passes, body_text<k_passes>},
+    {Event::Kind::model, add_open_square, k_mark_model, model_text}};
 
 void add_edit_mark(ImDrawList& list, ImVec2 p, float size) {
   list.AddNgonFilled(p, size, theme().edit, 4);
@@ -240,12 +251,12 @@ void add_mark_key(ImDrawList& list, const Player& player, float x, float y, floa
     add_text(list, x + line, y, theme().text, text);
     x += width;
   };
-  for (const Mark& mark : k_marks) {
-    const bool there = std::ranges::any_of(events, [&](const io::RecordedEvent& event) {
-      const Event::Kind kind = event.event.kind;
-      return kind == mark.kind || (kind == Event::Kind::anchor && mark.kind == Event::Kind::fracture);
-    });
-    if (there) add(mark.words, [&](ImVec2 p) { add_mark(list, mark.kind, p, size, theme().text); });
+  const Phrase* last = nullptr;
+  for (const EventMark& mark : k_event_marks) {
+    const auto is_one = [&](const io::RecordedEvent& event) { return event.event.kind == mark.kind; };
+    if (&mark.words == last || std::ranges::none_of(events, is_one)) continue;
+    add(mark.words, [&](ImVec2 p) { mark.draw(list, p, size, theme().text); });
+    last = &mark.words;
   }
   if (!player.edits().empty()) add(k_mark_edit, [&](ImVec2 p) { add_edit_mark(list, p, size); });
 }
@@ -255,7 +266,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   const float size = 0.28f * ImGui::GetTextLineHeight();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
-  const auto mark = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
+  const auto add = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
     const float x = lane.x(time);
     if (x < lane.left || x > lane.right) return;
     shape(ImVec2(x, y));
@@ -264,13 +275,14 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   const float y = lane.bottom + size + 2;
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   for (const io::RecordedEvent& event : player.events()) {
+    const EventMark& mark = row_of(k_event_marks, event.event.kind);
     const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));
-    mark(
-        event.time, y, [&] { return event_text(player, event); },
-        [&](ImVec2 p) { add_mark(list, event.event.kind, p, size, colour); });
+    add(
+        event.time, y, [&] { return mark.text(player, event); },
+        [&](ImVec2 p) { mark.draw(list, p, size, colour); });
   }
   for (const LoggedEdit& edit : player.edits())
-    mark(
+    add(
         edit.time, lane.top, [&] { return edit_text(player, edit); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;

@@ -191,7 +191,7 @@ render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& se
   if (name.at_yield && yield) {
     out.mark = static_cast<float>(name.at_yield(*yield) / name.per_unit);
     out.mark_label = *name.unit ? say(window_words::k_yield_at, out.mark) : say(window_words::k_yield);
-  } else if (settings.colour == BeamQuantity::yield_ratio) {
+  } else if (name.at_yield && !*name.unit) {
     out.mark = 1;
     out.notes.push_back(say(window_words::k_cannot_yield));
   }

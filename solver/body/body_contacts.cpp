@@ -334,9 +334,10 @@ double BodyContacts::stick_energy_gained() const {
 
 double BodyContacts::energy(const ContactLaw& law) const {
   Four held = Four(0);
+  const bool stores_energy = traits(law).stores_energy;
   for (const Touch& touch : now_.list()) {
     held += touch.stick_energy;
-    if (traits(law).stores_energy) held += 1 / (law.q + 1) * touch.conservative * side(touch).L * touch.depth;
+    if (stores_energy) held += 1 / (law.q + 1) * touch.conservative * side(touch).L * touch.depth;
   }
   return sum(held);
 }

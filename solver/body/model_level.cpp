@@ -31,10 +31,30 @@ LevelChoice least_that_answers(const Model& model, const Parameters& parameters,
 }
 
 constexpr BodyModelTraits k_models[] = {
-    {BodyModel::automatic, "auto", true, least_that_answers},
-    {BodyModel::rigid, "rigid", false, asked<ModelLevel::rigid>},
-    {BodyModel::elastic, "elastic", true, asked<ModelLevel::elastic>},
-    {BodyModel::frame, "frame", false, asked<ModelLevel::frame>},
+    {.kind = BodyModel::automatic,
+     .word = "auto",
+     .bends = true,
+     .takes_supports = false,
+     .may_be_frame = true,
+     .choose = least_that_answers},
+    {.kind = BodyModel::rigid,
+     .word = "rigid",
+     .bends = false,
+     .takes_supports = false,
+     .may_be_frame = false,
+     .choose = asked<ModelLevel::rigid>},
+    {.kind = BodyModel::elastic,
+     .word = "elastic",
+     .bends = true,
+     .takes_supports = false,
+     .may_be_frame = false,
+     .choose = asked<ModelLevel::elastic>},
+    {.kind = BodyModel::frame,
+     .word = "frame",
+     .bends = false,
+     .takes_supports = true,
+     .may_be_frame = true,
+     .choose = asked<ModelLevel::frame>},
 };
 
 }  // namespace
@@ -70,9 +90,9 @@ std::span<const BodyModelTraits> body_models() {
 }
 
 bool can_be(const Model& model, int body, BodyModel asked) {
-  if (asked == BodyModel::frame) return true;
-  if (bears_on_nodes(model, body)) return false;
-  return !traits(asked).bends || model.bodies[body].elastic;
+  const BodyModelTraits& how = traits(asked);
+  if (bears_on_nodes(model, body) && !how.takes_supports) return false;
+  return !how.bends || model.bodies[body].elastic;
 }
 
 LevelChoice base_level(const Model& model, const Parameters& parameters, int body) {

@@ -47,8 +47,10 @@ struct LevelChoice {
 /// What a scene asks a body to be computed as.
 struct BodyModelTraits {
   BodyModel kind;
-  const char* word;  ///< in scenes
-  bool bends;        ///< needs Body::elastic
+  const char* word;     ///< in scenes
+  bool bends;           ///< needs Body::elastic
+  bool takes_supports;  ///< and loads on nodes
+  bool may_be_frame;    ///< where the scene needs one
   /// Of a body that bears neither supports nor loads and has, if it bends, Body::elastic.
   LevelChoice (*choose)(const Model&, const Parameters&, int body);
 };

@@ -60,6 +60,7 @@ void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
 }
 
 void ModelSwitch::find_near(const Model& model, const State& state) {
+  if (near_.size() < 2) return;
   std::ranges::fill(near_, false);
   for (const ElementPair& pair : state.candidate_pairs)
     for (const int e : {pair.a, pair.b}) near_[model.members[model.elements[e].member].body] = true;
@@ -159,7 +160,6 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   const Switching on{model, parameters, now, state, parts};
   find_base(model, parameters);
   find_near(model, state);
-  std::ranges::fill(new_frames_, false);
   bool other_frames = false;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     BodyState& s = state.bodies[b];
@@ -173,7 +173,10 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
     other_frames = other_frames || was_frame != (s.level == ModelLevel::frame);
   }
   parts.arrange(state);
-  if (parts.moves_nodes()) parts.balance(parameters, now, new_frames_, state);
+  if (parts.moves_nodes()) {
+    parts.balance(parameters, now, new_frames_, state);
+    std::ranges::fill(new_frames_, false);
+  }
   return other_frames;
 }
 

@@ -210,13 +210,15 @@ BodyEnergy ReducedBody::balance(const Parameters& parameters, const StepInputs& 
   return energy(now.law, s);
 }
 
-// A substep, from its start to where it leads.
+// A substep, from its start to where it leads. What `before` leads to is filled in by move_freely.
 struct ReducedBody::ExplicitSubstep {
+  ExplicitSubstep(const StepInputs& start_, const StepInputs& end_, double h_, const BodyState& s)
+      : start(start_), end(end_), h(h_), bends(s.level == ModelLevel::elastic), before(s) {}
   const StepInputs &start, &end;
   double h;
   bool bends;
   BodyState before;
-  Amplitudes rate0;  // of `before`, after damping
+  Amplitudes rate0;  // of `before`, after damping; when it bends
   PackMat3 r0, r;    // rotation matrices at the start and the end
   Vec3 spin, shift;  // rad, material axes; m
 };
@@ -224,12 +226,12 @@ struct ReducedBody::ExplicitSubstep {
 // Half an impulse of what acts at the start, and free motion.
 [[gnu::always_inline]] inline ReducedBody::ExplicitSubstep ReducedBody::move_freely(
     const Parameters& parameters, const StepInputs& start, const StepInputs& end, double h, BodyState& s) {
-  ExplicitSubstep substep{start, end, h, s.level == ModelLevel::elastic, s, {}, {}, {}, {}, {}};
+  ExplicitSubstep substep(start, end, h, s);
   if (substep.bends) {
     find_propagator(h, damping_time(model_, parameters, body_));
     each_four_modes([&](int k) { store(&s.rate[k], load(&s.rate[k]) * load(&damped_[k])); });
+    substep.rate0 = s.rate;
   }
-  substep.rate0 = s.rate;
   substep.r0 = rotation_matrix(packed(s.rotation));
   const PackVec3 kick0 = h / 2 * (inverse_inertia_ * transposed_times(substep.r0, packed(s.moment)));
   s.velocity += h / 2 / mass_ * s.force;

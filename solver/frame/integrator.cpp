@@ -32,8 +32,4 @@ std::span<const IntegratorTraits> integrators() {
   return k_integrators;
 }
 
-Integrator chosen_integrator(int choice) {
-  return choice > 0 ? k_integrators[choice - 1].kind : Integrator::generalized_alpha;
-}
-
 }  // namespace topple

@@ -25,7 +25,4 @@ inline const IntegratorTraits& traits(Integrator integrator) {
   return row_of(integrators(), integrator);
 }
 
-/// Integrator of word number `choice` of `run.integrator`, from 0; auto: generalized_alpha.
-Integrator chosen_integrator(int choice);
-
 }  // namespace topple

@@ -10,7 +10,7 @@ namespace topple {
 
 struct Accelerogram;
 
-/// Contact laws (method and traits: contact_law.h). Checkpoints hold these numbers.
+/// Contact laws (method and traits: contact_law.h). Checkpoints and recorded edits hold these numbers.
 enum class ContactLawKind { coulomb = 0, paper = 1, printed = 2 };
 
 /// Penalty contact (Eqs. 2 and 3), see contact_law.h.
@@ -41,7 +41,8 @@ struct ParameterRamp {
 
 /// One acceleration of the floor (formulas: excitation.h); several add up.
 struct Shake {
-  enum class Kind { sine, sweep, pulse, record };
+  /// Recorded edits hold these numbers.
+  enum class Kind { sine = 0, sweep = 1, pulse = 2, record = 3 };
   enum class Shape { half_sine, full_sine, rectangle };
   enum class Start { rest, jump };
   Kind kind = Kind::sine;
@@ -69,11 +70,13 @@ struct Shake {
 };
 
 /// What a body is computed as (method: model_level.h). automatic: the cheapest level that answers what is
-/// asked for.
-enum class BodyModel { automatic, rigid, elastic, frame };
+/// asked for. Recorded edits hold these numbers.
+enum class BodyModel { automatic = 0, rigid = 1, elastic = 2, frame = 3 };
 
-/// Time integration of frames (table: integrator.h).
-enum class Integrator { generalized_alpha, central_difference, newmark };
+/// Time integration of frames (table: integrator.h). Recorded edits hold these numbers, and
+/// k_automatic_integrator for "auto".
+enum class Integrator { generalized_alpha = 1, central_difference = 2, newmark = 3 };
+inline constexpr int k_automatic_integrator = 0;
 
 /// Legal ranges, units and defaults of these stand in solver/io/scene/scene_keys.h, one table for scene
 /// files, sliders and fuzzers.

@@ -44,6 +44,16 @@ Vec3 number(double x) {
   return {x, 0, 0};
 }
 
+template <class Kind>
+Vec3 number_of(Kind kind) {
+  return number(static_cast<int>(kind));
+}
+
+template <class Kind>
+Kind chosen(const Edit& edit) {
+  return static_cast<Kind>(static_cast<int>(edit.value.x()));
+}
+
 int one(const Model&, const Parameters&) {
   return 1;
 }
@@ -71,7 +81,7 @@ void set_through_ramp(const Edit& edit, const Model&, double t, Parameters& p) {
 
 void set_type(const Edit& edit, const Model&, double t, Parameters& p) {
   Shake& shake = p.shakes[edit.index];
-  const ShakeTraits &before = traits(shake.kind), &after = shake_kinds()[static_cast<int>(edit.value.x())];
+  const ShakeTraits &before = traits(shake.kind), &after = traits(chosen<Shake::Kind>(edit));
   if (after.complete && before.has_frequency && !before.has_duration) after.complete(shake);
   shake.kind = after.kind;
   begin_anew(shake, t);
@@ -135,8 +145,7 @@ constexpr EditTraits k_edits[] = {
        p.shakes[edit.index].on = edit.value.x() != 0;
      }},
     {K::type, Of::shake, "type", false, of_shakes_with<&ShakeTraits::has_amplitude>,
-     [](const Parameters& p, int index) { return number(place_of(shake_kinds(), p.shakes[index].kind)); },
-     set_type},
+     [](const Parameters& p, int index) { return number_of(p.shakes[index].kind); }, set_type},
     {K::frequency, Of::shake, "frequency", false, of_shakes_with<&ShakeTraits::has_frequency>, frequencies,
      set_frequency},
     {K::amplitude, Of::shake, "amplitude", false, of_shakes_with<&ShakeTraits::has_amplitude>,
@@ -152,9 +161,9 @@ constexpr EditTraits k_edits[] = {
      [](const Model&, const Parameters& p, int index) { return !traits(p.shakes[index].kind).has_amplitude; },
      of_shake<&Shake::scale>, set_through_ramp<&Shake::scale>},
     {K::law, Of::contact, "law", true, always,
-     [](const Parameters& p, int) { return number(place_of(contact_laws(), p.contact.kind)); },
+     [](const Parameters& p, int) { return number_of(p.contact.kind); },
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.contact.kind = p.contact_before.kind = contact_laws()[static_cast<int>(edit.value.x())].kind;
+       p.contact.kind = p.contact_before.kind = chosen<ContactLawKind>(edit);
      }},
     {K::alpha, Of::contact, "alpha", false, always, of_contact<&ContactLaw::alpha>,
      set_contact<&ContactLaw::alpha>},
@@ -168,12 +177,10 @@ constexpr EditTraits k_edits[] = {
      set_contact<&ContactLaw::restitution>},
     {K::model, Of::body, "model", true,
      [](const Model& model, const Parameters&, int b) { return can_be(model, b, BodyModel::rigid); },
-     [](const Parameters& p, int b) {
-       return number(place_of(body_models(), p.models.empty() ? BodyModel::frame : p.models[b]));
-     },
+     [](const Parameters& p, int b) { return number_of(p.models.empty() ? BodyModel::frame : p.models[b]); },
      [](const Edit& edit, const Model& model, double, Parameters& p) {
        p.models.resize(model.bodies.size(), BodyModel::frame);
-       p.models[edit.index] = body_models()[static_cast<int>(edit.value.x())].kind;
+       p.models[edit.index] = chosen<BodyModel>(edit);
      },
      true},
     {K::damping, Of::body, "damping", true,
@@ -189,9 +196,10 @@ constexpr EditTraits k_edits[] = {
        p.anchors[edit.index] = edit.value.x() != 0;
      }},
     {K::integrator, Of::run, "integrator", true, always,
-     [](const Parameters& p, int) { return number(1 + place_of(integrators(), p.integrator)); },
+     [](const Parameters& p, int) { return number_of(p.integrator); },
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.integrator = chosen_integrator(static_cast<int>(edit.value.x()));
+       p.integrator = edit.value.x() == k_automatic_integrator ? Integrator::generalized_alpha
+                                                               : chosen<Integrator>(edit);
      },
      true},
     {K::want, Of::run, "want", true, always, [](const Parameters& p, int) { return number(p.want_stress); },

@@ -12,8 +12,8 @@
 namespace topple {
 
 /// A new value of one parameter. SI, as in Parameters; a number is the first component, `direction` uses all
-/// three, the frequency of a sweep two (first, last). A choice is its index, from 0, in the list of the
-/// scene's key; want: 1 motion and stress, 0 motion alone; on and anchor: 1 or 0.
+/// three, the frequency of a sweep two (first, last). A choice is the number of its enumerator; want: 1
+/// motion and stress, 0 motion alone; on and anchor: 1 or 0.
 struct Edit {
   enum class Key {
     on,

@@ -89,10 +89,11 @@ StepStatus advance_parts(StepInProgress& s) {
   const auto& parts = w.parts.all();
   const int count = static_cast<int>(parts.size());
   const StepSpan span{s.parameters, s.start, *w.reached, s.h, s.halvings};
-  w.outcomes.assign(count, {});
+  w.outcomes.resize(count);
   const auto advance = [&](int part, int worker) {
     PartScratch& scratch = w.scratches[worker];
     scratch.frame.profile = &w.profile;
+    w.outcomes[part] = {};
     parts[part]->advance(span, w.next, scratch, w.outcomes[part]);
   };
   if (w.parallel.run && count > 1 && !w.profile.clock) {

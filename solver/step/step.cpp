@@ -70,7 +70,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
 // Looks at the numbers of parameters that are new, and of a state that is not finite.
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
                         Workspace::Impl& w) {
-  if (w.parameters == parameters && is_finite(state, false)) return {};
+  if (w.parameters == parameters && moves_finite(state)) return {};
   const StepStatus status = look_at_numbers(model, parameters, state, false);
   if (status.ok()) w.invalidate_caches(parameters);
   return status;

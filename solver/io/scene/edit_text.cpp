@@ -49,8 +49,7 @@ void expect_choice(const Edit& edit, const Parameters& parameters) {
   const auto choice = std::ranges::find_if(
       edits(), [&](const EditTraits& row) { return row.of == traits(edit.key).of && row.word == key.of; });
   if (choice == edits().end()) return;
-  const double number = choice->get(parameters, edit.index).x();
-  const std::string_view made = key_of(choice->kind).choices[static_cast<std::size_t>(number)];
+  const std::string_view made = *choice_of(key_of(choice->kind), choice->get(parameters, edit.index).x());
   std::string words;
   for (const std::string_view word : key.when) {
     if (word == made) return;
@@ -61,8 +60,8 @@ void expect_choice(const Edit& edit, const Parameters& parameters) {
 }
 
 void check_type(const Edit& edit, const Parameters& parameters, const Model&) {
-  const auto& asked = shake_kinds()[static_cast<std::size_t>(edit.value.x())];
-  if (!traits(parameters.shakes[edit.index].kind).has_amplitude || !asked.has_amplitude)
+  const auto asked = static_cast<Shake::Kind>(static_cast<int>(edit.value.x()));
+  if (!traits(parameters.shakes[edit.index].kind).has_amplitude || !traits(asked).has_amplitude)
     fail(edit, "a record stays one, and nothing else becomes one");
 }
 
@@ -72,9 +71,9 @@ void check_frequency(const Edit& edit, const Parameters& parameters, const Model
 }
 
 void check_model(const Edit& edit, const Parameters&, const Model& model) {
-  const auto asked = static_cast<std::size_t>(edit.value.x());
-  if (!can_be(model, edit.index, body_models()[asked].kind))
-    fail(edit, "\"" + model.bodies[edit.index].name + "\" cannot be " + body_models()[asked].word +
+  const auto asked = static_cast<BodyModel>(static_cast<int>(edit.value.x()));
+  if (!can_be(model, edit.index, asked))
+    fail(edit, "\"" + model.bodies[edit.index].name + "\" cannot be " + traits(asked).word +
                    "; supports and loads take a frame, elastic and auto a scene that says so");
 }
 
@@ -120,19 +119,25 @@ std::optional<Edit> parse_edit_key(std::string_view text) {
   return std::nullopt;
 }
 
+const std::string_view* choice_of(const Key& key, double number) {
+  for (std::size_t k = 0; k < key.choices.size(); ++k)
+    if (key.numbers[k] == number) return &key.choices[k];
+  return nullptr;
+}
+
 std::string edit_value_text(const Edit& edit, EditSpelling spelling) {
   const Key& key = key_of(edit.key);
   const bool in_scene = spelling == EditSpelling::in_scene;
   const double number = edit.value.x();
-  const auto word = [&](std::size_t k) {
-    const std::string text(key.choices[k]);
-    return in_scene ? '"' + text + '"' : text;
+  const auto spelt = [&](std::string_view word) {
+    return in_scene ? '"' + std::string(word) + '"' : std::string(word);
   };
   if (key.type == KeyType::boolean) return number != 0 ? "true" : "false";
-  if (key.type == KeyType::choice) return word(static_cast<std::size_t>(number));
+  if (key.type == KeyType::choice) return spelt(*choice_of(key, number));
   std::vector<std::string> items;
   if (key.type == KeyType::choices) {
-    for (std::size_t k = 0; k < (number != 0 ? key.choices.size() : 1); ++k) items.push_back(word(k));
+    for (std::size_t k = 0; k < (number != 0 ? key.choices.size() : 1); ++k)
+      items.push_back(spelt(key.choices[k]));
     return list_text(items);
   }
   int count = least_count(key);
@@ -153,9 +158,12 @@ void check_edit_value(const Edit& edit) {
       fail(edit, value_text(key, value) + " is outside " + range_text(key));
   }
   const double number = edit.value.x();
-  const int choices = static_cast<int>(key.choices.size());
-  if (key.type == KeyType::choice && !(number >= 0 && number < choices && number == std::floor(number)))
-    fail(edit, short_number(number) + " is not the number of a choice, 0.." + std::to_string(choices - 1));
+  if (key.type == KeyType::choice && !choice_of(key, number)) {
+    std::string choices;
+    for (std::size_t k = 0; k < key.choices.size(); ++k)
+      choices += ", " + std::to_string(key.numbers[k]) + " (" + std::string(key.choices[k]) + ")";
+    fail(edit, short_number(number) + " is not the number of a choice" + choices);
+  }
   if ((key.type == KeyType::boolean || key.type == KeyType::choices) && number != 0 && number != 1)
     fail(edit, short_number(number) + " is neither 0 nor 1");
   if (least_count(key) == 3 && !(edit.value.stableNorm() > 0))  // of vectors, only directions are edited

@@ -21,6 +21,9 @@ std::optional<Edit> parse_edit_key(std::string_view text);
 /// The row of the table of keys: range, unit and default.
 const Key& key_of(Edit::Key key);
 
+/// The word of a choice by its number (Edit); null: it has none.
+const std::string_view* choice_of(const Key& key, double number);
+
 /// How a value is written.
 enum class EditSpelling {
   shown,    ///< for people: newmark, [motion, stress], 50 kgf, to six digits

@@ -316,7 +316,8 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
   const bool named = run.word("integrator") != "auto";
   if (asked == BodyModel::automatic && (named || setup.run.analysis != Analysis::dynamic))
     asked = BodyModel::frame;
-  if (asked == BodyModel::rigid || asked == BodyModel::elastic) {
+  const BodyModelTraits& how = traits(asked);
+  if (!how.may_be_frame) {
     if (named && !traits(setup.parameters.integrator).is_explicit)
       entry.fail("model", "\"" + entry.text("model") +
                               "\" bodies take central differences: run.integrator = \"" +
@@ -333,9 +334,9 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
     setup.parameters.models.push_back(asked);
     setup.parameters.damping.push_back(damping);
     Body& body = model.bodies[b];
-    if (traits(asked).bends) {
+    if (how.bends) {
       body.elastic = elastic_basis(model, b);
-      if (asked == BodyModel::elastic && !body.elastic)
+      if (!how.may_be_frame && !body.elastic)
         entry.fail("model", "no elastic body: a part of it moves without strain or has no mass");
     }
     if (body.elastic || damping > 0) body.first_frequency = first_frequency(model, b);

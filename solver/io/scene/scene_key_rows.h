@@ -82,6 +82,7 @@ class Rows {
   template <class Table, class Kind>
   Row word(std::string_view name, const Table& table, Kind absent, std::string_view about) {
     Row row = word(name, words_of(table), about);
+    for (const auto& one : table) keys_.back().numbers.push_back(static_cast<int>(one.kind));
     return row.absent(place_of(table, absent));
   }
   Row words(std::string_view name, Words choices, std::string_view about) {

@@ -63,12 +63,17 @@ void add_run(std::vector<Key>& keys) {
   rows.number("duration", D::time, "s", 1e-6, 3600, "simulated time")
       .absent(run.duration)
       .only_in({"dynamic"});
-  Words named = words_of(integrators());
-  named.insert(named.begin(), "auto");
+  Words named{"auto"};
+  std::vector<int> numbers{k_automatic_integrator};
+  for (const IntegratorTraits& one : integrators()) {
+    named.push_back(one.word);
+    numbers.push_back(static_cast<int>(one.kind));
+  }
   rows.word("integrator", named,
             "of frames; auto is generalized-alpha. Rigid and elastic bodies take central differences")
       .absent(0)
       .only_in({"dynamic"});
+  keys.back().numbers = numbers;
   rows.words("want", {"motion", "stress"}, "what the scene is for; `model = \"auto\"` goes by it")
       .absent_means("both");
   rows.number("beta", 0.01, 1, "of the Newmark method")

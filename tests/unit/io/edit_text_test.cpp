@@ -158,9 +158,9 @@ TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
   topple::Setup setup = all_shakes();
   EXPECT_EQ(refusal_of(number(Edit::Key::law, 2), setup), "");
   EXPECT_EQ(refusal_of(number(Edit::Key::law, 3), setup),
-            "contact.law: 3 is not the number of a choice, 0..2");
+            "contact.law: 3 is not the number of a choice, 0 (coulomb), 1 (paper), 2 (printed)");
   EXPECT_EQ(refusal_of(number(Edit::Key::law, 0.5), setup),
-            "contact.law: 0.5 is not the number of a choice, 0..2");
+            "contact.law: 0.5 is not the number of a choice, 0 (coulomb), 1 (paper), 2 (printed)");
   EXPECT_EQ(refusal_of(number(Edit::Key::law, std::nan("")), setup),
             "contact.law: nan is not a finite number");
   EXPECT_EQ(refusal_of(number(Edit::Key::integrator, 3), setup), "");
