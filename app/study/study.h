@@ -17,12 +17,13 @@ namespace topple::app {
 
 /// What a study found out.
 struct Findings {
+  using Json = nlohmann::ordered_json;
   std::string title;
-  nlohmann::ordered_json units, settings;  ///< besides those that every study has
-  nlohmann::ordered_json entries;          ///< the rest of its JSON; "rows" is its table
+  Json units = Json::object(), settings = Json::object();  ///< besides those that every study has
+  Json entries = Json::object();                           ///< the rest of its JSON; "rows" is its table
   /// gnuplot script. `origin`: version and machine.
   std::function<std::string(const std::string& origin, study::ChartFormat format)> chart;
-  std::string text;                          ///< for a person
+  std::string text = {};                     ///< for a person
   int run = 0, of = 0;                       ///< of a study that is no sweep
   std::string each = {};                     ///< what each run of a sweep is: " of 0.3 s"
   std::string pace = {};                     ///< behind its runs per second
