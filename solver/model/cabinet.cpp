@@ -198,8 +198,13 @@ class CabinetBuilder {
 
   void add_contact_points() {
     const double width = model_.sections[spec_.section].width;
-    for (const std::vector<int>* nodes : {&corners_, &edge_middles_, &face_middles_})
-      for (int node : *nodes) builder_.add_contact_point(node, width);
+    const auto add = [&](const std::vector<int>& nodes) {
+      for (const int node : nodes) builder_.add_contact_point(node, width);
+    };
+    add(corners_);
+    if (spec_.base == CabinetSpec::Base::corners) return;
+    add(edge_middles_);
+    add(face_middles_);
   }
 
   // Masses by symmetry class: nodes with the same |x|, |y| and z in the cabinet's own axes weigh the same.

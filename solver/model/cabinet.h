@@ -23,6 +23,9 @@ struct CabinetSpec {
   /// c/sqrt(I/A) are the post's too, c = c0 sqrt(A0/A) and Z = Z0 sqrt(A/A0). The diagonals yield at
   /// sqrt(3)/(2 (1 + nu)) (a/b + b/a) times the shear force at which the sheet would.
   enum class Bracing { panels, none };
+  /// Where it touches planes: at its eight corners, as Housner's block does, or at the middles of edges and
+  /// faces too, which take a part of each landing.
+  enum class Base { corners, edges };
   std::string name;
   Vec3 size{0.38, 0.88, 1.79};  ///< m, depth (x), width (y), height (z)
   double mass = 40;             ///< kg
@@ -37,6 +40,7 @@ struct CabinetSpec {
   Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, likewise
   int section = 0, material = 0;         ///< indices into the model's lists
   int shelves = 0;
+  Base base = Base::corners;
   Bracing bracing = Bracing::panels;
   double panel_thickness = 0.6e-3;  ///< m, of the sheet that the diagonals replace
   int divisions = 1;                ///< members per edge; posts: from one shelf to the next

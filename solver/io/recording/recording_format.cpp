@@ -67,7 +67,8 @@ const std::vector<Format>& formats() {
       {4, 6, false, {"member_contact"}, {k_damping}},
       {5, 6, false, {"member_contact"}, {k_damping}},
       {6, 6, true, {"member_contact"}},
-      {k_format_version, 6, true, {}}};
+      {7, 6, true, {}},
+      {k_format_version, 6, true, {}, {}, true}};
   return all;
 }
 

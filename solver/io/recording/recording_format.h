@@ -29,7 +29,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 7;
+inline constexpr std::int32_t k_format_version = 8;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// How the recordings of one format differ from those of today.
@@ -39,6 +39,7 @@ struct Format {
   bool can_go_on;                             ///< states are packed as they are now
   std::vector<std::string_view> no_fields;    ///< data sets of today's /frames that are not there
   std::vector<std::size_t> no_energies = {};  ///< columns of today's /frames/energy that are not there
+  bool corners = false;                       ///< what a cabinet whose scene names no `base` stands on
 
   bool has_field(std::string_view name) const;
 };

@@ -41,8 +41,8 @@ bool write_recovered(const Recording& recording, const SoundRows& rows, const ho
   const Model& model = scene.setup.model;
   if (!rows.frames.empty()) expect_same_model(model, recording.frame(rows.frames.front()));
   host::StagedFile staged(target, host::FileKind::hdf5);
-  RecordingWriter writer(staged.part(), recording.scene_name(), recording.scene_text(), model,
-                         row_shape(model), recording.scene_files(), recording.arithmetic());
+  RecordingWriter writer(staged.part(), recording.scene_name(), scene.text, model, row_shape(model),
+                         recording.scene_files(), recording.arithmetic());
   for (const Branch& branch : recording.history().branches)
     if (branch.parent >= 0) writer.append(branch);  // a writer begins with the root
   for (const LoggedEdit& edit : recording.history().edits) writer.append(edit);

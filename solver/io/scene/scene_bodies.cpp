@@ -92,6 +92,7 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   spec.section = library.section(entry);
   spec.material = library.material(entry);
   spec.shelves = entry.integer("shelves");
+  spec.base = entry.chosen("base", k_bases);
   spec.bracing = entry.chosen("bracing", k_bracings);
   spec.panel_thickness = entry.number("panel_thickness");
   spec.divisions = entry.integer("divisions");

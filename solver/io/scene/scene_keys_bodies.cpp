@@ -68,6 +68,8 @@ void add_cabinet(std::vector<Key>& keys) {
   rows.plain("section", T::text, "a [[section]]").required();
   rows.plain("material", T::text, "a [[material]]").required();
   rows.integer("shelves", 0, 20, "shelves").absent(cabinet.shelves);
+  rows.word("base", k_bases, cabinet.base,
+            "where it touches planes: its eight corners, or the middles of edges and faces too");
   rows.word("bracing", k_bracings, cabinet.bracing, "panels: diagonals as stiff as thin sheets");
   rows.number("panel_thickness", D::length, "mm", 1e-5, 0.1, "of the sheets that the diagonals replace")
       .absent(cabinet.panel_thickness)

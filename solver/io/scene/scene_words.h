@@ -25,6 +25,8 @@ inline constexpr Word<Shake::Start> k_shake_starts[] = {{Shake::Start::rest, "re
                                                         {Shake::Start::jump, "jump"}};
 inline constexpr Word<Anchor::Type> k_anchor_types[] = {
     {Anchor::Type::strap, "strap"}, {Anchor::Type::bracket, "bracket"}, {Anchor::Type::pole, "pole"}};
+inline constexpr Word<CabinetSpec::Base> k_bases[] = {{CabinetSpec::Base::corners, "corners"},
+                                                      {CabinetSpec::Base::edges, "edges"}};
 inline constexpr Word<CabinetSpec::Bracing> k_bracings[] = {{CabinetSpec::Bracing::panels, "panels"},
                                                             {CabinetSpec::Bracing::none, "none"}};
 /// `given` has no word: its numbers stand in its place.

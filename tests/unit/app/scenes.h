@@ -25,6 +25,7 @@ size = ["380 mm", "880 mm", "1790 mm"]
 mass = "40 kg"
 section = "post"
 material = "steel"
+base = "edges"
 )";
 
 /// A cabinet that is shaken for 0.3 s, with one probe.

@@ -144,12 +144,26 @@ INSTANTIATE_TEST_SUITE_P(
                       Kept{"format-5", 5, k_system_arithmetic}, Kept{"format-6", 6, k_system_arithmetic},
                       Kept{"format-7", 7, k_system_arithmetic},
                       Kept{"format-7-topple-1", 7, "topple-1", true},
-                      Kept{"format-7-topple-2", 7, "topple-2", true}),
+                      Kept{"format-7-topple-2", 7, "topple-2", true}, Kept{"format-8", 8, "topple-2", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');
       return name;
     });
+
+TEST_F(RecordingTest, a_cabinet_of_before_format_8_touches_with_edges_and_faces_too_and_so_does_its_copy) {
+  const Recording kept(k_folder + "format-7-cabinet.h5");
+  write_recovered(kept, sound_rows(kept), path("copy.h5"));
+  const Recording copy(path("copy.h5"));
+  EXPECT_EQ(kept.format(), 7);
+  EXPECT_EQ(copy.format(), 8);
+  for (const Recording* recording : {&kept, &copy}) {
+    EXPECT_EQ(recorded_scene(*recording).setup.model.contact_points.size(), 26u);
+    const Rerun again = rerun(*recording, [](std::int64_t) {});
+    EXPECT_TRUE(again.damage.empty());
+    EXPECT_EQ(again.checkpoints, 2);
+  }
+}
 
 TEST_F(RecordingTest, names_the_arithmetic_that_writes_it) {
   record_small(path("a.h5"), 3);

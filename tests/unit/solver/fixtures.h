@@ -71,6 +71,7 @@ inline Plane ground(double width = 0.09) {
 /// A cabinet of the proportions of the paper's, of assumed steel.
 inline CabinetSpec tall_cabinet() {
   CabinetSpec spec;
+  spec.base = CabinetSpec::Base::edges;
   spec.name = "cabinet";
   spec.cg_height = 1.05;
   return spec;

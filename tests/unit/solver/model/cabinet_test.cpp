@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <regex>
+#include <tuple>
 
 #include "unit/solver/fixtures.h"
 
@@ -303,22 +304,26 @@ TEST(Cabinet, poses_lie_on_the_face_they_name_with_the_footprint_at_its_place) {
     }
 }
 
-TEST(Cabinet, has_26_contact_points_and_a_rectangular_base_whatever_its_shelves) {
-  for (int shelves : {0, 1, 4}) {
-    CabinetSpec spec;
-    spec.shelves = shelves;
-    const Cabinet c = built(spec);
-    EXPECT_EQ(c.body().contact_point_count, 26);
-    EXPECT_EQ(c.body().base_points.size(), 9u);
-    ASSERT_EQ(c.body().support_polygon.size(), 4u);
-    EXPECT_LT((c.body().base_centre - Vec3(0, 0, 0.015)).norm(), 1e-12);
-    for (const ContactPoint& p : c.model.contact_points) {
-      // on the box's surface: corner, edge middle or face middle
-      const Vec3 x = (c.model.node_position[p.node] - Vec3(0, 0, 0.91)).cwiseQuotient(spec.size / 2);
-      for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(x[k] - std::round(x[k])), 0.26) << x.transpose();
-      EXPECT_NEAR(x.cwiseAbs().maxCoeff(), 1, 1e-12);
+TEST(Cabinet, touches_at_8_corners_or_26_points_on_a_rectangular_base_whatever_its_shelves) {
+  using Base = CabinetSpec::Base;
+  for (const auto& [base, points, below] : {std::tuple(Base::corners, 8, 4u), {Base::edges, 26, 9u}})
+    for (const int shelves : {0, 1, 4}) {
+      CabinetSpec spec;
+      spec.base = base;
+      spec.shelves = shelves;
+      const Cabinet c = built(spec);
+      EXPECT_EQ(c.body().contact_point_count, points);
+      EXPECT_EQ(c.body().base_points.size(), below);
+      ASSERT_EQ(c.body().support_polygon.size(), 4u);
+      EXPECT_LT((c.body().base_centre - Vec3(0, 0, 0.015)).norm(), 1e-12);
+      for (const ContactPoint& p : c.model.contact_points) {
+        // on the box's surface: corner, edge middle or face middle
+        const Vec3 x = (c.model.node_position[p.node] - Vec3(0, 0, 0.91)).cwiseQuotient(spec.size / 2);
+        for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(x[k] - std::round(x[k])), 0.26) << x.transpose();
+        EXPECT_NEAR(x.cwiseAbs().maxCoeff(), 1, 1e-12);
+        EXPECT_TRUE(base == Base::edges || x.cwiseAbs().minCoeff() > 1 - 1e-12) << x.transpose();
+      }
     }
-  }
 }
 
 TEST(Cabinet, tilt_turns_about_the_bottom_edge_it_leans_on) {
