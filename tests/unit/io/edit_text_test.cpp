@@ -184,6 +184,17 @@ TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
             "body.3.damping: there is no such body; the scene has 2");
 }
 
+TEST(EditText, each_choice_that_can_be_edited_has_a_number_of_its_own) {
+  for (const EditTraits& row : edits()) {
+    const Key& key = key_of(row.kind);
+    if (key.type != KeyType::choice) continue;
+    ASSERT_EQ(key.numbers.size(), key.choices.size()) << row.word;
+    for (std::size_t k = 0; k < key.choices.size(); ++k)
+      EXPECT_EQ(*choice_of(key, key.numbers[k]), key.choices[k]) << row.word;
+    EXPECT_EQ(choice_of(key, -1), nullptr);
+  }
+}
+
 TEST(EditText, values_are_in_the_words_and_units_of_scenes) {
   const double third = 1. / 3;
   const auto expect = [](const Edit& edit, const char* shown, const char* in_scene) {
