@@ -5,6 +5,7 @@ target_sources(topple_io PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/recording/hdf5_handle.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/hdf5_read_driver.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/observer.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/recording/recorded_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recorder.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recording_format.cpp
   ${CMAKE_CURRENT_LIST_DIR}/recording/recording_history.cpp

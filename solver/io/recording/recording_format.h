@@ -39,7 +39,7 @@ struct Format {
   bool can_go_on;                             ///< states are packed as they are now
   std::vector<std::string_view> no_fields;    ///< data sets of today's /frames that are not there
   std::vector<std::size_t> no_energies = {};  ///< columns of today's /frames/energy that are not there
-  bool corners = false;                       ///< what a cabinet whose scene names no `base` stands on
+  bool on_corners = false;  ///< a cabinet whose scene names no `base` stands on its corners, else on edges
 
   bool has_field(std::string_view name) const;
 };

@@ -11,9 +11,8 @@
 #include <thread>
 #include <tuple>
 
+#include "solver/io/common/errors.h"
 #include "solver/io/recording/hdf5_read_driver.h"
-#include "solver/io/scene/scene.h"
-#include "solver/io/scene/scene_document.h"
 
 namespace topple::io {
 namespace {
@@ -518,32 +517,6 @@ std::vector<RecordedEvent> Recording::events_on_way_to(std::int32_t branch) cons
     for (const RecordedEvent& event : all)
       if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
   return found;
-}
-
-namespace {
-
-/// Overrides that make a scene mean what it meant in the recording's format.
-std::vector<std::string> overrides_of_its_time(const Recording& recording) {
-  std::vector<std::string> overrides;
-  const auto format = std::ranges::find(formats(), recording.format(), &Format::version);
-  if (format->corners) return overrides;
-  const Node root = parse_toml(recording.scene_text(), recording.scene_name());
-  const Node* const cabinets = root.find("cabinet");
-  for (std::size_t k = 0; cabinets && k < cabinets->items.size(); ++k)
-    if (!cabinets->items[k].value.find("base"))
-      overrides.push_back("cabinet." + std::to_string(k + 1) + ".base=edges");
-  return overrides;
-}
-
-}  // namespace
-
-Scene recorded_scene(const Recording& recording) {
-  const auto read = [&recording](const std::string& name) {
-    for (const SceneFile& file : recording.scene_files())
-      if (file.name == name) return file.bytes;
-    throw InputError(name + ": is not in the recording");
-  };
-  return parse_scene(recording.scene_text(), recording.scene_name(), overrides_of_its_time(recording), read);
 }
 
 void expect_to_go_on(const Recording& recording) {

@@ -40,7 +40,7 @@ struct Key {
   std::string_view otherwise = {};    ///< what an absent key means when that is no value
   bool required = false;              ///< when its choice was made
   std::vector<std::string_view> choices = {};   ///< also words that a number or numbers may be replaced by
-  std::vector<int> numbers = {};                ///< of the choices, in edits and recordings
+  std::vector<int> numbers = {};                ///< of the choices, as edits and recordings hold them
   std::string_view of = {};                     ///< the key whose choice it belongs to
   std::vector<std::string_view> when = {};      ///< the choices of `of` that it belongs to
   std::vector<std::string_view> analyses = {};  ///< of run.analysis that it belongs to; empty: all

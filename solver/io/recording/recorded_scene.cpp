@@ -1,0 +1,40 @@
+#include <algorithm>
+
+#include "solver/io/common/errors.h"
+#include "solver/io/recording/recording.h"
+#include "solver/io/recording/recording_format.h"
+#include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_document.h"
+
+namespace topple::io {
+namespace {
+
+/// The scene's text; of an older format in words that mean today what it meant then.
+std::string text_for_today(const Recording& recording) {
+  const auto format = std::ranges::find(formats(), recording.format(), &Format::version);
+  if (format->on_corners) return recording.scene_text();
+  Node root = parse_toml(recording.scene_text(), recording.scene_name());
+  Item* const cabinets = root.find_item("cabinet");
+  if (!cabinets) return recording.scene_text();
+  for (Item& cabinet : cabinets->value.items) {
+    if (cabinet.value.find("base")) continue;
+    Node edges;
+    edges.kind = Node::Kind::text;
+    edges.text = "edges";
+    cabinet.value.items.push_back({"base", {}, edges});
+  }
+  return write_toml(root);
+}
+
+}  // namespace
+
+Scene recorded_scene(const Recording& recording) {
+  const auto read = [&recording](const std::string& name) {
+    for (const SceneFile& file : recording.scene_files())
+      if (file.name == name) return file.bytes;
+    throw InputError(name + ": is not in the recording");
+  };
+  return parse_scene(text_for_today(recording), recording.scene_name(), {}, read);
+}
+
+}  // namespace topple::io
