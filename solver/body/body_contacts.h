@@ -50,6 +50,13 @@ struct ContactSlope {
 
 /// A matrix of a body's six unknowns and its modes; rows are padded to whole packs.
 using ModeMatrix = double[6 + k_modes][6 + k_modes + 2];
+inline void set_block(ModeMatrix& matrix, int row, int column, const PackMat3& block) {
+  for (int i = 0; i < 3; ++i) {
+    matrix[row + i][column] = block.row[i].x;
+    matrix[row + i][column + 1] = block.row[i].y;
+    matrix[row + i][column + 2] = block.row[i].z;
+  }
+}
 
 /// The contact points of one body against all planes.
 class BodyContacts {
@@ -130,6 +137,7 @@ class BodyContacts {
   /// Adds `factor`, s, times the derivatives by rates of modes and of modal loads: to the rows and columns of
   /// the modes, which follow the body's six.
   void add_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;
+  void add_stick_slope_of_modes(double factor, int modes, ModeMatrix& matrix) const;  ///< as stick_slope
   /// Writes the stick springs after slipping; those of points that touched at the start of the substep and no
   /// longer do become zero.
   void keep_sticks(const PreparedLaw& law, std::span<Vec3> stick);
@@ -234,6 +242,9 @@ class BodyContacts {
     return touch.level ? f(Upwards()) : f(normal(touch));
   }
   PackMatrix<Four> slope(const Touch& touch) const;
+  PackMatrix<Four> stick_slope(const Touch& touch) const;
+  template <class F>
+  void add_modes(double factor, int modes, ModeMatrix& matrix, F slope_of) const;
   double slope_at_rest(const ContactLaw& law) const;
   double clearance(const Vec3& n, double height) const;
   Points place(const BodyState& s, const Group& group) const;

@@ -118,7 +118,9 @@ Mat3 BodyContacts::slope(const Touch& touch, int lane) const {
   return one;
 }
 
-void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {
+// slope_of(touch): derivative of the force by the velocity.
+template <class F>
+void BodyContacts::add_modes(double factor, int m, ModeMatrix& matrix, F slope_of) const {
   Four left[k_modes][6], top[6][k_modes], corner[k_modes][k_modes];
   for (int k = 0; k < m; ++k) {
     for (int i = 0; i < 6; ++i) left[k][i] = top[i][k] = Four(0);
@@ -126,7 +128,7 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
   }
   const Points* shape = shapes_.data();
   for (const Touch& touch : now_.list()) {
-    const PackMatrix<Four> by_velocity = slope(touch);
+    const PackMatrix<Four> by_velocity = slope_of(touch);
     for (int k = 0; k < m; ++k) {
       const Points f = by_velocity * shape[k], moment = cross(touch.arm, f);
       top[0][k] += f.x;
@@ -154,6 +156,19 @@ void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) 
     }
     for (int j = 0; j < m; ++j) matrix[6 + k][6 + j] += factor * sum(corner[k][j]);
   }
+}
+
+PackMatrix<Four> BodyContacts::stick_slope(const Touch& touch) const {
+  const Points n = normal(touch);
+  return outer(touch.drag * n, n) - diagonal(Points{touch.drag, touch.drag, touch.drag});
+}
+
+void BodyContacts::add_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {
+  add_modes(factor, m, matrix, [this](const Touch& touch) { return slope(touch); });
+}
+
+void BodyContacts::add_stick_slope_of_modes(double factor, int m, ModeMatrix& matrix) const {
+  add_modes(factor, m, matrix, [this](const Touch& touch) { return stick_slope(touch); });
 }
 
 }  // namespace topple

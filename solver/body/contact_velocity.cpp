@@ -36,14 +36,6 @@ void solve(const ModeMatrix& a, double* x, int n) {
   }
 }
 
-void set_block(ModeMatrix& a, int row, int column, const PackMat3& block) {
-  for (int i = 0; i < 3; ++i) {
-    a[row + i][column] = block.row[i].x;
-    a[row + i][column + 1] = block.row[i].y;
-    a[row + i][column + 2] = block.row[i].z;
-  }
-}
-
 }  // namespace
 
 // By fixed-point iteration, to `error` of the speed; none: that does not contract.
@@ -78,22 +70,27 @@ void set_block(ModeMatrix& a, int row, int column, const PackMat3& block) {
   return Solution::none;
 }
 
+// M - factor slope of the body's six unknowns; nothing yet in the rows and columns of its modes.
+void ReducedBody::fill(double factor, const PackMat3& inertia, const ContactSlope& slope, int m,
+                       ModeMatrix& matrix) const {
+  const PackVec3 mass{mass_, mass_, mass_};
+  set_block(matrix, 0, 0, diagonal(mass) - factor * slope.force_linear);
+  set_block(matrix, 0, 3, -factor * slope.force_angular);
+  set_block(matrix, 3, 0, -factor * slope.moment_linear);
+  set_block(matrix, 3, 3, inertia - factor * slope.moment_angular);
+  for (int k = 0; k < m; ++k) {
+    for (int i = 0; i < 6; ++i) matrix[i][6 + k] = matrix[6 + k][i] = 0;
+    for (int i = 0; i < m; ++i) matrix[6 + i][6 + k] = 0;
+  }
+}
+
 // Factors of Newton's matrix for the forces found last with slopes.
 void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat3& inertia,
                                     ReducedScratch& w) const {
   const double h = impulse.h;
   const int m = impulse.modes;
-  const ContactSlope slope = contacts_.slope();
-  const PackVec3 mass{mass_, mass_, mass_};
-  set_block(w.matrix, 0, 0, diagonal(mass) - h / 2 * slope.force_linear);
-  set_block(w.matrix, 0, 3, -h / 2 * slope.force_angular);
-  set_block(w.matrix, 3, 0, -h / 2 * slope.moment_linear);
-  set_block(w.matrix, 3, 3, inertia - h / 2 * slope.moment_angular);
-  for (int k = 0; k < m; ++k) {
-    for (int i = 0; i < 6; ++i) w.matrix[i][6 + k] = w.matrix[6 + k][i] = 0;
-    for (int i = 0; i < m; ++i) w.matrix[6 + i][6 + k] = 0;
-    w.matrix[6 + k][6 + k] = 1 / kick_[k];
-  }
+  fill(h / 2, inertia, contacts_.slope(), m, w.matrix);
+  for (int k = 0; k < m; ++k) w.matrix[6 + k][6 + k] = 1 / kick_[k];
   contacts_.add_slope_of_modes(-h / 2, m, w.matrix);
   factor(w.matrix, 6 + m);
   w.substep = h;

@@ -48,6 +48,9 @@ struct ReducedScratch {
   std::vector<BodyContacts::TouchBuffer> buffers;
 };
 
+/// How a substep went: unless its end is reached, nothing is changed.
+enum class SubstepEnd { reached, too_long, unsolved };
+
 /// One body: its constants, and its contacts and anchors as found last.
 class ReducedBody {
  public:
@@ -74,6 +77,13 @@ class ReducedBody {
   /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
 
+  /// s: the time until an open point reaches a plane, infinite when that is not within `within`; a first
+  /// guess at an implicit substep that follows a touch. Contacts of `s` have been found.
+  double next_landing(const BodyState& s, double within) const;
+  double first_substep(const ContactLaw& law) const;
+  /// Anchors or planes touch.
+  bool touches() const { return contacts_.any() || anchors_.any(); }
+
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
   /// Appends the contacts found last.
@@ -89,28 +99,11 @@ class ReducedBody {
   double rotation_bound(const BodyState& s) const;
 
  private:
-  /// What the unknowns of an implicit stage start from: m, rad, N s, N m s.
-  struct Origin {
-    PackVec3 position, turn, momentum, spin;
-  };
-  /// An implicit stage at its solution.
-  struct Stage {
-    BodyVelocity u;
-    PackVec3 turning;                      // rad/s, derivative of the rotation vector
-    PackVec3 spin;                         // N m s, angular momentum
-    double damping_power, friction_power;  // W
-  };
-  struct ImplicitSubstep;
+  friend class ImplicitSubstep;
   struct ExplicitSubstep;
-  /// How a substep went: unless its end is reached, nothing is changed.
-  enum class SubstepEnd { reached, too_long, unsolved };
   struct ExplicitOutcome {
     SubstepEnd end;
     double stable;  // s, longest stable substep
-  };
-  struct ImplicitOutcome {
-    SubstepEnd end;
-    double error;  // local error over the allowed one
   };
   /// What became of an iteration, or of a substep's equations.
   enum class Solution { found, none };
@@ -154,18 +147,8 @@ class ReducedBody {
   double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
   double find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const;
 
-  StepStatus::Kind advance_implicit(const Parameters& parameters, const StepInputs& start,
-                                    const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
-                                    StepEnergy& energy);
-  ContactLoads reach_stage(const ImplicitSubstep& substep, const PreparedLaw& law, const Origin& from,
-                           bool with_slope, BodyState& at, Stage& stage, PackMat3& r);
-  Solution solve_stage(ImplicitSubstep& substep, const StepInputs& now, const PackVec3& field,
-                       const Origin& from, BodyState& at, Stage& stage);
-  ImplicitOutcome implicit_substep(const Parameters& parameters, const StepInputs& start,
-                                   const StepInputs& end, double h, double allowed, BodyState& s,
-                                   std::span<Vec3> stick, StepEnergy& energy);
-  double next_landing(const BodyState& s, double within) const;
-  double first_substep(const ContactLaw& law) const;
+  void fill(double factor, const PackMat3& inertia, const ContactSlope& slope, int modes,
+            ModeMatrix& matrix) const;
 
   const Model& model_;
   const int body_;

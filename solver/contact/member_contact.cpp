@@ -133,7 +133,7 @@ using Mat12x2 = Eigen::Matrix<double, 12, 2>;
 
 // Mixed derivatives of half the squared distance by the nodes and the free ones of s, t, times the inverse of
 // the second derivatives by the latter, times the same: what the moving of the nearest points takes off.
-Eigen::Matrix<double, 12, 12> sliding(const MemberTouch& touch) {
+PairTangent sliding(const MemberTouch& touch) {
   const Ends& x = touch.ends;
   const Vec3 da = x[1] - x[0], db = x[3] - x[2], &d = touch.at.between;
   Mat12x2 mixed;
@@ -147,7 +147,7 @@ Eigen::Matrix<double, 12, 12> sliding(const MemberTouch& touch) {
   if (touch.at.s_free && touch.at.t_free) return mixed * second.inverse() * mixed.transpose();
   if (touch.at.s_free) return mixed.col(0) * mixed.col(0).transpose() / second(0, 0);
   if (touch.at.t_free) return mixed.col(1) * mixed.col(1).transpose() / second(1, 1);
-  return Eigen::Matrix<double, 12, 12>::Zero();
+  return PairTangent::Zero();
 }
 
 }  // namespace
@@ -174,17 +174,9 @@ void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pair
       force[pairs[blend.pair].node[k]] -= blend.slope * blend.surplus * blend.by_sine[k];
 }
 
-void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                 double velocity_factor, BlockLu& lu) {
-  const auto add = [&](const MemberPair& pair, const Eigen::Matrix<double, 12, 12>& stiffness) {
-    Mat6 block = Mat6::Zero();
-    for (int k = 0; k < 4; ++k)
-      for (int m = 0; m < 4; ++m) {
-        block.topLeftCorner<3, 3>() = stiffness.block<3, 3>(3 * k, 3 * m);
-        lu.add(pair.node[k], pair.node[m], block);
-      }
-  };
-  Eigen::Matrix<double, 12, 12> stiffness;
+void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
+                  double velocity_factor, const std::function<void(int, const PairTangent&)>& add) {
+  PairTangent stiffness;
   for (const MemberTouch& touch : contacts.touches) {
     const MemberPair& pair = pairs[touch.pair];
     Mat3 by_position, by_velocity;
@@ -199,7 +191,7 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
       for (int m = 0; m < 4; ++m)
         stiffness.block<3, 3>(3 * k, 3 * m) = touch.share[k] * touch.share[m] * local;
     if (turns) stiffness += touch.out.normal / touch.l * sliding(touch);
-    add(pair, stiffness);
+    add(touch.pair, stiffness);
   }
   for (const MemberBlend& blend : contacts.blends) {
     Eigen::Matrix<double, 12, 1> sine, surplus;
@@ -209,8 +201,21 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
     }
     stiffness = blend.curvature * blend.surplus * sine * sine.transpose() +
                 blend.slope * (sine * surplus.transpose() + surplus * sine.transpose());
-    add(pairs[blend.pair], stiffness);
+    add(blend.pair, stiffness);
   }
+}
+
+void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
+                 double velocity_factor, BlockLu& lu) {
+  each_tangent(law, contacts, pairs, velocity_factor, [&](int which, const PairTangent& part) {
+    const MemberPair& pair = pairs[which];
+    Mat6 block = Mat6::Zero();
+    for (int k = 0; k < 4; ++k)
+      for (int m = 0; m < 4; ++m) {
+        block.topLeftCorner<3, 3>() = part.block<3, 3>(3 * k, 3 * m);
+        lu.add(pair.node[k], pair.node[m], block);
+      }
+  });
 }
 
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

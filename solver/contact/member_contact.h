@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -84,8 +85,14 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
 
-/// Adds -d(force)/d(position) - velocity_factor d(force)/d(velocity), the factor in 1/s, without the second
-/// derivatives of sin^2 and, below l = 0.02 L, without the turning of the normal.
+/// Of the four ends of a pair, N/m.
+using PairTangent = Eigen::Matrix<double, 12, 12>;
+/// -d(force)/d(position) - velocity_factor d(force)/d(velocity), the factor in 1/s, without the second
+/// derivatives of sin^2 and, below l = 0.02 L, without the turning of the normal: add(pair, part) of each
+/// part.
+void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
+                  double velocity_factor, const std::function<void(int, const PairTangent&)>& add);
+/// Adds it to `lu`, whose nodes are those of `pairs`.
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                  double velocity_factor, BlockLu& lu);
 

@@ -3,9 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <new>
-#include <tuple>
 
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
@@ -29,23 +27,6 @@ void BodyMotion::resize(int nodes) {
   rotation.resize(nodes);
   angular_velocity.resize(nodes);
 }
-
-namespace {
-
-// Those of pairs in `candidate_pairs` become those in `sticks`.
-void replace_sticks(const std::vector<ElementPair>& near, const std::vector<MemberStick>& sticks,
-                    std::vector<MemberStick>& all) {
-  const auto own = [&](const MemberStick& stick) {
-    return std::binary_search(near.begin(), near.end(), stick.elements);
-  };
-  std::erase_if(all, own);
-  std::copy_if(sticks.begin(), sticks.end(), std::back_inserter(all), own);
-  std::sort(all.begin(), all.end(), [](const MemberStick& a, const MemberStick& b) {
-    return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
-  });
-}
-
-}  // namespace
 
 BodySystem::BodySystem(const Model& whole, int body) : BodySystem(whole, std::vector<int>{body}, {}) {}
 
@@ -383,25 +364,17 @@ void BodySystem::load_memory(const State& state) {
 }
 
 void BodySystem::load_sticks(const State& state) {
-  const std::vector<MemberStick>& sticks = keeps_sticks_ ? own_sticks_ : state.member_sticks;
-  auto stick = sticks.begin();
-  for (MemberPair& pair : member_pairs_) {
+  sticks_.load(state, member_pairs_);
+  for (MemberPair& pair : member_pairs_)
     for (int k = 0; k < 4; ++k) pair.start[k] = state.position[node[pair.node[k]]];
-    pair.stick.fill(Vec3::Zero());
-    while (stick != sticks.end() && stick->elements < pair.elements) ++stick;
-    for (; stick != sticks.end() && stick->elements == pair.elements; ++stick)
-      pair.stick[stick->place] = stick->stick;
-  }
 }
 
 void BodySystem::take_sticks(const State& state) {
-  own_sticks_ = state.member_sticks;
-  keeps_sticks_ = true;
+  sticks_.take(state);
 }
 
 void BodySystem::give_sticks(State& state) {
-  keeps_sticks_ = false;
-  replace_sticks(candidate_pairs, own_sticks_, state.member_sticks);
+  sticks_.give(member_pairs_, state);
 }
 
 void BodySystem::store_stick(const Contacts& now, State& state) {
@@ -412,12 +385,7 @@ void BodySystem::store_stick(const Contacts& now, State& state) {
                 Vec3::Zero());
   }
   for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
-  if (candidate_pairs.empty()) return;
-
-  new_sticks_.clear();
-  for (const MemberTouch& touch : now.members.touches)
-    new_sticks_.push_back({candidate_pairs[touch.pair], touch.place, touch.out.stick});
-  replace_sticks(candidate_pairs, new_sticks_, keeps_sticks_ ? own_sticks_ : state.member_sticks);
+  if (!candidate_pairs.empty()) sticks_.store(now.members.touches, member_pairs_, state);
 }
 
 int BodySystem::element_at(int global) const {

@@ -15,6 +15,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/state/energy.h"
+#include "solver/state/member_sticks.h"
 #include "solver/state/state.h"
 
 namespace topple {
@@ -116,8 +117,7 @@ class BodySystem {
   void load_memory(const State& state);
   /// The same for sticks between members alone.
   void load_sticks(const State& state);
-  /// While systems advance in parallel: from take_sticks to give_sticks it keeps its sticks between members
-  /// to itself, as State::member_sticks is one array for all.
+  /// Around advancing in parallel (MemberSticks).
   void take_sticks(const State& state);
   void give_sticks(State& state);
   /// Writes the stick springs of `contacts`; those of open contacts become zero.
@@ -220,8 +220,7 @@ class BodySystem {
   std::vector<PlaneReach> reaches_;
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
   std::vector<MemberPair> member_pairs_;  // per pair in `candidate_pairs`
-  std::vector<MemberStick> own_sticks_, new_sticks_;
-  bool keeps_sticks_ = false;
+  MemberSticks sticks_;
   BeamPacks beams_;
   std::vector<double> damping_;        // Parameters::damping of beams_
   std::vector<NodeForce> node_force_;  // gravity, floor, loads and beams
