@@ -35,6 +35,32 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
   return std::min(limit, bounce_limit(body.mass, stiffness));
 }
 
+// For the members of the system's bodies that are near each other.
+double member_limit(const BodySystem& system, const ContactLaw& law, const State& state) {
+  const Model& model = system.model;
+  double limit = std::numeric_limits<double>::infinity();
+  std::vector<double> stiffness(system.bodies.size(), 0.);
+  const auto add = [&](int element, double more) {
+    const auto own = std::ranges::find(system.bodies, model.members[model.elements[element].member].body);
+    if (own != system.bodies.end()) stiffness[own - system.bodies.begin()] += more;
+  };
+  for (const ElementPair& pair : system.candidate_pairs) {
+    const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
+    const auto& x = state.position;
+    const auto& v = state.velocity;
+    const NearestPoints at = nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]);
+    const double L = contact_length(model, pair), l = at.between.norm();
+    const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
+    const ContactAhead ahead = contact_ahead(law, l - L, -relative.dot(at.between) / l, L, true);
+    add(pair.a, ahead.stiffness);
+    add(pair.b, ahead.stiffness);
+    limit = std::min(limit, ahead.limit);
+  }
+  for (std::size_t b = 0; b < stiffness.size(); ++b)
+    limit = std::min(limit, bounce_limit(model.bodies[system.bodies[b]].mass, stiffness[b]));
+  return limit;
+}
+
 }  // namespace
 
 bool FramePart::has(const std::vector<char>& marked) const {
@@ -77,7 +103,7 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
 
 double FramePart::time_limit(const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
-  double limit = k_longest_step;
+  double limit = std::min(k_longest_step, member_limit(system_, law, state));
   for (const int b : system_.bodies) {
     const Body& body = system_.model.bodies[b];
     limit = std::min(limit, contact_limit(system_.model, body, law, state));

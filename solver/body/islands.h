@@ -1,36 +1,40 @@
-// Islands: frames that may touch each other are stepped as one system of equations.
+// Islands: bodies that may touch each other are stepped together.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "solver/contact/proximity.h"
 #include "solver/frame/body_system.h"
 #include "solver/model/model.h"
-#include "solver/state/state.h"
 
 namespace topple {
 
-/// Connected components of the candidate pairs: what happens in one does not depend on the others. Bodies
-/// whose nodes are all held by supports, and those on other levels, are in none.
+/// Bodies that candidate pairs connect, in order, or one alone; what happens to them does not depend on the
+/// others.
+struct Island {
+  std::vector<int> bodies;
+  std::vector<ElementPair> candidate_pairs;  ///< of them, and with bodies that are held
+  bool operator==(const Island&) const = default;
+};
+
+/// Divides the bodies of a model. Those whose nodes are all held by supports are in no island.
 class Islands {
  public:
   explicit Islands(const Model& model);
-  /// Systems of the frames in `bodies` and of `candidate_pairs`, whose bodies are frames or held, in the
-  /// order of their first bodies; those that nothing changes are kept. False: nothing changes.
-  bool arrange(const std::vector<BodyState>& bodies, const std::vector<ElementPair>& candidate_pairs);
-  const std::vector<BodySystem*>& systems() const { return systems_; }
-  /// One body without the others, whatever its level; nullptr: held.
+  /// In the order of their first bodies.
+  std::vector<Island> divide(const std::vector<ElementPair>& candidate_pairs) const;
+  /// The frames of an island as one system of equations; those of the last call of divide are kept.
+  BodySystem* system(const Island& island);
+  /// One body without the others; nullptr: held.
   BodySystem* alone(int body);
+  /// Forgets all systems of several bodies but these.
+  void keep(const std::vector<BodySystem*>& systems);
 
  private:
-  BodySystem* joined(const std::vector<int>& bodies, std::vector<ElementPair> candidate_pairs);
-
   const Model& model_;
-  std::vector<bool> held_;
-  std::vector<char> frame_;        // not held
-  std::vector<ElementPair> near_;  // pairs of the last arrange
-  std::vector<std::unique_ptr<BodySystem>> alone_, joined_, joined_before_;
-  std::vector<BodySystem*> systems_;
+  const std::vector<bool> held_;
+  std::vector<std::unique_ptr<BodySystem>> alone_, joined_;
 };
 
 }  // namespace topple

@@ -51,7 +51,7 @@ struct ModelSwitch::Switching {
   Parts& parts;
 };
 
-ModelSwitch::ModelSwitch(const Model& model) : near_(model.bodies.size()), new_frames_(model.bodies.size()) {}
+ModelSwitch::ModelSwitch(const Model& model) : changed_(model.bodies.size()) {}
 
 void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   if (!base_.empty()) return;
@@ -59,11 +59,24 @@ void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
     base_.push_back(base_level(model, parameters, b));
 }
 
-void ModelSwitch::find_near(const Model& model, const State& state) {
-  if (near_.size() < 2) return;
-  std::ranges::fill(near_, false);
-  for (const ElementPair& pair : state.candidate_pairs)
-    for (const int e : {pair.a, pair.b}) near_[model.members[model.elements[e].member].body] = true;
+// A frame makes all bodies of its island frames. One that is a frame for no other reason stays one until all
+// of them are calm.
+void ModelSwitch::choose_islands(const std::vector<Island>& islands, State& state) {
+  for (const Island& island : islands) {
+    bool frame = false, by_itself = false;
+    for (const int b : island.bodies) {
+      frame = frame || choice_[b].level == ModelLevel::frame;
+      by_itself =
+          by_itself || (choice_[b].level == ModelLevel::frame && choice_[b].reason != LevelReason::near);
+    }
+    if (!frame || island.candidate_pairs.empty()) continue;
+    for (const int b : island.bodies) {
+      LevelChoice& choice = choice_[b];
+      if (choice.level == ModelLevel::frame && choice.reason != LevelReason::near) continue;
+      choice = {ModelLevel::frame, LevelReason::near};
+      if (by_itself) state.bodies[b].calm_since = -1;
+    }
+  }
 }
 
 // At the state of `on`, where the contacts of those that are not frames have been found.
@@ -72,10 +85,6 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   BodyState& s = state.bodies[b];
   const LevelChoice& base = base_[b];
   if (base.level == ModelLevel::frame) return base;
-  if (near_[b]) {
-    s.calm_since = -1;
-    return {ModelLevel::frame, LevelReason::near};
-  }
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
     const bool calm = !is_bent(model, state, b) &&
@@ -122,7 +131,6 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   if (choice.level == ModelLevel::frame) {
     place_nodes(model, state);
     body.add_residual(s, state);
-    new_frames_[b] = true;
   } else if (s.level == ModelLevel::frame) {
     s = reduce(model, state, b, choice.level);
   } else if (choice.level == ModelLevel::rigid) {
@@ -132,6 +140,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   s.level = choice.level;
   s.reason = choice.reason;
   s.calm_since = -1;
+  changed_[b] = true;
   const double after =
       s.level == ModelLevel::frame ? of_frame() : body.balance(on.parameters, now, s, state.stick).sum();
   const double sunk = height - body_pose(model, state, b).centre.dot(on.parameters.gravity);
@@ -141,11 +150,10 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
 
 void ModelSwitch::start(const Model& model, const Parameters& parameters, State& state, Parts& parts) {
   find_base(model, parameters);
-  find_near(model, state);
+  choice_ = base_;
+  choose_islands(parts.islands(state), state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    const LevelChoice choice = near_[b] && base_[b].level != ModelLevel::frame
-                                   ? LevelChoice{ModelLevel::frame, LevelReason::near}
-                                   : base_[b];
+    const LevelChoice& choice = choice_[b];
     BodyState& s = state.bodies[b];
     if (s.level == ModelLevel::frame && choice.level != ModelLevel::frame)
       s = reduce(model, state, b, choice.level);
@@ -159,23 +167,29 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
                          State& state, Parts& parts) {
   const Switching on{model, parameters, now, state, parts};
   find_base(model, parameters);
-  find_near(model, state);
-  bool other_frames = false;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+  choice_.clear();
+  const int count = static_cast<int>(model.bodies.size());
+  for (int b = 0; b < count; ++b) {
+    const BodyState& s = state.bodies[b];
+    if (s.level != ModelLevel::frame) parts.reduced(state, b).find_contacts(now, s, state.stick);
+    choice_.push_back(choose(on, b));
+  }
+  choose_islands(parts.islands(state), state);
+  bool other_frames = false, any = false;
+  for (int b = 0; b < count; ++b) {
     BodyState& s = state.bodies[b];
     const bool was_frame = s.level == ModelLevel::frame;
-    if (!was_frame) parts.reduced(state, b).find_contacts(now, s, state.stick);
-    const LevelChoice choice = choose(on, b);
-    if (choice.level == s.level)
-      s.reason = choice.reason;
+    if (choice_[b].level == s.level)
+      s.reason = choice_[b].reason;
     else
-      change(on, choice, b);
+      change(on, choice_[b], b);
+    any = any || changed_[b];
     other_frames = other_frames || was_frame != (s.level == ModelLevel::frame);
   }
   parts.arrange(state);
-  if (parts.moves_nodes()) {
-    parts.balance(parameters, now, new_frames_, state);
-    std::ranges::fill(new_frames_, false);
+  if (any) {
+    parts.balance(parameters, now, changed_, state);
+    std::ranges::fill(changed_, false);
   }
   return other_frames;
 }

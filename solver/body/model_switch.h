@@ -14,8 +14,7 @@ class ModelSwitch {
   explicit ModelSwitch(const Model& model);
   /// Call when the parameters changed.
   void forget() { base_.clear(); }
-  /// Every body on its base level, or a frame where another is near. No energy is booked: the run begins
-  /// here.
+  /// Every body on its base level, or a frame where one is near. No energy is booked: the run begins here.
   void start(const Model& model, const Parameters& parameters, State& state, Parts& parts);
   /// Finds the contacts of rigid and elastic bodies, then changes the levels of bodies that need it and books
   /// EnergyLedger::model_switch. True: a body became a frame or is one no longer.
@@ -26,13 +25,13 @@ class ModelSwitch {
   struct Switching;
 
   void find_base(const Model& model, const Parameters& parameters);
-  void find_near(const Model& model, const State& state);
   LevelChoice choose(const Switching& on, int body);
+  void choose_islands(const std::vector<Island>& islands, State& state);
   void change(const Switching& on, LevelChoice choice, int body);
 
-  std::vector<LevelChoice> base_;  // per body; empty: not found for these parameters
-  std::vector<char> near_;         // per body: another is
-  std::vector<char> new_frames_;   // per body: since the last step
+  std::vector<LevelChoice> base_;    // per body; empty: not found for these parameters
+  std::vector<LevelChoice> choice_;  // per body
+  std::vector<char> changed_;        // per body: its level, since the last step
   BodyMotion motion_;
 };
 

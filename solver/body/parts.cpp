@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/body/frame_part.h"
+#include "solver/body/island_part.h"
 #include "solver/body/reduced_part.h"
 #include "solver/body/step_control.h"
 #include "solver/element/damping.h"
@@ -21,24 +22,55 @@ Parts::Parts(const Model& model)
       model_(model),
       islands_(model),
       reduced_(model.bodies.size()),
+      divided_(islands_.divide({})),
       all_bodies_(model.bodies.size(), true) {}
 
+const std::vector<Island>& Parts::islands(const State& state) {
+  if (state.candidate_pairs == pairs_) return divided_;
+  pairs_ = state.candidate_pairs;
+  divided_ = islands_.divide(pairs_);
+  frames_.clear();
+  return divided_;
+}
+
 void Parts::arrange(const State& state) {
-  if (!islands_.arrange(state.bodies, state.candidate_pairs) && arranged_) return;
-  arranged_ = true;
+  const std::vector<Island>& islands = this->islands(state);
+  std::vector<char> frames;
+  for (const BodyState& s : state.bodies) frames.push_back(s.level == ModelLevel::frame);
+  if (frames == frames_) return;
+  frames_ = std::move(frames);
   parts_.clear();
-  std::vector<ReducedPart::Member> some;
+  std::vector<ModelBody> some;
+  std::vector<BodySystem*> systems;
+  std::vector<std::pair<Island, std::shared_ptr<Part>>> coupled;
   const auto close_part = [&] {
-    if (!some.empty()) parts_.push_back(std::make_unique<ReducedPart>(std::exchange(some, {}), sections));
+    if (!some.empty()) parts_.push_back(std::make_shared<ReducedPart>(std::exchange(some, {}), sections));
   };
-  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-    if (state.bodies[b].level == ModelLevel::frame) continue;
-    some.push_back({b, &reduced(state, b)});
-    if (some.size() == k_bodies_per_part) close_part();
+  const auto part_of = [&](const Island& island) {
+    const auto same = std::ranges::find(coupled_, island, &decltype(coupled_)::value_type::first);
+    if (same != coupled_.end()) return same->second;
+    std::vector<ModelBody> bodies;
+    for (const int b : island.bodies) bodies.push_back({b, &reduced(state, b)});
+    return std::shared_ptr<Part>(
+        std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs, sections));
+  };
+  for (const Island& island : islands) {
+    const int b = island.bodies.front();
+    if (frames_[b]) {
+      systems.push_back(islands_.system(island));
+    } else if (island.candidate_pairs.empty()) {
+      some.push_back({b, &reduced(state, b)});
+      if (some.size() == k_bodies_per_part) close_part();
+    } else {
+      coupled.emplace_back(island, part_of(island));
+    }
   }
   close_part();
-  for (BodySystem* system : islands_.systems())
-    parts_.push_back(std::make_unique<FramePart>(*system, sections));
+  coupled_ = std::move(coupled);
+  for (const auto& [island, part] : coupled_) parts_.push_back(part);
+  islands_.keep(systems);
+  for (BodySystem* system : systems) parts_.push_back(std::make_shared<FramePart>(*system, sections));
+  moves_nodes_ = !systems.empty();
 }
 
 BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now,

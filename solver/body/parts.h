@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "solver/body/islands.h"
@@ -21,12 +22,15 @@ class Parts {
  public:
   explicit Parts(const Model& model);
 
-  /// Divides by the levels of bodies and the candidate pairs of `state`. Rigid and elastic bodies, of which
-  /// some make one part, come first, in the order of bodies.
+  /// Divides by the levels of bodies and the candidate pairs of `state`; all bodies of an island are frames,
+  /// or none is. Rigid and elastic bodies that are alone, of which some make one part, come first, then those
+  /// that are not.
   void arrange(const State& state);
-  const std::vector<std::unique_ptr<Part>>& all() const { return parts_; }
+  const std::vector<std::shared_ptr<Part>>& all() const { return parts_; }
   /// Whether a step moves nodes: there are frames.
-  bool moves_nodes() const { return !islands_.systems().empty(); }
+  bool moves_nodes() const { return moves_nodes_; }
+  /// Of the candidate pairs of `state`.
+  const std::vector<Island>& islands(const State& state);
 
   /// Part::balance of those that are marked; of all.
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
@@ -52,8 +56,12 @@ class Parts {
   const Model& model_;
   Islands islands_;
   std::vector<std::unique_ptr<ReducedBody>> reduced_;  // per body, once it was one
-  std::vector<std::unique_ptr<Part>> parts_;
-  bool arranged_ = false;
+  std::vector<Island> divided_;                        // by the candidate pairs of pairs_
+  std::vector<ElementPair> pairs_;                     // of the last call of islands()
+  std::vector<char> frames_;  // per body: whether it is one in parts_; empty: there are no parts yet
+  std::vector<std::shared_ptr<Part>> parts_;
+  std::vector<std::pair<Island, std::shared_ptr<Part>>> coupled_;  // those of parts_ with several bodies
+  bool moves_nodes_ = false;
   const std::vector<char> all_bodies_;
 };
 

@@ -71,8 +71,6 @@ class ReducedBody {
   StepStatus::Kind advance(const Parameters& parameters, const StepInputs& start, const StepInputs& end,
                            double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy,
                            ReducedScratch& scratch);
-  /// Brings it to rest under gravity on planes; not_settled: it has no rest, or tips over by itself.
-  StepStatus::Kind settle(const Parameters& parameters, BodyState& s, std::span<Vec3> stick);
   /// Longest step that resolves contacts and turning, s. Elastic: BodyContacts::look_ahead. Rigid:
   /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
   double look_ahead(const ContactLaw& law, const BodyState& s) const;
@@ -81,8 +79,7 @@ class ReducedBody {
   /// guess at an implicit substep that follows a touch. Contacts of `s` have been found.
   double next_landing(const BodyState& s, double within) const;
   double first_substep(const ContactLaw& law) const;
-  /// Anchors or planes touch.
-  bool touches() const { return contacts_.any() || anchors_.any(); }
+  BodyContacts& contacts() { return contacts_; }
 
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
@@ -100,6 +97,7 @@ class ReducedBody {
 
  private:
   friend class ImplicitSubstep;
+  friend class RestOfBodies;
   struct ExplicitSubstep;
   struct ExplicitOutcome {
     SubstepEnd end;
@@ -115,7 +113,6 @@ class ReducedBody {
     const BodyVelocity& free;
     int modes;
   };
-  class RestOnPlanes;
 
   int modes(const BodyState& s) const { return s.level == ModelLevel::elastic ? basis_->modes : 0; }
   PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }
@@ -182,6 +179,12 @@ class ReducedBody {
   };
   std::array<Known, 8> known_{};
   int next_known_ = 0;
+};
+
+/// A body of a model.
+struct ModelBody {
+  int index;  ///< into the model
+  ReducedBody* body;
 };
 
 }  // namespace topple

@@ -2,26 +2,23 @@
 
 #include <algorithm>
 
+#include "solver/body/bodies_at_rest.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
 
 bool ReducedPart::has(const std::vector<char>& marked) const {
-  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Member& m) { return marked[m.index]; });
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const ModelBody& m) { return marked[m.index]; });
 }
 
 StepStatus ReducedPart::settle(const Parameters& parameters, State& state, PartScratch&) {
-  StepStatus status;
-  for (const auto& [index, body] : bodies_) {
-    body->remember(state.anchors);
-    status.kind = body->settle(parameters, state.bodies[index], state.stick);
-    if (status.ok()) continue;
-    status.time = state.time;
-    status.body = index;
-    break;
+  for (const ModelBody& one : bodies_) {
+    one.body->remember(state.anchors);
+    if (const StepStatus status = settle_bodies({&one, 1}, nullptr, parameters, state); !status.ok())
+      return status;
   }
-  return status;
+  return {};
 }
 
 BodyEnergy ReducedPart::balance(const Parameters& parameters, const StepInputs& now,
@@ -71,9 +68,13 @@ void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces&
 }
 
 HardestContact ReducedPart::hardest_contact(const HardestContact& hardest) {
+  return hardest_on_planes(bodies_, hardest);
+}
+
+HardestContact hardest_on_planes(std::span<const ModelBody> bodies, const HardestContact& hardest) {
   HardestContact found = hardest;
   std::vector<ContactForce> forces;
-  for (const auto& [index, body] : bodies_) {
+  for (const auto& [index, body] : bodies) {
     forces.clear();
     body->list_contacts(forces);
     for (const ContactForce& force : forces)

@@ -1,6 +1,7 @@
 // Some rigid and elastic bodies, none of which is near another.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,13 +12,8 @@ namespace topple {
 /// Bodies that ReducedBody advances one after the other.
 class ReducedPart final : public Part {
  public:
-  /// Index into the model, and the body, which outlives this.
-  struct Member {
-    int index;
-    ReducedBody* body;
-  };
-  /// `sections`, of every element of the model, outlive this.
-  ReducedPart(std::vector<Member> bodies, std::vector<SectionForces>& sections)
+  /// The bodies and `sections`, of every element of the model, outlive this.
+  ReducedPart(std::vector<ModelBody> bodies, std::vector<SectionForces>& sections)
       : bodies_(std::move(bodies)), sections_(sections) {}
 
   bool has(const std::vector<char>& marked) const override;
@@ -30,8 +26,11 @@ class ReducedPart final : public Part {
   HardestContact hardest_contact(const HardestContact& hardest) override;
 
  private:
-  std::vector<Member> bodies_;
+  std::vector<ModelBody> bodies_;
   std::vector<SectionForces>& sections_;
 };
+
+/// The hardest contact of `bodies` with planes in the newest step, or `hardest` where none is harder.
+HardestContact hardest_on_planes(std::span<const ModelBody> bodies, const HardestContact& hardest);
 
 }  // namespace topple

@@ -17,29 +17,6 @@ constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at
 constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it counts as nothing
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
-// For the members of all bodies that are near each other.
-double member_limit(const Model& model, const ContactLaw& law, const State& state) {
-  double limit = std::numeric_limits<double>::infinity();
-  if (state.candidate_pairs.empty()) return limit;
-  std::vector<double> stiffness(model.bodies.size(), 0.);
-  const auto body_of = [&](int e) { return model.members[model.elements[e].member].body; };
-  for (const ElementPair& pair : state.candidate_pairs) {
-    const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
-    const auto& x = state.position;
-    const auto& v = state.velocity;
-    const NearestPoints at = nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]);
-    const double L = contact_length(model, pair), l = at.between.norm();
-    const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
-    const ContactAhead ahead = contact_ahead(law, l - L, -relative.dot(at.between) / l, L, true);
-    stiffness[body_of(pair.a)] += ahead.stiffness;
-    stiffness[body_of(pair.b)] += ahead.stiffness;
-    limit = std::min(limit, ahead.limit);
-  }
-  for (std::size_t b = 0; b < stiffness.size(); ++b)
-    limit = std::min(limit, bounce_limit(model.bodies[b].mass, stiffness[b]));
-  return limit;
-}
-
 // Of an implicit method's local error of the velocity over h times the change of the acceleration.
 double error_factor(const Parameters& parameters) {
   const auto coefficients = traits(parameters.integrator).coefficients;
@@ -52,9 +29,8 @@ double error_factor(const Parameters& parameters) {
 }  // namespace
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
-  const ContactLaw law = contact_law(parameters, state.time);
   return std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
-                   member_limit(model, law, state), anchor_look_ahead(model, state)});
+                   anchor_look_ahead(model, state)});
 }
 
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,

@@ -1,8 +1,9 @@
 #include "solver/contact/member_contact.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "solver/contact/coulomb.h"
 
 namespace topple {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 constexpr double k_aligned = 1e-6;  // of k_parallel: there is no nearest point, and kappa is below 1e-11
 constexpr double k_thin = 0.02;  // of L: nearer than this the turning of the normal is left out of tangents
 
-using Ends = std::array<Vec3, 4>;
+using Ends = PairVector;
 
 Ends gather(const MemberPair& pair, std::span<const Vec3> x) {
   return {x[pair.node[0]], x[pair.node[1]], x[pair.node[2]], x[pair.node[3]]};
@@ -40,7 +41,7 @@ std::array<double, 4> shares(const NearestPoints& at) {
 // sin^2 of the angle of two lines with its derivatives by their ends.
 struct Crossing {
   double sine2;
-  std::array<Vec3, 4> by_end;
+  PairVector by_end;
 };
 
 Crossing crossing(const Ends& x) {
@@ -129,25 +130,39 @@ class PairFinder {
   MemberContacts& found_;
 };
 
-using Mat12x2 = Eigen::Matrix<double, 12, 2>;
-
-// Mixed derivatives of half the squared distance by the nodes and the free ones of s, t, times the inverse of
-// the second derivatives by the latter, times the same: what the moving of the nearest points takes off.
-PairTangent sliding(const MemberTouch& touch) {
+// How the moving of the nearest points changes the tangent: mixed derivatives of half the squared distance by
+// the nodes and the free ones of s, t, times `factor` and the inverse of the second derivatives by the
+// latter, times the same.
+void add_sliding(const MemberTouch& touch, double factor, std::vector<PairTangent::Product>& products) {
   const Ends& x = touch.ends;
   const Vec3 da = x[1] - x[0], db = x[3] - x[2], &d = touch.at.between;
-  Mat12x2 mixed;
-  const Vec3 by_s[4] = {-d, d, Vec3::Zero(), Vec3::Zero()}, by_t[4] = {Vec3::Zero(), Vec3::Zero(), d, -d};
+  PairVector by_s, by_t;
   for (int k = 0; k < 4; ++k) {
-    mixed.block<3, 1>(3 * k, 0) = touch.share[k] * da + by_s[k];
-    mixed.block<3, 1>(3 * k, 1) = -touch.share[k] * db + by_t[k];
+    by_s[k] = touch.share[k] * da;
+    by_t[k] = -touch.share[k] * db;
   }
-  Eigen::Matrix2d second;
-  second << da.squaredNorm(), -da.dot(db), -da.dot(db), db.squaredNorm();
-  if (touch.at.s_free && touch.at.t_free) return mixed * second.inverse() * mixed.transpose();
-  if (touch.at.s_free) return mixed.col(0) * mixed.col(0).transpose() / second(0, 0);
-  if (touch.at.t_free) return mixed.col(1) * mixed.col(1).transpose() / second(1, 1);
-  return PairTangent::Zero();
+  by_s[0] -= d;
+  by_s[1] += d;
+  by_t[2] -= d;
+  by_t[3] += d;
+  double ss = touch.at.s_free ? da.squaredNorm() : 1, tt = touch.at.t_free ? db.squaredNorm() : 1,
+         st = touch.at.s_free && touch.at.t_free ? -da.dot(db) : 0;
+  const double determinant = ss * tt - st * st;
+  const auto add = [&](const PairVector& left, double of_s, double of_t) {
+    PairTangent::Product& product = products.emplace_back();
+    product.left = left;
+    for (int k = 0; k < 4; ++k) product.right[k] = factor / determinant * (of_s * by_s[k] + of_t * by_t[k]);
+  };
+  if (touch.at.s_free) add(by_s, tt, -st);
+  if (touch.at.t_free) add(by_t, -st, ss);
+}
+
+bool slips(const ContactLaw& law, const MemberTouch& touch) {
+  constexpr double k_rounding = 1e-9;
+  const Vec3& v = touch.input.velocity;
+  const double along = (v - touch.normal.dot(v) * touch.normal).squaredNorm();
+  return !(touch.out.tangential.norm() <
+           (1 - k_rounding) * friction_coefficient(law, along) * touch.out.normal);
 }
 
 }  // namespace
@@ -175,47 +190,59 @@ void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pair
 }
 
 void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                  double velocity_factor, const std::function<void(int, const PairTangent&)>& add) {
-  PairTangent stiffness;
+                  double velocity_factor, const std::function<void(const PairTangent&)>& f) {
+  PairTangent tangent;
   for (const MemberTouch& touch : contacts.touches) {
-    const MemberPair& pair = pairs[touch.pair];
+    tangent.pair = touch.pair;
+    tangent.share = touch.share;
+    tangent.products.clear();
     Mat3 by_position, by_velocity;
     contact_force(weighted(law, touch.weight), touch.input, by_position, by_velocity);
-    const bool turns = touch.l > k_thin * pair.L;
-    const Mat3 turning =
-        turns
-            ? Mat3(touch.out.normal / touch.l * (Mat3::Identity() - touch.normal * touch.normal.transpose()))
-            : Mat3(Mat3::Zero());
-    const Mat3 local = -by_position - velocity_factor * by_velocity - turning;
-    for (int k = 0; k < 4; ++k)
-      for (int m = 0; m < 4; ++m)
-        stiffness.block<3, 3>(3 * k, 3 * m) = touch.share[k] * touch.share[m] * local;
-    if (turns) stiffness += touch.out.normal / touch.l * sliding(touch);
-    add(touch.pair, stiffness);
-  }
-  for (const MemberBlend& blend : contacts.blends) {
-    Eigen::Matrix<double, 12, 1> sine, surplus;
-    for (int k = 0; k < 4; ++k) {
-      sine.segment<3>(3 * k) = blend.by_sine[k];
-      surplus.segment<3>(3 * k) = blend.by_surplus[k];
+    tangent.local = -by_position - velocity_factor * by_velocity;
+    const Mat3 across = Mat3::Identity() - touch.normal * touch.normal.transpose();
+    tangent.stick.setZero();
+    if (traits(law).sticks && !slips(law, touch)) tangent.stick = across * tangent.local * across;
+    if (touch.l > k_thin * pairs[touch.pair].L) {
+      tangent.local -= touch.out.normal / touch.l * across;
+      add_sliding(touch, touch.out.normal / touch.l, tangent.products);
     }
-    stiffness = blend.curvature * blend.surplus * sine * sine.transpose() +
-                blend.slope * (sine * surplus.transpose() + surplus * sine.transpose());
-    add(blend.pair, stiffness);
+    f(tangent);
+  }
+  tangent.share.fill(0);
+  tangent.local.setZero();
+  tangent.stick.setZero();
+  for (const MemberBlend& blend : contacts.blends) {
+    tangent.pair = blend.pair;
+    tangent.products.resize(2);
+    for (int k = 0; k < 4; ++k) {
+      tangent.products[0].left[k] = blend.by_sine[k];
+      tangent.products[0].right[k] =
+          blend.curvature * blend.surplus * blend.by_sine[k] + blend.slope * blend.by_surplus[k];
+      tangent.products[1].left[k] = blend.by_surplus[k];
+      tangent.products[1].right[k] = blend.slope * blend.by_sine[k];
+    }
+    f(tangent);
   }
 }
 
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                  double velocity_factor, BlockLu& lu) {
-  each_tangent(law, contacts, pairs, velocity_factor, [&](int which, const PairTangent& part) {
-    const MemberPair& pair = pairs[which];
+  each_tangent(law, contacts, pairs, velocity_factor, [&](const PairTangent& tangent) {
+    const MemberPair& pair = pairs[tangent.pair];
     Mat6 block = Mat6::Zero();
     for (int k = 0; k < 4; ++k)
       for (int m = 0; m < 4; ++m) {
-        block.topLeftCorner<3, 3>() = part.block<3, 3>(3 * k, 3 * m);
+        block.topLeftCorner<3, 3>() = tangent.share[k] * tangent.share[m] * tangent.local;
+        for (const PairTangent::Product& product : tangent.products)
+          block.topLeftCorner<3, 3>() += product.left[k] * product.right[m].transpose();
         lu.add(pair.node[k], pair.node[m], block);
       }
   });
+}
+
+void keep_sticks(const MemberContacts& contacts, std::span<MemberPair> pairs) {
+  for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
+  for (const MemberTouch& touch : contacts.touches) pairs[touch.pair].stick[touch.place] = touch.out.stick;
 }
 
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

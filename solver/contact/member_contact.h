@@ -21,6 +21,9 @@ namespace topple {
 
 inline constexpr double k_parallel = 1e-2;  ///< sin^2 of the angle below which kappa < 1
 
+/// A vector at each end of two elements: of a, then of b.
+using PairVector = std::array<Vec3, 4>;
+
 /// A stick spring between members: tangential travel since sticking began, m. Part of State.
 struct MemberStick {
   ElementPair elements;
@@ -57,9 +60,9 @@ struct MemberTouch {
 ///   -kappa' (U - (sum of U at the ends)/4) d(sin^2)/dx
 struct MemberBlend {
   int pair;
-  double slope, curvature;                  ///< kappa' and kappa''
-  double surplus;                           ///< J, the bracket
-  std::array<Vec3, 4> by_sine, by_surplus;  ///< derivatives of sin^2 and of the bracket by the nodes
+  double slope, curvature;         ///< kappa' and kappa''
+  double surplus;                  ///< J, the bracket
+  PairVector by_sine, by_surplus;  ///< derivatives of sin^2 and of the bracket by the nodes
 };
 
 /// All that touches between members at some instant.
@@ -85,16 +88,28 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
 
-/// Of the four ends of a pair, N/m.
-using PairTangent = Eigen::Matrix<double, 12, 12>;
-/// -d(force)/d(position) - velocity_factor d(force)/d(velocity), the factor in 1/s, without the second
-/// derivatives of sin^2 and, below l = 0.02 L, without the turning of the normal: add(pair, part) of each
-/// part.
+/// -d(force)/d(position) - velocity_factor d(force)/d(velocity) of one place or blend, N/m: between the ends
+/// k and m of the pair  share_k share_m local + sum of left_k right_m^T.
+struct PairTangent {
+  struct Product {
+    PairVector left, right;
+  };
+  int pair;
+  std::array<double, 4> share;
+  Mat3 local;
+  Mat3 stick;  ///< part of `local` that is the stick spring with its damping; zero when it slips
+  std::vector<Product> products;
+};
+/// Calls f with the tangent of everything that touches, the factor in 1/s, without the second derivatives of
+/// sin^2 and, below l = 0.02 L, without the turning of the normal.
 void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                  double velocity_factor, const std::function<void(int, const PairTangent&)>& add);
-/// Adds it to `lu`, whose nodes are those of `pairs`.
+                  double velocity_factor, const std::function<void(const PairTangent&)>& f);
+/// Adds them to `lu`, whose nodes are those of `pairs`.
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                  double velocity_factor, BlockLu& lu);
+
+/// What touches leaves its stick springs in `pairs`; those of other places become zero.
+void keep_sticks(const MemberContacts& contacts, std::span<MemberPair> pairs);
 
 /// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

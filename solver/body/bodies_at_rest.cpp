@@ -1,0 +1,259 @@
+#include "solver/body/bodies_at_rest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "solver/contact/contact_law.h"
+#include "solver/frame/find_rest.h"
+#include "solver/math/rotation.h"
+
+namespace topple {
+namespace {
+
+Parameters without_ramp(Parameters parameters) {
+  parameters.contact_ramp = {};
+  return parameters;
+}
+
+}  // namespace
+
+// Of find_rest, on the normal forces of Eq. 2 with stick springs. Unknowns of a body stand in groups of six:
+// rigid motion, then modes, filled up with ones that do nothing.
+class RestOfBodies {
+ public:
+  RestOfBodies(std::span<const ModelBody> bodies, MemberCoupling* coupling, const Parameters& parameters,
+               State& state)
+      : size(0),
+        balanced(0),
+        bodies_(bodies),
+        coupling_(coupling),
+        still_(without_ramp(at_rest(parameters))),
+        now_(still_, 0),
+        state_(state),
+        buffers_(bodies.size()),
+        matrix_(0, {}) {
+    const double rounding = 8 * std::numeric_limits<double>::epsilon(),
+                 stiffest = now_.law.alpha * std::max(now_.law.q, k_stick_stiffness);
+    std::vector<std::pair<int, int>> coupled;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      ReducedBody& body = *bodies[b].body;
+      BodyState& s = state.bodies[bodies[b].index];
+      leases_.emplace_back(body.contacts_, buffers_[b]);
+      s.velocity.setZero();
+      s.angular_velocity.setZero();
+      s.rate.setZero();
+      origin_.push_back(s.position);
+      size = std::max(size, body.reach_);
+      const double far = rounding * (body.reach_ + s.position.norm());
+      // rounding of the coordinates moves the forces of the springs
+      balanced += k_balance * body.mass_ * parameters.gravity.norm();
+      balanced += far * stiffest * body.contacts_.pairs() / body.contacts_.least_length();
+      balanced += far * body.anchors_.greatest_stiffness();
+      for (int i = 0; i < MemberCoupling::groups(body.modes(s)); ++i)
+        for (int j = 0; j < i; ++j) coupled.emplace_back(rows_ + i, rows_ + j);
+      row_.push_back(rows_);
+      rows_ += MemberCoupling::groups(body.modes(s));
+    }
+    before_.resize(bodies.size());
+    if (coupling) {
+      for (const MemberPair& pair : coupling->pairs()) {
+        const auto [a, b] = coupling->bodies_of(pair);
+        balanced += rounding * (size + origin_[std::max(a, b)].norm()) * stiffest / pair.L;
+        for (int i = 0; a >= 0 && b >= 0 && i < groups(a); ++i)
+          for (int j = 0; j < groups(b); ++j) coupled.emplace_back(row_[a] + i, row_[b] + j);
+      }
+    }
+    matrix_ = BlockLu(rows_, coupled);
+    load_.resize(6 * rows_);
+  }
+
+  double unbalance() {
+    parts_.clear();
+    std::ranges::fill(load_, 0.);
+    place();
+    const std::vector<BodyVelocity>* loads = nullptr;
+    if (coupling_) {
+      find_member_contacts(now_.law, coupling_->pairs(), coupling_->position(), coupling_->velocity(),
+                           coupling_->position(), touching_);
+      loads = &coupling_->loads(touching_, coupling_->pairs());
+    }
+    double left = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      BodyState& s = at(b);
+      bodies_[b].body->balance(still_, now_, s, state_.stick);
+      if (loads) add_load((*loads)[b], s);
+      left = std::max(left, add_body(b));
+    }
+    if (coupling_)
+      coupling_->each_block(now_.law, touching_, coupling_->pairs(), 0,
+                            [&](int a, int i, int b, int j, const Mat6& block, const Mat6&) {
+                              parts_.push_back({row_[a] + i, row_[b] + j, block});
+                            });
+    return left;
+  }
+
+  // A balance that tips over by itself: Newton finds it as readily as a stable one.
+  Balance look() {
+    matrix_.set_zero();
+    for (const Part& part : parts_) {
+      matrix_.add(part.row, part.column, Mat6(part.stiffness / 2));
+      matrix_.add(part.column, part.row, Mat6(part.stiffness.transpose() / 2));
+    }
+    add_inertia(1e-3 * still_.gravity.norm() / size);
+    return matrix_.factor(true) < 0 && matrix_.negative() == 0 ? Balance::rest : Balance::tips_over;
+  }
+
+  std::optional<RestStep> step(double sigma) {
+    matrix_.set_zero();
+    for (const Part& part : parts_) matrix_.add(part.row, part.column, part.stiffness);
+    add_inertia(1 / (sigma * sigma));
+    if (matrix_.factor() >= 0) return std::nullopt;
+    matrix_.solve(load_.data());
+    RestStep out{0, 0};
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const double* const x = &load_[6 * row_[b]];
+      const Vec3 shift(x), turn(x + 3);
+      BodyState& s = at(b);
+      before_[b] = s;
+      s.position += shift;
+      s.rotation = (exp_quaternion(turn) * s.rotation).normalized();
+      for (int k = 0; k < modes(b); ++k) s.amplitude[k] += x[6 + k];
+      const double length = shift.norm() + bodies_[b].body->reach_ * turn.norm(),
+                   travel = (s.position - origin_[b]).norm() + length;
+      out.length = std::max(out.length, length);
+      if (travel <= out.furthest) continue;
+      out.furthest = travel;
+      furthest = bodies_[b].index;
+    }
+    if (!std::isfinite(out.furthest)) return std::nullopt;
+    return out;
+  }
+
+  void follow() {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      ReducedBody& body = *bodies_[b].body;
+      const BodyState& s = at(b);
+      const PackMat3 r0 = rotation_matrix(packed(before_[b].rotation)),
+                     r1 = rotation_matrix(packed(s.rotation));
+      body.contacts_.begin_substep();
+      body.contacts_.find(s, r1, state_.stick);
+      body.contacts_.follow(before_[b], r0, s, r1);
+      body.respond_at<ContactSums::none>(now_.law, s);
+      body.contacts_.keep_sticks(now_.law, state_.stick);
+      body.found_.reset();
+    }
+    if (!coupling_) return;
+    const std::vector<Vec3> start = coupling_->position();
+    place();
+    find_member_contacts(now_.law, coupling_->pairs(), coupling_->position(), coupling_->velocity(), start,
+                         touching_);
+    keep_sticks(touching_, coupling_->pairs());
+  }
+
+  double size;
+  double balanced;
+  int furthest = -1;  // body that moved furthest, index into the model
+
+ private:
+  struct Part {
+    int row, column;
+    Mat6 stiffness;
+  };
+
+  BodyState& at(std::size_t b) { return state_.bodies[bodies_[b].index]; }
+  int modes(std::size_t b) { return bodies_[b].body->modes(at(b)); }
+  int groups(int b) { return MemberCoupling::groups(modes(b)); }
+  void place() {
+    for (std::size_t b = 0; coupling_ && b < bodies_.size(); ++b)
+      coupling_->place(static_cast<int>(b), at(b));
+  }
+
+  // A body's own forces and stiffness; its greatest unbalanced force, N.
+  double add_body(std::size_t which) {
+    ReducedBody& body = *bodies_[which].body;
+    const BodyState& s = at(which);
+    const int m = modes(which);
+    double* const load = &load_[6 * row_[which]];
+    Eigen::Map<Vec6>{load} << s.force, s.moment;
+    const int n = 6 * MemberCoupling::groups(m);
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+    double left = std::max(s.force.cwiseAbs().maxCoeff(), s.moment.cwiseAbs().maxCoeff() / size);
+    for (int k = 0; k < m; ++k) {
+      const double spring = body.basis_->frequency[k] * body.basis_->frequency[k];
+      load[6 + k] = s.load[k] - spring * s.amplitude[k];
+      stiffness(6 + k, 6 + k) = spring;
+      left = std::max(left, std::abs(load[6 + k]) * std::sqrt(body.mass_));
+    }
+    add_contacts(body, s, m, stiffness);
+    Eigen::MatrixXd of_anchors = Eigen::MatrixXd::Zero(6 + m, 6 + m);
+    body.anchors_.add_stiffness(s, m, of_anchors);
+    stiffness.topLeftCorner(6 + m, 6 + m) += of_anchors;
+    for (int i = 0; i < n / 6; ++i)
+      for (int j = 0; j < n / 6; ++j)
+        parts_.push_back({row_[which] + i, row_[which] + j, stiffness.block<6, 6>(6 * i, 6 * j)});
+    return left;
+  }
+
+  void add_contacts(ReducedBody& body, const BodyState& s, int m, Eigen::MatrixXd& stiffness) {
+    constexpr double k_gamma_dt = 1;  // s, beside which damping is nothing
+    BodyContacts& contacts = body.contacts_;
+    const Mat3 r = s.rotation.toRotationMatrix();
+    contacts.evaluate_forces<true>(now_.law, {{0, 0, 0}, {0, 0, 0}, Amplitudes::Zero()}, k_gamma_dt);
+    contacts.each([&](const BodyContacts::Touch& touch, int which, int, std::size_t) {
+      const Mat3 slope = contacts.slope(touch, which);
+      const Vec3 arm = lane(touch.arm, which);
+      Eigen::MatrixXd j(3, 6 + m);
+      j.leftCols<3>().setIdentity();
+      j.middleCols<3>(3) = -skew(arm);
+      for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = r * contacts.shape(touch, which, k);
+      stiffness.topLeftCorner(6 + m, 6 + m) -= j.transpose() * slope * j / k_gamma_dt;
+      stiffness.block<3, 3>(3, 3) -=
+          skew(contacts.force(touch, which)) * skew(arm);  // the arm turns with the body
+    });
+  }
+
+  // Times `factor`, 1/s^2.
+  void add_inertia(double factor) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ReducedBody& body = *bodies_[b].body;
+      const Mat3 r = at(b).rotation.toRotationMatrix();
+      Mat6 block = Mat6::Zero();
+      block.topLeftCorner<3, 3>() = factor * body.mass_ * Mat3::Identity();
+      block.bottomRightCorner<3, 3>() = factor * (r * body.model_.bodies[body.body_].inertia * r.transpose());
+      matrix_.add(row_[b], row_[b], block);
+      for (int i = 1; i < groups(static_cast<int>(b)); ++i)
+        matrix_.add(row_[b] + i, row_[b] + i, Mat6(factor * Mat6::Identity()));
+    }
+  }
+
+  std::span<const ModelBody> bodies_;
+  MemberCoupling* const coupling_;
+  const Parameters still_;
+  const StepInputs now_;
+  State& state_;
+  std::vector<std::vector<BodyContacts::TouchBuffer>> buffers_;  // per body, as all here but parts_
+  std::deque<BodyContacts::ScratchLease> leases_;
+  std::vector<Vec3> origin_;
+  std::vector<BodyState> before_;
+  std::vector<int> row_;  // first group of unknowns
+  int rows_ = 0;
+  MemberContacts touching_;
+  std::vector<Part> parts_;  // of the stiffness
+  std::vector<double> load_;
+  BlockLu matrix_;
+};
+
+StepStatus settle_bodies(std::span<const ModelBody> bodies, MemberCoupling* coupling,
+                         const Parameters& parameters, State& state) {
+  RestOfBodies rest(bodies, coupling, parameters, state);
+  StepStatus status;
+  if (find_rest(rest) == Balance::rest) return status;
+  status.kind = StepStatus::Kind::not_settled;
+  status.time = state.time;
+  status.body = rest.furthest >= 0 ? rest.furthest : bodies.front().index;
+  return status;
+}
+
+}  // namespace topple

@@ -1,0 +1,289 @@
+#include "solver/body/coupled_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "solver/math/rotation.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_resolved = 0.3;    // rad, of the bounce of two members, in the first substep after a touch
+constexpr double k_passed_error = 8;  // counts as this error: members moved too far to see them meet
+
+}  // namespace
+
+CoupledBodies::CoupledBodies(std::span<const ModelBody> all, std::vector<int> which, MemberCoupling& coupling)
+    : which_(std::move(which)),
+      coupling_(coupling),
+      place_(all.size(), -1),
+      buffers_(which_.size()),
+      substeps_(which_.size()),
+      matrix_(0, {}),
+      sticks_(0, {}) {
+  for (const int body : which_) {
+    place_[body] = static_cast<int>(bodies_.size());
+    bodies_.push_back(all[body]);
+  }
+}
+
+// Rows and columns of the matrices, for the levels that the bodies are on.
+void CoupledBodies::shape_matrices() {
+  std::vector<int> row{0};
+  std::vector<std::pair<int, int>> coupled;
+  for (const int body : which_) row.push_back(row.back() + MemberCoupling::groups(coupling_.modes(body)));
+  const auto couple = [&](int a, int b) {
+    for (int i = row[a]; i < row[a + 1]; ++i)
+      for (int j = row[b]; j < row[b + 1]; ++j)
+        if (i != j) coupled.emplace_back(std::max(i, j), std::min(i, j));
+  };
+  for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) couple(b, b);
+  for (const MemberPair& pair : pairs_) {
+    const auto [a, b] = coupling_.bodies_of(pair);
+    if (a >= 0 && b >= 0) couple(place_[a], place_[b]);
+  }
+  std::ranges::sort(coupled);
+  coupled.erase(std::unique(coupled.begin(), coupled.end()), coupled.end());
+  side_.assign(6 * row.back(), 0);
+  if (row == row_ && coupled == coupled_) return;
+  row_ = std::move(row);
+  coupled_ = std::move(coupled);
+  matrix_ = BlockLu(row_.back(), coupled_);
+  sticks_ = BlockLu(row_.back(), coupled_);
+}
+
+double CoupledBodies::first(const ContactLaw& law) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ModelBody& b : bodies_) least = std::min(least, b.body->first_substep(law));
+  for (const MemberPair& pair : pairs_)
+    least = std::min(least, k_resolved * std::sqrt(pair.mass * pair.L / (law.alpha * std::max(1., law.q))));
+  return least;
+}
+
+// The bodies have been placed.
+double CoupledBodies::next_landing(double within) {
+  double soonest = within;
+  for (const ModelBody& b : bodies_)
+    soonest = std::min(soonest, b.body->next_landing(next_->bodies[b.index], soonest));
+  soonest = std::min(soonest, coupling_.next_touch(pairs_, soonest));
+  return soonest < within ? soonest : std::numeric_limits<double>::infinity();
+}
+
+void CoupledBodies::find(const ContactLaw& law) {
+  find_member_contacts(law, pairs_, coupling_.position(), coupling_.velocity(), start_position_, now_);
+}
+
+// f(substep, six unknowns of it, their place in side_); then those of the modes.
+template <class F>
+void CoupledBodies::each_row(F f) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) f(*substeps_[b], &side_[6 * row_[b]]);
+}
+
+namespace {
+
+void put(const BodyVelocity& from, int modes, double* to) {
+  const PackVec3 &x = from.linear, &y = from.angular;
+  to[0] = x.x, to[1] = x.y, to[2] = x.z, to[3] = y.x, to[4] = y.y, to[5] = y.z;
+  for (int k = 0; k < modes; ++k) to[6 + k] = from.rate[k];
+  for (int k = modes; k % 6 != 0; ++k) to[6 + k] = 0;
+}
+
+BodyVelocity taken(const double* from, int modes) {
+  BodyVelocity to;
+  to.linear = {from[0], from[1], from[2]};
+  to.angular = {from[3], from[4], from[5]};
+  for (int k = 0; k < modes; ++k) to.rate[k] = from[6 + k];
+  return to;
+}
+
+// Group (i, j) of a body's own matrix; a mode that is not there stays as it is.
+Mat6 group(const ModeMatrix& matrix, int modes, int i, int j) {
+  Mat6 block = Mat6::Zero();
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) {
+      const int row = 6 * i + r, column = 6 * j + c;
+      if (row < 6 + modes && column < 6 + modes)
+        block(r, c) = matrix[row][column];
+      else if (row == column)
+        block(r, c) = 1;
+    }
+  return block;
+}
+
+}  // namespace
+
+// Newton's matrices where the bodies are.
+void CoupledBodies::factor(const SubstepSpan& span, const ContactLaw& law) {
+  matrix_.set_zero();
+  sticks_.set_zero();
+  ModeMatrix own;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const ImplicitSubstep& substep = *substeps_[b];
+    const int modes = substep.modes(), groups = MemberCoupling::groups(modes);
+    const auto add = [&](BlockLu& lu) {
+      for (int i = 0; i < groups; ++i)
+        for (int j = 0; j < groups; ++j) lu.add(row_[b] + i, row_[b] + j, group(own, modes, i, j));
+    };
+    substep.fill(own);
+    add(matrix_);
+    substep.fill_with_sticks(own);
+    add(sticks_);
+  }
+  const double square = span.gamma_dt * span.gamma_dt;
+  coupling_.each_block(law, now_, pairs_, 1 / span.gamma_dt,
+                       [&](int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick) {
+                         const int row = row_[place_[a]] + i, column = row_[place_[b]] + j;
+                         matrix_.add(row, column, Mat6(square * block));
+                         sticks_.add(row, column, Mat6(square * of_stick));
+                       });
+}
+
+// Newton for the velocities of a stage.
+bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law, StageNewton& newton) {
+  newton.begin_stage();
+  for (int iteration = 0; iteration < k_newton_iterations; ++iteration) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      ImplicitSubstep& substep = *substeps_[b];
+      substep.reach(newton.fresh);
+      coupling_.place(which_[b], substep.pose(), substep.rotation(), substep.velocity());
+    }
+    find(law);
+    const std::vector<BodyVelocity>& loads = coupling_.loads(now_, pairs_);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) substeps_[b]->add(loads[which_[b]]);
+    each_row(
+        [](const ImplicitSubstep& substep, double* to) { put(substep.residual(), substep.modes(), to); });
+    if (newton.fresh) {
+      factor(span, law);
+      if (matrix_.factor() >= 0 || sticks_.factor() >= 0) return false;
+    }
+    matrix_.solve(side_.data());
+    double size = 0, over = 0;
+    each_row([&](ImplicitSubstep& substep, const double* from) {
+      const double own = substep.correct(taken(from, substep.modes()));
+      size = std::max(size, own);
+      over = std::max(over, own / substep.scale());
+      if (!std::isfinite(own)) size = over = own;
+    });
+    const double rate = newton.rate(size, law);
+    if (over * rate <= StageNewton::k_error) {
+      newton.fresh = false;
+      return true;
+    }
+    if (!std::isfinite(size)) return false;
+    newton.go_on(size, rate, iteration);
+  }
+  return false;
+}
+
+// What normal damping and friction between members take at the end of a stage.
+CoupledBodies::Power CoupledBodies::power() const {
+  Power power{0, 0};
+  for (const MemberTouch& touch : now_.touches) {
+    const Vec3& v = touch.input.velocity;
+    power.damping -= (touch.out.normal - touch.out.conservative) * touch.normal.dot(v);
+    power.friction -= touch.out.tangential.dot(v);
+  }
+  return power;
+}
+
+// Work between members; what the bodies book themselves, and what the law's change did to springs.
+void CoupledBodies::book(const SubstepSpan& span, const Power& first, const Power& second) {
+  booked_->normal_damping += span.rest * first.damping + span.gamma_dt * second.damping;
+  booked_->friction += span.rest * first.friction + span.gamma_dt * second.friction;
+  for (const MemberTouch& touch : start_.touches) booked_->friction += touch.out.stick_energy;
+  for (const MemberTouch& touch : now_.touches) booked_->friction -= touch.out.stick_energy;
+  const ContactLaw &before = span.start.law, &after = span.end.law;
+  if (before.alpha == after.alpha && before.q == after.q) return;
+  LawChange change(before, after, *booked_);
+  for (const MemberTouch& touch : start_.touches)
+    change.book_start(touch.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+  for (const MemberTouch& touch : now_.touches)
+    change.book_end(touch.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+}
+
+ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    substeps_[b].emplace(*bodies_[b].body, span, next_->bodies[bodies_[b].index], next_->stick);
+  std::swap(start_, now_);
+  const auto give_up = [&](double error) {
+    each_row([](ImplicitSubstep& substep, double*) { substep.give_up(); });
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      coupling_.place(which_[b], next_->bodies[bodies_[b].index]);
+    std::swap(start_, now_);
+    return ImplicitOutcome::given_up(error);
+  };
+  StageNewton newton;
+  Power powers[2];
+  const PreparedLaw* const laws[2] = {&span.middle.law, &span.end.law};
+  for (int stage = 0; stage < 2; ++stage) {
+    if (!solve_stage(span, *laws[stage], newton)) return give_up(ImplicitOutcome::k_no_stage);
+    powers[stage] = power();
+    each_row([](ImplicitSubstep& substep, double*) { substep.end_stage(); });
+  }
+  each_row([](const ImplicitSubstep& substep, double* to) { put(substep.error(), substep.modes(), to); });
+  sticks_.solve(side_.data());
+  double error = 0;
+  each_row([&](const ImplicitSubstep& substep, const double* from) {
+    const double own = substep.over_allowed(taken(from, substep.modes()));
+    if (!(own <= error)) error = own;
+  });
+  if (!(error <= 1)) return give_up(error);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    substeps_[b]->arrive();
+    coupling_.place(which_[b], substeps_[b]->pose());
+  }
+  find(span.end.law);
+  if (passed_unseen(now_, pairs_, start_position_, coupling_.position()) >= 0) return give_up(k_passed_error);
+  each_row([&](ImplicitSubstep& substep, double*) { substep.finish(*booked_); });
+  book(span, powers[0], powers[1]);
+  // springs that slipped are shorter now: the next substep starts from the forces with these
+  keep_sticks(now_, pairs_);
+  start_position_ = coupling_.position();
+  for (MemberPair& pair : pairs_)
+    for (int k = 0; k < 4; ++k) pair.start[k] = start_position_[pair.node[k]];
+  find(span.end.law);
+  const std::vector<BodyVelocity>& loads = coupling_.loads(now_, pairs_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyState& s = next_->bodies[bodies_[b].index];
+    add_load(loads[which_[b]], s);
+    coupling_.place(which_[b], s);
+  }
+  return {SubstepEnd::reached, error};
+}
+
+// Of advance_by_substeps.
+struct AllTogether {
+  CoupledBodies& all;
+
+  double first(const ContactLaw& law) const { return all.first(law); }
+  double next_landing(double within) { return all.next_landing(within); }
+  double wanted() const {
+    double least = 0;
+    for (const ModelBody& b : all.bodies_)
+      if (const double own = all.next_->bodies[b.index].substep; own > 0 && !(least > 0 && least < own))
+        least = own;
+    return least;
+  }
+  void want(double size) {
+    for (const ModelBody& b : all.bodies_) all.next_->bodies[b.index].substep = size;
+  }
+  ImplicitOutcome substep(const SubstepSpan& span) { return all.substep(span); }
+};
+
+StepStatus::Kind CoupledBodies::advance(const StepSpan& span, std::vector<MemberPair> pairs, State& next,
+                                        StepEnergy& booked) {
+  pairs_ = std::move(pairs);
+  next_ = &next;
+  booked_ = &booked;
+  std::deque<BodyContacts::ScratchLease> leases;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    leases.emplace_back(bodies_[b].body->contacts(), buffers_[b]);
+  shape_matrices();
+  start_position_ = coupling_.position();
+  find(span.start.law);
+  AllTogether system{*this};
+  return advance_by_substeps(system, span.parameters, span.start, span.end, span.h);
+}
+
+}  // namespace topple

@@ -1,0 +1,64 @@
+// Rigid and elastic bodies of which each is near another, or near a floor or wall made of members.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solver/body/coupled_bodies.h"
+#include "solver/body/part.h"
+#include "solver/state/member_sticks.h"
+
+namespace topple {
+
+/// Bodies that candidate pairs connect. Those that may touch another within a step are advanced together, the
+/// others each alone.
+class IslandPart final : public Part {
+ public:
+  /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs`: as
+  /// MemberCoupling's.
+  IslandPart(const Model& model, std::vector<ModelBody> bodies, std::span<const ElementPair> candidate_pairs,
+             std::vector<SectionForces>& sections);
+
+  bool has(const std::vector<char>& marked) const override;
+  StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
+  BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
+                     State& state) override;
+  void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
+  double time_limit(const Parameters& parameters, const State& state) override;
+  void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
+  HardestContact hardest_contact(const HardestContact& hardest) override;
+  void take_sticks(const State& state) override { sticks_.take(state); }
+  void give_sticks(State& state) override { sticks_.give(coupling_.pairs(), state); }
+
+ private:
+  // Of a step, to take it again.
+  struct Start {
+    std::vector<BodyState> bodies;
+    std::vector<Vec3> stick;     // those of the bodies, one after the other
+    std::vector<Vec3> position;  // of the nodes
+    std::vector<double> gap;     // m, per pair
+    std::vector<char> close;     // per pair: it may close
+  };
+
+  void place(const State& state);
+  void find(const StepInputs& now, const State& state);
+  void begin(const StepSpan& span, const State& next);
+  void begin_again(State& next) const;
+  void advance_once(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome);
+  bool missed(const State& next);
+  CoupledBodies& coupled(std::vector<int> which);
+  template <class AnyState, class F>
+  void each_stick(AnyState& state, F f) const;
+
+  const Model& model_;
+  const std::vector<ModelBody> bodies_;
+  MemberCoupling coupling_;
+  std::vector<SectionForces>& sections_;
+  MemberSticks sticks_;
+  std::vector<std::unique_ptr<CoupledBodies>> coupled_;  // sets that were advanced together
+  Start start_;
+  MemberContacts now_;  // of the newest step or balance
+};
+
+}  // namespace topple

@@ -1,0 +1,202 @@
+#include "solver/body/member_coupling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "solver/body/elastic_basis.h"
+#include "solver/math/rotation.h"
+
+namespace topple {
+
+MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
+                               std::span<const ElementPair> candidate_pairs)
+    : model_(model),
+      bodies_(std::move(bodies)),
+      nodes_of_(bodies_.size()),
+      modes_(bodies_.size(), 0),
+      loads_(bodies_.size()),
+      acceleration_(bodies_.size()) {
+  for (const ElementPair& elements : candidate_pairs) {
+    MemberPair pair;
+    pair.elements = elements;
+    pair.L = contact_length(model, elements);
+    double inverse = 0;
+    int k = 0;
+    for (const int e : {elements.a, elements.b}) {
+      for (const int node : model.elements[e].node) pair.node[k++] = number_of(node);
+      const Body& body = model.bodies[model.node_body[model.elements[e].node[0]]];
+      if (nodes_[pair.node[k - 1]].body >= 0) inverse += std::max(1, body.contact_point_count) / body.mass;
+    }
+    pair.mass = 1 / inverse;
+    pair.start.fill(Vec3::Zero());
+    pair.stick.fill(Vec3::Zero());
+    pairs_.push_back(pair);
+  }
+  for (auto* array : {&position_, &velocity_, &arm_, &force_}) array->assign(nodes_.size(), Vec3::Zero());
+  shape_.assign(nodes_.size() * k_modes, Vec3::Zero());
+}
+
+int MemberCoupling::number_of(int node) {
+  const auto known = std::ranges::find(nodes_, node, &Node::node);
+  if (known != nodes_.end()) return static_cast<int>(known - nodes_.begin());
+  const int index = model_.node_body[node];
+  const auto own = std::ranges::find(bodies_, index);
+  const int number = static_cast<int>(nodes_.size());
+  if (own == bodies_.end()) {
+    nodes_.push_back({-1, node, Vec3::Zero()});
+  } else {
+    const int body = static_cast<int>(own - bodies_.begin());
+    nodes_.push_back({body, node, model_.node_position[node] - model_.bodies[index].centre_of_gravity});
+    nodes_of_[body].push_back(number);
+  }
+  return number;
+}
+
+void MemberCoupling::place_held(const State& state) {
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    if (nodes_[k].body < 0) position_[k] = state.position[nodes_[k].node];
+}
+
+Vec3 MemberCoupling::shape(const Node& node, int mode) const {
+  const Body& body = model_.bodies[bodies_[node.body]];
+  return body.elastic->shape.block<3, 1>(6 * (node.node - body.first_node), mode);
+}
+
+void MemberCoupling::place(int body, const BodyState& pose, const PackMat3& r, const BodyVelocity& u) {
+  const Vec3 linear = unpacked(u.linear), angular = unpacked(u.angular);
+  const bool bends = traits(pose.level).has_modes;
+  modes_[body] = bends ? model_.bodies[bodies_[body]].elastic->modes : 0;
+  for (const int k : nodes_of_[body]) {
+    const Node& node = nodes_[k];
+    Vec3 arm = unpacked(r * packed(node.place)), relative = Vec3::Zero();
+    for (int mode = 0; mode < modes_[body]; ++mode) {
+      Vec3& turned = shape_[k * k_modes + mode] = unpacked(r * packed(shape(node, mode)));
+      arm += pose.amplitude[mode] * turned;
+      relative += u.rate[mode] * turned;
+    }
+    arm_[k] = arm;
+    position_[k] = pose.position + arm;
+    velocity_[k] = linear + angular.cross(arm) + relative;
+  }
+}
+
+void MemberCoupling::place(int body, const BodyState& s) {
+  const PackQuaternion<double> q = packed(s.rotation);
+  place(body, s, rotation_matrix(q), {packed(s.velocity), rotate(q, packed(s.angular_velocity)), s.rate});
+  const Body& own = model_.bodies[bodies_[body]];
+  const Vec3& omega = s.angular_velocity;
+  const Vec3 turning = s.rotation.conjugate() * s.moment - omega.cross(own.inertia * omega);
+  acceleration_[body] = {s.force / own.mass, s.rotation * own.inertia.inverse() * turning,
+                         s.rotation * omega};
+}
+
+Vec3 MemberCoupling::acceleration(int k) const {
+  if (nodes_[k].body < 0) return Vec3::Zero();
+  const auto& [linear, angular, spin] = acceleration_[nodes_[k].body];
+  return linear + angular.cross(arm_[k]) + spin.cross(spin.cross(arm_[k]));
+}
+
+double MemberCoupling::gap(const MemberPair& pair) const {
+  const auto& x = position_;
+  const auto& n = pair.node;
+  return nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]).between.norm() - pair.L;
+}
+
+double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double within) const {
+  double soonest = within;
+  const auto& x = position_;
+  for (const MemberPair& pair : pairs) {
+    const auto& n = pair.node;
+    const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
+    const double l = at.between.norm(), gap = l - pair.L;
+    if (!(gap > 0)) continue;
+    const auto closing = [&](const auto& of) {
+      return -at.between.dot((1 - at.s) * of(n[0]) + at.s * of(n[1]) - (1 - at.t) * of(n[2]) -
+                             at.t * of(n[3])) /
+             l;
+    };
+    // gap - v t - a t^2/2 = 0, the first t > 0
+    const double v = closing([&](int k) { return velocity_[k]; }),
+                 a = closing([&](int k) { return acceleration(k); });
+    const double root = v * v + 2 * a * gap, down = v + std::sqrt(std::max(root, 0.));
+    if (root >= 0 && down > 0) soonest = std::min(soonest, 2 * gap / down);
+  }
+  return soonest < within ? soonest : std::numeric_limits<double>::infinity();
+}
+
+const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& contacts,
+                                                       std::span<const MemberPair> pairs) {
+  for (BodyVelocity& load : loads_) {
+    load.linear = load.angular = {0, 0, 0};
+    load.rate.setZero();
+  }
+  const auto push = [&](int k, const Vec3& force) {
+    const int body = nodes_[k].body;
+    if (body < 0) return;
+    BodyVelocity& load = loads_[body];
+    load.linear = load.linear + packed(force);
+    load.angular = load.angular + packed(Vec3(arm_[k].cross(force)));
+    for (int mode = 0; mode < modes_[body]; ++mode) load.rate[mode] += shape_[k * k_modes + mode].dot(force);
+  };
+  for (const MemberTouch& touch : contacts.touches)
+    for (int k = 0; k < 4; ++k) push(pairs[touch.pair].node[k], touch.share[k] * touch.out.force);
+  for (const MemberBlend& blend : contacts.blends)
+    for (int k = 0; k < 4; ++k)
+      push(pairs[blend.pair].node[k], -blend.slope * blend.surplus * blend.by_sine[k]);
+  return loads_;
+}
+
+void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& contacts,
+                                std::span<const MemberPair> pairs, double velocity_factor,
+                                const AddBlock& add) const {
+  // Of a vector at the ends of element `side`, by the unknowns of a group of its body.
+  const auto columns_at = [&](int node, int group) {
+    Columns j = Columns::Zero();
+    if (group == 0) {
+      j.leftCols<3>().setIdentity();
+      j.rightCols<3>() = -skew(arm_[node]);
+    } else {
+      const int first = 6 * (group - 1), modes = modes_[nodes_[node].body];
+      for (int k = 0; k < 6 && first + k < modes; ++k) j.col(k) = shape_[node * k_modes + first + k];
+    }
+    return j;
+  };
+  each_tangent(law, contacts, pairs, velocity_factor, [&](const PairTangent& tangent) {
+    const MemberPair& pair = pairs[tangent.pair];
+    const std::array<int, 2> bodies = bodies_of(pair);
+    std::array<std::array<Columns, k_most_groups>, 2> at_touch;
+    std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; bodies[side] >= 0 && i < groups(modes_[bodies[side]]); ++i) {
+        const Columns first = columns_at(pair.node[2 * side], i),
+                      second = columns_at(pair.node[2 * side + 1], i);
+        at_touch[side][i] = tangent.share[2 * side] * first + tangent.share[2 * side + 1] * second;
+        for (std::size_t p = 0; p < tangent.products.size(); ++p) {
+          const PairTangent::Product& product = tangent.products[p];
+          left[side][i][p] =
+              first.transpose() * product.left[2 * side] + second.transpose() * product.left[2 * side + 1];
+          right[side][i][p] =
+              first.transpose() * product.right[2 * side] + second.transpose() * product.right[2 * side + 1];
+        }
+      }
+    }
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) {
+        if (bodies[a] < 0 || bodies[b] < 0) continue;
+        for (int i = 0; i < groups(modes_[bodies[a]]); ++i)
+          for (int j = 0; j < groups(modes_[bodies[b]]); ++j) {
+            Mat6 block = at_touch[a][i].transpose() * (tangent.local * at_touch[b][j]);
+            for (std::size_t p = 0; p < tangent.products.size(); ++p)
+              block += left[a][i][p] * right[b][j][p].transpose();
+            const Mat6 of_stick = at_touch[a][i].transpose() * (tangent.stick * at_touch[b][j]);
+            add(bodies[a], i, bodies[b], j, block, of_stick);
+          }
+      }
+  });
+}
+
+}  // namespace topple

@@ -1,0 +1,97 @@
+// Contact between members of rigid and elastic bodies, and with floors and walls made of members: how the
+// ends of their elements move with the bodies, and what forces there do to these.
+//   x_i = X + R (r_i + shape_i q),  v_i = J_i u,  J_i = [1, -[R (r_i + shape_i q)], R shape_i]
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "solver/body/body_contacts.h"
+#include "solver/contact/member_contact.h"
+#include "solver/math/types.h"
+#include "solver/model/model.h"
+#include "solver/state/state.h"
+
+namespace topple {
+
+/// Elements of some bodies that may touch each other. `body` is a place in the constructor's list; nodes are
+/// numbered within this.
+class MemberCoupling {
+ public:
+  /// Unknowns of a body in groups of six: its rigid motion, then modes, filled up with zeros.
+  static constexpr int k_most_groups = 1 + (k_modes + 5) / 6;
+  static int groups(int modes) { return 1 + (modes + 5) / 6; }
+
+  /// Of each of `candidate_pairs`, in order, one or both elements belong to `bodies`, indices into the model;
+  /// the other belongs to a body that is held.
+  MemberCoupling(const Model& model, std::vector<int> bodies, std::span<const ElementPair> candidate_pairs);
+
+  std::span<MemberPair> pairs() { return pairs_; }
+  /// Bodies of a pair's elements; -1: held.
+  std::array<int, 2> bodies_of(const MemberPair& pair) const {
+    return {nodes_[pair.node[0]].body, nodes_[pair.node[2]].body};
+  }
+
+  /// f(node, its body).
+  template <class F>
+  void each_node(F f) const {
+    for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) f(k, nodes_[k].body);
+  }
+
+  /// Held nodes stand where they are in `state`.
+  void place_held(const State& state);
+  /// Nodes of a body at `pose` that moves at u; r: its rotation matrix.
+  void place(int body, const BodyState& pose, const PackMat3& r, const BodyVelocity& u);
+  void place(int body, const BodyState& s);
+  const std::vector<Vec3>& position() const { return position_; }  ///< m, per node as placed
+  const std::vector<Vec3>& velocity() const { return velocity_; }  ///< m/s
+  int modes(int body) const { return modes_[body]; }               ///< as placed
+
+  /// Distance of two surfaces where the nodes are, m, < 0 when they touch.
+  double gap(const MemberPair& pair) const;
+  /// Time until the next open one of `pairs` closes, s, as the bodies were placed by their states; infinite:
+  /// not within `within`.
+  double next_touch(std::span<const MemberPair> pairs, double within) const;
+
+  /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
+  /// add_load puts one to what acts on a body.
+  const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
+  /// Adds J^T t J, t of each_tangent(): block (i, j) of six unknowns belongs to group i of body a and j of b.
+  using AddBlock = std::function<void(int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick)>;
+  void each_block(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
+                  double velocity_factor, const AddBlock& add) const;
+
+ private:
+  using Columns = Eigen::Matrix<double, 3, 6>;
+  struct Acceleration {
+    Vec3 linear, angular, spin;  // m/s^2, rad/s^2, rad/s
+  };
+  struct Node {
+    int body, node;  // index into the model
+    Vec3 place;      // m, from the centre of gravity, reference axes
+  };
+  int number_of(int node);
+  Vec3 acceleration(int node) const;
+  Vec3 shape(const Node& node, int mode) const;
+
+  const Model& model_;
+  const std::vector<int> bodies_;
+  std::vector<Node> nodes_;
+  std::vector<std::vector<int>> nodes_of_;  // per body
+  std::vector<MemberPair> pairs_;
+  std::vector<int> modes_;  // per body
+  std::vector<Vec3> position_, velocity_, arm_, force_;
+  std::vector<Vec3> shape_;  // k_modes per node, floor's axes
+  std::vector<BodyVelocity> loads_;
+  std::vector<Acceleration> acceleration_;  // per body, as placed by its state
+};
+
+inline void add_load(const BodyVelocity& load, BodyState& s) {
+  s.force += unpacked(load.linear);
+  s.moment += unpacked(load.angular);
+  s.load += load.rate;
+}
+
+}  // namespace topple
