@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/body/elastic_basis.h"
 #include "solver/math/rotation.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
@@ -22,12 +22,6 @@ void release(const Model& model, int k, AnchorHold hold, State& state, std::vect
 }
 
 }  // namespace
-
-Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode) {
-  const Body& body = model.bodies[anchor.body];
-  const auto of_node = body.elastic->shape.col(mode).segment<6>(6 * (anchor.node - body.first_node));
-  return of_node.head<3>() + of_node.tail<3>().cross(anchor.arm);
-}
 
 AnchorPoint anchor_point(const Model& model, const State& state, int k) {
   const Anchor& anchor = model.anchors[k];

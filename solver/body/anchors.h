@@ -10,9 +10,6 @@
 
 namespace topple {
 
-/// Displacement of the attached point in a mode of the level elastic, reference axes, 1/sqrt(kg).
-Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
-
 /// Where an anchor is attached and how fast that moves, m and m/s, floor's frame, whatever the body's level.
 struct AnchorPoint {
   Vec3 at, velocity;

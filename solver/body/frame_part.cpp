@@ -39,6 +39,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 double member_limit(const BodySystem& system, const ContactLaw& law, const State& state) {
   const Model& model = system.model;
   double limit = std::numeric_limits<double>::infinity();
+  if (system.candidate_pairs.empty()) return limit;
   std::vector<double> stiffness(system.bodies.size(), 0.);
   const auto add = [&](int element, double more) {
     const auto own = std::ranges::find(system.bodies, model.members[model.elements[element].member].body);
@@ -90,6 +91,11 @@ BodyEnergy FramePart::balance(const Parameters& parameters, const StepInputs& no
   return s.energy(now.law, motion_, s.contacts, sections_);
 }
 
+BodyEnergy FramePart::energy(const StepInputs& now, const State& state) {
+  find_contacts(now, state);
+  return system_.energy(now.law, motion_, contacts_, sections_);
+}
+
 void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
   IntegratorScratch& w = scratch.frame;
   {
@@ -112,10 +118,14 @@ double FramePart::time_limit(const Parameters& parameters, const State& state) {
   return limit;
 }
 
-void FramePart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+void FramePart::find_contacts(const StepInputs& now, const State& state) {
   system_.load(state, motion_);
   system_.load_memory(state);
   system_.find_contacts(now.law, motion_, state.stick, motion_.position, contacts_);
+}
+
+void FramePart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+  find_contacts(now, state);
   for (const TouchingPair& pair : contacts_.planes)
     forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
   for (const MemberTouch& touch : contacts_.members.touches)

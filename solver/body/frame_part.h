@@ -17,6 +17,7 @@ class FramePart final : public Part {
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state) override;
+  BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
   void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
@@ -25,6 +26,8 @@ class FramePart final : public Part {
   void give_sticks(State& state) override { system_.give_sticks(state); }
 
  private:
+  void find_contacts(const StepInputs& now, const State& state);
+
   BodySystem& system_;
   std::vector<SectionForces>& sections_;
   BodyMotion motion_;

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <utility>
 
-#include "solver/body/bodies_at_rest.h"
 #include "solver/body/reduced_part.h"
+#include "solver/reduced/bodies_at_rest.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_limits.h"
 
@@ -34,10 +34,11 @@ std::vector<int> indices(const std::vector<ModelBody>& bodies) {
 }  // namespace
 
 IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
-                       std::span<const ElementPair> candidate_pairs, std::vector<SectionForces>& sections)
+                       std::span<const ElementPair> candidate_pairs, std::span<const BodyState> states,
+                       std::vector<SectionForces>& sections)
     : model_(model),
       bodies_(std::move(bodies)),
-      coupling_(model, indices(bodies_), candidate_pairs),
+      coupling_(model, indices(bodies_), candidate_pairs, states),
       sections_(sections) {}
 
 bool IslandPart::has(const std::vector<char>& marked) const {
@@ -86,6 +87,18 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
     held += body->balance(parameters, now, s, state.stick);
     add_load(loads[b], s);
   }
+  held.contact += stored_energy(now.law, now_, coupling_.pairs());
+  return held;
+}
+
+BodyEnergy IslandPart::energy(const StepInputs& now, const State& state) {
+  BodyEnergy held;
+  for (const auto& [index, body] : bodies_) {
+    body->remember(state.anchors);
+    body->find_contacts(now, state.bodies[index], state.stick);
+    held += body->energy(now.law, state.bodies[index]);
+  }
+  find(now, state);
   held.contact += stored_energy(now.law, now_, coupling_.pairs());
   return held;
 }
@@ -260,9 +273,7 @@ void IslandPart::list_forces(const StepInputs& now, const State& state, Forces& 
     body->list_contacts(forces.contacts);
   }
   find(now, state);
-  for (const MemberTouch& touch : now_.touches)
-    forces.members.push_back(
-        {coupling_.pairs()[touch.pair].elements, touch.at.s, touch.at.t, touch.depth, touch.out.force});
+  for (const MemberTouch& touch : now_.touches) forces.members.push_back(coupling_.force(touch));
 }
 
 HardestContact IslandPart::hardest_contact(const HardestContact& hardest) {

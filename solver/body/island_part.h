@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/coupled_bodies.h"
 #include "solver/body/part.h"
+#include "solver/reduced/coupled_bodies.h"
 #include "solver/state/member_sticks.h"
 
 namespace topple {
@@ -15,15 +15,16 @@ namespace topple {
 /// others each alone.
 class IslandPart final : public Part {
  public:
-  /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs`: as
-  /// MemberCoupling's.
+  /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs` and
+  /// `states`: as MemberCoupling's.
   IslandPart(const Model& model, std::vector<ModelBody> bodies, std::span<const ElementPair> candidate_pairs,
-             std::vector<SectionForces>& sections);
+             std::span<const BodyState> states, std::vector<SectionForces>& sections);
 
   bool has(const std::vector<char>& marked) const override;
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state) override;
+  BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
   void list_forces(const StepInputs& now, const State& state, Forces& forces) override;

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "solver/body/body_pose.h"
-#include "solver/body/elastic_basis.h"
 #include "solver/contact/contact_period.h"
 #include "solver/math/rotation.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple {
 namespace {
@@ -74,7 +74,7 @@ const char* name(LevelReason reason) {
     case LevelReason::deformation:
       return "deformations are no longer small";
     case LevelReason::near:
-      return "another body is near";
+      return "a body computed as a frame is near";
     case LevelReason::calm:
       return "calm again";
   }

@@ -2,11 +2,11 @@
 //
 // A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
 // for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
-// elastic. Every body is a frame while another is near (State::candidate_pairs), and an automatic one too
-// once
+// elastic. A body is a frame while one is near (State::candidate_pairs, also over bodies between them), and an
+// automatic one too once
 //   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
 //   - a node could turn by more than k_small_rotation relative to the body (sum over the modes).
-// It comes down to its base level when no other body is near, no hinge ever formed in it, and for k_calm_for
+// It comes down to its base level when no such frame is near, no hinge ever formed in it, and for k_calm_for
 // sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
 //
 // Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the rigid

@@ -114,23 +114,12 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
 // The contacts of the body's present model have been found.
 void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   const Model& model = on.model;
-  const StepInputs& now = on.now;
   State& state = on.state;
-  Parts& parts = on.parts;
   BodyState& s = state.bodies[b];
-  const auto of_frame = [&] {
-    BodySystem& system = parts.alone(b);
-    system.load(state, motion_);
-    system.load_memory(state);
-    system.find_contacts(now.law, motion_, state.stick, motion_.position, system.contacts);
-    return system.energy(now.law, motion_, system.contacts, parts.sections).sum();
-  };
-  ReducedBody& body = parts.reduced(state, b);
   const double height = body_pose(model, state, b).centre.dot(on.parameters.gravity);
-  const double before = s.level == ModelLevel::frame ? of_frame() : body.energy(now.law, s).sum();
   if (choice.level == ModelLevel::frame) {
     place_nodes(model, state);
-    body.add_residual(s, state);
+    on.parts.reduced(state, b).add_residual(s, state);
   } else if (s.level == ModelLevel::frame) {
     s = reduce(model, state, b, choice.level);
   } else if (choice.level == ModelLevel::rigid) {
@@ -141,10 +130,15 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   s.reason = choice.reason;
   s.calm_since = -1;
   changed_[b] = true;
-  const double after =
-      s.level == ModelLevel::frame ? of_frame() : body.balance(on.parameters, now, s, state.stick).sum();
+  std::erase_if(state.member_sticks,
+                [&](const MemberStick& stick) {  // between other parts of it from here on
+                  const auto is_own = [&](int element) {
+                    return model.members[model.elements[element].member].body == b;
+                  };
+                  return is_own(stick.elements.a) || is_own(stick.elements.b);
+                });
   const double sunk = height - body_pose(model, state, b).centre.dot(on.parameters.gravity);
-  state.energy.model_switch += after - before + model.bodies[b].mass * sunk;
+  state.energy.model_switch += model.bodies[b].mass * sunk;
   state.energy.gravity += model.bodies[b].mass * sunk;
 }
 
@@ -175,7 +169,12 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
     choice_.push_back(choose(on, b));
   }
   choose_islands(parts.islands(state), state);
-  bool other_frames = false, any = false;
+  const bool any = !std::ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
+  if (any) {
+    parts.arrange(state);
+    state.energy.model_switch -= parts.energy(now, state).sum();
+  }
+  bool other_frames = false;
   for (int b = 0; b < count; ++b) {
     BodyState& s = state.bodies[b];
     const bool was_frame = s.level == ModelLevel::frame;
@@ -183,13 +182,13 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
       s.reason = choice_[b].reason;
     else
       change(on, choice_[b], b);
-    any = any || changed_[b];
     other_frames = other_frames || was_frame != (s.level == ModelLevel::frame);
   }
   parts.arrange(state);
   if (any) {
     parts.balance(parameters, now, changed_, state);
     std::ranges::fill(changed_, false);
+    state.energy.model_switch += parts.energy(now, state).sum();
   }
   return other_frames;
 }

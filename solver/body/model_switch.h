@@ -32,7 +32,6 @@ class ModelSwitch {
   std::vector<LevelChoice> base_;    // per body; empty: not found for these parameters
   std::vector<LevelChoice> choice_;  // per body
   std::vector<char> changed_;        // per body: its level, since the last step
-  BodyMotion motion_;
 };
 
 }  // namespace topple

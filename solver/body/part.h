@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/reduced_body.h"
 #include "solver/frame/generalized_alpha.h"
+#include "solver/reduced/reduced_body.h"
 #include "solver/state/energy.h"
 #include "solver/state/step_result.h"
 
@@ -49,6 +49,8 @@ class Part {
   /// returns the energies of these.
   virtual BodyEnergy balance(const Parameters& parameters, const StepInputs& now,
                              const std::vector<char>& marked, State& state) = 0;
+  /// Energies of its bodies at `state`.
+  virtual BodyEnergy energy(const StepInputs& now, const State& state) = 0;
   /// `next`: the state at the start; becomes that at the end. After a failure the part's bodies are
   /// undefined.
   virtual void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) = 0;

@@ -29,45 +29,70 @@ const std::vector<Island>& Parts::islands(const State& state) {
   if (state.candidate_pairs == pairs_) return divided_;
   pairs_ = state.candidate_pairs;
   divided_ = islands_.divide(pairs_);
-  frames_.clear();
+  levels_.clear();
   return divided_;
+}
+
+// The frames of an island, and its other bodies.
+std::vector<Island> Parts::one_of_a_kind(const Island& island) const {
+  const auto is_frame = [&](int body) { return levels_[body] == ModelLevel::frame; };
+  const auto count = std::ranges::count_if(island.bodies, is_frame);
+  if (count == 0 || count == std::ssize(island.bodies)) return {island};
+  std::vector<ElementPair> kept;
+  for (const ElementPair& pair : island.candidate_pairs) {
+    std::vector<int> free;
+    for (const int element : {pair.a, pair.b})
+      if (const int body = model_.members[model_.elements[element].member].body;
+          std::ranges::binary_search(island.bodies, body))
+        free.push_back(body);
+    if (is_frame(free.front()) == is_frame(free.back())) kept.push_back(pair);
+  }
+  std::vector<Island> parts = islands_.divide(kept);
+  std::erase_if(parts, [&](const Island& part) {
+    return !std::ranges::binary_search(island.bodies, part.bodies.front());
+  });
+  return parts;
 }
 
 void Parts::arrange(const State& state) {
   const std::vector<Island>& islands = this->islands(state);
-  std::vector<char> frames;
-  for (const BodyState& s : state.bodies) frames.push_back(s.level == ModelLevel::frame);
-  if (frames == frames_) return;
-  frames_ = std::move(frames);
+  if (std::ranges::equal(state.bodies, levels_, {}, &BodyState::level)) return;
+  levels_.clear();
+  for (const BodyState& s : state.bodies) levels_.push_back(s.level);
   parts_.clear();
   std::vector<ModelBody> some;
   std::vector<BodySystem*> systems;
-  std::vector<std::pair<Island, std::shared_ptr<Part>>> coupled;
+  std::vector<Coupled> coupled;
   const auto close_part = [&] {
     if (!some.empty()) parts_.push_back(std::make_shared<ReducedPart>(std::exchange(some, {}), sections));
   };
-  const auto part_of = [&](const Island& island) {
-    const auto same = std::ranges::find(coupled_, island, &decltype(coupled_)::value_type::first);
-    if (same != coupled_.end()) return same->second;
+  const auto couple = [&](const Island& island) {
+    std::vector<ModelLevel> own;
+    for (const int b : island.bodies) own.push_back(levels_[b]);
+    const auto same = std::ranges::find_if(
+        coupled_, [&](const Coupled& known) { return known.island == island && known.levels == own; });
+    if (same != coupled_.end()) return *same;
     std::vector<ModelBody> bodies;
     for (const int b : island.bodies) bodies.push_back({b, &reduced(state, b)});
-    return std::shared_ptr<Part>(
-        std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs, sections));
+    return Coupled{island, std::move(own),
+                   std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs,
+                                                state.bodies, sections)};
   };
-  for (const Island& island : islands) {
-    const int b = island.bodies.front();
-    if (frames_[b]) {
-      systems.push_back(islands_.system(island));
-    } else if (island.candidate_pairs.empty()) {
-      some.push_back({b, &reduced(state, b)});
-      if (some.size() == k_bodies_per_part) close_part();
-    } else {
-      coupled.emplace_back(island, part_of(island));
+  for (const Island& island : islands)
+    for (const Island& part : one_of_a_kind(island)) {
+      const int b = part.bodies.front();
+      if (levels_[b] == ModelLevel::frame) {
+        systems.push_back(islands_.system(part));
+      } else if (part.candidate_pairs.empty()) {
+        some.push_back({b, &reduced(state, b)});
+        if (some.size() == k_bodies_per_part) close_part();
+      } else {
+        coupled.push_back(couple(part));
+      }
     }
-  }
   close_part();
   coupled_ = std::move(coupled);
-  for (const auto& [island, part] : coupled_) parts_.push_back(part);
+  for (const Coupled& known : coupled_) parts_.push_back(known.part);
   islands_.keep(systems);
   for (BodySystem* system : systems) parts_.push_back(std::make_shared<FramePart>(*system, sections));
   moves_nodes_ = !systems.empty();
@@ -83,6 +108,12 @@ BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now,
 
 BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now, State& state) {
   return balance(parameters, now, all_bodies_, state);
+}
+
+BodyEnergy Parts::energy(const StepInputs& now, const State& state) {
+  BodyEnergy held;
+  for (const auto& part : parts_) held += part->energy(now, state);
+  return held;
 }
 
 double Parts::time_limit(const Parameters& parameters, const State& state) {

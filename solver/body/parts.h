@@ -36,6 +36,8 @@ class Parts {
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state);
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);
+  /// Energies of all bodies at `state`, for which they are arranged.
+  BodyEnergy energy(const StepInputs& now, const State& state);
   /// Longest step that the motion at `state` allows, s, at least 2 k_least_step: look_ahead()
   /// (step_control.h), and of each part T_contact/20 of a body that touches, max(time to touch, L/(4 v))
   /// where a contact closes, 0.1 rad/|omega| (step_limits.h).
@@ -53,14 +55,22 @@ class Parts {
   std::vector<SectionForces> sections;
 
  private:
+  std::vector<Island> one_of_a_kind(const Island& island) const;
+
   const Model& model_;
   Islands islands_;
   std::vector<std::unique_ptr<ReducedBody>> reduced_;  // per body, once it was one
   std::vector<Island> divided_;                        // by the candidate pairs of pairs_
   std::vector<ElementPair> pairs_;                     // of the last call of islands()
-  std::vector<char> frames_;  // per body: whether it is one in parts_; empty: there are no parts yet
+  std::vector<ModelLevel> levels_;                     // per body, of parts_; empty: there are none
   std::vector<std::shared_ptr<Part>> parts_;
-  std::vector<std::pair<Island, std::shared_ptr<Part>>> coupled_;  // those of parts_ with several bodies
+  // Those of parts_ with several bodies that are no frames, and the levels of these.
+  struct Coupled {
+    Island island;
+    std::vector<ModelLevel> levels;
+    std::shared_ptr<Part> part;
+  };
+  std::vector<Coupled> coupled_;
   bool moves_nodes_ = false;
   const std::vector<char> all_bodies_;
 };

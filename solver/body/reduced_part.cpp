@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/body/bodies_at_rest.h"
+#include "solver/reduced/bodies_at_rest.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_limits.h"
 
@@ -28,6 +28,16 @@ BodyEnergy ReducedPart::balance(const Parameters& parameters, const StepInputs& 
     if (!marked[index]) continue;
     body->remember(state.anchors);
     held += body->balance(parameters, now, state.bodies[index], state.stick);
+  }
+  return held;
+}
+
+BodyEnergy ReducedPart::energy(const StepInputs& now, const State& state) {
+  BodyEnergy held;
+  for (const auto& [index, body] : bodies_) {
+    body->remember(state.anchors);
+    body->find_contacts(now, state.bodies[index], state.stick);
+    held += body->energy(now.law, state.bodies[index]);
   }
   return held;
 }

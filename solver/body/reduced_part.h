@@ -20,6 +20,7 @@ class ReducedPart final : public Part {
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state) override;
+  BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
   void list_forces(const StepInputs& now, const State& state, Forces& forces) override;

@@ -9,8 +9,8 @@
 namespace topple {
 
 /// Longest step that the motion at `state` allows, s, but for what each part knows of itself
-/// (Part::time_limit): by anchors (anchor_look_ahead), by the time between two samples of a record that shakes the floor; at most
-/// k_longest_step.
+/// (Part::time_limit): by anchors (anchor_look_ahead), by the time between two samples of a record that
+/// shakes the floor; at most k_longest_step.
 double look_ahead(const Model& model, const Parameters& parameters, const State& state);
 
 /// Local error of a step of the implicit methods over what the tolerance allows it; at most 1 passes.

@@ -133,7 +133,7 @@ class PairFinder {
 // How the moving of the nearest points changes the tangent: mixed derivatives of half the squared distance by
 // the nodes and the free ones of s, t, times `factor` and the inverse of the second derivatives by the
 // latter, times the same.
-void add_sliding(const MemberTouch& touch, double factor, std::vector<PairTangent::Product>& products) {
+void add_sliding(const MemberTouch& touch, double factor, PairTangent& tangent) {
   const Ends& x = touch.ends;
   const Vec3 da = x[1] - x[0], db = x[3] - x[2], &d = touch.at.between;
   PairVector by_s, by_t;
@@ -143,13 +143,13 @@ void add_sliding(const MemberTouch& touch, double factor, std::vector<PairTangen
   }
   by_s[0] -= d;
   by_s[1] += d;
-  by_t[2] -= d;
-  by_t[3] += d;
+  by_t[2] += d;
+  by_t[3] -= d;
   double ss = touch.at.s_free ? da.squaredNorm() : 1, tt = touch.at.t_free ? db.squaredNorm() : 1,
          st = touch.at.s_free && touch.at.t_free ? -da.dot(db) : 0;
   const double determinant = ss * tt - st * st;
   const auto add = [&](const PairVector& left, double of_s, double of_t) {
-    PairTangent::Product& product = products.emplace_back();
+    PairTangent::Product& product = tangent.products[tangent.product_count++];
     product.left = left;
     for (int k = 0; k < 4; ++k) product.right[k] = factor / determinant * (of_s * by_s[k] + of_t * by_t[k]);
   };
@@ -195,7 +195,7 @@ void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::sp
   for (const MemberTouch& touch : contacts.touches) {
     tangent.pair = touch.pair;
     tangent.share = touch.share;
-    tangent.products.clear();
+    tangent.product_count = 0;
     Mat3 by_position, by_velocity;
     contact_force(weighted(law, touch.weight), touch.input, by_position, by_velocity);
     tangent.local = -by_position - velocity_factor * by_velocity;
@@ -204,7 +204,7 @@ void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::sp
     if (traits(law).sticks && !slips(law, touch)) tangent.stick = across * tangent.local * across;
     if (touch.l > k_thin * pairs[touch.pair].L) {
       tangent.local -= touch.out.normal / touch.l * across;
-      add_sliding(touch, touch.out.normal / touch.l, tangent.products);
+      add_sliding(touch, touch.out.normal / touch.l, tangent);
     }
     f(tangent);
   }
@@ -213,7 +213,7 @@ void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::sp
   tangent.stick.setZero();
   for (const MemberBlend& blend : contacts.blends) {
     tangent.pair = blend.pair;
-    tangent.products.resize(2);
+    tangent.product_count = 2;
     for (int k = 0; k < 4; ++k) {
       tangent.products[0].left[k] = blend.by_sine[k];
       tangent.products[0].right[k] =
@@ -227,17 +227,19 @@ void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::sp
 
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                  double velocity_factor, BlockLu& lu) {
-  each_tangent(law, contacts, pairs, velocity_factor, [&](const PairTangent& tangent) {
+  const auto add = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
     Mat6 block = Mat6::Zero();
     for (int k = 0; k < 4; ++k)
       for (int m = 0; m < 4; ++m) {
         block.topLeftCorner<3, 3>() = tangent.share[k] * tangent.share[m] * tangent.local;
-        for (const PairTangent::Product& product : tangent.products)
-          block.topLeftCorner<3, 3>() += product.left[k] * product.right[m].transpose();
+        for (int p = 0; p < tangent.product_count; ++p)
+          block.topLeftCorner<3, 3>() +=
+              tangent.products[p].left[k] * tangent.products[p].right[m].transpose();
         lu.add(pair.node[k], pair.node[m], block);
       }
-  });
+  };
+  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add));
 }
 
 void keep_sticks(const MemberContacts& contacts, std::span<MemberPair> pairs) {

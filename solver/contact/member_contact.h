@@ -89,7 +89,7 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
 
 /// -d(force)/d(position) - velocity_factor d(force)/d(velocity) of one place or blend, N/m: between the ends
-/// k and m of the pair  share_k share_m local + sum of left_k right_m^T.
+/// k and m of the pair  share_k share_m local + sum of left_k right_m^T over products.
 struct PairTangent {
   struct Product {
     PairVector left, right;
@@ -98,7 +98,8 @@ struct PairTangent {
   std::array<double, 4> share;
   Mat3 local;
   Mat3 stick;  ///< part of `local` that is the stick spring with its damping; zero when it slips
-  std::vector<Product> products;
+  std::array<Product, 2> products;
+  int product_count;
 };
 /// Calls f with the tangent of everything that touches, the factor in 1/s, without the second derivatives of
 /// sin^2 and, below l = 0.02 L, without the turning of the normal.

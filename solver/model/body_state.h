@@ -34,7 +34,7 @@ enum class LevelReason : std::uint8_t {
   contact_frequency = 3,  ///< the body bounces on its contacts almost as fast as it vibrates
   yield = 4,              ///< a section comes near its yield surface
   deformation = 5,        ///< it deforms too much for linear elasticity
-  near = 6,               ///< another body may touch it (State::candidate_pairs)
+  near = 6,               ///< a frame may touch it, or a body that touches it (State::candidate_pairs)
   calm = 7                ///< no reason for a higher level is left, and no hinge has formed
 };
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/overturn.h"
 #include "unit/solver/fixtures.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/proximity.h"
 #include "solver/frame/integrator.h"

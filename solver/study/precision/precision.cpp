@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
 #include "solver/contact/contact_law.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/body/body_pose.h"
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "unit/solver/fixtures.h"
 

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

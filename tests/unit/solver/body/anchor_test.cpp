@@ -5,7 +5,7 @@
 
 #include "solver/body/anchors.h"
 #include "solver/body/body_pose.h"
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
 #include "unit/solver/fixtures.h"

@@ -1,12 +1,12 @@
 // Contacts of bodies of few unknowns beside what each point alone does.
-#include "solver/body/body_contacts.h"
+#include "solver/reduced/body_contacts.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "solver/body/elastic_basis.h"
-#include "solver/body/reduced_body.h"
+#include "solver/reduced/elastic_basis.h"
+#include "solver/reduced/reduced_body.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

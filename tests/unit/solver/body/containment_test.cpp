@@ -6,7 +6,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/element/damping.h"
 #include "solver/frame/modes.h"

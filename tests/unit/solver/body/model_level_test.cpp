@@ -189,8 +189,8 @@ TEST(ModelLevel, adaptive_central_differences_shorten_their_step_for_a_new_frame
   EXPECT_LT(run.state().energy.balance_error(), 1e-3);
 }
 
-// Two that meet are frames from before they touch until they are apart and calm again.
-TEST(ModelLevel, is_a_frame_while_another_body_is_near) {
+/// Two of which the first comes to the second, a frame.
+topple::Setup meets_a_frame(BodyModel model) {
   topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec spec = tall_cabinet();
@@ -203,11 +203,18 @@ TEST(ModelLevel, is_a_frame_while_another_body_is_near) {
   setup.run.settle = false;
   setup.run.duration = 2;
   setup.parameters.gravity.setZero();
-  compute_as(setup, BodyModel::rigid);
+  compute_as(setup, model);
+  return setup;
+}
+
+// It is one too from before they touch until they are apart and calm again.
+TEST(ModelLevel, is_a_frame_while_one_is_near) {
+  topple::Setup setup = meets_a_frame(BodyModel::rigid);
+  setup.parameters.models[1] = BodyModel::frame;
   topple::Run run(setup);
   EXPECT_EQ(run.state().bodies[0].level, ModelLevel::rigid);
   while (!run.over()) ASSERT_TRUE(run.advance().ok());
-  const auto& changes = run.outcome().bodies()[1].level_changes;
+  const auto& changes = run.outcome().bodies()[0].level_changes;
   ASSERT_FALSE(changes.empty());
   EXPECT_EQ(changes[0].reason, LevelReason::near);
   EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
@@ -217,8 +224,18 @@ TEST(ModelLevel, is_a_frame_while_another_body_is_near) {
   EXPECT_LT((momentum - Vec3(40, 0, 0)).norm(), 1e-6);
 }
 
+TEST(ModelLevel, stays_what_it_is_while_others_than_frames_are_near) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = meets_a_frame(model);
+    topple::Run run(setup);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok());
+    for (const BodyOutcome& body : run.outcome().bodies()) EXPECT_TRUE(body.level_changes.empty());
+    EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
+  }
+}
+
 // The 0.2 s of calm after which a frame comes down begin when the other body has left.
-TEST(ModelLevel, is_not_calm_while_another_body_is_near) {
+TEST(ModelLevel, is_not_calm_while_a_frame_is_near) {
   topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec spec = tall_cabinet();
@@ -229,6 +246,7 @@ TEST(ModelLevel, is_not_calm_while_another_body_is_near) {
   setup.run.settle = false;
   setup.parameters.gravity.setZero();
   compute_as(setup, BodyModel::rigid);
+  setup.parameters.models[1] = BodyModel::frame;
   Simulation sim = simulate(setup);
   ASSERT_EQ(sim.state.bodies[0].reason, LevelReason::near);
   sim.state.bodies[0].calm_since = 0;  // it was alone, and calm, before

@@ -68,17 +68,16 @@ TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
   floor.to[0] = 11;
   add_grid(model, floor);
   Islands islands(model);
-  const std::vector<BodyState> frames(model.bodies.size());
-  islands.arrange(frames, {});
-  EXPECT_EQ(islands.systems().size(), 5u);
-  islands.arrange(frames, NearSearch(model).find(model.node_position, 0.02));
-  ASSERT_EQ(islands.systems().size(), 3u);  // the floor holds them all and is in none
-  EXPECT_EQ(islands.systems()[0]->bodies, (std::vector<int>{0, 2, 4}));
-  EXPECT_EQ(islands.systems()[1]->bodies, (std::vector<int>{1}));
-  EXPECT_EQ(islands.systems()[2]->bodies, (std::vector<int>{3}));
-  const BodySystem* const kept = islands.systems()[0];
-  islands.arrange(frames, NearSearch(model).find(model.node_position, 0.02));
-  EXPECT_EQ(islands.systems()[0], kept);
+  EXPECT_EQ(islands.divide({}).size(), 5u);
+  const std::vector<Island> divided = islands.divide(NearSearch(model).find(model.node_position, 0.02));
+  ASSERT_EQ(divided.size(), 3u);  // the floor holds them all and is in none
+  EXPECT_EQ(divided[0].bodies, (std::vector<int>{0, 2, 4}));
+  EXPECT_EQ(divided[1].bodies, (std::vector<int>{1}));
+  EXPECT_EQ(divided[2].bodies, (std::vector<int>{3}));
+  BodySystem* const system = islands.system(divided[0]);
+  EXPECT_EQ(system->bodies, divided[0].bodies);
+  islands.keep({system});
+  EXPECT_EQ(islands.system(divided[0]), system);
 }
 
 TEST(BeamFloor, carries_the_weight_of_what_stands_on_it_and_tells_which_side_lifts) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/frame/central_difference.h"
 #include "unit/solver/fixtures.h"

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "solver/body/body_pose.h"
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"

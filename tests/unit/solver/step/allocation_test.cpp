@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 #include "unit/solver/fixtures.h"

@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "solver/body/body_contacts.h"
+#include "solver/reduced/body_contacts.h"
 
 namespace topple {
 namespace {

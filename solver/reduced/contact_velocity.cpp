@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "solver/body/reduced_body.h"
-#include "solver/body/rigid_solver.h"
+#include "solver/reduced/reduced_body.h"
+#include "solver/reduced/rigid_solver.h"
 
 namespace topple {
 namespace {

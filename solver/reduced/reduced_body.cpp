@@ -1,4 +1,4 @@
-#include "solver/body/reduced_body.h"
+#include "solver/reduced/reduced_body.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/body/implicit_substep.h"
 #include "solver/contact/contact_law.h"
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
@@ -386,8 +385,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
       if (most < k_least_substep * h) return StepStatus::Kind::newton_diverged;
     }
   }
-  return implicit ? advance_implicit(*this, parameters, start, end, h, s, stick, booked)
-                  : StepStatus::Kind::ok;
+  return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

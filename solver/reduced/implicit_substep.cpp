@@ -1,4 +1,4 @@
-#include "solver/body/implicit_substep.h"
+#include "solver/reduced/implicit_substep.h"
 
 #include <cmath>
 
@@ -24,16 +24,10 @@ double norm(const PackVec3& v) {
   return std::sqrt(dot(v, v));
 }
 
-double allowed_error(const Parameters& parameters, double reach, const BodyState& s) {
-  const double floor = k_speed_floor * std::sqrt(parameters.gravity.norm() * reach);
-  return k_substep_error * parameters.tolerance *
-         std::max(s.velocity.norm() + reach * s.angular_velocity.norm(), floor);
-}
-
 }  // namespace
 
 ImplicitSubstep::ImplicitSubstep(ReducedBody& body, const SubstepSpan& span, BodyState& s,
-                                 std::span<Vec3> stick)
+                                 std::span<Vec3> stick, double speed)
     : body_(body),
       span_(span),
       s_(s),
@@ -42,7 +36,8 @@ ImplicitSubstep::ImplicitSubstep(ReducedBody& body, const SubstepSpan& span, Bod
       modes_(body.modes(s)),
       r0_(rotation_matrix(packed(s.rotation))),
       inverse_inertia_(r0_ * body.inverse_inertia_ * transposed(r0_)),
-      allowed_(allowed_error(span.parameters, body.reach_, s)) {
+      allowed_(k_substep_error * span.parameters.tolerance *
+               std::max(speed, k_speed_floor * std::sqrt(span.parameters.gravity.norm() * body.reach_))) {
   body.contacts_.begin_substep();
   start_.force = packed(s.force);
   start_.moment = packed(s.moment);
@@ -346,7 +341,7 @@ struct BodyAlone {
   double wanted() const { return s.substep; }
   void want(double size) { s.substep = size; }
   ImplicitOutcome substep(const SubstepSpan& span) {
-    ImplicitSubstep substep(body, span, s, stick);
+    ImplicitSubstep substep(body, span, s, stick, ImplicitSubstep::speed_of(body, s));
     StageNewton newton;
     RigidSolver solver, sticks;
     for (const PreparedLaw* law : {&span.middle.law, &span.end.law})
@@ -369,10 +364,10 @@ struct BodyAlone {
 
 }  // namespace
 
-StepStatus::Kind advance_implicit(ReducedBody& body, const Parameters& parameters, const StepInputs& start,
-                                  const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
-                                  StepEnergy& booked) {
-  BodyAlone alone{body, s, stick, booked};
+StepStatus::Kind ReducedBody::advance_implicit(const Parameters& parameters, const StepInputs& start,
+                                               const StepInputs& end, double h, BodyState& s,
+                                               std::span<Vec3> stick, StepEnergy& booked) {
+  BodyAlone alone{*this, s, stick, booked};
   return advance_by_substeps(alone, parameters, start, end, h);
 }
 

@@ -1,4 +1,4 @@
-#include "solver/body/elastic_basis.h"
+#include "solver/reduced/elastic_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,6 +142,12 @@ double first_frequency(const Model& model, int body) {
   const std::vector<Mode> modes = natural_modes(model, body, k_rigid + 1);
   const auto first = std::find_if(modes.begin(), modes.end(), [](const Mode& mode) { return !mode.rigid; });
   return first == modes.end() ? 0 : 2 * k_pi * first->frequency;
+}
+
+Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode) {
+  const Body& body = model.bodies[anchor.body];
+  const auto of_node = body.elastic->shape.col(mode).segment<6>(6 * (anchor.node - body.first_node));
+  return of_node.head<3>() + of_node.tail<3>().cross(anchor.arm);
 }
 
 }  // namespace topple

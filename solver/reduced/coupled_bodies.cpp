@@ -1,4 +1,4 @@
-#include "solver/body/coupled_bodies.h"
+#include "solver/reduced/coupled_bodies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -131,12 +131,12 @@ void CoupledBodies::factor(const SubstepSpan& span, const ContactLaw& law) {
     add(sticks_);
   }
   const double square = span.gamma_dt * span.gamma_dt;
-  coupling_.each_block(law, now_, pairs_, 1 / span.gamma_dt,
-                       [&](int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick) {
-                         const int row = row_[place_[a]] + i, column = row_[place_[b]] + j;
-                         matrix_.add(row, column, Mat6(square * block));
-                         sticks_.add(row, column, Mat6(square * of_stick));
-                       });
+  const auto add = [&](int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick) {
+    const int row = row_[place_[a]] + i, column = row_[place_[b]] + j;
+    matrix_.add(row, column, Mat6(square * block));
+    sticks_.add(row, column, Mat6(square * of_stick));
+  };
+  coupling_.each_block(law, now_, pairs_, 1 / span.gamma_dt, std::ref(add));
 }
 
 // Newton for the velocities of a stage.
@@ -203,8 +203,19 @@ void CoupledBodies::book(const SubstepSpan& span, const Power& first, const Powe
 }
 
 ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    substeps_[b].emplace(*bodies_[b].body, span, next_->bodies[bodies_[b].index], next_->stick);
+  // what hits a body moves it: its errors are measured by the motion that goes on, by speed and by energy
+  double fastest = 0, most = 0;
+  for (const ModelBody& b : bodies_) {
+    const double speed = ImplicitSubstep::speed_of(*b.body, next_->bodies[b.index]);
+    fastest = std::max(fastest, speed);
+    most = std::max(most, b.body->mass() * speed * speed);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& [index, body] = bodies_[b];
+    const double speed = std::max(ImplicitSubstep::speed_of(*body, next_->bodies[index]),
+                                  std::min(fastest, std::sqrt(most / body->mass())));
+    substeps_[b].emplace(*body, span, next_->bodies[index], next_->stick, speed);
+  }
   std::swap(start_, now_);
   const auto give_up = [&](double error) {
     each_row([](ImplicitSubstep& substep, double*) { substep.give_up(); });

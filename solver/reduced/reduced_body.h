@@ -27,10 +27,10 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/body_anchors.h"
-#include "solver/body/body_contacts.h"
-#include "solver/body/elastic_basis.h"
 #include "solver/frame/step_span.h"
+#include "solver/reduced/body_anchors.h"
+#include "solver/reduced/body_contacts.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/state/energy.h"
 #include "solver/state/step_result.h"
 
@@ -80,6 +80,7 @@ class ReducedBody {
   double next_landing(const BodyState& s, double within) const;
   double first_substep(const ContactLaw& law) const;
   BodyContacts& contacts() { return contacts_; }
+  double mass() const { return mass_; }  ///< kg
 
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
@@ -144,6 +145,9 @@ class ReducedBody {
   double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
   double find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const;
 
+  StepStatus::Kind advance_implicit(const Parameters& parameters, const StepInputs& start,
+                                    const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
+                                    StepEnergy& energy);
   void fill(double factor, const PackMat3& inertia, const ContactSlope& slope, int modes,
             ModeMatrix& matrix) const;
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <span>
 
-#include "solver/body/reduced_body.h"
-#include "solver/body/rigid_solver.h"
 #include "solver/math/elementary.h"
+#include "solver/reduced/reduced_body.h"
+#include "solver/reduced/rigid_solver.h"
 
 namespace topple {
 
@@ -69,8 +69,14 @@ struct StageNewton {
 /// Of one body, whose contacts at the start were found last.
 class ImplicitSubstep {
  public:
-  /// There is a BodyContacts::ScratchLease. `s` and `stick` become those at the end.
-  ImplicitSubstep(ReducedBody& body, const SubstepSpan& span, BodyState& s, std::span<Vec3> stick);
+  /// There is a BodyContacts::ScratchLease. `s` and `stick` become those at the end. `speed`, m/s: what
+  /// errors of the velocity are measured by, speed_of() or more.
+  ImplicitSubstep(ReducedBody& body, const SubstepSpan& span, BodyState& s, std::span<Vec3> stick,
+                  double speed);
+  /// Greatest speed of a point of the body, an upper bound, m/s.
+  static double speed_of(const ReducedBody& body, const BodyState& s) {
+    return s.velocity.norm() + body.reach_ * s.angular_velocity.norm();
+  }
 
   const BodyState& start() const { return before_; }
   const BodyState& pose() const { return s_; }     ///< that reach found
@@ -186,10 +192,5 @@ StepStatus::Kind advance_by_substeps(System& system, const Parameters& parameter
   }
   return StepStatus::Kind::ok;
 }
-
-/// A rigid body alone.
-StepStatus::Kind advance_implicit(ReducedBody& body, const Parameters& parameters, const StepInputs& start,
-                                  const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
-                                  StepEnergy& booked);
 
 }  // namespace topple

@@ -1,4 +1,4 @@
-#include "solver/body/bodies_at_rest.h"
+#include "solver/reduced/bodies_at_rest.h"
 
 #include <algorithm>
 #include <cmath>

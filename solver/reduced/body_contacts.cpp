@@ -1,14 +1,14 @@
-#include "solver/body/body_contacts.h"
+#include "solver/reduced/body_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "solver/body/elastic_basis.h"
 #include "solver/contact/coulomb.h"
 #include "solver/contact/penalty.h"
 #include "solver/math/elementary.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple {
 namespace {

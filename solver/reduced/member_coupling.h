@@ -8,16 +8,17 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/body_contacts.h"
 #include "solver/contact/member_contact.h"
 #include "solver/math/types.h"
 #include "solver/model/model.h"
+#include "solver/reduced/body_contacts.h"
 #include "solver/state/state.h"
+#include "solver/state/step_result.h"
 
 namespace topple {
 
-/// Elements of some bodies that may touch each other. `body` is a place in the constructor's list; nodes are
-/// numbered within this.
+/// Elements of some bodies that may touch each other; of rigid ones whole members, which stay straight.
+/// `body` is a place in the constructor's list; nodes are numbered within this.
 class MemberCoupling {
  public:
   /// Unknowns of a body in groups of six: its rigid motion, then modes, filled up with zeros.
@@ -25,9 +26,12 @@ class MemberCoupling {
   static int groups(int modes) { return 1 + (modes + 5) / 6; }
 
   /// Of each of `candidate_pairs`, in order, one or both elements belong to `bodies`, indices into the model;
-  /// the other belongs to a body that is held.
-  MemberCoupling(const Model& model, std::vector<int> bodies, std::span<const ElementPair> candidate_pairs);
+  /// the other belongs to a body that is held. Bodies stay on the levels that they have in `states`, one per
+  /// body of the model.
+  MemberCoupling(const Model& model, std::vector<int> bodies, std::span<const ElementPair> candidate_pairs,
+                 std::span<const BodyState> states);
 
+  /// A pair's elements: of a member the first one.
   std::span<MemberPair> pairs() { return pairs_; }
   /// Bodies of a pair's elements; -1: held.
   std::array<int, 2> bodies_of(const MemberPair& pair) const {
@@ -55,6 +59,8 @@ class MemberCoupling {
   /// not within `within`.
   double next_touch(std::span<const MemberPair> pairs, double within) const;
 
+  /// Force of a touch, with the elements and places where it acts.
+  MemberForce force(const MemberTouch& touch) const;
   /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
   /// add_load puts one to what acts on a body.
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
@@ -72,6 +78,12 @@ class MemberCoupling {
     int body, node;  // index into the model
     Vec3 place;      // m, from the centre of gravity, reference axes
   };
+  // A straight part of a body that others touch: an element, or the member that begins with it.
+  struct Segment {
+    int element, count;
+    std::array<int, 2> node;  // index into the model
+  };
+  Segment segment_of(int element, std::span<const BodyState> states) const;
   int number_of(int node);
   Vec3 acceleration(int node) const;
   Vec3 shape(const Node& node, int mode) const;
@@ -81,8 +93,9 @@ class MemberCoupling {
   std::vector<Node> nodes_;
   std::vector<std::vector<int>> nodes_of_;  // per body
   std::vector<MemberPair> pairs_;
-  std::vector<int> modes_;  // per body
-  std::vector<Vec3> position_, velocity_, arm_, force_;
+  std::vector<std::array<int, 2>> elements_of_;  // per pair, of its segments
+  std::vector<int> modes_;                       // per body
+  std::vector<Vec3> position_, velocity_, arm_;
   std::vector<Vec3> shape_;  // k_modes per node, floor's axes
   std::vector<BodyVelocity> loads_;
   std::vector<Acceleration> acceleration_;  // per body, as placed by its state

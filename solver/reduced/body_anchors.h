@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/anchors.h"
-#include "solver/body/body_contacts.h"
+#include "solver/reduced/body_contacts.h"
 
 namespace topple {
 

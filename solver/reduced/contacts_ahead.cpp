@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/body/body_contacts.h"
+#include "solver/reduced/body_contacts.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {

@@ -1,43 +1,73 @@
-#include "solver/body/member_coupling.h"
+#include "solver/reduced/member_coupling.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <Eigen/LU>
 
-#include "solver/body/elastic_basis.h"
 #include "solver/math/rotation.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple {
 
 MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
-                               std::span<const ElementPair> candidate_pairs)
+                               std::span<const ElementPair> candidate_pairs,
+                               std::span<const BodyState> states)
     : model_(model),
       bodies_(std::move(bodies)),
       nodes_of_(bodies_.size()),
       modes_(bodies_.size(), 0),
       loads_(bodies_.size()),
       acceleration_(bodies_.size()) {
-  for (const ElementPair& elements : candidate_pairs) {
+  std::map<ElementPair, std::array<Segment, 2>> segments;
+  for (const auto& [a, b] : candidate_pairs) {
+    const std::array<Segment, 2> both{segment_of(a, states), segment_of(b, states)};
+    segments.emplace(ElementPair{both[0].element, both[1].element}, both);
+  }
+  for (const auto& [elements, both] : segments) {
     MemberPair pair;
     pair.elements = elements;
     pair.L = contact_length(model, elements);
     double inverse = 0;
     int k = 0;
-    for (const int e : {elements.a, elements.b}) {
-      for (const int node : model.elements[e].node) pair.node[k++] = number_of(node);
-      const Body& body = model.bodies[model.node_body[model.elements[e].node[0]]];
+    for (const Segment& segment : both) {
+      for (const int node : segment.node) pair.node[k++] = number_of(node);
+      const Body& body = model.bodies[model.node_body[segment.node[0]]];
       if (nodes_[pair.node[k - 1]].body >= 0) inverse += std::max(1, body.contact_point_count) / body.mass;
     }
     pair.mass = 1 / inverse;
     pair.start.fill(Vec3::Zero());
     pair.stick.fill(Vec3::Zero());
     pairs_.push_back(pair);
+    elements_of_.push_back({both[0].count, both[1].count});
   }
-  for (auto* array : {&position_, &velocity_, &arm_, &force_}) array->assign(nodes_.size(), Vec3::Zero());
+  for (auto* array : {&position_, &velocity_, &arm_}) array->assign(nodes_.size(), Vec3::Zero());
   shape_.assign(nodes_.size() * k_modes, Vec3::Zero());
+}
+
+MemberCoupling::Segment MemberCoupling::segment_of(int e, std::span<const BodyState> states) const {
+  const Element& element = model_.elements[e];
+  const Member& member = model_.members[element.member];
+  if (traits(states[member.body].level).has_modes) return {e, 1, {element.node[0], element.node[1]}};
+  const int last = member.first_element + member.element_count - 1;
+  return {member.first_element,
+          member.element_count,
+          {model_.elements[member.first_element].node[0], model_.elements[last].node[1]}};
+}
+
+MemberForce MemberCoupling::force(const MemberTouch& touch) const {
+  MemberForce force{pairs_[touch.pair].elements, touch.at.s, touch.at.t, touch.depth, touch.out.force};
+  const auto find = [](int count, int& element, double& place) {
+    const int which = std::min(static_cast<int>(place * count), count - 1);
+    element += which;
+    place = place * count - which;
+  };
+  find(elements_of_[touch.pair][0], force.elements.a, force.s);
+  find(elements_of_[touch.pair][1], force.elements.b, force.t);
+  return force;
 }
 
 int MemberCoupling::number_of(int node) {
@@ -165,7 +195,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     }
     return j;
   };
-  each_tangent(law, contacts, pairs, velocity_factor, [&](const PairTangent& tangent) {
+  const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
     const std::array<int, 2> bodies = bodies_of(pair);
     std::array<std::array<Columns, k_most_groups>, 2> at_touch;
@@ -175,7 +205,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
         const Columns first = columns_at(pair.node[2 * side], i),
                       second = columns_at(pair.node[2 * side + 1], i);
         at_touch[side][i] = tangent.share[2 * side] * first + tangent.share[2 * side + 1] * second;
-        for (std::size_t p = 0; p < tangent.products.size(); ++p) {
+        for (int p = 0; p < tangent.product_count; ++p) {
           const PairTangent::Product& product = tangent.products[p];
           left[side][i][p] =
               first.transpose() * product.left[2 * side] + second.transpose() * product.left[2 * side + 1];
@@ -190,13 +220,14 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
         for (int i = 0; i < groups(modes_[bodies[a]]); ++i)
           for (int j = 0; j < groups(modes_[bodies[b]]); ++j) {
             Mat6 block = at_touch[a][i].transpose() * (tangent.local * at_touch[b][j]);
-            for (std::size_t p = 0; p < tangent.products.size(); ++p)
+            for (int p = 0; p < tangent.product_count; ++p)
               block += left[a][i][p] * right[b][j][p].transpose();
             const Mat6 of_stick = at_touch[a][i].transpose() * (tangent.stick * at_touch[b][j]);
             add(bodies[a], i, bodies[b], j, block, of_stick);
           }
       }
-  });
+  };
+  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add_all));
 }
 
 }  // namespace topple

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "solver/body/coupled_bodies.h"
+#include "solver/reduced/coupled_bodies.h"
 #include "solver/state/step_result.h"
 
 namespace topple {

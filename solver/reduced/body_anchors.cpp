@@ -1,9 +1,9 @@
-#include "solver/body/body_anchors.h"
+#include "solver/reduced/body_anchors.h"
 
 #include <algorithm>
 
-#include "solver/body/elastic_basis.h"
 #include "solver/math/rotation.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple {
 namespace {

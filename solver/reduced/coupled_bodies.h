@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/body/implicit_substep.h"
-#include "solver/body/member_coupling.h"
 #include "solver/math/block_lu.h"
+#include "solver/reduced/implicit_substep.h"
+#include "solver/reduced/member_coupling.h"
 
 namespace topple {
 

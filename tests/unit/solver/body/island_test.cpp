@@ -1,0 +1,342 @@
+// Rigid and elastic bodies that touch each other, and floors and walls made of members.
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "solver/reduced/member_coupling.h"
+#include "unit/solver/body_models.h"
+
+namespace topple::test {
+namespace {
+
+/// Cabinets in a row along x, `gap` (m) between their surfaces, on a floor.
+topple::Setup row(int count, double gap, BodyModel model, double cg_height = 1.05) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.cg_height = cg_height;
+  for (int k = 0; k < count; ++k) {
+    spec.name = copy_name("cabinet", k);
+    spec.at.x() = k * (spec.size.x() + 0.03 + gap);
+    setup.starts.push_back(add_cabinet(setup.model, spec));
+  }
+  setup.model.planes.push_back(ground());
+  setup.parameters.adaptive = true;
+  setup.parameters.contact.alpha = 500 * k_g;
+  compute_as(setup, model);
+  return setup;
+}
+
+/// Without weight or floor.
+void free_of_all(topple::Setup& setup) {
+  setup.model.planes.clear();
+  setup.parameters.gravity.setZero();
+  setup.run.settle = false;
+  setup.run.duration = 0.5;
+}
+
+Vec3 angular_momentum(const Model& model, const State& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyState& s = state.bodies[b];
+    sum += model.bodies[b].mass * s.position.cross(s.velocity) +
+           s.rotation * (model.bodies[b].inertia * s.angular_velocity);
+  }
+  return sum;
+}
+
+Vec3 momentum(const Model& model, const State& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    sum += model.bodies[b].mass * state.bodies[b].velocity;
+  return sum;
+}
+
+// Forces on the ends of members and their derivatives, against the power and differences of the loads.
+TEST(Island, forces_between_members_are_carried_to_the_bodies_by_their_own_motion) {
+  std::mt19937 rng(7);
+  for (const auto& [first, second] :
+       {std::pair(ModelLevel::rigid, ModelLevel::rigid), std::pair(ModelLevel::rigid, ModelLevel::elastic),
+        std::pair(ModelLevel::elastic, ModelLevel::elastic)}) {
+    topple::Setup setup = row(2, -0.01, BodyModel::elastic);
+    setup.run.settle = false;
+    const Model& model = setup.model;
+    const Simulation sim = simulate(setup);
+    std::vector<BodyState> bodies = sim.state.bodies;
+    for (std::size_t b = 0; b < 2; ++b) {
+      BodyState& s = bodies[b];
+      s.level = b == 0 ? first : second;
+      s.velocity = random_vector(rng);
+      s.angular_velocity = random_vector(rng);
+      s.rotation = Quat(1, 0.002, -0.003, 0.001).normalized();
+      if (s.level == ModelLevel::rigid) continue;
+      for (int k = 0; k < k_modes; ++k) {
+        s.amplitude[k] = 1e-4 * random_vector(rng).x();
+        s.rate[k] = 0.1 * random_vector(rng).x();
+      }
+    }
+    NearSearch search(model);
+    const std::vector<ElementPair> near = search.find(start_state(model, setup.starts).position, 0.05);
+    MemberCoupling coupling(model, {0, 1}, near, bodies);
+    ContactLaw law = setup.parameters.contact;
+    law.friction = 10;  // sticks
+    const auto velocity = [&](int b) {
+      const BodyState& s = bodies[b];
+      return BodyVelocity{packed(s.velocity), packed(Vec3(s.rotation * s.angular_velocity)), s.rate};
+    };
+    const auto unknown = [](BodyVelocity& u, int k) -> double& {
+      double* const of[6] = {&u.linear.x, &u.linear.y, &u.linear.z, &u.angular.x, &u.angular.y, &u.angular.z};
+      return k < 6 ? *of[k] : u.rate[k - 6];
+    };
+    MemberContacts contacts;
+    const auto loads = [&](std::array<BodyVelocity, 2> u) {
+      for (int b = 0; b < 2; ++b)
+        coupling.place(b, bodies[b], rotation_matrix(packed(bodies[b].rotation)), u[b]);
+      const std::vector<Vec3> start = coupling.position();
+      for (MemberPair& pair : coupling.pairs())
+        for (int k = 0; k < 4; ++k) pair.start[k] = start[pair.node[k]];
+      find_member_contacts(law, coupling.pairs(), coupling.position(), coupling.velocity(), start, contacts);
+      return coupling.loads(contacts, coupling.pairs());
+    };
+    const std::array<BodyVelocity, 2> at{velocity(0), velocity(1)};
+    const std::vector<BodyVelocity> acting = loads(at);
+    ASSERT_FALSE(contacts.touches.empty());
+    double power = 0, expected = 0;
+    for (int b = 0; b < 2; ++b) {
+      BodyVelocity u = at[b], f = acting[b];
+      for (int k = 0; k < 6 + coupling.modes(b); ++k) power += unknown(u, k) * unknown(f, k);
+    }
+    for (const MemberTouch& touch : contacts.touches)
+      expected += touch.out.force.dot(relative(touch, coupling.pairs()[touch.pair], coupling.velocity()));
+    for (const MemberBlend& blend : contacts.blends)
+      for (int k = 0; k < 4; ++k)
+        expected -= blend.slope * blend.surplus *
+                    blend.by_sine[k].dot(coupling.velocity()[coupling.pairs()[blend.pair].node[k]]);
+    EXPECT_NEAR(power, expected, 1e-9 * std::abs(expected));
+
+    // -d(load)/d(u): what the factor of velocities adds to the tangent
+    constexpr int n = 6 + k_modes;
+    Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    for (const double factor : {0., 1.})
+      coupling.each_block(law, contacts, coupling.pairs(), factor,
+                          [&](int a, int i, int b, int j, const Mat6& block, const Mat6&) {
+                            tangent.block<6, 6>(n * a + 6 * i, n * b + 6 * j) +=
+                                (factor > 0 ? 1 : -1) * block;
+                          });
+    constexpr double k_step = 1e-6;
+    for (int b = 0; b < 2; ++b)
+      for (int k = 0; k < 6 + coupling.modes(b); ++k) {
+        std::array<std::vector<BodyVelocity>, 2> moved;
+        for (const int side : {0, 1}) {
+          std::array<BodyVelocity, 2> u = at;
+          unknown(u[b], k) += side == 0 ? -k_step : k_step;
+          moved[side] = loads(u);
+        }
+        for (int a = 0; a < 2; ++a)
+          for (int i = 0; i < 6 + coupling.modes(a); ++i) {
+            const double slope = (unknown(moved[1][a], i) - unknown(moved[0][a], i)) / (2 * k_step);
+            EXPECT_NEAR(-slope, tangent(n * a + i, n * b + k), 1e-5 * tangent.cwiseAbs().maxCoeff())
+                << a << i << b << k;
+          }
+      }
+  }
+}
+
+TEST(Island, bodies_that_knock_keep_momentum_and_energy) {
+  for (const auto& [first, second] :
+       {std::pair(BodyModel::rigid, BodyModel::rigid), std::pair(BodyModel::elastic, BodyModel::rigid),
+        std::pair(BodyModel::elastic, BodyModel::elastic)})
+    for (const ContactLawKind kind : {ContactLawKind::coulomb, ContactLawKind::paper}) {
+      topple::Setup setup = row(2, 0.08, BodyModel::elastic);
+      free_of_all(setup);
+      setup.parameters.models = {first, second};
+      setup.parameters.contact.kind = kind;
+      setup.starts[0].velocity = Vec3(1, 0.2, 0.1);
+      setup.starts[0].angular_velocity = Vec3(0.2, 0.5, -0.3);
+      topple::Run run(setup);
+      const Vec3 before = momentum(setup.model, run.state()),
+                 turning = angular_momentum(setup.model, run.state());
+      while (!run.over()) {
+        run.advance();
+        ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+      }
+      const State& state = run.state();
+      EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
+      EXPECT_NE(state.bodies[0].level, ModelLevel::frame);
+      // forces are equal and opposite at every iteration of Newton
+      EXPECT_LT((momentum(setup.model, state) - before).norm(), 1e-9 * before.norm());
+      // moments to the error of the method, which keeps no product of unknowns: some tens of substeps, each
+      // of which may leave 0.03 of the tolerance of 1e-3
+      EXPECT_LT((angular_momentum(setup.model, state) - turning).norm(), 3e-3 * turning.norm());
+      EXPECT_LT(state.energy.balance_error(), 1e-3);
+    }
+}
+
+// Two of equal mass that meet flat at v = 1 m/s. Of e = 0 the smoothing eps of the loss leaves them, who part
+// on P (1 - v/sqrt(v^2 + eps^2)) = P eps^2/(2 v^2) after all but a half of their energy was lost closing,
+//   v' = (eps^2 v^2/2)^(1/4).
+TEST(Island, restitution_between_bodies_is_that_of_the_law) {
+  constexpr double k_smoothing = 1e-3;
+  for (const double e : {0., 0.5, 1.}) {
+    topple::Setup setup = row(2, 0.08, BodyModel::rigid, 0.895);
+    free_of_all(setup);
+    setup.parameters.contact.restitution = e;
+    setup.parameters.contact.normal_speed = k_smoothing;
+    setup.starts[0].velocity = Vec3::UnitX();
+    topple::Run run(setup);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok());
+    const double apart = run.state().bodies[1].velocity.x() - run.state().bodies[0].velocity.x();
+    const double expected = e > 0 ? e : std::pow(k_smoothing * k_smoothing / 2, 0.25);
+    // what the method takes out of a contact that is resolved to 3e-5 of the speed per substep
+    EXPECT_NEAR(apart, expected, 0.01);
+  }
+}
+
+// A stack at rest: each box bears those above it.
+TEST(Island, stack_settles_on_what_is_below) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup;
+    setup.model = steel_model();
+    CabinetSpec spec = tall_cabinet();
+    spec.size = Vec3(0.5, 0.6, 0.3);
+    spec.mass = 8;
+    spec.cg_height = 0.15;
+    for (int k = 0; k < 3; ++k) {
+      spec.name = copy_name("box", k);
+      spec.at.z() = 0.33 * k;
+      setup.starts.push_back(add_cabinet(setup.model, spec));
+    }
+    setup.model.planes.push_back(ground());
+    setup.parameters.contact.alpha = 500 * k_g;
+    compute_as(setup, model);
+    Simulation sim = simulate(setup);
+    double floor = 0;
+    for (const ContactForce& force : sim.contacts()) floor += force.force.z();
+    std::array<double, 3> on{};  // from below, N
+    for (const MemberForce& force : member_forces(sim.workspace())) {
+      const int a = sim.model.members[sim.model.elements[force.elements.a].member].body,
+                b = sim.model.members[sim.model.elements[force.elements.b].member].body;
+      EXPECT_EQ(a + 1, b);
+      on[b] -= force.force.z();
+    }
+    const double weight = 8 * k_g;
+    EXPECT_NEAR(floor, 3 * weight, 1e-7 * weight);
+    EXPECT_NEAR(on[1], 2 * weight, 1e-7 * weight);
+    EXPECT_NEAR(on[2], weight, 1e-7 * weight);
+    // and stays there
+    ASSERT_TRUE(sim.advance(50));
+    for (const BodyState& s : sim.state.bodies) EXPECT_LT(s.velocity.norm(), 1e-6);
+  }
+}
+
+// Shaken until they knock each other over: the same bodies, at the same times as frames.
+TEST(Island, row_falls_as_frames_do) {
+  std::vector<std::vector<BodyOutcome>> outcomes;
+  for (const BodyModel model : {BodyModel::frame, BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = row(3, 0.02, model);
+    shake(setup, 4.5, 1);
+    setup.run.duration = 4;
+    topple::Run run(setup);
+    double lost = 0;
+    while (!run.over()) {
+      run.advance();
+      ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+      lost = std::max(lost, run.state().energy.balance_error());
+    }
+    EXPECT_LT(lost, 1e-3);
+    outcomes.push_back(run.outcome().bodies());
+  }
+  int fallen = 0;
+  for (std::size_t b = 0; b < 3; ++b) {
+    const std::optional<double> truth = outcomes[0][b].beyond_since;
+    fallen += truth ? 1 : 0;
+    for (const int which : {1, 2}) {
+      const std::optional<double> other = outcomes[which][b].beyond_since;
+      ASSERT_EQ(other.has_value(), truth.has_value()) << b;
+      EXPECT_NEAR(other.value_or(0), truth.value_or(0), 0.02 * truth.value_or(0)) << b;
+    }
+  }
+  EXPECT_GT(fallen, 0);
+}
+
+// A wall of members holds a body back as one does that is a plane.
+TEST(Island, cabinet_leans_against_a_wall_of_members) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = row(1, 0, BodyModel::elastic);
+    GridSpec wall;
+    wall.name = "wall";
+    wall.origin = Vec3(0.5, 0, 0);
+    wall.along = Vec3::UnitY();
+    wall.up = Vec3::UnitZ();
+    wall.normal = -Vec3::UnitX();
+    wall.from[0] = -1;
+    wall.to[0] = 1;
+    wall.from[1] = 0;
+    wall.to[1] = 2;
+    setup.starts.push_back(add_grid(setup.model, wall));
+    setup.parameters.models = {model, BodyModel::frame};
+    setup.starts[0].velocity = Vec3(0.8, 0, 0);
+    setup.starts[0].angular_velocity = Vec3(0, 0.8, 0);
+    setup.run.settle = false;
+    setup.run.duration = 3;
+    topple::Run run(setup);
+    double furthest = 0;
+    while (!run.over()) {
+      run.advance();
+      ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+      const BodyState& s = run.state().bodies[0];
+      EXPECT_NE(s.level, ModelLevel::frame);
+      furthest = std::max(furthest, (s.position + s.rotation * Vec3(0.19, 0, 0.7)).x());
+    }
+    EXPECT_GT(furthest, 0.45);  // it came there
+    EXPECT_LT(furthest, 0.515);
+    EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+  }
+}
+
+TEST(Island, goes_on_bit_for_bit_in_a_new_workspace_at_every_step) {
+  for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {
+    topple::Setup setup = row(3, 0.02, model);
+    setup.starts[0].velocity = Vec3(0.6, 0, 0);
+    setup.run.settle = false;
+    topple::Run run(setup);
+    bool touched = false;
+    for (int i = 0; i < 400; ++i) {
+      topple::Run fresh(setup, unpack(setup.model, pack(run.state())), run.parameters());
+      ASSERT_TRUE(run.advance().ok() && fresh.advance().ok());
+      ASSERT_EQ(hash(run.state()), hash(fresh.state())) << i;
+      touched = touched || !run.state().member_sticks.empty();
+    }
+    EXPECT_TRUE(touched);
+  }
+}
+
+// Four islands: whoever advances them.
+TEST(Island, threads_do_not_change_a_bit) {
+  const auto run_with = [](int workers) {
+    topple::Setup setup;
+    setup.model = steel_model();
+    CabinetSpec spec = tall_cabinet();
+    for (int k = 0; k < 8; ++k) {
+      spec.name = copy_name("cabinet", k);
+      spec.at = Vec3(0.43 * (k % 2), 3 * (k / 2), 0);
+      spec.velocity = k % 2 == 0 ? Vec3(0.3 + 0.1 * k, 0, 0) : Vec3::Zero();
+      setup.starts.push_back(add_cabinet(setup.model, spec));
+    }
+    setup.model.planes.push_back(ground());
+    setup.run.settle = false;
+    compute_as(setup, BodyModel::rigid);
+    topple::Run run(setup);
+    if (workers > 1)
+      run.share({workers, [](int count, const std::function<void(int, int)>& f) {
+                   for (int task = count - 1; task >= 0; --task) f(task, task % 2);
+                 }});
+    for (int i = 0; i < 300; ++i) EXPECT_TRUE(run.advance().ok());
+    EXPECT_FALSE(run.state().member_sticks.empty());
+    return hash(run.state());
+  };
+  EXPECT_EQ(run_with(1), run_with(2));
+}
+
+}  // namespace
+}  // namespace topple::test
