@@ -154,10 +154,14 @@ struct Japanese {
 inline constexpr Japanese<ModelLevel> k_levels[] = {
     {ModelLevel::rigid, "剛体"}, {ModelLevel::elastic, "弾性"}, {ModelLevel::frame, "骨組"}};
 inline constexpr Japanese<LevelReason> k_level_reasons[] = {
-    {LevelReason::asked, "指定による"},       {LevelReason::motion, "運動のみ必要"},
-    {LevelReason::stress, "応力が必要"},      {LevelReason::contact_frequency, "接触剛性が家具の剛性に近い"},
-    {LevelReason::yield, "断面が降伏に近い"}, {LevelReason::deformation, "微小変形でない"},
-    {LevelReason::near, "フレームの家具が近い"},    {LevelReason::calm, "静穏に戻った"}};
+    {LevelReason::asked, "指定による"},
+    {LevelReason::motion, "運動のみ必要"},
+    {LevelReason::stress, "応力が必要"},
+    {LevelReason::contact_frequency, "接触剛性が家具の剛性に近い"},
+    {LevelReason::yield, "断面が降伏に近い"},
+    {LevelReason::deformation, "微小変形でない"},
+    {LevelReason::near, "フレームの家具が近い"},
+    {LevelReason::calm, "静穏に戻った"}};
 
 template <class Table, class Kind>
 Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {
