@@ -2,8 +2,8 @@
 //
 // A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
 // for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
-// elastic. A body is a frame while one is near (State::candidate_pairs, also over bodies between them), and an
-// automatic one too once
+// elastic. A body is a frame while one is near (State::candidate_pairs, also over bodies between them), and
+// an automatic one too once
 //   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
 //   - a node could turn by more than k_small_rotation relative to the body (sum over the modes).
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, and for k_calm_for

@@ -74,9 +74,9 @@ void CoupledBodies::find(const ContactLaw& law) {
   find_member_contacts(law, pairs_, coupling_.position(), coupling_.velocity(), start_position_, now_);
 }
 
-// f(substep, six unknowns of it, their place in side_); then those of the modes.
+// f(substep, its part of side_).
 template <class F>
-void CoupledBodies::each_row(F f) {
+void CoupledBodies::each_body(F f) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) f(*substeps_[b], &side_[6 * row_[b]]);
 }
 
@@ -151,7 +151,7 @@ bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law,
     find(law);
     const std::vector<BodyVelocity>& loads = coupling_.loads(now_, pairs_);
     for (std::size_t b = 0; b < bodies_.size(); ++b) substeps_[b]->add(loads[which_[b]]);
-    each_row(
+    each_body(
         [](const ImplicitSubstep& substep, double* to) { put(substep.residual(), substep.modes(), to); });
     if (newton.fresh) {
       factor(span, law);
@@ -159,7 +159,7 @@ bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law,
     }
     matrix_.solve(side_.data());
     double size = 0, over = 0;
-    each_row([&](ImplicitSubstep& substep, const double* from) {
+    each_body([&](ImplicitSubstep& substep, const double* from) {
       const double own = substep.correct(taken(from, substep.modes()));
       size = std::max(size, own);
       over = std::max(over, own / substep.scale());
@@ -218,7 +218,7 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
   }
   std::swap(start_, now_);
   const auto give_up = [&](double error) {
-    each_row([](ImplicitSubstep& substep, double*) { substep.give_up(); });
+    each_body([](ImplicitSubstep& substep, double*) { substep.give_up(); });
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       coupling_.place(which_[b], next_->bodies[bodies_[b].index]);
     std::swap(start_, now_);
@@ -230,12 +230,12 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
   for (int stage = 0; stage < 2; ++stage) {
     if (!solve_stage(span, *laws[stage], newton)) return give_up(ImplicitOutcome::k_no_stage);
     powers[stage] = power();
-    each_row([](ImplicitSubstep& substep, double*) { substep.end_stage(); });
+    each_body([](ImplicitSubstep& substep, double*) { substep.end_stage(); });
   }
-  each_row([](const ImplicitSubstep& substep, double* to) { put(substep.error(), substep.modes(), to); });
+  each_body([](const ImplicitSubstep& substep, double* to) { put(substep.error(), substep.modes(), to); });
   sticks_.solve(side_.data());
   double error = 0;
-  each_row([&](const ImplicitSubstep& substep, const double* from) {
+  each_body([&](const ImplicitSubstep& substep, const double* from) {
     const double own = substep.over_allowed(taken(from, substep.modes()));
     if (!(own <= error)) error = own;
   });
@@ -246,7 +246,7 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
   }
   find(span.end.law);
   if (passed_unseen(now_, pairs_, start_position_, coupling_.position()) >= 0) return give_up(k_passed_error);
-  each_row([&](ImplicitSubstep& substep, double*) { substep.finish(*booked_); });
+  each_body([&](ImplicitSubstep& substep, double*) { substep.finish(*booked_); });
   book(span, powers[0], powers[1]);
   // springs that slipped are shorter now: the next substep starts from the forces with these
   keep_sticks(now_, pairs_);

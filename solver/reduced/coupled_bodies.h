@@ -20,11 +20,10 @@ class CoupledBodies {
   const std::vector<int>& which() const { return which_; }
 
   /// As ReducedBody::advance, for all of them. `pairs`: what may touch between them, with its stick springs
-  /// at the start, which become those at the end.
+  /// at the start.
   StepStatus::Kind advance(const StepSpan& span, std::vector<MemberPair> pairs, State& next,
                            StepEnergy& booked);
-  /// Between members at the end.
-  const std::vector<MemberPair>& pairs() const { return pairs_; }
+  /// Between members at the end; pairs as numbered in those of advance.
   const MemberContacts& contacts() const { return now_; }
 
  private:
@@ -43,7 +42,7 @@ class CoupledBodies {
   Power power() const;
   void book(const SubstepSpan& span, const Power& first, const Power& second);
   template <class F>
-  void each_row(F f);
+  void each_body(F f);
 
   const std::vector<int> which_;
   std::vector<ModelBody> bodies_;  // in that order

@@ -62,9 +62,9 @@ class MemberCoupling {
   /// Force of a touch, with the elements and places where it acts.
   MemberForce force(const MemberTouch& touch) const;
   /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
-  /// add_load puts one to what acts on a body.
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
-  /// Adds J^T t J, t of each_tangent(): block (i, j) of six unknowns belongs to group i of body a and j of b.
+  /// Calls add with the parts of J^T t J, t of each_tangent(): block (i, j) of six unknowns belongs to group
+  /// i of body a and j of b.
   using AddBlock = std::function<void(int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick)>;
   void each_block(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                   double velocity_factor, const AddBlock& add) const;
@@ -101,6 +101,7 @@ class MemberCoupling {
   std::vector<Acceleration> acceleration_;  // per body, as placed by its state
 };
 
+/// To what acts on a body: a load of MemberCoupling::loads.
 inline void add_load(const BodyVelocity& load, BodyState& s) {
   s.force += unpacked(load.linear);
   s.moment += unpacked(load.angular);

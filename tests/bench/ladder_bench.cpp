@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/io/scene/scene.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/run/overturn.h"
 #include "unit/solver/fixtures.h"
 

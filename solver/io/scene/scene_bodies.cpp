@@ -3,13 +3,13 @@
 #include <cmath>
 #include <set>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/proximity.h"
 #include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/model/cabinet.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple::io {
 namespace {

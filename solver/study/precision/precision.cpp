@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
 #include "solver/contact/contact_law.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/math/elementary.h"
+#include "solver/reduced/elastic_basis.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/measure.h"
 

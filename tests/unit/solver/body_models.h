@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/body/body_pose.h"
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

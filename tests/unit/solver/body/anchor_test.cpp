@@ -5,9 +5,9 @@
 
 #include "solver/body/anchors.h"
 #include "solver/body/body_pose.h"
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -6,11 +6,11 @@
 #include <span>
 #include <stdexcept>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/element/damping.h"
 #include "solver/frame/modes.h"
 #include "solver/model/accelerogram.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/frame/central_difference.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

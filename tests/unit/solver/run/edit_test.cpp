@@ -5,12 +5,12 @@
 #include <set>
 
 #include "solver/body/body_pose.h"
-#include "solver/reduced/elastic_basis.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "solver/reduced/elastic_basis.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
+#include "solver/reduced/elastic_basis.h"
 #include "unit/solver/fixtures.h"
 
 namespace {
