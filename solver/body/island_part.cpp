@@ -1,11 +1,9 @@
 #include "solver/body/island_part.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "solver/body/reduced_part.h"
+#include "solver/math/disjoint_sets.h"
 #include "solver/reduced/bodies_at_rest.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_limits.h"
@@ -14,7 +12,6 @@ namespace topple {
 namespace {
 
 constexpr double k_likely = 1.5;    // times the travel that the motion at the start says: may be more
-constexpr double k_resolved = 0.3;  // rad, of the bounce of two members, in a step after a touch
 constexpr std::size_t k_sets = 32;  // of bodies that were advanced together, whose matrices are kept
 
 // What a node of a body travels within h, s, as it moves at `s`, m.
@@ -36,14 +33,9 @@ std::vector<int> indices(const std::vector<ModelBody>& bodies) {
 IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
                        std::span<const ElementPair> candidate_pairs, std::span<const BodyState> states,
                        std::vector<SectionForces>& sections)
-    : model_(model),
-      bodies_(std::move(bodies)),
-      coupling_(model, indices(bodies_), candidate_pairs, states),
-      sections_(sections) {}
-
-bool IslandPart::has(const std::vector<char>& marked) const {
-  return std::ranges::any_of(bodies_, [&](const ModelBody& body) { return marked[body.index]; });
-}
+    : ReducedPart(std::move(bodies), sections),
+      model_(model),
+      coupling_(model, indices(bodies_), candidate_pairs, states) {}
 
 void IslandPart::place(const State& state) {
   coupling_.place_held(state);
@@ -51,22 +43,23 @@ void IslandPart::place(const State& state) {
     coupling_.place(b, state.bodies[bodies_[b].index]);
 }
 
-// All that touches between members at `state`.
-void IslandPart::find(const StepInputs& now, const State& state) {
+// Places the members, whose pairs start there with the springs of `state`.
+void IslandPart::start_pairs(const State& state) {
   place(state);
   sticks_.load(state, coupling_.pairs());
-  for (MemberPair& pair : coupling_.pairs())
-    for (int k = 0; k < 4; ++k) pair.start[k] = coupling_.position()[pair.node[k]];
+  coupling_.start(coupling_.pairs());
+}
+
+// All that touches between members at `state`.
+void IslandPart::find(const StepInputs& now, const State& state) {
+  start_pairs(state);
   find_member_contacts(now.law, coupling_.pairs(), coupling_.position(), coupling_.velocity(),
                        coupling_.position(), now_);
 }
 
 StepStatus IslandPart::settle(const Parameters& parameters, State& state, PartScratch&) {
   for (const auto& [index, body] : bodies_) body->remember(state.anchors);
-  place(state);
-  sticks_.load(state, coupling_.pairs());
-  for (MemberPair& pair : coupling_.pairs())
-    for (int k = 0; k < 4; ++k) pair.start[k] = coupling_.position()[pair.node[k]];
+  start_pairs(state);
   const StepStatus status = settle_bodies(bodies_, &coupling_, parameters, state);
   find_member_contacts(law_at_rest(parameters.contact), coupling_.pairs(), coupling_.position(),
                        coupling_.velocity(), coupling_.position(), now_);
@@ -92,12 +85,7 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
 }
 
 BodyEnergy IslandPart::energy(const StepInputs& now, const State& state) {
-  BodyEnergy held;
-  for (const auto& [index, body] : bodies_) {
-    body->remember(state.anchors);
-    body->find_contacts(now, state.bodies[index], state.stick);
-    held += body->energy(now.law, state.bodies[index]);
-  }
+  BodyEnergy held = ReducedPart::energy(now, state);
   find(now, state);
   held.contact += stored_energy(now.law, now_, coupling_.pairs());
   return held;
@@ -115,10 +103,8 @@ void IslandPart::each_stick(AnyState& state, F f) const {
 }
 
 void IslandPart::begin(const StepSpan& span, const State& next) {
-  place(next);
-  sticks_.load(next, coupling_.pairs());
-  const std::vector<Vec3>& position = coupling_.position();
-  start_.position = position;
+  start_pairs(next);
+  start_.position = coupling_.position();
   start_.bodies.clear();
   start_.stick.clear();
   std::vector<double> travel;
@@ -130,8 +116,7 @@ void IslandPart::begin(const StepSpan& span, const State& next) {
   each_stick(next, [&](auto first, auto last) { start_.stick.insert(start_.stick.end(), first, last); });
   start_.gap.clear();
   start_.close.clear();
-  for (MemberPair& pair : coupling_.pairs()) {
-    for (int k = 0; k < 4; ++k) pair.start[k] = position[pair.node[k]];
+  for (const MemberPair& pair : coupling_.pairs()) {
     double way = 0;
     for (const int body : coupling_.bodies_of(pair)) way += body < 0 ? 0 : travel[body];
     start_.gap.push_back(coupling_.gap(pair));
@@ -160,24 +145,17 @@ CoupledBodies& IslandPart::coupled(std::vector<int> which) {
 void IslandPart::advance_once(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
   const int count = static_cast<int>(bodies_.size());
   const std::span<MemberPair> pairs = coupling_.pairs();
-  std::vector<int> parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int b) {
-    while (parent[b] != b) b = parent[b] = parent[parent[b]];
-    return b;
-  };
+  DisjointSets sets(count);
   std::vector<std::vector<int>> which(count), own_pairs(count);
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     if (!start_.close[p]) continue;
     const auto [a, b] = coupling_.bodies_of(pairs[p]);
-    if (a < 0 || b < 0) continue;
-    const int ra = root(a), rb = root(b);
-    parent[std::max(ra, rb)] = std::min(ra, rb);
+    if (a >= 0 && b >= 0) sets.join(a, b);
   }
-  for (int b = 0; b < count; ++b) which[root(b)].push_back(b);
+  for (int b = 0; b < count; ++b) which[sets.first_of(b)].push_back(b);
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const auto [a, b] = coupling_.bodies_of(pairs[p]);
-    if (start_.close[p]) own_pairs[root(std::max(a, b))].push_back(static_cast<int>(p));
+    if (start_.close[p]) own_pairs[sets.first_of(std::max(a, b))].push_back(static_cast<int>(p));
   }
   now_.clear();
   StepStatus& status = outcome.status;
@@ -243,35 +221,23 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
 }
 
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {
-  const ContactLaw law = contact_law(parameters, state.time);
-  double limit = k_longest_step;
+  double limit = ReducedPart::time_limit(parameters, state);
   place(state);
-  for (const auto& [index, body] : bodies_) {
-    body->remember(state.anchors);
-    limit = std::min(limit, body->look_ahead(law, state.bodies[index]));
-  }
-  double first = limit;
   for (const MemberPair& pair : coupling_.pairs()) {
-    first = std::min(first, k_resolved * std::sqrt(pair.mass * pair.L / (law.alpha * std::max(1., law.q))));
     if (coupling_.gap(pair) > 0) continue;
     for (const int b : coupling_.bodies_of(pair)) {
-      if (b < 0) continue;
-      if (const double substep = state.bodies[bodies_[b].index].substep; substep > 0)
-        limit = std::min(limit, substep);
+      const double substep = b < 0 ? 0 : state.bodies[bodies_[b].index].substep;
+      if (substep > 0) limit = std::min(limit, substep);
     }
   }
-  if (const double touch = coupling_.next_touch(coupling_.pairs(), limit); touch < limit)
-    limit = std::max(touch, std::min(limit, first));
-  return limit;
+  const double touch = coupling_.next_touch(coupling_.pairs(), limit);
+  if (!(touch < limit)) return limit;
+  const ContactLaw law = contact_law(parameters, state.time);
+  return std::max(touch, std::min(limit, first_substep(law, coupling_.pairs())));
 }
 
 void IslandPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
-  for (const auto& [index, body] : bodies_) {
-    body->remember(state.anchors);
-    body->find_contacts(now, state.bodies[index], state.stick);
-    body->section_forces(state.bodies[index], sections_);
-    body->list_contacts(forces.contacts);
-  }
+  ReducedPart::list_forces(now, state, forces);
   find(now, state);
   for (const MemberTouch& touch : now_.touches) forces.members.push_back(coupling_.force(touch));
 }
@@ -283,7 +249,7 @@ HardestContact IslandPart::hardest_contact(const HardestContact& hardest) {
     const int element = coupling_.pairs()[touch.pair].elements.a, node = model_.elements[element].node[0];
     found = {touch.out.normal, model_.node_body[node], node, element};
   }
-  return hardest_on_planes(bodies_, found);
+  return ReducedPart::hardest_contact(found);
 }
 
 }  // namespace topple

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/body/part.h"
+#include "solver/body/reduced_part.h"
 #include "solver/reduced/coupled_bodies.h"
 #include "solver/state/member_sticks.h"
 
@@ -13,14 +13,13 @@ namespace topple {
 
 /// Bodies that candidate pairs connect. Those that may touch another within a step are advanced together, the
 /// others each alone.
-class IslandPart final : public Part {
+class IslandPart final : public ReducedPart {
  public:
   /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs` and
   /// `states`: as MemberCoupling's.
   IslandPart(const Model& model, std::vector<ModelBody> bodies, std::span<const ElementPair> candidate_pairs,
              std::span<const BodyState> states, std::vector<SectionForces>& sections);
 
-  bool has(const std::vector<char>& marked) const override;
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state) override;
@@ -43,6 +42,7 @@ class IslandPart final : public Part {
   };
 
   void place(const State& state);
+  void start_pairs(const State& state);
   void find(const StepInputs& now, const State& state);
   void begin(const StepSpan& span, const State& next);
   void begin_again(State& next) const;
@@ -53,9 +53,7 @@ class IslandPart final : public Part {
   void each_stick(AnyState& state, F f) const;
 
   const Model& model_;
-  const std::vector<ModelBody> bodies_;
   MemberCoupling coupling_;
-  std::vector<SectionForces>& sections_;
   MemberSticks sticks_;
   std::vector<std::unique_ptr<CoupledBodies>> coupled_;  // sets that were advanced together
   Start start_;

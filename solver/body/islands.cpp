@@ -1,7 +1,8 @@
 #include "solver/body/islands.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "solver/math/disjoint_sets.h"
 
 namespace topple {
 
@@ -10,25 +11,18 @@ Islands::Islands(const Model& model)
 
 std::vector<Island> Islands::divide(const std::vector<ElementPair>& candidate_pairs) const {
   const int count = static_cast<int>(model_.bodies.size());
-  std::vector<int> parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int b) {
-    while (parent[b] != b) b = parent[b] = parent[parent[b]];
-    return b;
-  };
+  DisjointSets sets(count);
   const auto body_of = [&](int element) { return model_.members[model_.elements[element].member].body; };
   for (const ElementPair& pair : candidate_pairs) {
     const int a = body_of(pair.a), b = body_of(pair.b);
-    if (held_[a] || held_[b]) continue;
-    const int ra = root(a), rb = root(b);
-    parent[std::max(ra, rb)] = std::min(ra, rb);
+    if (!held_[a] && !held_[b]) sets.join(a, b);
   }
   std::vector<Island> islands(count);
   for (int b = 0; b < count; ++b)
-    if (!held_[b]) islands[root(b)].bodies.push_back(b);
+    if (!held_[b]) islands[sets.first_of(b)].bodies.push_back(b);
   for (const ElementPair& pair : candidate_pairs) {
     const int a = body_of(pair.a);
-    islands[root(held_[a] ? body_of(pair.b) : a)].candidate_pairs.push_back(pair);
+    islands[sets.first_of(held_[a] ? body_of(pair.b) : a)].candidate_pairs.push_back(pair);
   }
   std::erase_if(islands, [](const Island& island) { return island.bodies.empty(); });
   return islands;

@@ -78,13 +78,9 @@ void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces&
 }
 
 HardestContact ReducedPart::hardest_contact(const HardestContact& hardest) {
-  return hardest_on_planes(bodies_, hardest);
-}
-
-HardestContact hardest_on_planes(std::span<const ModelBody> bodies, const HardestContact& hardest) {
   HardestContact found = hardest;
   std::vector<ContactForce> forces;
-  for (const auto& [index, body] : bodies) {
+  for (const auto& [index, body] : bodies_) {
     forces.clear();
     body->list_contacts(forces);
     for (const ContactForce& force : forces)

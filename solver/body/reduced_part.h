@@ -1,7 +1,6 @@
 // Some rigid and elastic bodies, none of which is near another.
 #pragma once
 
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -10,7 +9,7 @@
 namespace topple {
 
 /// Bodies that ReducedBody advances one after the other.
-class ReducedPart final : public Part {
+class ReducedPart : public Part {
  public:
   /// The bodies and `sections`, of every element of the model, outlive this.
   ReducedPart(std::vector<ModelBody> bodies, std::vector<SectionForces>& sections)
@@ -26,12 +25,9 @@ class ReducedPart final : public Part {
   void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
 
- private:
-  std::vector<ModelBody> bodies_;
+ protected:
+  const std::vector<ModelBody> bodies_;
   std::vector<SectionForces>& sections_;
 };
-
-/// The hardest contact of `bodies` with planes in the newest step, or `hardest` where none is harder.
-HardestContact hardest_on_planes(std::span<const ModelBody> bodies, const HardestContact& hardest);
 
 }  // namespace topple

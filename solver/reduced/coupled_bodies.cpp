@@ -9,7 +9,6 @@
 namespace topple {
 namespace {
 
-constexpr double k_resolved = 0.3;    // rad, of the bounce of two members, in the first substep after a touch
 constexpr double k_passed_error = 8;  // counts as this error: members moved too far to see them meet
 
 }  // namespace
@@ -54,10 +53,8 @@ void CoupledBodies::shape_matrices() {
 }
 
 double CoupledBodies::first(const ContactLaw& law) const {
-  double least = std::numeric_limits<double>::infinity();
+  double least = first_substep(law, pairs_);
   for (const ModelBody& b : bodies_) least = std::min(least, b.body->first_substep(law));
-  for (const MemberPair& pair : pairs_)
-    least = std::min(least, k_resolved * std::sqrt(pair.mass * pair.L / (law.alpha * std::max(1., law.q))));
   return least;
 }
 
@@ -251,8 +248,7 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
   // springs that slipped are shorter now: the next substep starts from the forces with these
   keep_sticks(now_, pairs_);
   start_position_ = coupling_.position();
-  for (MemberPair& pair : pairs_)
-    for (int k = 0; k < 4; ++k) pair.start[k] = start_position_[pair.node[k]];
+  coupling_.start(pairs_);
   find(span.end.law);
   const std::vector<BodyVelocity>& loads = coupling_.loads(now_, pairs_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {

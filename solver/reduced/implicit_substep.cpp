@@ -4,6 +4,7 @@
 
 #include "solver/element/damping.h"
 #include "solver/math/rotation.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {
@@ -12,7 +13,6 @@ constexpr double k_gamma = SubstepSpan::k_gamma;
 constexpr double k_error_constant = 3 * k_gamma * k_gamma - 2 * k_gamma * k_gamma * k_gamma - 1. / 6;
 constexpr double k_substep_error = 0.03;  // of the tolerance times the speed: local error of the velocity
 constexpr double k_speed_floor = 0.01;    // of the speed of a fall through the reach
-constexpr double k_resolved = 0.3;        // rad, of a contact's bounce, in the first substep after a touch
 
 // |a''| times h^2/2, from what acts at the ends of the stages.
 template <class T>
@@ -296,7 +296,7 @@ void ImplicitSubstep::give_up() {
 double ReducedBody::first_substep(const ContactLaw& law) const {
   const double contact =
       std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
-  return k_resolved *
+  return k_resolved_bounce *
          (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness())) : contact);
 }
 

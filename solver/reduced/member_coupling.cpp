@@ -10,6 +10,7 @@
 
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 
@@ -84,6 +85,19 @@ int MemberCoupling::number_of(int node) {
     nodes_of_[body].push_back(number);
   }
   return number;
+}
+
+void MemberCoupling::start(std::span<MemberPair> pairs) const {
+  for (MemberPair& pair : pairs)
+    for (int k = 0; k < 4; ++k) pair.start[k] = position_[pair.node[k]];
+}
+
+double first_substep(const ContactLaw& law, std::span<const MemberPair> pairs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const MemberPair& pair : pairs)
+    least = std::min(least,
+                     k_resolved_bounce * std::sqrt(pair.mass * pair.L / (law.alpha * std::max(1., law.q))));
+  return least;
 }
 
 void MemberCoupling::place_held(const State& state) {

@@ -44,6 +44,8 @@ class MemberCoupling {
     for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) f(k, nodes_[k].body);
   }
 
+  /// `pairs` start where the nodes are.
+  void start(std::span<MemberPair> pairs) const;
   /// Held nodes stand where they are in `state`.
   void place_held(const State& state);
   /// Nodes of a body at `pose` that moves at u; r: its rotation matrix.
@@ -100,6 +102,9 @@ class MemberCoupling {
   std::vector<BodyVelocity> loads_;
   std::vector<Acceleration> acceleration_;  // per body, as placed by its state
 };
+
+/// A first guess at an implicit substep after one of `pairs` touched, s; infinite without pairs.
+double first_substep(const ContactLaw& law, std::span<const MemberPair> pairs);
 
 /// To what acts on a body: a load of MemberCoupling::loads.
 inline void add_load(const BodyVelocity& load, BodyState& s) {

@@ -16,6 +16,8 @@ inline constexpr double k_first_step = 1e-4;    ///< s, tried first
 inline constexpr double k_contact_part = 20;    ///< steps per period of a body on its contacts
 inline constexpr double k_closing_part = 4;     ///< steps in which a closing contact moves by its L
 inline constexpr double k_turn = 0.1;           ///< rad per step
+/// rad, of a contact's bounce, in the first implicit substep after a touch.
+inline constexpr double k_resolved_bounce = 0.3;
 
 /// Longest step that does not miss a contact closing, s: the time to touch, or, if longer, that in which it
 /// closes by L/k_closing_part; infinite where it does not touch within k_longest_step.
