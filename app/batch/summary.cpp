@@ -39,19 +39,21 @@ ordered_json intervals(const std::vector<double>& times) {
   return out;
 }
 
-ordered_json changes(const BodyOutcome& o) {
+ordered_json models(const BodyOutcome& o) {
   ordered_json out = ordered_json::array();
   for (const LevelChange& change : o.level_changes)
-    out.push_back({{"time_s", number(change.time)},
+    out.push_back({{"from_s", number(change.time)},
                    {"model", traits(change.level).word},
-                   {"reason", name(change.reason)}});
+                   {"reason", name(change.reason)},
+                   {"error_estimate", traits(change.level).moves_nodes ? ordered_json(nullptr)
+                                                                       : number(change.error_estimate)}});
   return out;
 }
 
 ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
-          {"model_changes", changes(o)},
+          {"models", models(o)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
           {"first_uplift_s", number(o.first_uplift)},
@@ -169,11 +171,16 @@ std::string integrators(const ordered_json& s) {
   };
   for (const auto& b : s["bodies"]) {
     look(b["model"]);
-    for (const auto& change : b["model_changes"]) look(change["model"]);
+    for (const auto& change : b["models"]) look(change["model"]);
   }
   const auto named = s["integrator"].get<std::string>();
   if (!frames) return "central differences";
   return others && named != "central-difference" ? named + " (frames), central differences" : named;
+}
+
+// Of a body that is no frame.
+std::string allowed_error(const ordered_json& estimate) {
+  return estimate.is_null() ? "" : fmt::format("; error about {:.2g} %", 100 * estimate.get<double>());
 }
 
 std::string dynamic_head(const ordered_json& s) {
@@ -376,10 +383,10 @@ std::string summary_table(const ordered_json& s) {
                                       : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
   }
   for (const auto& b : s["bodies"])
-    for (const auto& change : b["model_changes"])
-      out += fmt::format("{}: {} from {} s ({})\n", b["name"].get<std::string>(),
-                         change["model"].get<std::string>(), text(change["time_s"], "{:.3f}"),
-                         change["reason"].get<std::string>());
+    for (const auto& model : b["models"])
+      out += fmt::format("{}: {} from {} s ({}{})\n", b["name"].get<std::string>(),
+                         model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
+                         model["reason"].get<std::string>(), allowed_error(model["error_estimate"]));
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);

@@ -155,10 +155,10 @@ void LiveWorker::carry_on_recording() {
       if (branch.parent >= 0) recorder_->post(branch);
     for (const LoggedEdit& edit : history_.edits) recorder_->post(edit);
     for (const io::Checkpoint& checkpoint : read_checkpoints_)
-      recorder_->post(io::Observation{.frame = {}, .checkpoint = checkpoint, .events = {}});
+      recorder_->post(io::Observation{.frames = {}, .checkpoint = checkpoint, .events = {}});
     for (std::int64_t i = 0; i < read_rows_; ++i)
-      recorder_->post(io::Observation{.frame = from.frame(i), .checkpoint = {}, .events = {}});
-    recorder_->post(io::Observation{.frame = {}, .checkpoint = {}, .events = from.events()});
+      recorder_->post(io::Observation{.frames = {from.frame(i)}, .checkpoint = {}, .events = {}});
+    recorder_->post(io::Observation{.frames = {}, .checkpoint = {}, .events = from.events()});
   }
 }
 

@@ -172,11 +172,11 @@ void LiveWorker::record(io::Observation observation) {
       thin_older_half(points_);
   }
   publish([&observation](LiveReport& report) {
-    if (observation.frame) report.rows.push_back(std::make_shared<const io::FrameRow>(*observation.frame));
+    for (const io::FrameRow& frame : observation.frames)
+      report.rows.push_back(std::make_shared<const io::FrameRow>(frame));
     report.events.insert(report.events.end(), observation.events.begin(), observation.events.end());
   });
-  if (recorder_ && (observation.frame || observation.checkpoint || !observation.events.empty()))
-    recorder_->post(std::move(observation));
+  if (recorder_ && !observation.empty()) recorder_->post(std::move(observation));
 }
 
 void LiveWorker::report_head() {

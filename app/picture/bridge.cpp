@@ -22,8 +22,14 @@ constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
 constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1};
+constexpr render::Float4 k_rigid_colour = {0.55f, 0.60f, 0.65f, 1};
 constexpr double k_tear = 0.6;          // depth of the teeth of a broken end, of the section
 constexpr double k_least_range = 1e-3;  // of a colour scale, in its unit
+
+// It has neither stresses nor deformation.
+bool is_rigid(const io::FrameRow& row, int body) {
+  return !traits(static_cast<ModelLevel>(row.level[static_cast<std::size_t>(body)])).has_stresses;
+}
 
 render::Station station(const Vec3& x, const Quat& q) {
   return {to_float(x),
@@ -175,7 +181,12 @@ double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& se
   return std::max(top / traits(settings.colour).per_unit, k_least_range);
 }
 
+// None where all furniture is rigid.
 render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& settings) const {
+  const int furniture = scene_.setup.model.furniture_total();
+  int rigid = 0;
+  for (int b = 0; b < furniture; ++b) rigid += is_rigid(row, b);
+  if (furniture > 0 && rigid == furniture) return {};
   const BeamQuantityTraits& name = traits(settings.colour);
   render::Legend out;
   out.quantity = say(name.name);
@@ -196,6 +207,7 @@ render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& se
     out.notes.push_back(say(window_words::k_cannot_yield));
   }
   if (settings.exaggeration != 1) out.notes.push_back(say(window_words::k_deformed, settings.exaggeration));
+  if (rigid > 0) out.notes.push_back(say(window_words::k_some_rigid));
   return out;
 }
 
@@ -211,7 +223,10 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
     tube.profile = static_cast<std::uint32_t>(member.section);
     tube.member = static_cast<std::uint32_t>(m);
     tube.body = static_cast<std::uint32_t>(member.body);
-    if (model.bodies[member.body].ground) tube.colour = k_ground_colour;
+    if (model.bodies[member.body].ground)
+      tube.colour = k_ground_colour;
+    else if (is_rigid(row, member.body))
+      tube.colour = k_rigid_colour;
     const auto begin = [&](float lead, float torn) {
       tube.first_station = static_cast<std::uint32_t>(stations.size());
       tube.lead = lead;
@@ -325,6 +340,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
                  .cursor = steps * static_cast<float>(row.time)};
     for (float& at : out.trace.at) at *= steps;
   }
+  if (out.legend.quantity.empty()) out.caption.lines.push_back(say(window_words::k_all_rigid));
   for (const std::string& line : bodies_in_words(setup.model, row)) out.caption.lines.push_back(line);
   for (const std::string& line : anchors_in_words(setup.model, row)) out.caption.lines.push_back(line);
   std::string contact;

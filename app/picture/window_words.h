@@ -161,7 +161,8 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::yield, "断面が降伏に近い"},
     {LevelReason::deformation, "微小変形でない"},
     {LevelReason::near, "フレームの家具が近い"},
-    {LevelReason::calm, "静穏に戻った"}};
+    {LevelReason::calm, "静穏に戻った"},
+    {LevelReason::bending, "剛体とみなすには曲がりすぎる"}};
 
 template <class Table, class Kind>
 Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {
@@ -310,6 +311,8 @@ inline constexpr Phrase k_range_fixed{"fixed range", "固定範囲"};
 inline constexpr Phrase k_range_instant{"range of this instant", "この時刻の範囲"};
 inline constexpr Phrase k_yield_at{"yield {0:g} MPa", "降伏 {0:g} MPa"};
 inline constexpr Phrase k_yield{"yield", "降伏"};
+inline constexpr Phrase k_all_rigid{"computed as rigid: no stresses", "剛体として計算（応力なし）"};
+inline constexpr Phrase k_some_rigid{"grey: rigid, no stresses", "灰色：剛体（応力なし）"};
 inline constexpr Phrase k_cannot_yield{"nothing here can yield", "降伏する部材なし"};
 inline constexpr Phrase k_deformed{"deformation ×{0:g}", "変形倍率 ×{0:g}"};
 inline constexpr Phrase k_not_finite{"not drawn: a number of this instant is not finite",

@@ -31,7 +31,7 @@ constexpr LevelPhrase k_levels[] = {{ModelLevel::rigid, words::k_rigid},
 /// All models that a body was computed as.
 std::string models(const ReportPage& page, const ordered_json& body) {
   std::set<std::string> seen;
-  for (const ordered_json& change : body["model_changes"]) seen.insert(change["model"]);
+  for (const ordered_json& change : body["models"]) seen.insert(change["model"]);
   if (seen.empty()) seen.insert(body["model"]);
   std::string out;
   for (const std::string& model : seen)

@@ -236,9 +236,26 @@ double IslandPart::time_limit(const Parameters& parameters, const State& state) 
   return std::max(touch, std::min(limit, first_substep(law, coupling_.pairs())));
 }
 
+void IslandPart::find_forces(const StepInputs& now, const State& state, bool with_members) {
+  ReducedPart::find_forces(now, state, with_members);
+  if (!with_members) return;
+  find(now, state);
+  for (const MemberTouch& touch : now_.touches) {
+    const MemberForce force = coupling_.force(touch);
+    const auto [a, b] = coupling_.bodies_of(coupling_.pairs()[touch.pair]);
+    const auto push = [&](int body, int element, double place, const Vec3& by) {
+      if (body < 0) return;
+      const int* const node = model_.elements[element].node;
+      bodies_[body].body->add_member_force(node[0], (1 - place) * by);
+      bodies_[body].body->add_member_force(node[1], place * by);
+    };
+    push(a, force.elements.a, force.s, force.force);
+    push(b, force.elements.b, force.t, -force.force);
+  }
+}
+
 void IslandPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
   ReducedPart::list_forces(now, state, forces);
-  find(now, state);
   for (const MemberTouch& touch : now_.touches) forces.members.push_back(coupling_.force(touch));
 }
 

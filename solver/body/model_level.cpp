@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "solver/body/body_pose.h"
-#include "solver/contact/contact_period.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
+#include "solver/reduced/tipping.h"
 
 namespace topple {
 namespace {
@@ -24,9 +24,8 @@ LevelChoice asked(const Model&, const Parameters&, int) {
 
 LevelChoice least_that_answers(const Model& model, const Parameters& parameters, int body) {
   if (parameters.want_stress) return {ModelLevel::elastic, LevelReason::stress};
-  const double period = contact_period(model, body, parameters.contact, parameters.gravity);
-  if (period > 0 && 2 * k_pi / period > k_slow_contact * model.bodies[body].elastic->frequency[0])
-    return {ModelLevel::elastic, LevelReason::contact_frequency};
+  if (tipping_error(model, body, parameters.gravity.norm()) > parameters.accuracy)
+    return {ModelLevel::elastic, LevelReason::bending};
   return {ModelLevel::rigid, LevelReason::motion};
 }
 
@@ -77,6 +76,8 @@ const char* name(LevelReason reason) {
       return "a body computed as a frame is near";
     case LevelReason::calm:
       return "calm again";
+    case LevelReason::bending:
+      return "it bends too much for a rigid body";
   }
   return "";
 }
@@ -87,6 +88,10 @@ const LevelTraits& level_called(std::string_view word) {
 
 std::span<const BodyModelTraits> body_models() {
   return k_models;
+}
+
+double elastic_error(const Body& body, const Parameters& parameters, double rotation) {
+  return parameters.want_stress ? rotation / 2 : rotation * rotation / 2 / least_tipping_angle(body);
 }
 
 bool can_be(const Model& model, int body, BodyModel asked) {

@@ -1,11 +1,17 @@
 // Model levels: what each body is computed as, and how it changes in the middle of a run.
 //
 // A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
-// for and it bounces on its contacts at most k_slow_contact times as fast as its first mode vibrates, else
-// elastic. A body is a frame while one is near (State::candidate_pairs, also over bodies between them), and
-// an automatic one too once
+// for and its error is allowed, and then it does not yield; else elastic. A body is a frame while one is near
+// (State::candidate_pairs, also over bodies between them), and an automatic one too once
 //   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
-//   - a node could turn by more than k_small_rotation relative to the body (sum over the modes).
+//   - its error is no longer allowed.
+//
+// Errors are allowed up to Parameters::accuracy. They are estimates of what a level leaves out, as a share of
+// the critical angle when motion is asked for, of the stress when that is:
+//   - rigid: tipping_error()
+//   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
+//     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn
+// A trajectory that comes near the critical angle, or bounces often, can enlarge them.
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, and for k_calm_for
 // sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
 //
@@ -25,12 +31,10 @@
 
 namespace topple {
 
-inline constexpr double k_slow_contact = 0.5;     ///< bounce on contacts over first elastic mode, frequencies
-inline constexpr double k_near_yield = 0.9;       ///< sqrt(f + 1)
-inline constexpr double k_small_rotation = 0.02;  ///< rad
-inline constexpr double k_calm_yield = 0.45;      ///< sqrt(f + 1)
-inline constexpr double k_calm_for = 0.2;         ///< s
-inline constexpr double k_negligible = 1e-4;      ///< strain energy over m g reach
+inline constexpr double k_near_yield = 0.9;   ///< sqrt(f + 1)
+inline constexpr double k_calm_yield = 0.45;  ///< sqrt(f + 1)
+inline constexpr double k_calm_for = 0.2;     ///< s
+inline constexpr double k_negligible = 1e-4;  ///< strain energy over m g reach
 
 /// A few words: "a section is near yield".
 const char* name(LevelReason reason);
@@ -43,6 +47,10 @@ struct LevelChoice {
   ModelLevel level;
   LevelReason reason;
 };
+
+/// Estimated error of the level elastic while nodes are turned by up to `rotation`, rad, relative to the
+/// body.
+double elastic_error(const Body& body, const Parameters& parameters, double rotation);
 
 /// What a scene asks a body to be computed as.
 struct BodyModelTraits {

@@ -5,6 +5,7 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
+#include "solver/reduced/tipping.h"
 
 namespace topple {
 namespace {
@@ -55,8 +56,13 @@ ModelSwitch::ModelSwitch(const Model& model) : changed_(model.bodies.size()) {}
 
 void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   if (!base_.empty()) return;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     base_.push_back(base_level(model, parameters, b));
+    rigid_error_.push_back(tipping_error(model, b, parameters.gravity.norm()));
+    watched_.push_back(base_[b].level == ModelLevel::elastic &&
+                       parameters.models[b] == BodyModel::automatic &&
+                       model.bodies[b].elastic->mode_yield.any());
+  }
 }
 
 // A frame makes all bodies of its island frames. One that is a frame for no other reason stays one until all
@@ -79,11 +85,21 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, State& stat
   }
 }
 
+// Of the body's present level (model_level.h); a frame is what the others are measured by.
+double ModelSwitch::error_estimate(const Model& model, const Parameters& parameters, const State& state,
+                                   Parts& parts, int b) const {
+  const BodyState& s = state.bodies[b];
+  if (traits(s.level).moves_nodes) return 0;
+  if (!traits(s.level).has_modes) return rigid_error_[b];
+  return elastic_error(model.bodies[b], parameters, parts.reduced(state, b).rotation_bound(s));
+}
+
 // At the state of `on`, where the contacts of those that are not frames have been found.
 LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   const auto& [model, parameters, now, state, parts] = on;
   BodyState& s = state.bodies[b];
   const LevelChoice& base = base_[b];
+  s.error_estimate = error_estimate(model, parameters, state, parts, b);
   if (base.level == ModelLevel::frame) return base;
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
@@ -99,9 +115,11 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
       return {base.level, LevelReason::calm};
     return {s.level, s.reason};
   }
-  if (s.level == ModelLevel::elastic && parameters.models[b] == BodyModel::automatic) {
+  const bool automatic = parameters.models[b] == BodyModel::automatic;
+  if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
+    return {ModelLevel::frame, LevelReason::deformation};
+  if (watched_[b]) {
     ReducedBody& body = parts.reduced(state, b);
-    if (body.rotation_bound(s) > k_small_rotation) return {ModelLevel::frame, LevelReason::deformation};
     if (body.yield_bound(s) > k_near_yield) {
       body.section_forces(s, parts.sections);
       if (yield_ratio(model, b, parts.sections) > k_near_yield)
@@ -129,6 +147,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   s.level = choice.level;
   s.reason = choice.reason;
   s.calm_since = -1;
+  s.error_estimate = error_estimate(model, on.parameters, state, on.parts, b);
   changed_[b] = true;
   std::erase_if(state.member_sticks,
                 [&](const MemberStick& stick) {  // between other parts of it from here on
@@ -155,19 +174,19 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
     s.reason = choice.reason;
   }
   parts.arrange(state);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    state.bodies[b].error_estimate = error_estimate(model, parameters, state, parts, b);
 }
 
 bool ModelSwitch::update(const Model& model, const Parameters& parameters, const StepInputs& now,
                          State& state, Parts& parts) {
   const Switching on{model, parameters, now, state, parts};
   find_base(model, parameters);
+  parts.arrange(state);
+  parts.find_forces(now, state, watched_);
   choice_.clear();
   const int count = static_cast<int>(model.bodies.size());
-  for (int b = 0; b < count; ++b) {
-    const BodyState& s = state.bodies[b];
-    if (s.level != ModelLevel::frame) parts.reduced(state, b).find_contacts(now, s, state.stick);
-    choice_.push_back(choose(on, b));
-  }
+  for (int b = 0; b < count; ++b) choice_.push_back(choose(on, b));
   choose_islands(parts.islands(state), state);
   const bool any = !std::ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
   if (any) {

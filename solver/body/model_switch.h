@@ -13,7 +13,11 @@ class ModelSwitch {
  public:
   explicit ModelSwitch(const Model& model);
   /// Call when the parameters changed.
-  void forget() { base_.clear(); }
+  void forget() {
+    base_.clear();
+    rigid_error_.clear();
+    watched_.clear();
+  }
   /// Every body on its base level, or a frame where one is near. No energy is booked: the run begins here.
   void start(const Model& model, const Parameters& parameters, State& state, Parts& parts);
   /// Finds the contacts of rigid and elastic bodies, then changes the levels of bodies that need it and books
@@ -24,12 +28,16 @@ class ModelSwitch {
  private:
   struct Switching;
 
+  double error_estimate(const Model& model, const Parameters& parameters, const State& state, Parts& parts,
+                        int body) const;
   void find_base(const Model& model, const Parameters& parameters);
   LevelChoice choose(const Switching& on, int body);
   void choose_islands(const std::vector<Island>& islands, State& state);
   void change(const Switching& on, LevelChoice choice, int body);
 
   std::vector<LevelChoice> base_;    // per body; empty: not found for these parameters
+  std::vector<double> rigid_error_;  // per body, likewise
+  std::vector<char> watched_;        // per body, likewise: it becomes a frame before it yields
   std::vector<LevelChoice> choice_;  // per body
   std::vector<char> changed_;        // per body: its level, since the last step
 };

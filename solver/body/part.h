@@ -56,6 +56,8 @@ class Part {
   virtual void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) = 0;
   /// Longest step that resolves how its bodies touch and turn, s (step_limits.h).
   virtual double time_limit(const Parameters& parameters, const State& state) = 0;
+  /// Finds what acts on its rigid and elastic bodies at `state`; with_members: between members too.
+  virtual void find_forces(const StepInputs&, const State&, [[maybe_unused]] bool with_members) {}
   /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.
   virtual void list_forces(const StepInputs& now, const State& state, Forces& forces) = 0;
   /// That of the newest step, or `hardest` where none of its own is greater.

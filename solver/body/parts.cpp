@@ -110,6 +110,10 @@ BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now, S
   return balance(parameters, now, all_bodies_, state);
 }
 
+void Parts::find_forces(const StepInputs& now, const State& state, const std::vector<char>& marked) {
+  for (const auto& part : parts_) part->find_forces(now, state, part->has(marked));
+}
+
 BodyEnergy Parts::energy(const StepInputs& now, const State& state) {
   BodyEnergy held;
   for (const auto& part : parts_) held += part->energy(now, state);

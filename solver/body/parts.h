@@ -36,6 +36,8 @@ class Parts {
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
                      State& state);
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);
+  /// Part::find_forces of all, with those between members where one of its bodies is marked.
+  void find_forces(const StepInputs& now, const State& state, const std::vector<char>& marked);
   /// Energies of all bodies at `state`, for which they are arranged.
   BodyEnergy energy(const StepInputs& now, const State& state);
   /// Longest step that the motion at `state` allows, s, at least 2 k_least_step: look_ahead()

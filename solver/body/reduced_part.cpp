@@ -68,10 +68,17 @@ double ReducedPart::time_limit(const Parameters& parameters, const State& state)
   return limit;
 }
 
-void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+void ReducedPart::find_forces(const StepInputs& now, const State& state, bool) {
   for (const auto& [index, body] : bodies_) {
     body->remember(state.anchors);
     body->find_contacts(now, state.bodies[index], state.stick);
+    body->clear_member_forces();
+  }
+}
+
+void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+  find_forces(now, state, true);
+  for (const auto& [index, body] : bodies_) {
     body->section_forces(state.bodies[index], sections_);
     body->list_contacts(forces.contacts);
   }

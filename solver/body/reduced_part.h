@@ -22,6 +22,7 @@ class ReducedPart : public Part {
   BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
+  void find_forces(const StepInputs& now, const State& state, bool with_members) override;
   void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
 

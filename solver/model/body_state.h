@@ -31,11 +31,12 @@ enum class LevelReason : std::uint8_t {
   asked = 0,              ///< the scene or an edit names it
   motion = 1,             ///< nothing but motion is asked for
   stress = 2,             ///< stresses are asked for
-  contact_frequency = 3,  ///< the body bounces on its contacts almost as fast as it vibrates
+  contact_frequency = 3,  ///< of old recordings: it bounces on its contacts almost as fast as it vibrates
   yield = 4,              ///< a section comes near its yield surface
-  deformation = 5,        ///< it deforms too much for linear elasticity
+  deformation = 5,        ///< it deforms too much for linear elasticity, by Parameters::accuracy
   near = 6,               ///< a frame may touch it, or a body that touches it (State::candidate_pairs)
-  calm = 7                ///< no reason for a higher level is left, and no hinge has formed
+  calm = 7,               ///< no reason for a higher level is left, and no hinge has formed
+  bending = 8             ///< it bends too much for a rigid body, by Parameters::accuracy
 };
 
 inline constexpr int k_modes = 12;  ///< most modes of a body on the level elastic
@@ -47,6 +48,7 @@ using Amplitudes = Eigen::Array<double, k_modes, 1>;
 struct BodyState {
   ModelLevel level = ModelLevel::frame;
   LevelReason reason = LevelReason::asked;
+  double error_estimate = 0;  ///< of this level, as Parameters::accuracy; not in checkpoints
   double calm_since = -1;  ///< s, since when a frame meets the conditions of a lower level; -1: it does not
   Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
   Quat rotation = Quat::Identity();           ///< reference to current

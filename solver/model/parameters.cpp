@@ -41,11 +41,11 @@ double sum_of(const Shake& shake) {
 }  // namespace
 
 bool is_finite(const Parameters& parameters) {
-  const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, gravity,
-               integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance, substep_refinement] =
-      parameters;
+  const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, accuracy,
+               gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
+               substep_refinement] = parameters;
   double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
-                 sum(spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
+                 sum(accuracy, spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
   for (const Shake& shake : shakes) total += sum_of(shake);
   for (const double ratio : damping) total += sum(ratio);
   return std::isfinite(total);

@@ -89,6 +89,7 @@ struct Parameters {
   std::vector<double> damping;    ///< one per body: ratio to critical at its first elastic mode; empty: 0
   std::vector<bool> anchors;      ///< one per anchor: it is in place; empty: all are
   bool want_stress = true;        ///< stresses are asked for; `automatic` depends on it
+  double accuracy = 0.01;         ///< error that `automatic` allows, see model_level.h
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1

@@ -15,23 +15,13 @@
 #include <vector>
 
 #include "solver/contact/contact_law.h"
-#include "solver/math/pack.h"
 #include "solver/math/upwards.h"
-#include "solver/model/body_state.h"
 #include "solver/model/model.h"
+#include "solver/reduced/body_unknowns.h"
 #include "solver/state/energy.h"
 #include "solver/state/step_result.h"
 
 namespace topple {
-
-using PackVec3 = PackVector<double>;
-using PackMat3 = PackMatrix<double>;
-
-/// Velocity of a body.
-struct BodyVelocity {
-  PackVec3 linear, angular;  ///< m/s of the centre of gravity, rad/s
-  Amplitudes rate;           ///< m sqrt(kg)/s, of the modes
-};
 
 /// What contacts do to a body: N, N m about the centre of gravity, W lost in normal damping and W that
 /// friction and stick springs take.
@@ -47,16 +37,6 @@ enum class ContactSums { none, loads, all };
 struct ContactSlope {
   PackMat3 force_linear, force_angular, moment_linear, moment_angular;
 };
-
-/// A matrix of a body's six unknowns and its modes; rows are padded to whole packs.
-using ModeMatrix = double[6 + k_modes][6 + k_modes + 2];
-inline void set_block(ModeMatrix& matrix, int row, int column, const PackMat3& block) {
-  for (int i = 0; i < 3; ++i) {
-    matrix[row + i][column] = block.row[i].x;
-    matrix[row + i][column + 1] = block.row[i].y;
-    matrix[row + i][column + 2] = block.row[i].z;
-  }
-}
 
 /// The contact points of one body against all planes.
 class BodyContacts {

@@ -15,27 +15,6 @@ constexpr double k_contracts = 0.5;  // from one fixed-point iteration to the ne
 constexpr int k_most_iterates = 3;
 constexpr double k_velocity_error = 1e-7;  // of the speed, by Newton
 
-// In place. Damping makes the matrix more than M, so that nothing needs a pivot.
-void factor(ModeMatrix& a, int n) {
-  for (int k = 0; k < n; ++k) {
-    a[k][k] = 1 / a[k][k];
-    for (int i = k + 1; i < n; ++i) {
-      const double factor = a[i][k] *= a[k][k];
-#pragma GCC unroll 6
-      for (int j = k + 1; j < n; ++j) a[i][j] -= factor * a[k][j];
-    }
-  }
-}
-
-void solve(const ModeMatrix& a, double* x, int n) {
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < i; ++j) x[i] -= a[i][j] * x[j];
-  for (int i = n - 1; i >= 0; --i) {
-    for (int j = i + 1; j < n; ++j) x[i] -= a[i][j] * x[j];
-    x[i] *= a[i][i];
-  }
-}
-
 }  // namespace
 
 // By fixed-point iteration, to `error` of the speed; none: that does not contract.
@@ -120,7 +99,7 @@ void ReducedBody::factor_with_modes(const ContactImpulse& impulse, const PackMat
       if (fresh) factor_with_modes(impulse, inertia, w);
       contacts_.modal_loads(m, load);
       double* const side = w.side;
-      side[0] = x.x, side[1] = x.y, side[2] = x.z, side[3] = y.x, side[4] = y.y, side[5] = y.z;
+      put({x, y, {}}, 0, side);
       for (int k = 0; k < m; ++k) side[6 + k] = (u.rate[k] - free.rate[k]) / kick_[k] - h / 2 * load[k];
       solve(w.matrix, side, 6 + m);
       x = {side[0], side[1], side[2]};

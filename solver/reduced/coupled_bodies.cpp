@@ -79,21 +79,6 @@ void CoupledBodies::each_body(F f) {
 
 namespace {
 
-void put(const BodyVelocity& from, int modes, double* to) {
-  const PackVec3 &x = from.linear, &y = from.angular;
-  to[0] = x.x, to[1] = x.y, to[2] = x.z, to[3] = y.x, to[4] = y.y, to[5] = y.z;
-  for (int k = 0; k < modes; ++k) to[6 + k] = from.rate[k];
-  for (int k = modes; k % 6 != 0; ++k) to[6 + k] = 0;
-}
-
-BodyVelocity taken(const double* from, int modes) {
-  BodyVelocity to;
-  to.linear = {from[0], from[1], from[2]};
-  to.angular = {from[3], from[4], from[5]};
-  for (int k = 0; k < modes; ++k) to.rate[k] = from[6 + k];
-  return to;
-}
-
 // Group (i, j) of a body's own matrix; a mode that is not there stays as it is.
 Mat6 group(const ModeMatrix& matrix, int modes, int i, int j) {
   Mat6 block = Mat6::Zero();

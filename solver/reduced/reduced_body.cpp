@@ -417,6 +417,14 @@ void ReducedBody::each_force(const BodyState& s, F f) const {
       Vec3(back * contacts_.force(touch, k)));
   });
   for (const BodyAnchors::Tie& tie : anchors_.ties()) f(tie.node, Vec3(back * tie.now.force));
+  for (int node = 0; node < static_cast<int>(member_forces_.size()); ++node)
+    if (!member_forces_[node].isZero(0)) f(node, Vec3(back * member_forces_[node]));
+}
+
+void ReducedBody::add_member_force(int node, const Vec3& force) {
+  const Body& body = model_.bodies[body_];
+  if (member_forces_.empty()) member_forces_.assign(body.node_count, Vec3::Zero());
+  member_forces_[node - body.first_node] += force;
 }
 
 // to += n columns of the matrix, from the first on, times the factors

@@ -84,12 +84,16 @@ class ReducedBody {
 
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
+  /// Other forces than those of contacts with planes and of anchors: between members. N, floor's axes, on
+  /// nodes of the model.
+  void clear_member_forces() { member_forces_.clear(); }
+  void add_member_force(int node, const Vec3& force);
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
-  /// Section forces of the body's elements at `s` under the contacts found last, into those of the model;
-  /// zero on the level rigid.
+  /// Section forces of the body's elements at `s` under the forces found last, into those of the model; zero
+  /// on the level rigid.
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
-  /// Adds to the nodes of `state` what the contacts found last deflect them statically beyond the modes.
+  /// Adds to the nodes of `state` what the forces found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;
   /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
   double yield_bound(const BodyState& s) const;
@@ -158,6 +162,7 @@ class ReducedBody {
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
   BodyAnchors anchors_;
+  std::vector<Vec3> member_forces_;  // N, floor's axes, per node of the body; empty: none
   // What the forces of contacts_ were evaluated for.
   struct Found {
     ModelLevel level;

@@ -177,9 +177,14 @@ void Outcome::observe_level(const Parameters& parameters, const State& state, st
                       .value = static_cast<double>(now.level),
                       .reason = now.reason});
     if (o.level_changes.size() < k_kept_impacts)
-      o.level_changes.push_back({state.time, now.level, now.reason});
+      o.level_changes.push_back({state.time, now.level, now.reason, 0});
   }
   o.level = now.level;
+  if (!o.level_changes.empty()) {
+    LevelChange& latest = o.level_changes.back();
+    if (latest.level == now.level)
+      latest.error_estimate = std::max(latest.error_estimate, now.error_estimate);
+  }
 }
 
 void Outcome::observe_pose(const Model& model, const State& state, std::size_t b,

@@ -59,6 +59,7 @@ struct LevelChange {
   double time;  ///< s
   ModelLevel level;
   LevelReason reason;
+  double error_estimate;  ///< greatest BodyState::error_estimate on it so far
 };
 
 /// What happened to one body so far. Times in s, angles in rad, lengths in m.

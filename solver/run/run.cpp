@@ -7,6 +7,8 @@
 #include "solver/body/step_control.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
+#include "solver/state/sections.h"
+#include "solver/step/dense_output.h"
 
 namespace topple {
 namespace {
@@ -57,7 +59,7 @@ Run::Run(const Setup& setup, RunPoint point)
   if (!status_.ok()) return;
   if (is_static()) path_.emplace(setup.model, setup.run.statics);
   resume(setup.model, now_.state, workspace_);
-  see_forces();
+  find_acting(now_.state, now_acting_);
 }
 
 const RunPoint& Run::point() const {
@@ -105,19 +107,31 @@ bool Run::over() const {
   return !status_.ok() || now_.stopped_early || now_.state.time > setup_->run.duration - slack;
 }
 
-void Run::see_forces() {
-  contacts_.reserve(setup_->model.contact_points.size() * setup_->model.planes.size());
-  contacts_ = contact_forces(setup_->model, now_.parameters, now_.state, workspace_);
-  sections_ = section_forces(workspace_);
+void Run::find_acting(const State& state, Acting& acting) const {
+  acting.contacts.reserve(setup_->model.contact_points.size() * setup_->model.planes.size());
+  acting.contacts = contact_forces(setup_->model, now_.parameters, state, workspace_);
+  acting.between_members = member_forces(workspace_);
+  acting.sections = section_forces(workspace_);
+}
+
+Snapshot Run::snapshot(double time) const {
+  const Model& model = setup_->model;
+  within_ = state_within_step(model, now_.state, time, workspace_);
+  find_acting(within_, within_acting_);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (traits(within_.bodies[b].level).moves_nodes)
+      section_forces(model, within_, static_cast<int>(b), within_acting_.sections);
+  contact_forces(model, now_.parameters, now_.state, workspace_);  // as the newest step left them
+  return view(within_, within_acting_);
 }
 
 void Run::observe() {
   const InPhase phase(&workspace_.profile(), Phase::observe);
   const Model& model = setup_->model;
   const State& state = now_.state;
-  see_forces();
+  find_acting(now_.state, now_acting_);
   if (!setup_->probes.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
-  now_.outcome.observe(model, now_.parameters, state, contacts_, member_contacts(), sections_, events_);
+  now_.outcome.observe(model, now_.parameters, state, contacts(), member_contacts(), sections(), events_);
 
   for (std::size_t k = 0; k < now_.probes.size(); ++k) {
     const Probe& probe = setup_->probes[k];

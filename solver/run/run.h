@@ -63,6 +63,14 @@ struct RunPoint {
   std::vector<LoadStep> load_steps = {};  ///< statics
 };
 
+/// A state of a run, and what acts there.
+struct Snapshot {
+  const State& state;  ///< with all nodes placed
+  const std::vector<ContactForce>& contacts;
+  const std::vector<MemberForce>& between_members;
+  const std::vector<SectionForces>& sections;
+};
+
 /// A run in progress. The setup is shared and never changes; it must outlive the run.
 class Run {
  public:
@@ -98,9 +106,13 @@ class Run {
   const std::vector<ProbeOutcome>& probes() const { return now_.probes; }
   const std::vector<Event>& events() const { return events_; }
   const std::vector<LoadStep>& load_steps() const { return now_.load_steps; }
-  const std::vector<ContactForce>& contacts() const { return contacts_; }
-  const std::vector<MemberForce>& member_contacts() const { return member_forces(workspace_); }
-  const std::vector<SectionForces>& sections() const { return sections_; }
+  const std::vector<ContactForce>& contacts() const { return now_acting_.contacts; }
+  const std::vector<MemberForce>& member_contacts() const { return now_acting_.between_members; }
+  const std::vector<SectionForces>& sections() const { return now_acting_.sections; }
+  /// Of state().
+  Snapshot snapshot() const { return view(state(), now_acting_); }
+  /// At `time` within the newest step that was taken (state_between), until the next call.
+  Snapshot snapshot(double time) const;
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
   std::int64_t rejected_steps() const { return now_.rejected_steps; }
   /// Of central differences, once it has stepped, s.
@@ -109,7 +121,16 @@ class Run {
  private:
   bool is_static() const { return setup_->run.analysis == Analysis::statics; }
   void advance_load();
-  void see_forces();
+  // What acts at a state, as snapshots show it.
+  struct Acting {
+    std::vector<ContactForce> contacts;
+    std::vector<MemberForce> between_members;
+    std::vector<SectionForces> sections;
+  };
+  static Snapshot view(const State& state, const Acting& acting) {
+    return {state, acting.contacts, acting.between_members, acting.sections};
+  }
+  void find_acting(const State& state, Acting& acting) const;
   void observe();
 
   const Setup* setup_;
@@ -119,8 +140,9 @@ class Run {
   std::optional<LoadPath> path_;  // static runs
   StepStatus status_;
   std::vector<Event> events_;
-  std::vector<ContactForce> contacts_;
-  std::vector<SectionForces> sections_;
+  Acting now_acting_;
+  mutable State within_;  // of snapshot(time)
+  mutable Acting within_acting_;
 };
 
 }  // namespace topple

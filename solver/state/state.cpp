@@ -27,7 +27,8 @@ constexpr Stored<ModelLevel> k_levels[] = {
 constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},  {LevelReason::motion, 1},
                                              {LevelReason::stress, 2}, {LevelReason::contact_frequency, 3},
                                              {LevelReason::yield, 4},  {LevelReason::deformation, 5},
-                                             {LevelReason::near, 6},   {LevelReason::calm, 7}};
+                                             {LevelReason::near, 6},   {LevelReason::calm, 7},
+                                             {LevelReason::bending, 8}};
 constexpr Stored<Hinge> k_hinges[] = {
     {Hinge::none, 0}, {Hinge::first, 1}, {Hinge::second, 2}, {Hinge::broken, 3}, {Hinge::middle, 4}};
 constexpr Stored<AnchorHold> k_holds[] = {
@@ -450,8 +451,9 @@ void take(State& from, State& to, bool nodes) {
     std::swap(from, to);
     return;
   }
-  each_moved_array([&](auto member) { (from.*member).swap(to.*member); });
-  each_moved_number([&](auto member) { to.*member = from.*member; });
+  const auto exchange = [&](auto member) { std::swap(from.*member, to.*member); };
+  each_moved_array(exchange);
+  each_moved_number(exchange);
 }
 
 }  // namespace topple

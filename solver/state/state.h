@@ -106,7 +106,7 @@ int body_not_finite(const Model& model, const State& state);
 
 /// Makes `to` equal to `from`. `nodes` false: but for the per-node and per-element arrays, which stay.
 void copy(const State& from, State& to, bool nodes);
-/// The same by exchanging arrays, for a `from` that is no longer needed.
+/// The same by exchanging both.
 void take(State& from, State& to, bool nodes);
 
 }  // namespace topple

@@ -12,20 +12,17 @@ namespace topple::io {
 namespace {
 
 constexpr double k_checkpoint_rate = 1;  // Hz, of simulated time
+constexpr double k_slack = 1e-6;         // of an interval: time is a sum of rounded steps
 
-/// Whether k / rate has been reached for the next k. Steps that do not divide 1 / rate do not drift.
-bool due(double& next, double time, double rate) {
-  constexpr double slack = 1e-6;  // of an interval: time is a sum of rounded steps
-  const double passed = std::floor(time * rate + slack);
-  if (passed < next) return false;
-  next = passed + 1;
-  return true;
+/// Multiples of 1 / rate up to `time`.
+double intervals(double time, double rate) {
+  return std::floor(time * rate + k_slack);
 }
 
 /// Kinetic, strain and gravity energy of a body, the last relative to the reference pose, J.
-double body_energy(const Run& run, const Body& body) {
+double body_energy(const Run& run, const Snapshot& at, const Body& body) {
   const Model& model = run.setup().model;
-  const State& state = run.state();
+  const State& state = at.state;
   double energy = 0;
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -38,7 +35,7 @@ double body_energy(const Run& run, const Body& body) {
   }
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
     const Element& element = model.elements[static_cast<std::size_t>(e)];
-    const SectionForces& f = run.sections()[static_cast<std::size_t>(e)];
+    const SectionForces& f = at.sections[static_cast<std::size_t>(e)];
     energy += element.length / 2 *
               (f.normal.dot(f.normal.cwiseQuotient(element.normal_stiffness)) +
                f.moment.dot(f.moment.cwiseQuotient(element.bending_stiffness)));
@@ -64,24 +61,23 @@ std::uint8_t hinge_code(const ElementState& state) {
   return gamma.z() * kappa.y() - gamma.y() * kappa.z() > 0 ? k_flowed_second : k_flowed_first;
 }
 
-void fill_elements(const Run& run, FrameRow& row) {
-  const Model& model = run.setup().model;
+void fill_elements(const Model& model, const Snapshot& at, FrameRow& row) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Element& element = model.elements[e];
-    const Hinge hinge = run.state().elements[e].hinge;
+    const Hinge hinge = at.state.elements[e].hinge;
     const double place = hinge_place(element, hinge);
     row.s[e] = static_cast<float>(-place);
-    row.hinge[e] = hinge_code(run.state().elements[e]);
-    const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, place);
+    row.hinge[e] = hinge_code(at.state.elements[e]);
+    const SectionForces forces = forces_along(at.sections[e], element.length, element.s, place);
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};
     for (int k = 0; k < 6; ++k) row.section_force[6 * e + k] = static_cast<float>(values[k]);
   }
 }
 
-void fill_contacts(const Run& run, FrameRow& row) {
-  const std::size_t planes = run.setup().model.planes.size();
-  for (const ContactForce& contact : run.contacts()) {
+void fill_contacts(const Model& model, const Snapshot& at, FrameRow& row) {
+  const std::size_t planes = model.planes.size();
+  for (const ContactForce& contact : at.contacts) {
     const std::size_t c =
         static_cast<std::size_t>(contact.point) * planes + static_cast<std::size_t>(contact.plane);
     row.contact_depth[c] = static_cast<float>(contact.depth);
@@ -89,7 +85,7 @@ void fill_contacts(const Run& run, FrameRow& row) {
   }
 }
 
-void fill_member_contacts(const Run& run, FrameRow& row) {
+void fill_member_contacts(const Snapshot& at, FrameRow& row) {
   struct Resultant {
     Vec3 force = Vec3::Zero();
     double size = 0, moment = 0;  // sums of |force| and of |force| times place
@@ -101,7 +97,7 @@ void fill_member_contacts(const Run& run, FrameRow& row) {
     on.size += force.norm();
     on.moment += force.norm() * place;
   };
-  for (const MemberForce& contact : run.member_contacts()) {
+  for (const MemberForce& contact : at.between_members) {
     add(contact.elements.a, contact.force, contact.s);
     add(contact.elements.b, -contact.force, contact.t);
   }
@@ -112,11 +108,11 @@ void fill_member_contacts(const Run& run, FrameRow& row) {
   }
 }
 
-void fill_bodies(const Run& run, FrameRow& row) {
+void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const int index = static_cast<int>(b);
-    const BodyPose pose = body_pose(model, run.state(), index);
+    const BodyPose pose = body_pose(model, at.state, index);
     const double critical = critical_angle(model, index, pose);
     const Vec3& x = pose.centre;
     const Quat& q = pose.rotation;
@@ -129,15 +125,14 @@ void fill_bodies(const Run& run, FrameRow& row) {
                    .qz = q.z(),
                    .tilt = tilt(pose),
                    .slide = slide(model, index, pose),
-                   .energy = body_energy(run, model.bodies[b]),
+                   .energy = body_energy(run, at, model.bodies[b]),
                    .critical_angle = std::isfinite(critical) ? critical : 0};
-    row.level[b] = static_cast<std::uint8_t>(run.state().bodies[b].level);
+    row.level[b] = static_cast<std::uint8_t>(at.state.bodies[b].level);
   }
 }
 
-void fill_anchors(const Run& run, FrameRow& row) {
-  const State& state = run.state();
-  const std::vector<AnchorForce> forces = anchor_forces(run.setup().model, state);
+void fill_anchors(const Model& model, const State& state, FrameRow& row) {
+  const std::vector<AnchorForce> forces = anchor_forces(model, state);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const AnchorState& anchor = state.anchors[k];
     const float look = anchor.hold == AnchorHold::away     ? k_anchor_away
@@ -149,6 +144,36 @@ void fill_anchors(const Run& run, FrameRow& row) {
                      .natural_length = static_cast<float>(anchor.length),
                      .state = look};
   }
+}
+
+bool is_static(const Run& run) {
+  return run.setup().run.analysis == Analysis::statics;
+}
+
+// Its time is a multiple of the output interval where it is but for rounding.
+FrameRow row_of(const Run& run, const Snapshot& at) {
+  const Model& model = run.setup().model;
+  const State& state = at.state;
+  FrameRow row = blank_row(row_shape(model));
+  row.step = state.step;
+  const double rate = run.setup().run.output_rate, multiple = std::round(state.time * rate);
+  const bool rounded = std::abs(state.time * rate - multiple) < k_slack;
+  row.time = rounded && !is_static(run) ? multiple / rate : state.time;
+  fill_nodes(state, row);
+  fill_elements(model, at, row);
+  fill_contacts(model, at, row);
+  fill_member_contacts(at, row);
+  fill_bodies(run, at, row);
+  for (const EnergyTraits& column : energy_columns(!model.anchors.empty()))
+    row.energy[column.kind] = column.value(state.energy);
+  fill_anchors(model, state, row);
+  row.load_factor = state.load_factor;
+  const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
+  for (int k = 0; k < 3; ++k) {
+    row.floor_acceleration[k] = acceleration[k];
+    row.floor_displacement[k] = state.floor_displacement[k];
+  }
+  return row;
 }
 
 }  // namespace
@@ -177,31 +202,26 @@ double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& r
 }
 
 FrameRow frame_row(const Run& run) {
-  const State& state = run.state();
-  FrameRow row = blank_row(row_shape(run.setup().model));
-  row.step = state.step;
-  row.time = state.time;
-  fill_nodes(state, row);
-  fill_elements(run, row);
-  fill_contacts(run, row);
-  fill_member_contacts(run, row);
-  fill_bodies(run, row);
-  for (const EnergyTraits& column : energy_columns(!run.setup().model.anchors.empty()))
-    row.energy[column.kind] = column.value(state.energy);
-  fill_anchors(run, row);
-  row.load_factor = state.load_factor;
-  const Vec3 acceleration = floor_acceleration(run.parameters().shakes, state.time);
-  for (int k = 0; k < 3; ++k) {
-    row.floor_acceleration[k] = acceleration[k];
-    row.floor_displacement[k] = state.floor_displacement[k];
-  }
-  return row;
+  return row_of(run, run.snapshot());
 }
 
-void Observer::add_frame(const Run& run, Observation& out) {
-  out.frame = frame_row(run);
-  out.frame->branch = branch_;
-  last_frame_ = run.step();
+FrameRow frame_row(const Run& run, double time) {
+  return row_of(run, run.snapshot(time));
+}
+
+bool is_ahead(const Run& run, double time) {
+  return (time - run.time()) * run.setup().run.output_rate > k_slack;
+}
+
+FrameRow frame_row_due(const Run& run, double time) {
+  const bool within = (run.time() - time) * run.setup().run.output_rate > k_slack;
+  return within ? frame_row(run, time) : frame_row(run);
+}
+
+void Observer::add_frame(FrameRow row, Observation& out) {
+  out.frames.push_back(std::move(row));
+  out.frames.back().branch = branch_;
+  last_frame_ = out.frames.back().step;
 }
 
 void Observer::add_checkpoint(const Run& run, Observation& out) {
@@ -222,12 +242,20 @@ void Observer::add_events(const Run& run, Observation& out) {
 }
 
 Observation Observer::observe(const Run& run) {
-  const double time = run.time();
+  const double time = run.time(), rate = run.setup().run.output_rate;
+  const bool load_steps = is_static(run);
   Observation out;
+  const bool first = !begun_;
   add_events(run, out);
-  if (due(next_checkpoint_, time, k_checkpoint_rate)) add_checkpoint(run, out);
-  const bool load_step = run.setup().run.analysis == Analysis::statics;
-  if (due(next_frame_, time, run.setup().run.output_rate) || load_step) add_frame(run, out);
+  if (const double reached = intervals(time, k_checkpoint_rate); reached >= next_checkpoint_) {
+    next_checkpoint_ = reached + 1;
+    add_checkpoint(run, out);
+  }
+  if (first) next_frame_ = intervals(time, rate) + 1;
+  if (first || load_steps) add_frame(frame_row(run), out);
+  if (load_steps) return out;
+  for (const double reached = intervals(time, rate); next_frame_ <= reached; ++next_frame_)
+    add_frame(frame_row_due(run, next_frame_ / rate), out);
   return out;
 }
 
@@ -236,7 +264,7 @@ Observation Observer::last(const Run& run) {
   Observation out;
   add_events(run, out);
   if (last_checkpoint_ != step) add_checkpoint(run, out);
-  if (last_frame_ != step) add_frame(run, out);
+  if (last_frame_ != step) add_frame(frame_row(run), out);
   return out;
 }
 

@@ -30,36 +30,42 @@ struct RecordedEvent {
   Event event;
 };
 
-/// What a recording takes of one instant of a run.
+/// What a recording takes of one step of a run.
 struct Observation {
-  std::optional<FrameRow> frame;
+  std::vector<FrameRow> frames;
   std::optional<Checkpoint> checkpoint;
   std::vector<RecordedEvent> events;
 
-  bool empty() const { return !frame && !checkpoint && events.empty(); }
+  bool empty() const { return frames.empty() && !checkpoint && events.empty(); }
 };
 
 /// Of a body, relative to the floor, J: BodyNumbers::energy less strain and gravity energy. Its error is that
 /// of the row's single-precision positions: 1e-7 of them times the body's weight.
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int body);
 
-/// The newest state of `run` as a row of branch 0.
+/// The newest state of `run` as a row of branch 0; the same at `time` within its newest step.
 FrameRow frame_row(const Run& run);
+FrameRow frame_row(const Run& run, double time);
+/// `time` is not reached yet, but for rounding.
+bool is_ahead(const Run& run, double time);
+/// Of an instant that is due at `time`, which is not ahead: as either of these.
+FrameRow frame_row_due(const Run& run, double time);
 
 /// Decides which instants of one branch of a run are recorded.
 class Observer {
  public:
   explicit Observer(std::int32_t branch = 0) : branch_(branch) {}
-  /// Call after each accepted step and once before the first: rows at the scene's output rate, new events, a
-  /// checkpoint once per simulated second. The first call always gives a row and a checkpoint, so that a
-  /// branch begins with its own; events that `run` has seen by then are its parent's.
+  /// Call after each accepted step and once before the first: rows at multiples of the output interval,
+  /// within the step if need be, new events, a checkpoint once per simulated second. The first call always
+  /// gives a row and a checkpoint, so that a branch begins with its own; events that `run` has seen by then
+  /// are its parent's.
   Observation observe(const Run& run);
   /// Row and checkpoint of the newest state, where observe() has not given them: when a run ends or a branch
   /// is left.
   Observation last(const Run& run);
 
  private:
-  void add_frame(const Run& run, Observation& out);
+  void add_frame(FrameRow row, Observation& out);
   void add_checkpoint(const Run& run, Observation& out);
   void add_events(const Run& run, Observation& out);
 
@@ -67,8 +73,8 @@ class Observer {
   bool begun_ = false;
   std::size_t events_seen_ = 0;
   std::int64_t last_frame_ = -1, last_checkpoint_ = -1;  ///< steps; -1: none
-  double next_frame_ = -std::numeric_limits<double>::infinity(),
-         next_checkpoint_ = next_frame_;  ///< due then; in intervals
+  double next_checkpoint_ = -std::numeric_limits<double>::infinity(),
+         next_frame_ = 0;  ///< due then; in intervals
 };
 
 }  // namespace topple::io

@@ -17,7 +17,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::write(const Observation& observation) {
   for (const RecordedEvent& event : observation.events) impl_->writer.append(event);
   if (observation.checkpoint) impl_->writer.append(*observation.checkpoint);
-  if (observation.frame) impl_->writer.append(*observation.frame);
+  for (const FrameRow& frame : observation.frames) impl_->writer.append(frame);
 }
 
 void Recorder::write(const Branch& branch) {

@@ -147,7 +147,7 @@ class Comparison {
   /// Up to the checkpoint; false after the first difference and for a state that cannot be compared.
   bool reach(std::int64_t checkpoint) {
     const Checkpoint recorded = recording_.checkpoint(checkpoint);
-    if (!compare_frames(recorded.step) || !go_to(recorded)) return false;
+    if (!compare_frames(recorded.step, recorded.time) || !go_to(recorded)) return false;
     if (!recording_.can_go_on() || !has_its_hash(recorded)) return false;
     const State state = state_of(model_, recorded);
     if (hash(run_->state()) != recorded.hash)
@@ -155,7 +155,9 @@ class Comparison {
     return !difference_;
   }
   /// Those that no checkpoint follows.
-  bool finish() { return compare_frames(std::numeric_limits<std::int64_t>::max()); }
+  bool finish() {
+    return compare_frames(std::numeric_limits<std::int64_t>::max(), std::numeric_limits<double>::infinity());
+  }
   const std::optional<Difference>& found() const { return difference_; }
 
  private:
@@ -165,20 +167,23 @@ class Comparison {
       difference_ = {instant_of(row), "the run does not get there"};
     return !difference_;
   }
-  bool compare_frames(std::int64_t last_step) {
+  // Rows at or within steps up to the last one.
+  bool compare_frames(std::int64_t last_step, double last_time) {
     const std::vector<FrameKey>& all = recording_.index();
     for (; next_frame_ < all.size() && !difference_; ++next_frame_) {
       const FrameKey& at = all[next_frame_];
       if (at.branch != branch_.id) continue;
-      if (at.step > last_step) return true;
-      if (branch_.parent >= 0 && at.step == branch_.fork_step) continue;
+      if (at.step > last_step || (at.step == last_step && at.time > last_time)) return true;
+      if (branch_.parent >= 0 && at.step == branch_.fork_step && at.time <= begun_) continue;
       const FrameRow recorded = recording_.frame(static_cast<std::int64_t>(next_frame_));
       if (!go_to(recorded)) return false;
+      while (is_ahead(*run_, recorded.time))
+        if (!go_to(FrameKey{at.branch, run_->step() + 1, at.time})) return false;
       const std::vector<LoggedEdit>& edits = recording_.history().edits;
       const bool edited = std::any_of(edits.begin(), edits.end(), [&](const LoggedEdit& e) {
-        return e.branch == at.branch && e.step == at.step;
+        return e.branch == at.branch && (e.step == at.step || e.step == run_->step());
       });
-      FrameRow again = frame_row(*run_);
+      FrameRow again = frame_row_due(*run_, recorded.time);
       recording_.leave_out_unrecorded(again);
       difference_ = topple::io::difference(model_, recorded, again, edited);
     }
@@ -189,6 +194,7 @@ class Comparison {
   const Model& model_;
   const Branch& branch_;
   std::optional<topple::Run> run_;
+  const double begun_ = run_ ? run_->time() : 0;  // s
   std::optional<Difference> difference_;
   std::size_t next_frame_ = 0;
 };

@@ -76,6 +76,10 @@ void add_run(std::vector<Key>& keys) {
   keys.back().numbers = numbers;
   rows.words("want", {"motion", "stress"}, "what the scene is for; `model = \"auto\"` goes by it")
       .absent_means("both");
+  rows.number("accuracy", 1e-6, 1,
+              "error that `model = \"auto\"` allows, of the critical angle (motion) or of the stress")
+      .absent(parameters.accuracy)
+      .only_in({"dynamic"});
   rows.number("beta", 0.01, 1, "of the Newmark method")
       .absent(parameters.beta)
       .only("integrator", {"newmark"})
@@ -109,7 +113,8 @@ void add_run(std::vector<Key>& keys) {
   rows.plain("settle", T::boolean,
              "start from rest under gravity and the loads at t = 0 (static: load factor 0)")
       .absent(run.settle);
-  rows.number("output_rate", D::frequency, "Hz", 1, 1e4, "recorded rows")
+  rows.number("output_rate", D::frequency, "Hz", 1, 1e4,
+              "recorded rows, at multiples of its inverse whatever the steps are")
       .absent(run.output_rate)
       .only_in({"dynamic"});
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);

@@ -122,6 +122,7 @@ void read_run(const Entry& root, Setup& setup) {
   setup.run.output_rate = run.number("output_rate");
   setup.run.stop_when = run.chosen("stop_when", k_stops);
   setup.parameters.want_stress = !run.has("want") || run.names("want", "stress");
+  setup.parameters.accuracy = run.number("accuracy");
   setup.parameters.gravity = run.vector("gravity");
   if (run.word("integrator") != "auto") setup.parameters.integrator = run.chosen("integrator", integrators());
   setup.parameters.spectral_radius = run.number("spectral_radius");

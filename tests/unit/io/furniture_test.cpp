@@ -85,9 +85,10 @@ TEST(Rooms, run_and_keep_their_energy) {
   EXPECT_LT(classroom.run.state().energy.balance_error(), k_balance);
   for (const char* name : {"bookshelf", "cabinet"}) {
     EXPECT_GT(classroom.body(name).tilt, classroom.body(name).critical) << name;
-    EXPECT_EQ(classroom.body(name).level_changes.back().reason, LevelReason::near) << name;
+    EXPECT_EQ(classroom.body(name).level_changes.back().reason, LevelReason::motion) << name;
   }
-  EXPECT_EQ(classroom.body("desk-8").level, ModelLevel::elastic);
+  EXPECT_EQ(classroom.body("desk-8").level, ModelLevel::rigid);
+  EXPECT_EQ(classroom.body("teacher's desk").level_changes.back().reason, LevelReason::bending);
   EXPECT_LT(classroom.body("locker").tilt, classroom.body("locker").critical);
 }
 

@@ -16,7 +16,7 @@ class AnchorRecordingTest : public RecordingTest {
     topple::Run run(scene_.setup);
     Observer observer;
     const auto take = [&](const Observation& observation) {
-      if (observation.frame) rows_.push_back(*observation.frame);
+      rows_.insert(rows_.end(), observation.frames.begin(), observation.frames.end());
       recorder.write(observation);
     };
     const auto edit = [&](double on) {
@@ -103,7 +103,7 @@ TEST_F(AnchorRecordingTest, a_recording_without_anchors_has_no_columns_for_them)
   EXPECT_EQ(frame_fields(shape)[8].dims, (std::vector<hsize_t>{12}));
   {
     Recorder recorder(path("plain.h5"), "plain", k_text, small_model());
-    recorder.write({.frame = fake_row(shape, 0, 0), .checkpoint = {}, .events = {fake_event(0, 0)}});
+    recorder.write({.frames = {fake_row(shape, 0, 0)}, .checkpoint = {}, .events = {fake_event(0, 0)}});
     recorder.finish("completed", "{}");
   }
   const Handle file(H5Fopen(path("plain.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

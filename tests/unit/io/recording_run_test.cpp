@@ -14,11 +14,11 @@ class RunRecordingTest : public RecordingTest {
     scene_ = parse_scene(k_scene, "test");
     topple::Run run(scene_.setup);
     Recorder recorder(path("run.h5"), scene_.name, scene_.text, scene_.setup.model);
-    std::int64_t interval = -1;
-    const auto keep = [&] {
-      const auto passed = static_cast<std::int64_t>(std::floor(run.state().time * 60 + 1e-6));
-      if (passed > interval) rows_.push_back(frame_row(run));
-      interval = std::max(interval, passed);
+    const auto keep = [&] {  // what multiples of 1/60 s it has passed
+      for (; static_cast<double>(rows_.size()) / 60 < run.time() + 1e-9;) {
+        const double time = static_cast<double>(rows_.size()) / 60;
+        rows_.push_back(time < run.time() - 1e-9 ? frame_row(run, time) : frame_row(run));
+      }
     };
     Observer observer;
     recorder.write(observer.observe(run));

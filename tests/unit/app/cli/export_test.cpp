@@ -114,7 +114,7 @@ TEST_F(ExportTest, bodies_are_those_of_the_recording) {
     EXPECT_EQ(number(row[11]), body.energy);
   }
   const auto summary = info("a.h5")["summary"];
-  EXPECT_EQ(number(table.back()[0]), summary["simulated_s"]);
+  EXPECT_DOUBLE_EQ(number(table.back()[0]), summary["simulated_s"]);
   EXPECT_DOUBLE_EQ(number(table.back()[9]), summary["bodies"][0]["final_tilt_deg"]);
   EXPECT_EQ(number(table.back()[10]), summary["bodies"][0]["final_slide_m"]);
 }

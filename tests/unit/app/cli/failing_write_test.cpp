@@ -132,7 +132,7 @@ TEST_F(FailingWriteTest, whichever_write_of_other_results_fails_they_appear_whol
     const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
     io::Recorder recorder("cut.h5", scene.name, scene.text, scene.setup.model);
     const io::Recording whole("a.h5");
-    for (int i = 0; i < 10; ++i) recorder.write({.frame = whole.frame(i), .checkpoint = {}, .events = {}});
+    for (int i = 0; i < 10; ++i) recorder.write({.frames = {whole.frame(i)}, .checkpoint = {}, .events = {}});
     recorder.flush();
     raise(SIGKILL);
   } else {

@@ -115,7 +115,7 @@ TEST_F(VerifyTest, the_element_that_differs_first_is_named_with_its_member_and_b
     while (!run.over()) {
       ASSERT_TRUE(run.advance().ok());
       io::Observation now = observer.observe(run);
-      if (now.frame && run.step() == 120) now.frame->section_force[6 * 5] += 1;
+      if (!now.frames.empty() && run.step() == 120) now.frames[0].section_force[6 * 5] += 1;
       recorder.write(now);
     }
     recorder.write(observer.last(run));

@@ -2,7 +2,7 @@
 #include "solver/body/model_level.h"
 
 #include "solver/body/body_pose.h"
-#include "solver/frame/modes.h"
+#include "solver/reduced/tipping.h"
 #include "unit/solver/body_models.h"
 
 namespace topple::test {
@@ -98,25 +98,56 @@ TEST(ModelLevel, begins_with_the_least_that_answers) {
   EXPECT_EQ(base_level(setup.model, p, 0).reason, LevelReason::stress);
   p.want_stress = false;
   EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::rigid);
-  p.contact.alpha *= 400;  // 137 Hz of contact, 159 of the first mode
-  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::elastic);
-  EXPECT_EQ(base_level(setup.model, p, 0).reason, LevelReason::contact_frequency);
+  EXPECT_EQ(base_level(setup.model, p, 0).reason, LevelReason::motion);
+  p.contact.alpha *= 400;  // 137 Hz of contact, 159 of the first mode: what is wanted has not changed
+  EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::rigid);
   p.models.clear();
   EXPECT_EQ(base_level(setup.model, p, 0).level, ModelLevel::frame);
 }
 
-TEST(ModelLevel, is_elastic_from_half_the_first_frequency_on) {
+TEST(ModelLevel, is_elastic_where_bending_changes_the_motion_by_more_than_is_allowed) {
   topple::Setup setup = paper_cabinet(BodyModel::automatic);
   Parameters& p = setup.parameters;
   p.want_stress = false;
-  const double first = 2 * k_pi * natural_modes(setup.model, 0, 7)[6].frequency;
-  // of the 40 kg on the contacts of the base, alpha/L each
-  const double n = static_cast<double>(setup.model.bodies[0].base_points.size()),
-               L = (0.09 + setup.model.contact_points[0].width) / 2;
+  const double error = tipping_error(setup.model, 0, k_g);
+  EXPECT_GT(error, 0);
   for (const double share : {0.999, 1.001}) {
-    p.contact.alpha = 40 * std::pow(share * first / 2, 2) * L / n;
-    EXPECT_EQ(base_level(setup.model, p, 0).level, share < 1 ? ModelLevel::rigid : ModelLevel::elastic)
-        << share;
+    p.accuracy = share * error;
+    const LevelChoice base = base_level(setup.model, p, 0);
+    EXPECT_EQ(base.level, share < 1 ? ModelLevel::elastic : ModelLevel::rigid);
+    EXPECT_EQ(base.reason, share < 1 ? LevelReason::bending : LevelReason::motion);
+  }
+}
+
+// Rotations of nodes are allowed by what they do to what is asked for.
+TEST(ModelLevel, allows_a_greater_deformation_where_only_motion_is_asked_for) {
+  const topple::Setup setup = paper_cabinet(BodyModel::automatic);
+  Parameters p = setup.parameters;
+  const Body& body = setup.model.bodies[0];
+  EXPECT_DOUBLE_EQ(elastic_error(body, p, 0.02), 0.01);
+  p.want_stress = false;
+  EXPECT_DOUBLE_EQ(elastic_error(body, p, 0.02), 2e-4 / least_tipping_angle(body));
+}
+
+// Its estimate is that of the level it stands on, the greatest so far.
+TEST(ModelLevel, says_how_much_its_error_may_be) {
+  for (const bool stress : {false, true}) {
+    topple::Setup setup = paper_cabinet(BodyModel::automatic, 4 / k_degrees);
+    setup.parameters.want_stress = stress;
+    topple::Run run(setup);
+    double greatest = run.state().bodies[0].error_estimate;
+    while (!run.over()) {
+      ASSERT_TRUE(run.advance().ok());
+      greatest = std::max(greatest, run.state().bodies[0].error_estimate);
+    }
+    const auto& changes = run.outcome().bodies()[0].level_changes;
+    ASSERT_EQ(changes.size(), 1u);
+    EXPECT_EQ(changes[0].error_estimate, greatest);
+    if (stress)
+      EXPECT_GT(greatest, 1e-5);
+    else
+      EXPECT_EQ(greatest, tipping_error(setup.model, 0, k_g));
+    EXPECT_LT(greatest, setup.parameters.accuracy);
   }
 }
 
@@ -222,6 +253,27 @@ TEST(ModelLevel, is_a_frame_while_one_is_near) {
   const Vec3 momentum = 40 * (body_momentum(setup.model, run.state(), 0).velocity +
                               body_momentum(setup.model, run.state(), 1).velocity);
   EXPECT_LT((momentum - Vec3(40, 0, 0)).norm(), 1e-6);
+}
+
+// By the forces between members alone, which a body in free flight has no others than.
+TEST(ModelLevel, climbs_before_a_blow_of_another_body_makes_a_section_yield) {
+  topple::Setup setup = meets_a_frame(BodyModel::automatic);
+  const Section& post = setup.model.sections[0];
+  for (Element& element : setup.model.elements)
+    element.capacity << 20e6 * post.area, 20e6 * post.zt / std::sqrt(3), 20e6 * post.zy, 20e6 * post.zz;
+  compute_as(setup, BodyModel::automatic);
+  topple::Run run(setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  bool yields = false;
+  for (const BodyOutcome& body : run.outcome().bodies()) {
+    ASSERT_FALSE(body.level_changes.empty());
+    EXPECT_EQ(body.level_changes[0].level, ModelLevel::elastic);
+    for (const LevelChange& change : body.level_changes)
+      yields = yields || change.reason == LevelReason::yield;
+    EXPECT_GT(body.peak_yield_ratio.value(), 0.9);
+  }
+  EXPECT_TRUE(yields);
+  EXPECT_LT(run.state().energy.balance_error(), 0.01);
 }
 
 TEST(ModelLevel, stays_what_it_is_while_others_than_frames_are_near) {

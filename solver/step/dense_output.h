@@ -1,0 +1,19 @@
+// The motion within a step that was taken.
+#pragma once
+
+#include "solver/model/model.h"
+#include "solver/state/state.h"
+#include "solver/step/workspace.h"
+
+namespace topple {
+
+/// At `time` between the ends of a step: positions, rotations and amplitudes by cubic Hermite polynomials,
+/// with velocities as their derivatives (both of third order); stick springs, plastic strains and energies
+/// linear; the rest as at the end, or as when it began for anchors and the number of the step. Nodes are
+/// placed.
+State state_between(const Model& model, const State& start, const State& end, double time);
+
+/// The same within the newest step, which ended in `end`, until another is tried with `workspace`.
+State state_within_step(const Model& model, const State& end, double time, Workspace& workspace);
+
+}  // namespace topple
