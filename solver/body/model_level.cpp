@@ -24,7 +24,7 @@ LevelChoice asked(const Model&, const Parameters&, int) {
 
 LevelChoice least_that_answers(const Model& model, const Parameters& parameters, int body) {
   if (parameters.want_stress) return {ModelLevel::elastic, LevelReason::stress};
-  if (tipping_error(model, body, parameters.gravity.norm()) > parameters.accuracy)
+  if (rigid_error(model, parameters, body) > parameters.accuracy)
     return {ModelLevel::elastic, LevelReason::bending};
   return {ModelLevel::rigid, LevelReason::motion};
 }

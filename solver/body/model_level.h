@@ -8,7 +8,7 @@
 //
 // Errors are allowed up to Parameters::accuracy. They are estimates of what a level leaves out, as a share of
 // the critical angle when motion is asked for, of the stress when that is:
-//   - rigid: tipping_error()
+//   - rigid: rigid_error()
 //   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
 //     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.

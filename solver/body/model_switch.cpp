@@ -58,8 +58,8 @@ void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   if (!base_.empty()) return;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     base_.push_back(base_level(model, parameters, b));
-    rigid_error_.push_back(tipping_error(model, b, parameters.gravity.norm()));
-    watched_.push_back(base_[b].level == ModelLevel::elastic &&
+    rigid_error_.push_back(rigid_error(model, parameters, b));
+    watched_.push_back(parameters.want_stress && base_[b].level == ModelLevel::elastic &&
                        parameters.models[b] == BodyModel::automatic &&
                        model.bodies[b].elastic->mode_yield.any());
   }

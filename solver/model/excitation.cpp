@@ -198,6 +198,16 @@ Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {
   return sum;
 }
 
+double greatest_acceleration(const std::vector<Shake>& shakes) {
+  double greatest = 0;
+  for (const Shake& shake : shakes) {
+    if (!shake.on) continue;
+    greatest += traits(shake.kind).has_record ? std::abs(shake.scale) * shake.record->peak
+                                              : std::abs(shake.amplitude) * shake.direction.norm();
+  }
+  return greatest;
+}
+
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1) {
   Vec3 sum = Vec3::Zero();
   for (const Shake& shake : shakes)

@@ -72,6 +72,9 @@ double sample_interval(const std::vector<Shake>& shakes, double t);
 /// Sum of all shakes, m/s^2, world axes.
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t);
 
+/// Of |floor_acceleration| at all times an upper bound, m/s^2.
+double greatest_acceleration(const std::vector<Shake>& shakes);
+
 /// Velocity jump of the floor of the shakes that start in [t0, t1): -A/(2 pi f) along the direction for each
 /// with `initial_velocity = jump`, m/s.
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/math/elementary.h"
+#include "solver/model/excitation.h"
 #include "solver/reduced/elastic_basis.h"
 
 namespace topple {
@@ -30,16 +31,37 @@ void each_edge(const Body& body, F f) {
   }
 }
 
-// Nodes of the base on an edge, counted from the first of the body.
+// Nodes of the base, counted from the first of the body.
+std::vector<int> base_nodes(const Model& model, const Body& body) {
+  std::vector<int> nodes;
+  for (const int point : body.base_points)
+    nodes.push_back(model.contact_points[point].node - body.first_node);
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  return nodes;
+}
+
 std::vector<int> nodes_on(const Model& model, const Body& body, const TippingEdge& edge) {
   constexpr double k_on_edge = 1e-3;  // of the reach
-  std::vector<int> nodes;
-  for (const int point : body.base_points) {
-    const int node = model.contact_points[point].node;
-    if (std::abs(edge.outward.dot(model.node_position[node] - edge.start)) < k_on_edge * body.reach)
-      nodes.push_back(node - body.first_node);
-  }
+  std::vector<int> nodes = base_nodes(model, body);
+  std::erase_if(nodes, [&](int node) {
+    const Vec3& x = model.node_position[body.first_node + node];
+    return std::abs(edge.outward.dot(x - edge.start)) > k_on_edge * body.reach;
+  });
   return nodes;
+}
+
+// Of nodes of a free body, three rows and columns each, m/N: how far forces at rest deflect them.
+Eigen::MatrixXd flexibility(const ElasticBasis& basis, const std::vector<int>& nodes) {
+  const auto n = static_cast<Eigen::Index>(nodes.size());
+  Eigen::MatrixXd shape(3 * n, basis.modes), out(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    shape.middleRows<3>(3 * i) = basis.shape.middleRows<3>(6 * nodes[i]);
+    for (Eigen::Index j = 0; j < n; ++j)
+      out.block<3, 3>(3 * i, 3 * j) = basis.residual_shape.block<3, 3>(6 * nodes[i], 3 * nodes[j]);
+  }
+  const Eigen::ArrayXd soft = basis.frequency.head(basis.modes).square().inverse();
+  return out + shape * soft.matrix().asDiagonal() * shape.transpose();
 }
 
 }  // namespace
@@ -53,8 +75,6 @@ double least_tipping_angle(const Body& body) {
 double tipping_error(const Model& model, int index, double gravity) {
   const Body& body = model.bodies[index];
   if (!body.elastic) return 0;
-  const ElasticBasis& basis = *body.elastic;
-  const auto frequency = basis.frequency.head(static_cast<Eigen::Index>(basis.modes));
   double greatest = 0;
   each_edge(body, [&](const TippingEdge& edge) {
     const std::vector<int> nodes = nodes_on(model, body, edge);
@@ -66,19 +86,45 @@ double tipping_error(const Model& model, int index, double gravity) {
     const Vec3 force =
         share * body.mass * gravity / radius * (edge.height * Vec3::UnitZ() - edge.depth * edge.outward);
     const Vec3 turn = share / (radius * radius) * (edge.height * edge.outward + edge.depth * Vec3::UnitZ());
-    const auto at_nodes = [&](const Vec3& of_each) {
-      VectorXd all = VectorXd::Zero(6 * body.node_count);
-      for (const int node : nodes) all.segment<3>(6 * node) = of_each;
-      return all;
-    };
-    const VectorXd forces = at_nodes(force), turns = at_nodes(turn);
-    double change = ((basis.shape.transpose() * forces).array() * (basis.shape.transpose() * turns).array() /
-                     frequency.square())
-                        .sum();
-    for (const int node : nodes) change += turns.dot(basis.residual_shape.middleCols<3>(3 * node) * force);
+    const auto n = static_cast<Eigen::Index>(nodes.size());
+    const VectorXd forces = force.replicate(n, 1), turns = turn.replicate(n, 1);
+    const double change = turns.dot(flexibility(*body.elastic, nodes) * forces);
     greatest = std::max(greatest, std::abs(change) / edge.angle());
   });
   return greatest;
+}
+
+// Of the deflection b that the weight on the feet has across, held by forces f = C^-1 b: b C^-1 b / 2.
+double splay_energy(const Model& model, int index, double gravity) {
+  const Body& body = model.bodies[index];
+  const std::vector<int> nodes = base_nodes(model, body);
+  if (!body.elastic || nodes.empty()) return 0;
+  const Eigen::MatrixXd all = flexibility(*body.elastic, nodes);
+  const auto n = static_cast<Eigen::Index>(nodes.size());
+  Eigen::MatrixXd across(2 * n, 2 * n);
+  VectorXd spread = VectorXd::Zero(2 * n);
+  const double weight = body.mass * gravity / static_cast<double>(n);  // on each
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      across.block<2, 2>(2 * i, 2 * j) = all.block<2, 2>(3 * i, 3 * j);
+      spread.segment<2>(2 * i) += weight * all.block<2, 1>(3 * i, 3 * j + 2);
+    }
+  return spread.dot(across.completeOrthogonalDecomposition().solve(spread)) / 2;
+}
+
+double rigid_error(const Model& model, const Parameters& parameters, int index) {
+  const Body& body = model.bodies[index];
+  const double angle = least_tipping_angle(body), gravity = parameters.gravity.norm();
+  if (!body.elastic || !(angle < std::numeric_limits<double>::infinity())) return 0;
+  const ContactLaw& law = parameters.contact;
+  const double floor = greatest_acceleration(parameters.shakes);
+  const double passed = std::min(floor, std::max(law.friction, law.friction_static) * gravity);
+  const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
+  const double sway = passed / (body.elastic->frequency[0] * body.elastic->frequency[0]) / (height * angle);
+  if (floor > 0 && passed < gravity * elementary::tan(angle)) return sway;
+  const double barrier = body.mass * gravity * height / elementary::cos(angle) * (1 - elementary::cos(angle));
+  return std::max(
+      {sway, tipping_error(model, index, gravity), std::sqrt(splay_energy(model, index, gravity) / barrier)});
 }
 
 }  // namespace topple

@@ -1,5 +1,5 @@
 // What a person waits for in the window, drawn by one core of the processor at 1280x720: the first frame,
-// frames while a run goes on, and any instant of a recording of 60 s.
+// frames while a run goes on, runs in real time, and any instant of a recording of 60 s.
 //   window_bench PROGRAM
 #include <imgui.h>
 #include <sys/resource.h>
@@ -83,6 +83,30 @@ void measure_frames(const std::string& program, const char* scene) {
   print((std::string(scene) + " while it runs, a frame").c_str(), ms);
 }
 
+/// A whole run, drawn 30 times a second as far as that is kept.
+void measure_real_time(const std::string& program, const char* scene) {
+  constexpr std::chrono::microseconds k_frame{33333};
+  Screen screen(program);
+  screen.show(scene);
+  while (!screen.player().can_edit()) screen.frame();
+  screen.player().play();
+  std::vector<double> ms;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point due = start;
+  int late = 0;
+  while (screen.player().status().kind != LiveStatus::Kind::over) {
+    ms.push_back(screen.frame());
+    due += k_frame;
+    late += Clock::now() > due;
+    due = std::max(due, Clock::now());
+    std::this_thread::sleep_until(due);
+  }
+  const double seconds = ms_since(start) / 1e3;
+  print((std::string(scene) + " in real time, a frame").c_str(), ms);
+  std::printf("%-44s %6.2f times real time, %.1f frames a second, %d late\n", "",
+              screen.player().time() / seconds, double(ms.size()) / seconds, late);
+}
+
 void measure_seek(const std::string& program, const std::string& recording, const char* what) {
   Screen screen(program);
   screen.show(recording);
@@ -116,6 +140,7 @@ int bench(const std::string& program, Clock::time_point start) {
     std::printf("%-44s %6.1f ms\n", "paper-a, until its bodies are seen", ms_since(start));
   }
   for (const char* scene : {"paper-a", "classroom"}) measure_frames(program, scene);
+  for (const char* scene : {"dominoes", "classroom", "office"}) measure_real_time(program, scene);
   const std::string recording = (folder / "paper-a.h5").string();
   fs::remove(recording);
   const std::string run =

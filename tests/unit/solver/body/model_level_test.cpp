@@ -109,7 +109,7 @@ TEST(ModelLevel, is_elastic_where_bending_changes_the_motion_by_more_than_is_all
   topple::Setup setup = paper_cabinet(BodyModel::automatic);
   Parameters& p = setup.parameters;
   p.want_stress = false;
-  const double error = tipping_error(setup.model, 0, k_g);
+  const double error = rigid_error(setup.model, p, 0);
   EXPECT_GT(error, 0);
   for (const double share : {0.999, 1.001}) {
     p.accuracy = share * error;
@@ -146,7 +146,7 @@ TEST(ModelLevel, says_how_much_its_error_may_be) {
     if (stress)
       EXPECT_GT(greatest, 1e-5);
     else
-      EXPECT_EQ(greatest, tipping_error(setup.model, 0, k_g));
+      EXPECT_EQ(greatest, rigid_error(setup.model, setup.parameters, 0));
     EXPECT_LT(greatest, setup.parameters.accuracy);
   }
 }

@@ -7,7 +7,7 @@
 namespace topple::test {
 namespace {
 
-constexpr double k_base_half = 0.15, k_column = 1.5, k_top = 30;  // m, m, kg
+constexpr double k_base_half = 0.15, k_column = 1.5, k_leg = 0.45, k_top = 30;  // m, m, m, kg
 
 /// A mass, whose axes are the body's, on a slender column on a stiff square base of no weight.
 topple::Setup mass_on_a_column(double young) {
@@ -54,6 +54,63 @@ TEST(Tipping, changes_by_what_the_column_bends) {
     EXPECT_NEAR(tipping_error(setup.model, 0, k_g), change, 2e-3 * change);
     EXPECT_GT(change, young > 1e11 ? 1e-3 : 0.02);
   }
+}
+
+/// Two portals side by side, of which each bears half of the mass in the middle of its beam.
+topple::Setup stool(double young) {
+  topple::Setup setup;
+  setup.model.materials = {{"stiff", 1e15, 0.3, 1e-2}, {"soft", young, 0.3, 1e-2}};
+  setup.model.sections = {plain_section(1e-2, 1e-7, 1e-7, 2e-7, 1e3, 1e3)};
+  FrameSpec spec;
+  spec.name = "stool";
+  for (const double y : {-k_base_half, k_base_half}) {
+    const int first = static_cast<int>(spec.nodes.size());
+    for (const double x : {-k_base_half, k_base_half}) {
+      spec.nodes.emplace_back(x, y, 0.015);
+      spec.nodes.emplace_back(x, y, 0.015 + k_leg);
+    }
+    spec.nodes.emplace_back(0, y, 0.015 + k_leg);
+    for (const auto& [i, j] : {std::pair(0, 1), std::pair(2, 3), std::pair(1, 4), std::pair(4, 3)})
+      spec.members.push_back({{first + i, first + j}, 0, 1});
+    spec.masses.push_back({first + 4, k_top / 2, Vec3::Constant(1)});
+  }
+  spec.members.push_back({{4, 9}, 0, 0});
+  setup.starts = add_frame(setup.model, spec);
+  setup.model.planes.push_back(ground());
+  compute_as(setup, BodyModel::automatic);
+  return setup;
+}
+
+// The weight in the middle turns a beam's ends by W L^2/(16 EI); feet of length h move outward by h times
+// that, and to hold two back takes a force of that over h^3/(3 EI) + h^2 L/(2 EI) (moment theorems of portal
+// frames).
+TEST(Tipping, frees_what_friction_holds_of_spread_legs) {
+  for (const double young : {205e9, 10e9}) {
+    const topple::Setup setup = stool(young);
+    const double EI = young * 1e-7, L = 2 * k_base_half, h = k_leg, weight = k_top / 2 * k_g;
+    const double out = weight * L * L / (16 * EI) * h, give = h * h * h / (3 * EI) + h * h * L / (2 * EI);
+    const double energy = 2 * out * out / give;  // of two portals, two feet each
+    EXPECT_NEAR(splay_energy(setup.model, 0, k_g), energy, 0.01 * energy);
+  }
+}
+
+TEST(Tipping, is_an_error_of_a_rigid_body_only_where_the_floor_can_lift_it) {
+  topple::Setup setup = stool(10e9);
+  Parameters& p = setup.parameters;
+  const double angle = least_tipping_angle(setup.model.bodies[0]), lifts = k_g * std::tan(angle);
+  p.contact.friction = 1.5;
+  const double loose = rigid_error(setup.model, p, 0);
+  const double R = std::hypot(k_base_half, k_leg);
+  const double barrier = k_top * k_g * R * (1 - std::cos(angle));
+  EXPECT_NEAR(loose, std::sqrt(splay_energy(setup.model, 0, k_g) / barrier), 1e-3 * loose);
+  shake(setup, 0.99 * lifts, 1);
+  const double w = setup.model.bodies[0].elastic->frequency[0];
+  const double sway = 0.99 * lifts / (w * w) / (k_leg * angle);
+  EXPECT_NEAR(rigid_error(setup.model, p, 0), sway, 1e-3 * sway);
+  p.shakes[0].amplitude = 1.01 * lifts;
+  EXPECT_EQ(rigid_error(setup.model, p, 0), loose);
+  p.contact.friction = 0.9 * std::tan(angle);  // it slides
+  EXPECT_LT(rigid_error(setup.model, p, 0), loose);
 }
 
 TEST(Tipping, of_a_body_without_modes_is_not_known_to_change) {

@@ -98,6 +98,29 @@ TEST(Excitation, shakes_add_up_along_their_directions) {
   EXPECT_EQ(floor_acceleration({}, 1), Vec3(Vec3::Zero()));
 }
 
+TEST(Excitation, the_greatest_acceleration_is_a_bound_that_one_shake_reaches) {
+  std::vector<Shake> shakes{sine(3, 2)};
+  shakes[0].direction = Vec3(0.6, 0.8, 0);
+  EXPECT_EQ(greatest_acceleration(shakes), 3);
+  EXPECT_NEAR(floor_acceleration(shakes, 0.125).norm(), 3, 1e-12);
+  for (const PulseTraits& shape : pulse_shapes()) {
+    Shake pulse = sine(-2, 1);
+    pulse.kind = Shake::Kind::pulse;
+    pulse.shape = shape.kind;
+    pulse.duration = 0.5;
+    std::vector<Shake> all{shakes[0], pulse};
+    EXPECT_DOUBLE_EQ(greatest_acceleration(all), 5) << shape.word;
+    double reached = 0;
+    for (int i = 0; i <= 1000; ++i) {
+      EXPECT_LE(floor_acceleration(all, 1e-3 * i).norm(), 5 + 1e-12);
+      reached = std::max(reached, shake_acceleration(pulse, 1e-3 * i).norm());
+    }
+    EXPECT_NEAR(reached, 2, 1e-3) << shape.word;
+    all[0].on = all[1].on = false;
+    EXPECT_EQ(greatest_acceleration(all), 0);
+  }
+}
+
 TEST(Excitation, jump_makes_the_floors_displacement_a_pure_sine) {
   // speed a/w and travel a/w^2
   for (const auto& [gal, f, speed, travel] :
