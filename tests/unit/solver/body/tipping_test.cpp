@@ -59,7 +59,7 @@ TEST(Tipping, changes_by_what_the_column_bends) {
 /// Two portals side by side, of which each bears half of the mass in the middle of its beam.
 topple::Setup stool(double young) {
   topple::Setup setup;
-  setup.model.materials = {{"stiff", 1e15, 0.3, 1e-2}, {"soft", young, 0.3, 1e-2}};
+  setup.model.materials = {{"stiff", 1e12, 0.3, 10}, {"soft", young, 0.3, 10}};
   setup.model.sections = {plain_section(1e-2, 1e-7, 1e-7, 2e-7, 1e3, 1e3)};
   FrameSpec spec;
   spec.name = "stool";
@@ -89,8 +89,8 @@ TEST(Tipping, frees_what_friction_holds_of_spread_legs) {
     const topple::Setup setup = stool(young);
     const double EI = young * 1e-7, L = 2 * k_base_half, h = k_leg, weight = k_top / 2 * k_g;
     const double out = weight * L * L / (16 * EI) * h, give = h * h * h / (3 * EI) + h * h * L / (2 * EI);
-    const double energy = 2 * out * out / give;  // of two portals, two feet each
-    EXPECT_NEAR(splay_energy(setup.model, 0, k_g), energy, 0.01 * energy);
+    const double energy = 2 * out * out / give;                             // of two portals, two feet each
+    EXPECT_NEAR(splay_energy(setup.model, 0, k_g), energy, 0.02 * energy);  // members weigh 1 % of it
   }
 }
 
@@ -100,12 +100,13 @@ TEST(Tipping, is_an_error_of_a_rigid_body_only_where_the_floor_can_lift_it) {
   const double angle = least_tipping_angle(setup.model.bodies[0]), lifts = k_g * std::tan(angle);
   p.contact.friction = 1.5;
   const double loose = rigid_error(setup.model, p, 0);
-  const double R = std::hypot(k_base_half, k_leg);
-  const double barrier = k_top * k_g * R * (1 - std::cos(angle));
+  const double height = setup.model.bodies[0].centre_of_gravity.z() - 0.015;
+  const double R = std::hypot(k_base_half, height);
+  const double barrier = setup.model.bodies[0].mass * k_g * R * (1 - std::cos(angle));
   EXPECT_NEAR(loose, std::sqrt(splay_energy(setup.model, 0, k_g) / barrier), 1e-3 * loose);
   shake(setup, 0.99 * lifts, 1);
   const double w = setup.model.bodies[0].elastic->frequency[0];
-  const double sway = 0.99 * lifts / (w * w) / (k_leg * angle);
+  const double sway = 0.99 * lifts / (w * w) / (height * angle);
   EXPECT_NEAR(rigid_error(setup.model, p, 0), sway, 1e-3 * sway);
   p.shakes[0].amplitude = 1.01 * lifts;
   EXPECT_EQ(rigid_error(setup.model, p, 0), loose);
