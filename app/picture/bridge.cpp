@@ -241,6 +241,13 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
     const std::size_t first = member.first_element;
     const std::size_t last = first + member.element_count - 1;
     begin(closing(member, model.elements[first].node[0]), 0);
+    if (is_rigid(row, member.body)) {  // straight
+      const ElementCurve here = element_curve(model, row, first), there = element_curve(model, row, last);
+      stations.push_back(station(here.place(0), here.axes(0)));
+      stations.push_back(station(there.place(1), there.axes(1)));
+      end(closing(member, model.elements[last].node[1]), 0);
+      continue;
+    }
     for (std::size_t e = first; e <= last; ++e) {
       const bool broken = row.hinge[e] == k_broken;
       const ElementCurve curve = element_curve(model, row, e);
