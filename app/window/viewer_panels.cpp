@@ -54,6 +54,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const Model& model = player_.scene().setup.model;
   for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
+  if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;

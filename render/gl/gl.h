@@ -45,6 +45,7 @@ using GetProc = Proc (*)(const char* name);
   X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)                 \
   X(PFNGLENABLEPROC, Enable)                                                 \
   X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)               \
+  X(PFNGLFINISHPROC, Finish)                                                 \
   X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)               \
   X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                     \
   X(PFNGLGENBUFFERSPROC, GenBuffers)                                         \

@@ -3,6 +3,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -12,6 +14,8 @@ namespace {
 
 constexpr int k_samples = 4;
 constexpr int k_greatest_side = 8192;
+constexpr double k_shares[] = {1, 0.85, 0.7, 0.6};  // of the pixels of each side
+constexpr double k_reserve = 0.8;                   // of the budget, below which a finer picture is tried
 
 bool draws_with_the_processor(const Gl& gl) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
@@ -44,9 +48,31 @@ void Stage::draw_scene(const SceneFrame& frame, const Camera& camera, ColourMap 
                        Quality quality) {
   if (!software_) quality = Quality::still;
   left_out_ = {};
-  Canvas& canvas = fitting(canvas_, gl_, width, height, quality == Quality::still ? k_samples : 0);
+  width_ = width;
+  height_ = height;
+  const bool still = quality == Quality::still;
+  const auto pixels = [&](int side) {
+    return still ? side : std::max(1, static_cast<int>(std::lround(k_shares[coarseness_] * side)));
+  };
+  Canvas& canvas = fitting(canvas_, gl_, pixels(width), pixels(height), still ? k_samples : 0);
+  const auto begun = std::chrono::steady_clock::now();
   canvas.draw(scene_, frame, camera, map, quality, left_out_);
   check_gl(gl_, "drawing the scene");
+  if (still || !budget_) return;
+  gl_.Finish();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun;
+  const int most = static_cast<int>(std::size(k_shares)) - 1;
+  if (taken.count() > *budget_) {
+    coarseness_ = std::min(coarseness_ + 1, most);
+  } else if (coarseness_ > 0) {
+    const double ratio = k_shares[coarseness_ - 1] / k_shares[coarseness_];
+    if (ratio * ratio * taken.count() < k_reserve * *budget_) --coarseness_;
+  }
+}
+
+void Stage::set_budget(std::optional<double> seconds) {
+  budget_ = seconds;
+  if (!seconds) coarseness_ = 0;
 }
 
 void Stage::present(const Surface& surface, const ImDrawData& interface_lists) {
@@ -89,8 +115,9 @@ void Stage::present(const Surface& surface, const ImDrawData& interface_lists, G
     const int left = surface.scene_left;
     const int top = surface.height - surface.scene_top;  // upwards, as OpenGL counts
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture);
-    gl_.BlitFramebuffer(0, 0, width, height, left, top - height, left + width, top, GL_COLOR_BUFFER_BIT,
-                        GL_NEAREST);
+    const bool same = width == width_ && height == height_;
+    gl_.BlitFramebuffer(0, 0, width, height, left, top - height_, left + width_, top, GL_COLOR_BUFFER_BIT,
+                        same ? GL_NEAREST : GL_LINEAR);
   }
   interface_.draw(interface_lists, {framebuffer, surface.width, surface.height});
   check_gl(gl_, "presenting");

@@ -46,6 +46,10 @@ class Stage {
   void draw_scene(const SceneFrame& frame, const Camera& camera, ColourMap map, int width, int height,
                   Quality quality);
 
+  /// From here on interactive scenes of a software context that take longer than this, s, are drawn coarser,
+  /// down to 0.6 of the pixels of each side; none: at their full size.
+  void set_budget(std::optional<double> seconds);
+
   /// Puts the scene drawn last and the interface into the window's framebuffer.
   void present(const Surface& surface, const ImDrawData& interface_lists);
 
@@ -72,6 +76,9 @@ class Stage {
   ScenePainter scene_;
   ImguiPainter interface_;
   std::optional<Canvas> canvas_, shot_;
+  int width_ = 0, height_ = 0;  // px, of the scene's region
+  std::optional<double> budget_;
+  int coarseness_ = 0;  // index into k_shares
   LeftOut left_out_;
 };
 

@@ -67,6 +67,29 @@ TEST(Stage, a_still_scene_is_the_picture_without_its_overlay) {
   EXPECT_TRUE(scene(staged, frame) == wanted);
 }
 
+// No scene is drawn in no time, every one in a minute.
+TEST(Stage, draws_coarser_what_takes_longer_than_its_budget) {
+  Staged staged(off_screen());
+  if (!staged.stage.software()) GTEST_SKIP() << "draws at full size";
+  const SceneFrame frame = synthetic_cabinet(6);
+  const Image full = scene(staged, frame, Quality::interactive);
+  staged.stage.set_budget(0);
+  EXPECT_TRUE(scene(staged, frame, Quality::interactive) == full);  // from the next one on
+  const Image coarser = scene(staged, frame, Quality::interactive);
+  EXPECT_EQ(coarser.width, full.width);
+  EXPECT_FALSE(coarser == full);
+  EXPECT_LT(mean_difference(coarser, full), 3);
+  const Image still = scene(staged, frame);
+  staged.stage.set_budget(60);
+  for (int i = 0; i < 2; ++i) scene(staged, frame, Quality::interactive);
+  EXPECT_TRUE(scene(staged, frame, Quality::interactive) == full);
+  staged.stage.set_budget(0);
+  for (int i = 0; i < 8; ++i) scene(staged, frame, Quality::interactive);
+  EXPECT_TRUE(scene(staged, frame) == still);  // at its best whatever the budget
+  staged.stage.set_budget(std::nullopt);
+  EXPECT_TRUE(scene(staged, frame, Quality::interactive) == full);
+}
+
 TEST(Stage, an_interactive_scene_is_close_to_the_still_one) {
   Staged staged(off_screen());
   const SceneFrame frame = synthetic_cabinet(6);
