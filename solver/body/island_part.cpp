@@ -119,7 +119,7 @@ void IslandPart::begin(const StepSpan& span, const State& next) {
   for (const MemberPair& pair : coupling_.pairs()) {
     double way = 0;
     for (const int body : coupling_.bodies_of(pair)) way += body < 0 ? 0 : travel[body];
-    start_.gap.push_back(coupling_.gap(pair));
+    start_.gap.push_back(pair.gap);
     start_.close.push_back(start_.gap.back() <= way);
   }
 }
@@ -223,8 +223,9 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {
   double limit = ReducedPart::time_limit(parameters, state);
   place(state);
+  coupling_.start(coupling_.pairs());
   for (const MemberPair& pair : coupling_.pairs()) {
-    if (coupling_.gap(pair) > 0) continue;
+    if (pair.gap > 0) continue;
     for (const int b : coupling_.bodies_of(pair)) {
       const double substep = b < 0 ? 0 : state.bodies[bodies_[b].index].substep;
       if (substep > 0) limit = std::min(limit, substep);

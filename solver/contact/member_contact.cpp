@@ -63,23 +63,29 @@ class PairFinder {
   PairFinder(const ContactLaw& law, const MemberPair& pair, int index, std::span<const Vec3> position,
              std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found)
       : law_(law), pair_(pair), index_(index), x_(gather(pair, position)), found_(found) {
+    const auto furthest = [&](int k) {
+      return std::max((x_[k] - pair.start[k]).squaredNorm(), (x_[k + 1] - pair.start[k + 1]).squaredNorm());
+    };
+    approach2_ = 2 * (furthest(0) + furthest(2));
+    if (pair.gap > 0 && approach2_ < pair.gap * pair.gap) return;
     const NearestPoints nearest = nearest_at(0, x_);
     if (!(nearest.between.squaredNorm() < pair.L * pair.L)) return;
+    velocity_ = gather(pair, velocity);
+    const Ends x0 = gather(pair, start);
+    for (int k = 0; k < 4; ++k) travel_[k] = x_[k] - x0[k];
     const Crossing lines = crossing(x_);
     const double x = std::min(lines.sine2 / k_parallel, 1.);
     const double kappa = x < k_aligned ? 0 : x * x * (3 - 2 * x);
     const std::size_t first = found.touches.size();
-    if (kappa > 0) add(0, nearest, kappa, velocity, start);
+    if (kappa > 0) add(0, nearest, kappa);
     if (kappa == 1) return;
-    for (int place = 1; place < 5; ++place)
-      add(place, nearest_at(place, x_), (1 - kappa) / 4, velocity, start);
+    for (int place = 1; place < 5; ++place) add(place, nearest_at(place, x_), (1 - kappa) / 4);
     if (kappa == 0 || !traits(law).stores_energy) return;
     blend(lines, x, first);
   }
 
  private:
-  void add(int place, const NearestPoints& at, double weight, std::span<const Vec3> velocity,
-           std::span<const Vec3> start) {
+  void add(int place, const NearestPoints& at, double weight) {
     const double distance = at.between.norm();
     if (!(distance < pair_.L)) return;
     MemberTouch touch;
@@ -89,16 +95,20 @@ class PairFinder {
     touch.weight = weight;
     touch.at = at;
     touch.ends = x_;
-    const Vec3 before = nearest_at(place, pair_.start).between;
-    const bool through = at.between.dot(before) < 0;
-    touch.l = through ? -distance : distance;
-    touch.normal = distance > 0 ? Vec3(at.between / touch.l) : Vec3(before.normalized());
+    // ends that have come no nearer than the distance have not passed each other
+    if (distance * distance > approach2_) {
+      touch.l = distance;
+      touch.normal = at.between / distance;
+    } else {
+      const Vec3 before = nearest_at(place, pair_.start).between;
+      touch.l = at.between.dot(before) < 0 ? -distance : distance;
+      touch.normal = distance > 0 ? Vec3(at.between / touch.l) : Vec3(before.normalized());
+    }
     touch.depth = 1 - touch.l / pair_.L;
-    const Ends v = gather(pair_, velocity), x0 = gather(pair_, start);
     Vec3 relative_velocity = Vec3::Zero(), stick = pair_.stick[place];
     for (int k = 0; k < 4; ++k) {
-      relative_velocity += touch.share[k] * v[k];
-      stick += touch.share[k] * (x_[k] - x0[k]);
+      relative_velocity += touch.share[k] * velocity_[k];
+      stick += touch.share[k] * travel_[k];
     }
     touch.input = {touch.normal, touch.depth, pair_.L, relative_velocity, stick, pair_.mass, true};
     touch.out = contact_force(weighted(law_, weight), touch.input);
@@ -127,6 +137,8 @@ class PairFinder {
   const MemberPair& pair_;
   const int index_;
   const Ends x_;
+  Ends velocity_, travel_;  // m/s; m, since `start`
+  double approach2_;        // m^2, bound of the square by which they have come nearer since MemberPair::start
   MemberContacts& found_;
 };
 

@@ -39,6 +39,7 @@ struct MemberPair {
   double mass;                ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
   std::array<Vec3, 4> start;  ///< m, positions of the nodes where the step began: they tell the side
   std::array<Vec3, 5> stick;  ///< m, per place, where the step began
+  double gap = 0;             ///< m, between the surfaces at `start`, where it is known; 0: not
 };
 
 /// Contact of two elements at one place.

@@ -88,8 +88,11 @@ int MemberCoupling::number_of(int node) {
 }
 
 void MemberCoupling::start(std::span<MemberPair> pairs) const {
-  for (MemberPair& pair : pairs)
-    for (int k = 0; k < 4; ++k) pair.start[k] = position_[pair.node[k]];
+  for (MemberPair& pair : pairs) {
+    std::array<Vec3, 4>& x = pair.start;
+    for (int k = 0; k < 4; ++k) x[k] = position_[pair.node[k]];
+    pair.gap = nearest_points(x[0], x[1], x[2], x[3]).between.norm() - pair.L;
+  }
 }
 
 double first_substep(const ContactLaw& law, std::span<const MemberPair> pairs) {
@@ -144,20 +147,14 @@ Vec3 MemberCoupling::acceleration(int k) const {
   return linear + angular.cross(arm_[k]) + spin.cross(spin.cross(arm_[k]));
 }
 
-double MemberCoupling::gap(const MemberPair& pair) const {
-  const auto& x = position_;
-  const auto& n = pair.node;
-  return nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]).between.norm() - pair.L;
-}
-
 double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double within) const {
   double soonest = within;
   const auto& x = position_;
   for (const MemberPair& pair : pairs) {
+    if (!(pair.gap > 0)) continue;
     const auto& n = pair.node;
     const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
     const double l = at.between.norm(), gap = l - pair.L;
-    if (!(gap > 0)) continue;
     const auto closing = [&](const auto& of) {
       return -at.between.dot((1 - at.s) * of(n[0]) + at.s * of(n[1]) - (1 - at.t) * of(n[2]) -
                              at.t * of(n[3])) /
@@ -194,6 +191,82 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
   return loads_;
 }
 
+namespace {
+
+// Unknowns of a rigid body: J^T of a force on a point, and of a 3 x 3 slope between points of two bodies.
+struct RigidArm {
+  double share;  // of the point's motion that is the body's
+  Vec3 arm;      // m, from the centre of gravity, times that
+
+  Vec6 carry(const Vec3& force) const {
+    Vec6 out;
+    out << share * force, arm.cross(force);
+    return out;
+  }
+};
+
+Mat6 carried(const RigidArm& a, const Mat3& slope, const RigidArm& b) {
+  Mat3 turned;  // -slope [arm]
+  for (int k = 0; k < 3; ++k) turned.row(k) = b.arm.cross(slope.row(k).transpose()).transpose();
+  Mat6 out;
+  out.topLeftCorner<3, 3>() = a.share * b.share * slope;
+  out.topRightCorner<3, 3>() = a.share * turned;
+  for (int k = 0; k < 3; ++k) {
+    out.block<3, 1>(3, k) = b.share * a.arm.cross(slope.col(k));
+    out.block<3, 1>(3, 3 + k) = a.arm.cross(turned.col(k));
+  }
+  return out;
+}
+
+}  // namespace
+
+// Of two rigid bodies that touch in many places: their blocks, added up before they are handed on.
+struct MemberCoupling::RigidSum {
+  std::array<int, 2> bodies{-1, -1};
+  Mat6 block[2][2], of_stick[2][2];
+
+  void add(const MemberCoupling& of, const MemberPair& pair, const PairTangent& tangent) {
+    RigidArm at_touch[2];
+    Vec6 left[2][2], right[2][2];
+    for (int side = 0; side < 2; ++side) {
+      if (bodies[side] < 0) continue;
+      at_touch[side] = {0, Vec3::Zero()};
+      for (int p = 0; p < tangent.product_count; ++p) left[side][p] = right[side][p] = Vec6::Zero();
+      for (int k = 2 * side; k < 2 * side + 2; ++k) {
+        const RigidArm end{1, of.arm_[pair.node[k]]};
+        at_touch[side].share += tangent.share[k];
+        at_touch[side].arm += tangent.share[k] * end.arm;
+        for (int p = 0; p < tangent.product_count; ++p) {
+          left[side][p] += end.carry(tangent.products[p].left[k]);
+          right[side][p] += end.carry(tangent.products[p].right[k]);
+        }
+      }
+    }
+    const bool sticks = !tangent.stick.isZero(0);
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) {
+        if (bodies[a] < 0 || bodies[b] < 0) continue;
+        block[a][b] += carried(at_touch[a], tangent.local, at_touch[b]);
+        for (int p = 0; p < tangent.product_count; ++p)
+          block[a][b].noalias() += left[a][p] * right[b][p].transpose();
+        if (sticks) of_stick[a][b] += carried(at_touch[a], tangent.stick, at_touch[b]);
+      }
+  }
+  void begin(const std::array<int, 2>& which) {
+    bodies = which;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) {
+        block[a][b].setZero();
+        of_stick[a][b].setZero();
+      }
+  }
+  void hand_on(const AddBlock& add) const {
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b)
+        if (bodies[a] >= 0 && bodies[b] >= 0) add(bodies[a], 0, bodies[b], 0, block[a][b], of_stick[a][b]);
+  }
+};
+
 void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& contacts,
                                 std::span<const MemberPair> pairs, double velocity_factor,
                                 const AddBlock& add) const {
@@ -209,9 +282,18 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     }
     return j;
   };
+  RigidSum rigid;
   const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
     const std::array<int, 2> bodies = bodies_of(pair);
+    if (std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; })) {
+      if (bodies != rigid.bodies) {
+        rigid.hand_on(add);
+        rigid.begin(bodies);
+      }
+      rigid.add(*this, pair, tangent);
+      return;
+    }
     std::array<std::array<Columns, k_most_groups>, 2> at_touch;
     std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
     for (int side = 0; side < 2; ++side) {
@@ -242,6 +324,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
       }
   };
   each_tangent(law, contacts, pairs, velocity_factor, std::ref(add_all));
+  rigid.hand_on(add);
 }
 
 }  // namespace topple

@@ -44,7 +44,7 @@ class MemberCoupling {
     for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) f(k, nodes_[k].body);
   }
 
-  /// `pairs` start where the nodes are.
+  /// `pairs` start where the nodes are; their gaps there are known from here on.
   void start(std::span<MemberPair> pairs) const;
   /// Held nodes stand where they are in `state`.
   void place_held(const State& state);
@@ -55,10 +55,8 @@ class MemberCoupling {
   const std::vector<Vec3>& velocity() const { return velocity_; }  ///< m/s
   int modes(int body) const { return modes_[body]; }               ///< as placed
 
-  /// Distance of two surfaces where the nodes are, m, < 0 when they touch.
-  double gap(const MemberPair& pair) const;
-  /// Time until the next open one of `pairs` closes, s, as the bodies were placed by their states; infinite:
-  /// not within `within`.
+  /// Time until the next open one of `pairs` closes, s, as the bodies were placed by their states, where the
+  /// pairs start; infinite: not within `within`.
   double next_touch(std::span<const MemberPair> pairs, double within) const;
 
   /// Force of a touch, with the elements and places where it acts.
@@ -85,6 +83,7 @@ class MemberCoupling {
     int element, count;
     std::array<int, 2> node;  // index into the model
   };
+  struct RigidSum;
   Segment segment_of(int element, std::span<const BodyState> states) const;
   int number_of(int node);
   Vec3 acceleration(int node) const;
