@@ -118,10 +118,12 @@ double rigid_error(const Model& model, const Parameters& parameters, int index) 
   if (!body.elastic || !(angle < std::numeric_limits<double>::infinity())) return 0;
   const ContactLaw& law = parameters.contact;
   const double floor = greatest_acceleration(parameters.shakes);
-  const double passed = std::min(floor, std::max(law.friction, law.friction_static) * gravity);
+  const double friction = std::max(law.friction, law.friction_static);
+  const double passed = std::min(floor, friction * gravity);
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double sway = passed / (body.elastic->frequency[0] * body.elastic->frequency[0]) / (height * angle);
-  if (floor > 0 && passed < gravity * elementary::tan(angle)) return sway;
+  const bool stays = floor > 0 && floor < gravity * std::min(friction, elementary::tan(angle));
+  if (stays) return sway;
   const double barrier = body.mass * gravity * height / elementary::cos(angle) * (1 - elementary::cos(angle));
   return std::max(
       {sway, tipping_error(model, index, gravity), std::sqrt(splay_energy(model, index, gravity) / barrier)});

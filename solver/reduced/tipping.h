@@ -15,14 +15,14 @@ double least_tipping_angle(const Body& body);
 double tipping_error(const Model& model, int body, double gravity);
 
 /// What friction holds back of the spreading of a body's feet under its weight, with which they spring back
-/// as soon as they lift, J. 0 as tipping_error.
+/// as soon as they lift or slide, J. 0 as tipping_error.
 double splay_energy(const Model& model, int body, double gravity);
 
 /// Estimated error of the motion of a body that is computed as rigid, as a share of its least tipping angle.
-/// The floor's greatest acceleration a bends it by a/w^2, w its first angular frequency. Where a, or what
-/// friction passes on of it, lifts it, and where nothing shakes the floor, so that it moves for another
-/// reason, also the greater of tipping_error() and sqrt(splay energy over the energy that tips it): the share
-/// of the velocity with which it begins to rock.
+/// The floor's greatest acceleration a, as far as friction passes it on, bends it by a/w^2, w its first
+/// angular frequency. Where it lifts or slides, because of a or because nothing shakes the floor, so that it
+/// moves for another reason, also the greater of tipping_error() and sqrt(splay energy over the energy that
+/// tips it): the share of the velocity with which it begins to rock.
 double rigid_error(const Model& model, const Parameters& parameters, int body);
 
 }  // namespace topple
