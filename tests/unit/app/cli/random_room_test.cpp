@@ -13,13 +13,13 @@
 #include <iostream>
 #include <limits>
 #include <optional>
-#include <random>
 #include <set>
 
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
+#include "unit/app/cli/random_draw.h"
 
 namespace topple::app {
 namespace {
@@ -28,9 +28,9 @@ constexpr unsigned k_rooms = 3;
 constexpr double k_interval = 0.01;  // s, between instants that are compared
 
 /// Draws the text of a room.
-class Draw {
+class Draw : RandomDraw {
  public:
-  explicit Draw(unsigned seed) : random_(seed) {}
+  using RandomDraw::RandomDraw;
 
   std::string room() {
     text_ =
@@ -50,13 +50,6 @@ class Draw {
   }
 
  private:
-  bool chance(double share) { return uniform(0, 1) < share; }
-  double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
-  int pick(int from, int to) { return std::uniform_int_distribution<int>(from, to)(random_); }
-  std::string one_of(std::initializer_list<const char*> words) {
-    return *(words.begin() + pick(0, static_cast<int>(words.size()) - 1));
-  }
-
   void shake() {
     const std::string type = one_of({"sine", "pulse", "record"});
     text_ += fmt::format("[[shake]]\ntype = \"{}\"\n", type);
@@ -89,7 +82,6 @@ class Draw {
     return x + depth;
   }
 
-  std::mt19937 random_;
   std::string text_;
 };
 

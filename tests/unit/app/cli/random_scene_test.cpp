@@ -10,12 +10,12 @@
 #include <iostream>
 #include <limits>
 #include <map>
-#include <random>
 
 #include "app/batch/run_warnings.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_keys.h"
+#include "unit/app/cli/random_draw.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::app {
@@ -25,9 +25,9 @@ constexpr unsigned k_scenes = 40;
 constexpr int k_most_steps = 4000;
 
 /// Draws the text of a scene.
-class Draw {
+class Draw : RandomDraw {
  public:
-  explicit Draw(unsigned seed) : random_(seed) { wild_ = chance(0.15) ? 0.5 : 0.04; }
+  explicit Draw(unsigned seed) : RandomDraw(seed) { wild_ = chance(0.15) ? 0.5 : 0.04; }
 
   std::string scene() {
     text_ = "topple = 1\n";
@@ -48,12 +48,6 @@ class Draw {
   }
 
  private:
-  bool chance(double share) { return uniform(0, 1) < share; }
-  double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
-  int pick(int from, int to) { return std::uniform_int_distribution<int>(from, to)(random_); }
-  std::string one_of(std::initializer_list<const char*> words) {
-    return *(words.begin() + pick(0, static_cast<int>(words.size()) - 1));
-  }
   double log_uniform(double from, double to) { return std::exp(uniform(std::log(from), std::log(to))); }
 
   void line(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
@@ -259,7 +253,6 @@ class Draw {
     if (chance(0.1)) line("on", "false");
   }
 
-  std::mt19937 random_;
   bool floor_ = true, moves_ = false;
   Vec3 corner_[3];   ///< where anchors are attached, from the middle of each body's base
   double wild_ = 0;  ///< share of numbers from their whole legal range
