@@ -12,22 +12,24 @@
 namespace topple {
 namespace {
 
-// Mean rotation of a body's nodes, rad/s.
-double spin(const Body& body, const State& state) {
+// Mean rotation of a body's nodes, of which `first` is the first one, rad/s.
+double spin(const Body& body, const BodyMotion& motion, int first) {
   Vec3 sum = Vec3::Zero();
-  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
-    sum += state.rotation[i] * state.angular_velocity[i];
+  for (int i = first; i < first + body.node_count; ++i)
+    sum += motion.rotation[i] * motion.angular_velocity[i];
   return sum.norm() / body.node_count;
 }
 
-double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const State& state) {
+double contact_limit(const Model& model, const Body& body, const ContactLaw& law, const BodyMotion& motion,
+                     int first) {
   double stiffness = 0, limit = std::numeric_limits<double>::infinity();
   for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
     const ContactPoint& point = model.contact_points[p];
+    const int node = first + point.node - body.first_node;
     for (const Plane& plane : model.planes) {
       const double L = contact_length(point, plane);
-      const double gap = plane.normal.dot(state.position[point.node] - plane.point) - point.width / 2;
-      const ContactAhead ahead = contact_ahead(law, gap, -plane.normal.dot(state.velocity[point.node]), L);
+      const double gap = plane.normal.dot(motion.position[node] - plane.point) - point.width / 2;
+      const ContactAhead ahead = contact_ahead(law, gap, -plane.normal.dot(motion.velocity[node]), L);
       stiffness += ahead.stiffness;
       limit = std::min(limit, ahead.limit);
     }
@@ -36,7 +38,7 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
 }
 
 // For the members of the system's bodies that are near each other.
-double member_limit(const BodySystem& system, const ContactLaw& law, const State& state) {
+double member_limit(const BodySystem& system, const ContactLaw& law, const BodyMotion& motion) {
   const Model& model = system.model;
   double limit = std::numeric_limits<double>::infinity();
   if (system.candidate_pairs.empty()) return limit;
@@ -45,16 +47,16 @@ double member_limit(const BodySystem& system, const ContactLaw& law, const State
     const auto own = std::ranges::find(system.bodies, model.members[model.elements[element].member].body);
     if (own != system.bodies.end()) stiffness[own - system.bodies.begin()] += more;
   };
-  for (const ElementPair& pair : system.candidate_pairs) {
-    const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
-    const auto& x = state.position;
-    const auto& v = state.velocity;
-    const NearestPoints at = nearest_points(x[m[0]], x[m[1]], x[n[0]], x[n[1]]);
-    const double L = contact_length(model, pair), l = at.between.norm();
-    const Vec3 relative = (1 - at.s) * v[m[0]] + at.s * v[m[1]] - (1 - at.t) * v[n[0]] - at.t * v[n[1]];
+  for (const MemberPair& pair : system.member_pairs()) {
+    const auto& n = pair.node;
+    const auto& x = motion.position;
+    const auto& v = motion.velocity;
+    const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
+    const double L = pair.L, l = at.between.norm();
+    const Vec3 relative = (1 - at.s) * v[n[0]] + at.s * v[n[1]] - (1 - at.t) * v[n[2]] - at.t * v[n[3]];
     const ContactAhead ahead = contact_ahead(law, l - L, -relative.dot(at.between) / l, L, true);
-    add(pair.a, ahead.stiffness);
-    add(pair.b, ahead.stiffness);
+    add(pair.elements.a, ahead.stiffness);
+    add(pair.elements.b, ahead.stiffness);
     limit = std::min(limit, ahead.limit);
   }
   for (std::size_t b = 0; b < stiffness.size(); ++b)
@@ -77,9 +79,14 @@ BodyEnergy FramePart::balance(const Parameters& parameters, const StepInputs& no
   if (!has(marked)) return {};
   BodySystem& s = system_;
   s.load(state, motion_);
-  s.load_memory(state);
+  s.load_memory(state, motion_);
   s.evaluate(parameters, now, motion_, state.stick, motion_.position);
+  for (const RigidInSystem& one : s.rigid) {
+    state.bodies[one.body].force = s.force[one.own];
+    state.bodies[one.body].moment = s.moment[one.own];
+  }
   for (int i = 0; i < s.count; ++i) {
+    if (!s.is_of_frame(i)) continue;
     const int g = s.node[i];
     s.clear_fixed(i, s.force[i], s.moment[i]);
     const Mat3& j = s.model.node_inertia[g];
@@ -109,18 +116,21 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
 
 double FramePart::time_limit(const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
-  double limit = std::min(k_longest_step, member_limit(system_, law, state));
+  system_.load(state, motion_);
+  double limit = std::min(k_longest_step, member_limit(system_, law, motion_));
+  int first = 0;
   for (const int b : system_.bodies) {
     const Body& body = system_.model.bodies[b];
-    limit = std::min(limit, contact_limit(system_.model, body, law, state));
-    if (const double omega = spin(body, state); omega * limit > k_turn) limit = k_turn / omega;
+    limit = std::min(limit, contact_limit(system_.model, body, law, motion_, first));
+    if (const double omega = spin(body, motion_, first); omega * limit > k_turn) limit = k_turn / omega;
+    first += body.node_count;
   }
   return limit;
 }
 
 void FramePart::find_contacts(const StepInputs& now, const State& state) {
   system_.load(state, motion_);
-  system_.load_memory(state);
+  system_.load_memory(state, motion_);
   system_.find_contacts(now.law, motion_, state.stick, motion_.position, contacts_);
 }
 
@@ -129,8 +139,12 @@ void FramePart::list_forces(const StepInputs& now, const State& state, Forces& f
   for (const TouchingPair& pair : contacts_.planes)
     forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
   for (const MemberTouch& touch : contacts_.members.touches)
-    forces.members.push_back(
-        {system_.candidate_pairs[touch.pair], touch.at.s, touch.at.t, touch.depth, touch.out.force});
+    forces.members.push_back(member_force(touch, system_.member_pairs()[touch.pair]));
+  for (const RigidInSystem& one : system_.rigid) {
+    const Body& body = system_.model.bodies[one.body];
+    std::fill_n(sections_.begin() + body.first_element, body.element_count,
+                SectionForces{Vec3::Zero(), Vec3::Zero()});
+  }
 }
 
 HardestContact FramePart::hardest_contact(const HardestContact& hardest) {

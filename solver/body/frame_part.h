@@ -1,4 +1,4 @@
-// Frames that may touch each other, or one alone.
+// Frames that may touch each other and rigid bodies, or one alone.
 #pragma once
 
 #include "solver/body/part.h"
@@ -6,7 +6,7 @@
 
 namespace topple {
 
-/// One system of frames (islands.h).
+/// One system (islands.h).
 class FramePart final : public Part {
  public:
   /// `system` and `sections`, of every element of the model, outlive this.

@@ -242,7 +242,7 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
   if (!with_members) return;
   find(now, state);
   for (const MemberTouch& touch : now_.touches) {
-    const MemberForce force = coupling_.force(touch);
+    const MemberForce force = member_force(touch, coupling_.pairs()[touch.pair]);
     const auto [a, b] = coupling_.bodies_of(coupling_.pairs()[touch.pair]);
     const auto push = [&](int body, int element, double place, const Vec3& by) {
       if (body < 0) return;
@@ -257,7 +257,8 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
 
 void IslandPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
   ReducedPart::list_forces(now, state, forces);
-  for (const MemberTouch& touch : now_.touches) forces.members.push_back(coupling_.force(touch));
+  for (const MemberTouch& touch : now_.touches)
+    forces.members.push_back(member_force(touch, coupling_.pairs()[touch.pair]));
 }
 
 HardestContact IslandPart::hardest_contact(const HardestContact& hardest) {

@@ -33,13 +33,15 @@ BodySystem* Islands::alone(int body) {
   return alone_[body].get();
 }
 
-BodySystem* Islands::system(const Island& island) {
+BodySystem* Islands::system(const Island& island, const std::vector<int>& rigid) {
   if (island.candidate_pairs.empty()) return alone(island.bodies.front());
   const auto same = std::ranges::find_if(joined_, [&](const auto& system) {
-    return system->bodies == island.bodies && system->candidate_pairs == island.candidate_pairs;
+    return system->bodies == island.bodies && system->candidate_pairs == island.candidate_pairs &&
+           std::ranges::equal(system->rigid, rigid, {}, &RigidInSystem::body);
   });
   if (same != joined_.end()) return same->get();
-  return joined_.emplace_back(std::make_unique<BodySystem>(model_, island.bodies, island.candidate_pairs))
+  return joined_
+      .emplace_back(std::make_unique<BodySystem>(model_, island.bodies, island.candidate_pairs, rigid))
       .get();
 }
 

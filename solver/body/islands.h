@@ -24,8 +24,8 @@ class Islands {
   explicit Islands(const Model& model);
   /// In the order of their first bodies.
   std::vector<Island> divide(const std::vector<ElementPair>& candidate_pairs) const;
-  /// The frames of an island as one system of equations; those of the last call of divide are kept.
-  BodySystem* system(const Island& island);
+  /// An island as one system of equations, in which `rigid` are no frames; those that keep() keeps last.
+  BodySystem* system(const Island& island, const std::vector<int>& rigid = {});
   /// One body without the others; nullptr: held.
   BodySystem* alone(int body);
   /// Forgets all systems of several bodies but these.

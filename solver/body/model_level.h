@@ -1,8 +1,9 @@
 // Model levels: what each body is computed as, and how it changes in the middle of a run.
 //
 // A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
-// for and its error is allowed, and then it does not yield; else elastic. A body is a frame while one is near
-// (State::candidate_pairs, also over bodies between them), and an automatic one too once
+// for and its error is allowed, and then it does not yield; else elastic. An elastic body is a frame while
+// one is near (State::candidate_pairs, also over bodies between them); a rigid one is stepped with the frames
+// that are near, but for explicit methods, which know frames alone. An automatic one becomes a frame too once
 //   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
 //   - its error is no longer allowed.
 //

@@ -5,6 +5,7 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
+#include "solver/frame/integrator.h"
 #include "solver/reduced/tipping.h"
 
 namespace topple {
@@ -65,9 +66,11 @@ void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   }
 }
 
-// A frame makes all bodies of its island frames. One that is a frame for no other reason stays one until all
-// of them are calm.
-void ModelSwitch::choose_islands(const std::vector<Island>& islands, State& state) {
+// A frame makes those bodies of its island frames that are not stepped with it. One that is a frame for no
+// other reason stays one until all of them are calm.
+void ModelSwitch::choose_islands(const std::vector<Island>& islands, const Parameters& parameters,
+                                 State& state) {
+  const bool alone = traits(parameters.integrator).is_explicit;
   for (const Island& island : islands) {
     bool frame = false, by_itself = false;
     for (const int b : island.bodies) {
@@ -79,6 +82,7 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, State& stat
     for (const int b : island.bodies) {
       LevelChoice& choice = choice_[b];
       if (choice.level == ModelLevel::frame && choice.reason != LevelReason::near) continue;
+      if (choice.level != ModelLevel::frame && traits(choice.level).joins_frames && !alone) continue;
       choice = {ModelLevel::frame, LevelReason::near};
       if (by_itself) state.bodies[b].calm_since = -1;
     }
@@ -164,7 +168,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
 void ModelSwitch::start(const Model& model, const Parameters& parameters, State& state, Parts& parts) {
   find_base(model, parameters);
   choice_ = base_;
-  choose_islands(parts.islands(state), state);
+  choose_islands(parts.islands(state), parameters, state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const LevelChoice& choice = choice_[b];
     BodyState& s = state.bodies[b];
@@ -187,7 +191,7 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   choice_.clear();
   const int count = static_cast<int>(model.bodies.size());
   for (int b = 0; b < count; ++b) choice_.push_back(choose(on, b));
-  choose_islands(parts.islands(state), state);
+  choose_islands(parts.islands(state), parameters, state);
   const bool any = !std::ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
   if (any) {
     parts.arrange(state);

@@ -32,7 +32,7 @@ class ModelSwitch {
                         int body) const;
   void find_base(const Model& model, const Parameters& parameters);
   LevelChoice choose(const Switching& on, int body);
-  void choose_islands(const std::vector<Island>& islands, State& state);
+  void choose_islands(const std::vector<Island>& islands, const Parameters& parameters, State& state);
   void change(const Switching& on, LevelChoice choice, int body);
 
   std::vector<LevelChoice> base_;    // per body; empty: not found for these parameters

@@ -33,11 +33,12 @@ const std::vector<Island>& Parts::islands(const State& state) {
   return divided_;
 }
 
-// The frames of an island, and its other bodies.
-std::vector<Island> Parts::one_of_a_kind(const Island& island) const {
-  const auto is_frame = [&](int body) { return levels_[body] == ModelLevel::frame; };
-  const auto count = std::ranges::count_if(island.bodies, is_frame);
-  if (count == 0 || count == std::ssize(island.bodies)) return {island};
+// An island that can be stepped as one, or, while levels change, its elastic bodies and the others.
+std::vector<Island> Parts::without_mixed(const Island& island) const {
+  const auto is_elastic = [&](int body) { return !traits(levels_[body]).joins_frames; };
+  const auto is_frame = [&](int body) { return traits(levels_[body]).moves_nodes; };
+  if (std::ranges::none_of(island.bodies, is_frame) || std::ranges::none_of(island.bodies, is_elastic))
+    return {island};
   std::vector<ElementPair> kept;
   for (const ElementPair& pair : island.candidate_pairs) {
     std::vector<int> free;
@@ -45,7 +46,7 @@ std::vector<Island> Parts::one_of_a_kind(const Island& island) const {
       if (const int body = model_.members[model_.elements[element].member].body;
           std::ranges::binary_search(island.bodies, body))
         free.push_back(body);
-    if (is_frame(free.front()) == is_frame(free.back())) kept.push_back(pair);
+    if (is_elastic(free.front()) == is_elastic(free.back())) kept.push_back(pair);
   }
   std::vector<Island> parts = islands_.divide(kept);
   std::erase_if(parts, [&](const Island& part) {
@@ -78,11 +79,17 @@ void Parts::arrange(const State& state) {
                    std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs,
                                                 state.bodies, sections)};
   };
+  with_frames_.assign(levels_.size(), false);
   for (const Island& island : islands)
-    for (const Island& part : one_of_a_kind(island)) {
+    for (const Island& part : without_mixed(island)) {
       const int b = part.bodies.front();
-      if (levels_[b] == ModelLevel::frame) {
-        systems.push_back(islands_.system(part));
+      if (std::ranges::any_of(part.bodies, [&](int own) { return traits(levels_[own]).moves_nodes; })) {
+        std::vector<int> rigid;
+        for (const int own : part.bodies) {
+          with_frames_[own] = true;
+          if (!traits(levels_[own]).moves_nodes) rigid.push_back(own);
+        }
+        systems.push_back(islands_.system(part, rigid));
       } else if (part.candidate_pairs.empty()) {
         some.push_back({b, &reduced(state, b)});
         if (some.size() == k_bodies_per_part) close_part();

@@ -22,11 +22,13 @@ class Parts {
  public:
   explicit Parts(const Model& model);
 
-  /// Divides by the levels of bodies and the candidate pairs of `state`; all bodies of an island are frames,
-  /// or none is. Rigid and elastic bodies that are alone, of which some make one part, come first, then those
-  /// that are not.
+  /// Divides by the levels of bodies and the candidate pairs of `state`; where one of an island is a frame,
+  /// none is elastic. Rigid and elastic bodies that are alone, of which some make one part, come first, then
+  /// those that are not, then frames with the rigid bodies near them.
   void arrange(const State& state);
   const std::vector<std::shared_ptr<Part>>& all() const { return parts_; }
+  /// Per body: its steps are those of frames.
+  const std::vector<char>& with_frames() const { return with_frames_; }
   /// Whether a step moves nodes: there are frames.
   bool moves_nodes() const { return moves_nodes_; }
   /// Of the candidate pairs of `state`.
@@ -57,7 +59,7 @@ class Parts {
   std::vector<SectionForces> sections;
 
  private:
-  std::vector<Island> one_of_a_kind(const Island& island) const;
+  std::vector<Island> without_mixed(const Island& island) const;
 
   const Model& model_;
   Islands islands_;
@@ -65,6 +67,7 @@ class Parts {
   std::vector<Island> divided_;                        // by the candidate pairs of pairs_
   std::vector<ElementPair> pairs_;                     // of the last call of islands()
   std::vector<ModelLevel> levels_;                     // per body, of parts_; empty: there are none
+  std::vector<char> with_frames_;                      // per body
   std::vector<std::shared_ptr<Part>> parts_;
   // Those of parts_ with several bodies that are no frames, and the levels of these.
   struct Coupled {

@@ -18,12 +18,43 @@ constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it 
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
 
 // Of an implicit method's local error of the velocity over h times the change of the acceleration.
-double error_factor(const Parameters& parameters) {
-  const auto coefficients = traits(parameters.integrator).coefficients;
-  if (!coefficients) return 0;
-  const GeneralizedAlpha c = coefficients(parameters);
+double error_factor(const GeneralizedAlpha& c) {
   const double delta = c.alpha_m - c.alpha_f;
   return std::abs(1. / 6 - c.beta - delta / 2) + std::abs(c.gamma - 0.5 + delta);
+}
+
+// Sums over a body: the change of its algorithmic acceleration and its motion, squared.
+struct Motion {
+  double change = 0, speed = 0;  // kg m^2/s^4, kg m^2/s^2
+};
+
+Motion of_frame(const Model& model, const Body& body, const State& before, const State& after) {
+  Motion sum;
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
+    const auto square = [&](const Vec3& v, const Vec3& w) {
+      return model.node_mass[i] * v.squaredNorm() + w.dot(model.node_inertia[i] * w);
+    };
+    sum.change +=
+        square(after.algorithmic_acceleration[i] - before.algorithmic_acceleration[i],
+               after.algorithmic_angular_acceleration[i] - before.algorithmic_angular_acceleration[i]);
+    sum.speed += std::max(square(before.velocity[i], before.angular_velocity[i]),
+                          square(after.velocity[i], after.angular_velocity[i]));
+  }
+  return sum;
+}
+
+Motion of_rigid(const Body& body, const BodyState& before, const BodyState& after) {
+  if (before.level != after.level) return {};
+  const auto square = [&](const Vec3& v, const Vec3& w) {
+    return body.mass * v.squaredNorm() + w.dot(body.inertia * w);
+  };
+  const auto turning = [&](const BodyState& s) {
+    return Vec3(body.inertia.inverse() * (s.rotation.conjugate() * s.moment -
+                                          s.angular_velocity.cross(body.inertia * s.angular_velocity)));
+  };
+  return {square((after.force - before.force) / body.mass, turning(after) - turning(before)),
+          std::max(square(before.velocity, before.angular_velocity),
+                   square(after.velocity, after.angular_velocity))};
 }
 
 }  // namespace
@@ -34,8 +65,13 @@ double look_ahead(const Model& model, const Parameters& parameters, const State&
 }
 
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
-                  double h) {
-  const double factor = error_factor(parameters);
+                  double h, const std::vector<char>& with_frames) {
+  double factor = 0, rigid_factor = 0;
+  if (const auto coefficients = traits(parameters.integrator).coefficients) {
+    const GeneralizedAlpha c = coefficients(parameters);
+    factor = error_factor(c);
+    rigid_factor = error_factor(c.of_rigid());
+  }
   double total_mass = 0, small_fall = 0, greatest = 0;
   for (const Body& body : model.bodies) {
     total_mass += body.mass;
@@ -44,22 +80,15 @@ double step_error(const Model& model, const Parameters& parameters, const State&
   const double largest = std::max(after.energy.largest + total_mass * k_at_rest * k_at_rest, small_fall);
   const double floor = k_speed_floor * k_speed_floor * 2 * largest / total_mass;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (after.bodies[b].level != ModelLevel::frame) continue;
+    if (!with_frames[b]) continue;
     const Body& body = model.bodies[b];
-    double change = 0, speed = 0;
-    for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
-      const auto square = [&](const Vec3& v, const Vec3& w) {
-        return model.node_mass[i] * v.squaredNorm() + w.dot(model.node_inertia[i] * w);
-      };
-      change +=
-          square(after.algorithmic_acceleration[i] - before.algorithmic_acceleration[i],
-                 after.algorithmic_angular_acceleration[i] - before.algorithmic_angular_acceleration[i]);
-      speed += std::max(square(before.velocity[i], before.angular_velocity[i]),
-                        square(after.velocity[i], after.angular_velocity[i]));
-    }
+    const bool frame = traits(after.bodies[b].level).moves_nodes;
+    const auto [change, speed] =
+        frame ? of_frame(model, body, before, after) : of_rigid(body, before.bodies[b], after.bodies[b]);
     if (!(change > 0)) continue;
     const double allowed = parameters.tolerance * std::sqrt(speed / body.mass + floor);
-    greatest = std::max(greatest, factor * h * std::sqrt(change / body.mass) / allowed);
+    greatest =
+        std::max(greatest, (frame ? factor : rigid_factor) * h * std::sqrt(change / body.mass) / allowed);
   }
   const double unexplained = std::abs(after.energy.unexplained() - before.energy.unexplained());
   return std::max(greatest, unexplained / (k_energy_part * parameters.tolerance * largest));

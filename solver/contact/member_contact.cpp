@@ -238,25 +238,27 @@ void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::sp
 }
 
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                 double velocity_factor, BlockLu& lu) {
-  const auto add = [&](const PairTangent& tangent) {
+                 double velocity_factor, const std::function<void(int i, int j, const Mat3& block)>& add) {
+  const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
-    Mat6 block = Mat6::Zero();
     for (int k = 0; k < 4; ++k)
       for (int m = 0; m < 4; ++m) {
-        block.topLeftCorner<3, 3>() = tangent.share[k] * tangent.share[m] * tangent.local;
+        Mat3 block = tangent.share[k] * tangent.share[m] * tangent.local;
         for (int p = 0; p < tangent.product_count; ++p)
-          block.topLeftCorner<3, 3>() +=
-              tangent.products[p].left[k] * tangent.products[p].right[m].transpose();
-        lu.add(pair.node[k], pair.node[m], block);
+          block += tangent.products[p].left[k] * tangent.products[p].right[m].transpose();
+        add(pair.node[k], pair.node[m], block);
       }
   };
-  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add));
+  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add_all));
 }
 
-void keep_sticks(const MemberContacts& contacts, std::span<MemberPair> pairs) {
+void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
   for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
-  for (const MemberTouch& touch : contacts.touches) pairs[touch.pair].stick[touch.place] = touch.out.stick;
+  for (MemberTouch& touch : contacts.touches) {
+    pairs[touch.pair].stick[touch.place] = touch.input.stick = touch.out.stick;
+    if (traits(law).sticks && slips(law, touch))
+      touch.out = contact_force(weighted(law, touch.weight), touch.input);
+  }
 }
 
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

@@ -15,7 +15,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/contact/proximity.h"
-#include "solver/math/block_lu.h"
+#include "solver/math/types.h"
 
 namespace topple {
 
@@ -34,12 +34,13 @@ struct MemberStick {
 /// Two elements that may touch, within a system.
 struct MemberPair {
   ElementPair elements;
-  std::array<int, 4> node;    ///< ends of a, then of b, numbered within the system
-  double L;                   ///< m
-  double mass;                ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
-  std::array<Vec3, 4> start;  ///< m, positions of the nodes where the step began: they tell the side
-  std::array<Vec3, 5> stick;  ///< m, per place, where the step began
-  double gap = 0;             ///< m, between the surfaces at `start`, where it is known; 0: not
+  std::array<int, 4> node;         ///< ends of a, then of b, numbered within the system
+  std::array<int, 2> count{1, 1};  ///< elements of a and b, from the first on, that are taken as one
+  double L;                        ///< m
+  double mass;                     ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
+  std::array<Vec3, 4> start;       ///< m, positions of the nodes where the step began: they tell the side
+  std::array<Vec3, 5> stick;       ///< m, per place, where the step began
+  double gap = 0;                  ///< m, between the surfaces at `start`, where it is known; 0: not
 };
 
 /// Contact of two elements at one place.
@@ -106,12 +107,13 @@ struct PairTangent {
 /// sin^2 and, below l = 0.02 L, without the turning of the normal.
 void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                   double velocity_factor, const std::function<void(const PairTangent&)>& f);
-/// Adds them to `lu`, whose nodes are those of `pairs`.
+/// Calls add(i, j, block) with their sums between each two nodes of what touches.
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                 double velocity_factor, BlockLu& lu);
+                 double velocity_factor, const std::function<void(int i, int j, const Mat3& block)>& add);
 
-/// What touches leaves its stick springs in `pairs`; those of other places become zero.
-void keep_sticks(const MemberContacts& contacts, std::span<MemberPair> pairs);
+/// What touches leaves its stick springs in `pairs`; those of other places become zero. Springs that slipped
+/// are shorter from here on, and forces those of the shorter ones.
+void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs);
 
 /// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

@@ -3,11 +3,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <new>
 
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/element/damping.h"
+#include "solver/math/rotation.h"
 
 namespace topple {
 double load_factor(const Load& load, double t) {
@@ -30,7 +32,8 @@ void BodyMotion::resize(int nodes) {
 
 BodySystem::BodySystem(const Model& whole, int body) : BodySystem(whole, std::vector<int>{body}, {}) {}
 
-BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<ElementPair> pairs)
+BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<ElementPair> pairs,
+                       std::vector<int> rigid_bodies)
     : model(whole),
       bodies(std::move(which)),
       candidate_pairs(std::move(pairs)),
@@ -42,46 +45,31 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       lu(0, {}),
       yields(false),
       beams_(model, {}, lu) {
-  add_nodes();
-  std::vector<std::pair<int, int>> couplings;
+  add_nodes(rigid_bodies);
   for (const int b : bodies) {
     const Body& body = model.bodies[b];
     mass += body.mass;
     contact_mass_.push_back(body.mass / std::max(1, body.contact_point_count));
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-      const Element& element = model.elements[e];
-      own_elements.push_back({e, local(element.node[0]), local(element.node[1])});
-      couplings.emplace_back(own_elements.back().i, own_elements.back().j);
-      yields = yields || std::isfinite(element.capacity[0]);
-    }
   }
-  for (const ElementPair& pair : candidate_pairs) {
-    member_pairs_.push_back(member_pair(pair));
-    const auto& ends = member_pairs_.back().node;
+  add_elements();
+  add_member_pairs();
+  std::vector<std::pair<int, int>> couplings;
+  for (const OwnElement& own : own_elements) couplings.emplace_back(own.i, own.j);
+  for (const MemberPair& pair : member_pairs_)
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < i; ++j) couplings.emplace_back(ends[i], ends[j]);
-  }
+      for (int j = 0; j < i; ++j)
+        if (const int a = moves_with_[pair.node[i]], b = moves_with_[pair.node[j]]; a != b)
+          couplings.emplace_back(a, b);
   lu = BlockLu(count, couplings);
-  add_packs();
+  add_node_packs();
+  add_point_packs();
   beams_ = BeamPacks(model, own_elements, lu);
   node_force_.resize(count);
-  elements.resize(own_elements.size());
-  if (yields) {
-    joints.resize(count);
-    for (int k = 0; k < static_cast<int>(own_elements.size()); ++k) {
-      joints[own_elements[k].i].emplace_back(k, 0);
-      joints[own_elements[k].j].emplace_back(k, 1);
-    }
-  }
-  for (const Load& load : model.loads)
-    if (std::find(bodies.begin(), bodies.end(), model.node_body[load.node]) != bodies.end())
-      loads.push_back({&load, local(load.node)});
-  for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k)
-    if (std::find(bodies.begin(), bodies.end(), model.anchors[k].body) != bodies.end())
-      anchors.push_back({k, local(model.anchors[k].node), {}});
+  add_what_bears_on_nodes();
 }
 
-void BodySystem::add_nodes() {
+// Of a rigid body the motion is a node of its own, and those of the model are held to it.
+void BodySystem::add_nodes(const std::vector<int>& rigid_bodies) {
   for (const int b : bodies) {
     const Body& body = model.bodies[b];
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
@@ -89,34 +77,107 @@ void BodySystem::add_nodes() {
       size = std::max(size, (model.node_position[i] - body.centre_of_gravity).norm());
     }
   }
+  const auto add_held = [this](int e) {
+    for (const int i : model.elements[e].node)
+      if (local(i) < 0) node.push_back(i);
+  };
   for (const ElementPair& pair : candidate_pairs)
-    for (const int e : {pair.a, pair.b})
-      for (const int i : model.elements[e].node)
-        if (local(i) < 0) node.push_back(i);
-  count = static_cast<int>(node.size());
-  force.resize(count);
-  moment.resize(count);
+    for (const int e : {pair.a, pair.b}) {
+      add_held(e);
+      if (rigid_bodies.empty()) continue;  // which touch whole members
+      const Member& member = model.members[model.elements[e].member];
+      add_held(member.first_element);
+      add_held(member.first_element + member.element_count - 1);
+    }
+  count = static_cast<int>(node.size() + rigid_bodies.size());
   fixed.assign(count, 0u);
   for (const Support& support : model.supports)
     if (const int i = local(support.node); i >= 0) fixed[i] |= support.fixed;
+  for (int i = 0; i < static_cast<int>(node.size()); ++i) {
+    moves_with_.push_back(i);
+    node_mass.push_back(model.node_mass[node[i]]);
+    node_inertia.push_back(model.node_inertia[node[i]]);
+  }
+  for (const int b : rigid_bodies) {
+    const Body& body = model.bodies[b];
+    const RigidInSystem one{b, static_cast<int>(node.size()), local(body.first_node), body.node_count};
+    for (int i = one.first; i < one.first + one.count; ++i) {
+      moves_with_[i] = one.own;
+      node_mass[i] = 0;
+      node_inertia[i].setZero();
+      fixed[i] = 63u;
+    }
+    rigid.push_back(one);
+    node.push_back(body.first_node);
+    moves_with_.push_back(one.own);
+    node_mass.push_back(body.mass);
+    node_inertia.push_back(body.inertia);
+  }
+  force.resize(count);
+  moment.resize(count);
 }
 
-void BodySystem::add_packs() {
-  for (int i = 0; i < count; i += 4) {
-    NodePack pack;
-    for (int k = 0; k < 4; ++k) {
-      const bool real = i + k < count;
-      const int own = std::min(i + k, count - 1), g = node[own];
-      pack.node[k] = own;
-      pack.diagonal[k] = lu.index(own, own);
-      pack.real.set(k, real);
-      pack.mass.set(k, real ? model.node_mass[g] : 0);
-      pack.inverse_mass.set(k, 1 / model.node_mass[g]);
-      set_lane(pack.inertia, k, real ? model.node_inertia[g] : Mat3::Zero());
-      set_lane(pack.inverse_inertia, k, model.node_inertia[g].inverse());
+void BodySystem::add_elements() {
+  for (const int b : bodies) {
+    if (is_rigid(b)) continue;
+    const Body& body = model.bodies[b];
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+      const Element& element = model.elements[e];
+      own_elements.push_back({e, local(element.node[0]), local(element.node[1])});
+      yields = yields || std::isfinite(element.capacity[0]);
     }
-    node_packs.push_back(pack);
   }
+  elements.resize(own_elements.size());
+  if (!yields) return;
+  joints.resize(count);
+  for (int k = 0; k < static_cast<int>(own_elements.size()); ++k) {
+    joints[own_elements[k].i].emplace_back(k, 0);
+    joints[own_elements[k].j].emplace_back(k, 1);
+  }
+}
+
+void BodySystem::add_member_pairs() {
+  const auto is_own = [this](int body) { return std::ranges::find(bodies, body) != bodies.end(); };
+  const auto is_frame = [&](int body) { return is_own(body) && !is_rigid(body); };
+  member_pairs_ = topple::member_pairs(
+      model, candidate_pairs,
+      {.by_elements = [&](int body, int other) { return is_frame(is_own(body) ? body : other); },
+       .number = [this](int global) { return local(global); },
+       .inverse_mass =
+           [&](int body) {
+             const auto own = std::ranges::find(bodies, body);
+             return own == bodies.end() ? 0 : 1 / contact_mass_[own - bodies.begin()];
+           }});
+}
+
+void BodySystem::add_node_packs() {
+  const auto add = [this](const std::vector<int>& which, bool whole_bodies) {
+    const int last = static_cast<int>(which.size()) - 1;
+    for (int i = 0; i <= last; i += 4) {
+      NodePack pack;
+      pack.rigid = whole_bodies;
+      for (int k = 0; k < 4; ++k) {
+        const bool real = i + k <= last;
+        const int own = which[std::min(i + k, last)];
+        pack.node[k] = own;
+        pack.diagonal[k] = lu.index(own, own);
+        pack.real.set(k, real);
+        pack.mass.set(k, real ? node_mass[own] : 0);
+        pack.inverse_mass.set(k, 1 / node_mass[own]);
+        set_lane(pack.inertia, k, real ? node_inertia[own] : Mat3::Zero());
+        set_lane(pack.inverse_inertia, k, node_inertia[own].inverse());
+      }
+      node_packs.push_back(pack);
+    }
+  };
+  std::vector<int> of_frames, of_rigid;
+  for (int i = 0; i < count; ++i)
+    if (moves_with_[i] == i) (i < count - std::ssize(rigid) ? of_frames : of_rigid).push_back(i);
+  add(of_frames, false);
+  add(of_rigid, true);
+}
+
+void BodySystem::add_point_packs() {
   int before = 0;
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     const Body& body = model.bodies[bodies[b]];
@@ -141,22 +202,19 @@ void BodySystem::add_packs() {
   }
 }
 
-MemberPair BodySystem::member_pair(const ElementPair& pair) const {
-  MemberPair out;
-  out.elements = pair;
-  out.L = contact_length(model, pair);
-  double inverse = 0;
-  int k = 0;
-  for (const int e : {pair.a, pair.b}) {
-    const int body = model.node_body[model.elements[e].node[0]];
-    const auto own = std::find(bodies.begin(), bodies.end(), body);
-    if (own != bodies.end()) inverse += 1 / contact_mass_[own - bodies.begin()];
-    for (const int i : model.elements[e].node) out.node[k++] = local(i);
+void BodySystem::add_what_bears_on_nodes() {
+  for (const Load& load : model.loads)
+    if (std::ranges::find(bodies, model.node_body[load.node]) != bodies.end())
+      loads.push_back({&load, local(load.node)});
+  for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
+    const Anchor& anchor = model.anchors[k];
+    if (std::ranges::find(bodies, anchor.body) == bodies.end()) continue;
+    const int node_of = local(anchor.node), own = moves_with_[node_of];
+    Vec3 reference = anchor.arm;
+    if (own != node_of)
+      reference += model.node_position[anchor.node] - model.bodies[anchor.body].centre_of_gravity;
+    anchors.push_back({k, own, reference, {}});
   }
-  out.mass = 1 / inverse;
-  out.start.fill(Vec3::Zero());
-  out.stick.fill(Vec3::Zero());
-  return out;
 }
 
 int BodySystem::local(int global) const {
@@ -177,7 +235,7 @@ void BodySystem::damp(const Parameters& parameters) {
   damping_ = parameters.damping;
   std::size_t begin = 0;
   for (const int b : bodies) {
-    const std::size_t end = begin + model.bodies[b].element_count;
+    const std::size_t end = begin + (is_rigid(b) ? 0 : model.bodies[b].element_count);
     beams_.damp(begin, end, damping_time(model, parameters, b));
     begin = end;
   }
@@ -186,7 +244,7 @@ void BodySystem::damp(const Parameters& parameters) {
 void BodySystem::start_forces(const Parameters& parameters, const StepInputs& now) {
   const Vec3 field = parameters.gravity - now.floor;
   for (int i = 0; i < count; ++i) {
-    const Vec3 weight = model.node_mass[node[i]] * field;
+    const Vec3 weight = node_mass[i] * field;
     node_force_[i] = {{weight.x(), weight.y(), weight.z(), 0}, {}};
   }
   for (const auto& [load, i] : loads) {
@@ -212,7 +270,7 @@ template <bool with_tangent>
 void BodySystem::add_anchors(const BodyMotion& motion) {
   for (const OwnAnchor& own : anchors) {
     const Anchor& anchor = model.anchors[own.index];
-    const Vec3 arm = own.arm(model, motion), at = motion.position[own.node] + arm;
+    const Vec3 arm = own.arm(motion), at = motion.position[own.node] + arm;
     const AnchorForce now = anchor_force(anchor, own.state, at);
     force[own.node] += now.force;
     moment[own.node] += arm.cross(now.force);
@@ -268,6 +326,32 @@ void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
   find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 
+// Slope of the force on node i by the place of node j, N/m, taken off; both move with what carries them.
+void BodySystem::add_slope(int i, int j, const Mat3& slope, const BodyMotion& motion) {
+  const int a = moves_with_[i], b = moves_with_[j];
+  Mat6 block = Mat6::Zero();
+  block.topLeftCorner<3, 3>() = slope;
+  if (b != j) block.topRightCorner<3, 3>() = -slope * skew(motion.position[j] - motion.position[b]);
+  if (a != i) block.bottomRows<3>() = skew(motion.position[i] - motion.position[a]) * block.topRows<3>();
+  lu.add(a, b, block);
+}
+
+// Forces on nodes that rigid bodies carry become theirs.
+template <bool with_tangent>
+void BodySystem::carry_forces(const BodyMotion& motion) {
+  for (const RigidInSystem& one : rigid) {
+    Mat6 turning = Mat6::Zero();
+    for (int i = one.first; i < one.first + one.count; ++i) {
+      const Vec3 arm = motion.position[i] - motion.position[one.own];
+      force[one.own] += force[i];
+      moment[one.own] += arm.cross(force[i]);
+      if constexpr (with_tangent) turning.bottomRightCorner<3, 3>() -= skew(force[i]) * skew(arm);
+      force[i].setZero();
+    }
+    if constexpr (with_tangent) lu.add(one.own, one.own, turning);
+  }
+}
+
 template <bool with_tangent>
 void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
                               std::span<const Vec3> stick_start, std::span<const Vec3> start,
@@ -278,13 +362,15 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
     if constexpr (with_tangent) {
       Mat3 by_position, by_velocity;
       contact_force(law, plane_contact(pair, motion, stick_start, start), by_position, by_velocity);
-      Mat6 block = Mat6::Zero();
-      block.topLeftCorner<3, 3>() = -by_position - velocity_factor * by_velocity;
-      lu.add(pair.node, pair.node, block);
+      add_slope(pair.node, pair.node, -by_position - velocity_factor * by_velocity, motion);
     }
   }
   add_forces(contacts.members, member_pairs_, force);
-  if constexpr (with_tangent) add_tangent(law, contacts.members, member_pairs_, velocity_factor, lu);
+  if constexpr (with_tangent) {
+    const auto add = [&](int i, int j, const Mat3& slope) { add_slope(i, j, slope, motion); };
+    add_tangent(law, contacts.members, member_pairs_, velocity_factor, std::ref(add));
+  }
+  carry_forces<with_tangent>(motion);
 }
 
 void BodySystem::evaluate(const Parameters& parameters, const StepInputs& now, const BodyMotion& motion,
@@ -329,8 +415,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
   sum.contact += stored_energy(law, now.members, member_pairs_);
   for (const OwnAnchor& own : anchors)
     sum.anchor +=
-        anchor_force(model.anchors[own.index], own.state, motion.position[own.node] + own.arm(model, motion))
-            .energy;
+        anchor_force(model.anchors[own.index], own.state, motion.position[own.node] + own.arm(motion)).energy;
   return sum;
 }
 
@@ -354,19 +439,55 @@ void BodySystem::load(const State& state, BodyMotion& motion) const {
   take(state.velocity, motion.velocity);
   take(state.rotation, motion.rotation);
   take(state.angular_velocity, motion.angular_velocity);
+  for (const RigidInSystem& one : rigid) {
+    const BodyState& s = state.bodies[one.body];
+    motion.position[one.own] = s.position;
+    motion.velocity[one.own] = s.velocity;
+    motion.rotation[one.own] = s.rotation;
+    motion.angular_velocity[one.own] = s.angular_velocity;
+  }
+  place_carried(motion);
 }
 
-void BodySystem::load_memory(const State& state) {
+void BodySystem::store(const BodyMotion& motion, State& state) const {
+  put(motion.position, state.position);
+  put(motion.velocity, state.velocity);
+  put(motion.rotation, state.rotation);
+  put(motion.angular_velocity, state.angular_velocity);
+  for (const RigidInSystem& one : rigid) {
+    BodyState& s = state.bodies[one.body];
+    s.position = motion.position[one.own];
+    s.velocity = motion.velocity[one.own];
+    s.rotation = motion.rotation[one.own];
+    s.angular_velocity = motion.angular_velocity[one.own];
+  }
+}
+
+void BodySystem::place_carried(BodyMotion& motion) const {
+  for (const RigidInSystem& one : rigid) {
+    const Mat3 r = motion.rotation[one.own].toRotationMatrix();
+    const Vec3 &centre = model.bodies[one.body].centre_of_gravity, &omega = motion.angular_velocity[one.own];
+    for (int i = one.first; i < one.first + one.count; ++i) {
+      const Vec3 arm = model.node_position[node[i]] - centre;
+      motion.position[i] = motion.position[one.own] + r * arm;
+      motion.velocity[i] = motion.velocity[one.own] + r * omega.cross(arm);
+      motion.rotation[i] = motion.rotation[one.own];
+      motion.angular_velocity[i] = omega;
+    }
+  }
+}
+
+void BodySystem::load_memory(const State& state, const BodyMotion& motion) {
   for (std::size_t k = 0; yields && k < own_elements.size(); ++k)
     elements[k] = state.elements[own_elements[k].element];
   for (OwnAnchor& own : anchors) own.state = state.anchors[own.index];
   load_sticks(state);
+  for (MemberPair& pair : member_pairs_)
+    for (int k = 0; k < 4; ++k) pair.start[k] = motion.position[pair.node[k]];
 }
 
 void BodySystem::load_sticks(const State& state) {
   sticks_.load(state, member_pairs_);
-  for (MemberPair& pair : member_pairs_)
-    for (int k = 0; k < 4; ++k) pair.start[k] = state.position[node[pair.node[k]]];
 }
 
 void BodySystem::take_sticks(const State& state) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/contact/contact_law.h"
-#include "solver/contact/member_contact.h"
+#include "solver/contact/member_pairs.h"
 #include "solver/element/beam_pack.h"
 #include "solver/element/section_forces.h"
 #include "solver/frame/step_span.h"
@@ -48,28 +48,38 @@ struct BodyMotion {
   void resize(int nodes);
 };
 
-/// Four nodes of a system, one per lane; the last node is repeated to fill up the last pack.
+/// Four nodes of a system that move by themselves, one per lane; the last node is repeated to fill up the
+/// last pack of those that are nodes of frames, and of those that are rigid bodies.
 struct NodePack {
   std::array<int, 4> node;                    ///< numbered within the system
+  bool rigid;                                 ///< whole bodies
   std::array<int, 4> diagonal;                ///< numbers of their diagonal blocks in BodySystem::lu
   Four real;                                  ///< 1; 0: a repeated node
   Four mass;                                  ///< kg; 0: a repeated node
   Four inverse_mass;                          ///< 1/kg
-  PackMatrix<Four> inertia, inverse_inertia;  ///< Model::node_inertia (0: a repeated node) and its inverse
+  PackMatrix<Four> inertia, inverse_inertia;  ///< BodySystem::inertia (0: a repeated node) and its inverse
 };
 
 /// Factor of a load at time t: its history, linear between its points and constant outside; without one 1.
 double load_factor(const Load& load, double t);
 
+/// A body of a system that keeps its shape.
+struct RigidInSystem {
+  int body;          ///< index into the model
+  int own;           ///< the node that is its motion: at its centre of gravity, with its mass and inertia
+  int first, count;  ///< nodes that it carries
+};
+
 /// Bodies of a model that may touch each other, or one alone, with their sparse solver and scratch. Arrays
-/// are per node of the system: the nodes of its bodies one after the other, then nodes of held bodies that
-/// they may touch.
+/// are per node of the system: the nodes of its bodies one after the other, nodes of held bodies that they
+/// may touch, then one for each rigid body.
 class BodySystem {
  public:
   BodySystem(const Model& model, int body);
   /// `candidate_pairs`: pairs of elements that may touch, in order; of each, one or both belong to `bodies`,
-  /// the other to a held body.
-  BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs);
+  /// the other to a held body. `rigid`: those of `bodies` that are no frames, in order; some are.
+  BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs,
+             std::vector<int> rigid = {});
 
   /// Fills `force`, `moment` and `contacts`: sum of gravity, -m a of the floor, loads, beams, anchors and
   /// contacts, in world axes; no inertia forces. `stick_start`: State::stick where the step began; `start`:
@@ -103,18 +113,29 @@ class BodySystem {
   template <class T>
   void take(const std::vector<T>& all, std::vector<T>& own) const {
     own.resize(count);
-    each_run([&](int global, int i, int nodes) { copy_values(&all[global], nodes, &own[i]); });
-    for (int i = count - held_nodes(); i < count; ++i) own[i] = all[node[i]];
+    each_run([&](int, int global, int i, int nodes) { copy_values(&all[global], nodes, &own[i]); });
+    for (int i = count - static_cast<int>(rigid.size()) - held_nodes(); i < count; ++i) own[i] = all[node[i]];
   }
-  /// Not for held nodes, which may be in several systems: no step writes to them.
+  /// Only of frames. Held nodes may be in several systems: no step writes to them.
   template <class T>
   void put(const std::vector<T>& own, std::vector<T>& all) const {
-    each_run([&](int global, int i, int nodes) { copy_values(&own[i], nodes, &all[global]); });
+    each_run([&](int body, int global, int i, int nodes) {
+      if (!is_rigid(body)) copy_values(&own[i], nodes, &all[global]);
+    });
   }
-  /// Copies the motion of this system's nodes.
+  /// Copies the motion of this system's nodes, and back to frames and rigid bodies.
   void load(const State& state, BodyMotion& motion) const;
-  /// Copies hinges, offsets, anchors and sticks between members: evaluations read them. Steps begin with it.
-  void load_memory(const State& state);
+  void store(const BodyMotion& motion, State& state) const;
+  /// Nodes that rigid bodies carry, where these are.
+  void place_carried(BodyMotion& motion) const;
+  /// Whether node i is one of a frame or of a held body.
+  bool is_of_frame(int i) const { return node_mass[i] > 0 && i < count - std::ssize(rigid); }
+  bool is_rigid(int body) const {
+    return std::ranges::find(rigid, body, &RigidInSystem::body) != rigid.end();
+  }
+  /// Copies hinges, offsets, anchors and sticks between members, which start at `motion`: evaluations read
+  /// them. Steps begin with it.
+  void load_memory(const State& state, const BodyMotion& motion);
   /// The same for sticks between members alone.
   void load_sticks(const State& state);
   /// Around advancing in parallel (MemberSticks).
@@ -146,13 +167,12 @@ class BodySystem {
     int node;  ///< numbered within the system
   };
   struct OwnAnchor {
-    int index;  ///< into Model::anchors
-    int node;   ///< numbered within the system
+    int index;       ///< into Model::anchors
+    int node;        ///< numbered within the system; of a rigid body its own
+    Vec3 reference;  ///< m, from the node to the attached point, reference axes
     AnchorState state;
-    /// From the node to the attached point, m, floor's frame.
-    Vec3 arm(const Model& of, const BodyMotion& motion) const {
-      return motion.rotation[node] * of.anchors[index].arm;
-    }
+    /// The same in the floor's frame.
+    Vec3 arm(const BodyMotion& motion) const { return motion.rotation[node] * reference; }
   };
 
   const Model& model;
@@ -161,10 +181,13 @@ class BodySystem {
   const int index, first;  ///< of the first body: its number, its first node
   std::vector<int> node;   ///< per node of the system, index into the model
   int count;               ///< nodes
+  std::vector<RigidInSystem> rigid;
+  std::vector<double> node_mass;   ///< kg, per node; 0: a rigid body carries it
+  std::vector<Mat3> node_inertia;  ///< kg m^2, likewise, material axes
   std::vector<NodePack> node_packs;
   double size;                      ///< m, greatest distance of a node from its body's centre of gravity
   double mass;                      ///< kg, of the bodies
-  std::vector<unsigned> fixed;      ///< per node, bits as in Support
+  std::vector<unsigned> fixed;      ///< per node, bits as in Support; all where a rigid body carries it
   bool loads_grow = false;          ///< statics: time is the load factor, in which loads without history grow
   std::vector<Vec3> force, moment;  ///< N, N m
   Contacts contacts;
@@ -180,22 +203,25 @@ class BodySystem {
 
  private:
   int held_nodes() const {
-    int held = count;
+    int held = count - static_cast<int>(rigid.size());
     for (const int b : bodies) held -= model.bodies[b].node_count;
     return held;
   }
-  // f(index into the model, number within the system, count) of the nodes of each own body.
+  // f(body, index into the model, number within the system, count) of the nodes of each own body.
   template <class F>
   void each_run(F&& f) const {
     int i = 0;
     for (const int b : bodies) {
-      f(model.bodies[b].first_node, i, model.bodies[b].node_count);
+      f(b, model.bodies[b].first_node, i, model.bodies[b].node_count);
       i += model.bodies[b].node_count;
     }
   }
-  void add_nodes();
-  void add_packs();
-  MemberPair member_pair(const ElementPair& pair) const;
+  void add_nodes(const std::vector<int>& rigid_bodies);
+  void add_elements();
+  void add_member_pairs();
+  void add_node_packs();
+  void add_point_packs();
+  void add_what_bears_on_nodes();
   void damp(const Parameters& parameters);
   void start_forces(const Parameters& parameters, const StepInputs& now);
   void take_forces();
@@ -204,6 +230,9 @@ class BodySystem {
   template <bool with_tangent>
   void add_contacts(const ContactLaw& law, const BodyMotion& motion, std::span<const Vec3> stick_start,
                     std::span<const Vec3> start, double velocity_factor);
+  void add_slope(int i, int j, const Mat3& slope, const BodyMotion& motion);
+  template <bool with_tangent>
+  void carry_forces(const BodyMotion& motion);
 
   // Four contact points of one body.
   struct PointPack {
@@ -218,8 +247,9 @@ class BodySystem {
   };
   std::vector<PointPack> point_packs_;
   std::vector<PlaneReach> reaches_;
+  std::vector<int> moves_with_;           // per node: itself, or its rigid body's own
   std::vector<double> contact_mass_;      // kg, share of one contact point, per body of the system
-  std::vector<MemberPair> member_pairs_;  // per pair in `candidate_pairs`
+  std::vector<MemberPair> member_pairs_;  // of `candidate_pairs`
   MemberSticks sticks_;
   BeamPacks beams_;
   std::vector<double> damping_;        // Parameters::damping of beams_

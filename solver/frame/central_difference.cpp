@@ -201,7 +201,7 @@ int first_lost(const BodySystem& s, const State& state) {
 StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State& state, IntegratorScratch& w,
                                       StepEnergy& energy) {
   s.load(state, w.start);
-  s.load_memory(state);
+  s.load_memory(state, w.start);
   const std::span<const Vec3> stick(state.stick);
   const ContactLaw& law = span.end.law;
   s.find_contacts(span.start.law, w.start, stick, w.start.position, w.contacts_start);
@@ -251,11 +251,10 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
       kv.segment<6>(6 * j) += f.tail<6>();
     }
     for (const BodySystem::OwnAnchor& own : s.anchors) {
-      const Anchor& anchor = s.model.anchors[own.index];
       const Vec3 shift = v.segment<3>(6 * own.node), spin = v.segment<3>(6 * own.node + 3);
-      const Vec3 pull = anchor.stiffness * (shift + spin.cross(anchor.arm));
+      const Vec3 pull = s.model.anchors[own.index].stiffness * (shift + spin.cross(own.reference));
       kv.segment<3>(6 * own.node) += pull;
-      kv.segment<3>(6 * own.node + 3) += anchor.arm.cross(pull);
+      kv.segment<3>(6 * own.node + 3) += own.reference.cross(pull);
     }
     for (int i = 0; i < n; ++i) {
       Vec3 translation =

@@ -36,16 +36,29 @@ struct Attempt {
   int node;  // where the last correction was greatest, of the model
 };
 
-// As one array.
-Eigen::Map<Eigen::ArrayXd> numbers(std::vector<Vec3>& vectors) {
-  return {vectors.front().data(), static_cast<Eigen::Index>(3 * vectors.size())};
-}
+// Nodes that are integrated alike, one after the other.
+struct Alike {
+  int first, count;
+  const GeneralizedAlpha& c;
+
+  // Theirs as one array.
+  Eigen::Map<Eigen::ArrayXd> numbers(std::vector<Vec3>& vectors) const {
+    return {vectors[first].data(), 3 * count};
+  }
+};
 
 class ImplicitStep {
  public:
   ImplicitStep(BodySystem& system, const StepSpan& span, const GeneralizedAlpha& coefficients, State& state,
                IntegratorScratch& scratch)
-      : s_(system), span_(span), h_(span.h), c_(coefficients), state_(state), w_(scratch) {}
+      : s_(system),
+        span_(span),
+        h_(span.h),
+        c_(coefficients),
+        of_rigid_(coefficients.of_rigid()),
+        nodes_{0, system.count - static_cast<int>(system.rigid.size()), c_},
+        state_(state),
+        w_(scratch) {}
 
   Attempt solve();
   /// Solves again until the hinges agree with the solution.
@@ -53,6 +66,14 @@ class ImplicitStep {
   void accept(StepEnergy& energy);
 
  private:
+  // f of the nodes that are integrated alike.
+  template <class F>
+  void each_alike(F f) const {
+    f(nodes_);
+    if (!s_.rigid.empty()) f(Alike{nodes_.count, static_cast<int>(s_.rigid.size()), of_rigid_});
+  }
+  const GeneralizedAlpha& coefficients(const NodePack& pack) const { return pack.rigid ? of_rigid_ : c_; }
+  void take_accelerations();
   void predict();
   void evaluate();
   bool beyond_reach() const;
@@ -68,17 +89,33 @@ class ImplicitStep {
   BodySystem& s_;
   const StepSpan& span_;
   const double h_;
-  const GeneralizedAlpha& c_;
+  const GeneralizedAlpha &c_, of_rigid_;
+  const Alike nodes_;
   State& state_;
   IntegratorScratch& w_;
   bool predicted_ = false;
   bool every_tangent_ = false;
 };
 
+void ImplicitStep::take_accelerations() {
+  s_.take(state_.acceleration, w_.balance0);
+  s_.take(state_.angular_acceleration, w_.angular_balance0);
+  s_.take(state_.algorithmic_acceleration, w_.algorithmic0);
+  s_.take(state_.algorithmic_angular_acceleration, w_.algorithmic_angular0);
+  for (const auto& [body, own, first, count] : s_.rigid) {
+    const BodyState& s = state_.bodies[body];
+    const Mat3& inertia = s_.node_inertia[own];
+    const Vec3 rate =
+        s.rotation.conjugate() * s.moment - s.angular_velocity.cross(inertia * s.angular_velocity);
+    w_.balance0[own] = w_.algorithmic0[own] = s.force / s_.node_mass[own];
+    w_.angular_balance0[own] = w_.algorithmic_angular0[own] = inertia.inverse() * rate;
+  }
+}
+
 void ImplicitStep::predict() {
   const int n = s_.count;
   s_.load(state_, w_.start);
-  s_.load_memory(state_);
+  s_.load_memory(state_, w_.start);
   w_.trial.resize(n);
   for (auto* array : {&w_.travel, &w_.turn, &w_.acceleration, &w_.angular_acceleration, &w_.algorithmic,
                       &w_.algorithmic_angular, &w_.balance0, &w_.angular_balance0, &w_.algorithmic0,
@@ -87,14 +124,13 @@ void ImplicitStep::predict() {
   w_.right_hand_side.resize(6 * n);
   for (auto* array : {&w_.kept_residual, &w_.way}) array->reserve(6 * n);
   for (auto* array : {&w_.kept_travel, &w_.kept_turn}) array->reserve(n);
-  s_.take(state_.acceleration, w_.balance0);
-  s_.take(state_.angular_acceleration, w_.angular_balance0);
-  s_.take(state_.algorithmic_acceleration, w_.algorithmic0);
-  s_.take(state_.algorithmic_angular_acceleration, w_.algorithmic_angular0);
+  take_accelerations();
   const auto begin = [&](std::vector<Vec3>& v0, std::vector<Vec3>& a0, std::vector<Vec3>& step,
                          std::vector<Vec3>& coasting) {
-    numbers(step) = h_ * (numbers(v0) + h_ / 2 * numbers(a0));
-    numbers(coasting) = h_ * (numbers(v0) + h_ * (0.5 - c_.beta) * numbers(a0));
+    each_alike([&](const Alike& of) {
+      of.numbers(step) = h_ * (of.numbers(v0) + h_ / 2 * of.numbers(a0));
+      of.numbers(coasting) = h_ * (of.numbers(v0) + h_ * (0.5 - of.c.beta) * of.numbers(a0));
+    });
   };
   begin(w_.start.velocity, w_.algorithmic0, w_.travel, w_.coasting);
   begin(w_.start.angular_velocity, w_.algorithmic_angular0, w_.turn, w_.coasting_turn);
@@ -135,23 +171,29 @@ void ImplicitStep::start_from_pose() {
 }
 
 void ImplicitStep::update_trial() {
-  const double gamma = c_.gamma, am = c_.alpha_m, af = c_.alpha_f;
   const auto advance = [&](std::vector<Vec3>& step, std::vector<Vec3>& coasting, std::vector<Vec3>& v0,
                            std::vector<Vec3>& a0, std::vector<Vec3>& balance0, std::vector<Vec3>& v1,
                            std::vector<Vec3>& a1, std::vector<Vec3>& balance1) {
-    numbers(a1) = (numbers(step) - numbers(coasting)) / (c_.beta * h_ * h_);
-    numbers(v1) = numbers(v0) + h_ * ((1 - gamma) * numbers(a0) + gamma * numbers(a1));
-    numbers(balance1) = ((1 - am) * numbers(a1) + am * numbers(a0) - af * numbers(balance0)) / (1 - af);
+    each_alike([&](const Alike& of) {
+      const auto& [am, af, gamma, beta] = of.c;
+      const auto numbers = [&](std::vector<Vec3>& vectors) { return of.numbers(vectors); };
+      numbers(a1) = (numbers(step) - numbers(coasting)) / (beta * h_ * h_);
+      numbers(v1) = numbers(v0) + h_ * ((1 - gamma) * numbers(a0) + gamma * numbers(a1));
+      numbers(balance1) = ((1 - am) * numbers(a1) + am * numbers(a0) - af * numbers(balance0)) / (1 - af);
+    });
   };
   advance(w_.travel, w_.coasting, w_.start.velocity, w_.algorithmic0, w_.balance0, w_.trial.velocity,
           w_.algorithmic, w_.acceleration);
   advance(w_.turn, w_.coasting_turn, w_.start.angular_velocity, w_.algorithmic_angular0, w_.angular_balance0,
           w_.trial.angular_velocity, w_.algorithmic_angular, w_.angular_acceleration);
-  numbers(w_.trial.position) = numbers(w_.start.position) + numbers(w_.travel);
+  each_alike([&](const Alike& of) {
+    of.numbers(w_.trial.position) = of.numbers(w_.start.position) + of.numbers(w_.travel);
+  });
   for (const NodePack& pack : s_.node_packs)
     scatter(normalized(gather(w_.start.rotation.data(), pack.node) *
                        exponential(gather(w_.turn.data(), pack.node))),
             w_.trial.rotation.data(), pack.node);
+  s_.place_carried(w_.trial);
 }
 
 // Rate of the angular momentum in material axes.
@@ -161,9 +203,10 @@ PackVector<Four> ImplicitStep::momentum_rate(const NodePack& pack, const PackVec
 }
 
 void ImplicitStep::add_inertia_tangent() {
-  const double ca = (1 - c_.alpha_m) / ((1 - c_.alpha_f) * c_.beta * h_ * h_), cv = c_.gamma / (c_.beta * h_);
   const PackMatrix<Four> zero = diagonal(PackVector<Four>{0, 0, 0});
   for (const NodePack& pack : s_.node_packs) {
+    const auto& [alpha_m, alpha_f, gamma, beta] = coefficients(pack);
+    const double ca = (1 - alpha_m) / ((1 - alpha_f) * beta * h_ * h_), cv = gamma / (beta * h_);
     const PackVector<Four> omega = gather(w_.trial.angular_velocity.data(), pack.node);
     const PackVector<Four> turn = gather(w_.turn.data(), pack.node);
     const PackMatrix<Four> r0 = rotation_matrix(gather(w_.start.rotation.data(), pack.node)),
@@ -361,14 +404,18 @@ void ImplicitStep::accept(StepEnergy& energy) {
              dot(rate0 + momentum_rate(pack, w1), at(w_.turn)) - dot(w1 + w0, pack.inertia * (w1 - w0)));
   }
   energy.numerical += sum(taken);
-  s_.put(w_.trial.position, state_.position);
-  s_.put(w_.trial.rotation, state_.rotation);
-  s_.put(w_.trial.velocity, state_.velocity);
-  s_.put(w_.trial.angular_velocity, state_.angular_velocity);
+  s_.store(w_.trial, state_);
   s_.put(w_.acceleration, state_.acceleration);
   s_.put(w_.angular_acceleration, state_.angular_acceleration);
   s_.put(w_.algorithmic, state_.algorithmic_acceleration);
   s_.put(w_.algorithmic_angular, state_.algorithmic_angular_acceleration);
+  for (const auto& [body, own, first, count] : s_.rigid) {
+    BodyState& s = state_.bodies[body];
+    const Mat3& inertia = s_.node_inertia[own];
+    s.force = s_.node_mass[own] * w_.acceleration[own];
+    s.moment = s.rotation * (inertia * w_.angular_acceleration[own] +
+                             s.angular_velocity.cross(inertia * s.angular_velocity));
+  }
   s_.store_stick(s_.contacts, state_);
 }
 

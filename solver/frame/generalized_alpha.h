@@ -21,6 +21,9 @@ struct GeneralizedAlpha {
         gamma(0.5 + alpha_f - alpha_m),
         beta(0.25 * (gamma + 0.5) * (gamma + 0.5)) {}
   static GeneralizedAlpha newmark(double beta, double gamma);
+  /// Newmark's of second order for rigid bodies among frames: nothing in these is stiff, and they come and
+  /// go with the accelerations of their balance. Velocities follow displacements as the frames' do.
+  GeneralizedAlpha of_rigid() const { return newmark(0.5 * beta / gamma, 0.5); }
 };
 
 /// Scratch of the integrators for one system.

@@ -28,10 +28,9 @@ double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
 // K + M/sigma^2 of the last evaluation's tangent, and its fixed rows, into the solver.
 void add_mass(BodySystem& s, double sigma) {
   for (int i = 0; i < s.count; ++i) {
-    const int g = s.node[i];
     Mat6 block = Mat6::Zero();
-    block.diagonal().head<3>().setConstant(s.model.node_mass[g] / (sigma * sigma));
-    block.bottomRightCorner<3, 3>() = s.model.node_inertia[g] / (sigma * sigma);
+    block.diagonal().head<3>().setConstant(s.node_mass[i] / (sigma * sigma));
+    block.bottomRightCorner<3, 3>() = s.node_inertia[i] / (sigma * sigma);
     s.lu.add(i, i, block);
     for (int k = 0; k < 6; ++k)
       if (s.is_fixed(i, k)) s.lu.fix(i, k);
@@ -58,8 +57,7 @@ bool tips_over(BodySystem& s, const Parameters& still, const StepInputs& now, co
     for (int i = 0; i < s.count; ++i) {
       Eigen::Map<Vec3> shift(&v[6 * i]), spin(&v[6 * i + 3]);
       s.clear_fixed(i, shift, spin);
-      const Vec3 impulse = s.model.node_mass[s.node[i]] * shift,
-                 turn = s.model.node_inertia[s.node[i]] * spin;
+      const Vec3 impulse = s.node_mass[i] * shift, turn = s.node_inertia[i] * spin;
       before += impulse.dot(shift) + turn.dot(spin);
       shift = impulse / (sigma * sigma);
       spin = turn / (sigma * sigma);
@@ -68,8 +66,7 @@ bool tips_over(BodySystem& s, const Parameters& still, const StepInputs& now, co
     s.lu.solve(v.data());
     for (int i = 0; i < s.count; ++i) {
       const Vec3 shift(&v[6 * i]), spin(&v[6 * i + 3]);
-      after += s.model.node_mass[s.node[i]] * shift.squaredNorm() +
-               spin.dot(s.model.node_inertia[s.node[i]] * spin);
+      after += s.node_mass[i] * shift.squaredNorm() + spin.dot(s.node_inertia[i] * spin);
     }
     if (!(after > 0)) return false;  // held everywhere
     growth = std::sqrt(after / before);
@@ -89,7 +86,7 @@ class FrameRest {
         state_(state),
         w_(scratch) {
     s_.load(state, w_.start);
-    s_.load_memory(state);
+    s_.load_memory(state, w_.start);
     std::fill(w_.start.velocity.begin(), w_.start.velocity.end(), Vec3::Zero());
     std::fill(w_.start.angular_velocity.begin(), w_.start.angular_velocity.end(), Vec3::Zero());
     before_ = w_.start;
@@ -136,12 +133,15 @@ class FrameRest {
       w_.trial.rotation[i] = exp_quaternion(spin) * w_.trial.rotation[i];
       w_.trial.rotation[i].normalize();
       out.length = std::max(out.length, shift.norm());
+      if (!std::isfinite(shift.sum() + spin.sum())) return std::nullopt;
+    }
+    s_.place_carried(w_.trial);
+    for (int i = 0; i < s_.count; ++i) {
       const double travel = (w_.trial.position[i] - before_.position[i]).norm();
       if (!(travel <= out.furthest)) {
         out.furthest = travel;
         blame(i);
       }
-      if (!std::isfinite(out.furthest + spin.sum())) return std::nullopt;
     }
     return out;
   }
@@ -157,13 +157,7 @@ class FrameRest {
   // Where it came to rest becomes the state.
   StepStatus accept() {
     if (!s_.loads_grow) commit_hinges(s_, before_, w_.start, state_);
-    for (int i = 0; i < s_.count; ++i) {
-      const int g = s_.node[i];
-      state_.position[g] = w_.start.position[i];
-      state_.rotation[g] = w_.start.rotation[i];
-      state_.velocity[g].setZero();
-      state_.angular_velocity[g].setZero();
-    }
+    s_.store(w_.start, state_);
     StepStatus status;
     status.time = state_.time;
     return status;

@@ -20,7 +20,7 @@ void book_work(const BodySystem& s, const StepSpan& span, const BodyMotion& star
   const Vec3 floor = 0.5 * (span.start.floor + span.end.floor);
   for (int i = 0; i < s.count; ++i) {
     const Vec3 travel = end.position[i] - start.position[i];
-    const double m = s.model.node_mass[s.node[i]];
+    const double m = s.node_mass[i];
     energy.gravity -= m * span.parameters.gravity.dot(travel);
     energy.input -= m * floor.dot(travel);
   }

@@ -17,11 +17,12 @@ struct LevelTraits {
   ModelLevel kind;
   const char* word;
   bool has_modes, has_stresses;
-  bool moves_nodes;  ///< the nodes are the unknowns
+  bool moves_nodes;   ///< the nodes are the unknowns
+  bool joins_frames;  ///< is stepped with frames that it may touch, in implicit methods
 };
-inline constexpr LevelTraits k_model_levels[] = {{ModelLevel::rigid, "rigid", false, false, false},
-                                                 {ModelLevel::elastic, "elastic", true, true, false},
-                                                 {ModelLevel::frame, "frame", false, true, true}};
+inline constexpr LevelTraits k_model_levels[] = {{ModelLevel::rigid, "rigid", false, false, false, true},
+                                                 {ModelLevel::elastic, "elastic", true, true, false, false},
+                                                 {ModelLevel::frame, "frame", false, true, true, true}};
 constexpr const LevelTraits& traits(ModelLevel level) {
   return row_of(k_model_levels, level);
 }

@@ -149,7 +149,7 @@ class RestOfBodies {
     place();
     find_member_contacts(now_.law, coupling_->pairs(), coupling_->position(), coupling_->velocity(), start,
                          touching_);
-    keep_sticks(touching_, coupling_->pairs());
+    keep_sticks(now_.law, touching_, coupling_->pairs());
   }
 
   double size;

@@ -286,6 +286,21 @@ template ContactLoads BodyContacts::evaluate_forces<false, ContactSums::loads>(c
 template ContactLoads BodyContacts::evaluate_forces<false>(const PreparedLaw&, const BodyVelocity&, double);
 template ContactLoads BodyContacts::evaluate_forces<true>(const PreparedLaw&, const BodyVelocity&, double);
 
+ContactPower BodyContacts::power(const BodyVelocity& u) const {
+  Four damping = Four(0), friction = damping;
+  const Points linear = in_all_lanes(u.linear), angular = in_all_lanes(u.angular);
+  const Points* shape = shapes_.data();
+  for (const Touch& touch : now_.list()) {
+    Points v = linear + cross(angular, touch.arm);
+    for (int k = 0; k < modes_; ++k) v = mul_add(Four(u.rate[k]), *shape++, v);
+    with_normal(touch, [&](const auto& n) {
+      damping -= (touch.normal - touch.conservative) * dot(n, v);
+      friction -= dot(lying(n, touch.tangential), v);
+    });
+  }
+  return {sum(damping), sum(friction)};
+}
+
 void BodyContacts::modal_loads(int modes, Amplitudes& load) const {
   std::array<Four, k_modes> sum_of;
   sum_of.fill(Four(0));

@@ -29,6 +29,9 @@ struct ContactLoads {
   PackVec3 force, moment;
   double damping_power, friction_power;
 };
+struct ContactPower {
+  double damping, friction;  ///< W
+};
 /// Which of them are summed; the others are undefined. loads: force and moment.
 enum class ContactSums { none, loads, all };
 
@@ -109,6 +112,8 @@ class BodyContacts {
   /// gamma_dt times its velocity; 0: the place is given.
   template <bool with_slope, ContactSums sums = ContactSums::all>
   ContactLoads evaluate_forces(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt);
+  /// Of the forces found last, with points that move at u.
+  ContactPower power(const BodyVelocity& u) const;
   /// On the modes, N/sqrt(kg), of the forces found last.
   void modal_loads(int modes, Amplitudes& load) const;
   /// Of the forces found last with slopes; of their stick springs alone.

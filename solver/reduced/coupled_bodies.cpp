@@ -158,9 +158,9 @@ bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law,
   return false;
 }
 
-// What normal damping and friction between members take at the end of a stage.
-CoupledBodies::Power CoupledBodies::power() const {
-  Power power{0, 0};
+// What normal damping and friction between members take.
+ContactPower CoupledBodies::power() const {
+  ContactPower power{0, 0};
   for (const MemberTouch& touch : now_.touches) {
     const Vec3& v = touch.input.velocity;
     power.damping -= (touch.out.normal - touch.out.conservative) * touch.normal.dot(v);
@@ -170,9 +170,10 @@ CoupledBodies::Power CoupledBodies::power() const {
 }
 
 // Work between members; what the bodies book themselves, and what the law's change did to springs.
-void CoupledBodies::book(const SubstepSpan& span, const Power& first, const Power& second) {
-  booked_->normal_damping += span.rest * first.damping + span.gamma_dt * second.damping;
-  booked_->friction += span.rest * first.friction + span.gamma_dt * second.friction;
+void CoupledBodies::book(const SubstepSpan& span, const std::array<ContactPower, 3>& powers) {
+  const auto& [start, first, second] = powers;
+  booked_->normal_damping += span.integral(start.damping, first.damping, second.damping);
+  booked_->friction += span.integral(start.friction, first.friction, second.friction);
   for (const MemberTouch& touch : start_.touches) booked_->friction += touch.out.stick_energy;
   for (const MemberTouch& touch : now_.touches) booked_->friction -= touch.out.stick_energy;
   const ContactLaw &before = span.start.law, &after = span.end.law;
@@ -198,6 +199,7 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
                                   std::min(fastest, std::sqrt(most / body->mass())));
     substeps_[b].emplace(*body, span, next_->bodies[index], next_->stick, speed);
   }
+  std::array<ContactPower, 3> powers{power()};
   std::swap(start_, now_);
   const auto give_up = [&](double error) {
     each_body([](ImplicitSubstep& substep, double*) { substep.give_up(); });
@@ -207,11 +209,10 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
     return ImplicitOutcome::given_up(error);
   };
   StageNewton newton;
-  Power powers[2];
   const PreparedLaw* const laws[2] = {&span.middle.law, &span.end.law};
   for (int stage = 0; stage < 2; ++stage) {
     if (!solve_stage(span, *laws[stage], newton)) return give_up(ImplicitOutcome::k_no_stage);
-    powers[stage] = power();
+    powers[1 + stage] = power();
     each_body([](ImplicitSubstep& substep, double*) { substep.end_stage(); });
   }
   each_body([](const ImplicitSubstep& substep, double* to) { put(substep.error(), substep.modes(), to); });
@@ -229,12 +230,11 @@ ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {
   find(span.end.law);
   if (passed_unseen(now_, pairs_, start_position_, coupling_.position()) >= 0) return give_up(k_passed_error);
   each_body([&](ImplicitSubstep& substep, double*) { substep.finish(*booked_); });
-  book(span, powers[0], powers[1]);
+  book(span, powers);
   // springs that slipped are shorter now: the next substep starts from the forces with these
-  keep_sticks(now_, pairs_);
+  keep_sticks(span.end.law, now_, pairs_);
   start_position_ = coupling_.position();
-  coupling_.start(pairs_);
-  find(span.end.law);
+  coupling_.go_on(pairs_);
   const std::vector<BodyVelocity>& loads = coupling_.loads(now_, pairs_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     BodyState& s = next_->bodies[bodies_[b].index];

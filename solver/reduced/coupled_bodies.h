@@ -2,6 +2,7 @@
 // together (method: reduced_body.h).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,10 +29,6 @@ class CoupledBodies {
 
  private:
   friend struct AllTogether;
-  struct Power {
-    double damping, friction;  // W
-  };
-
   double first(const ContactLaw& law) const;
   double next_landing(double within);
   ImplicitOutcome substep(const SubstepSpan& span);
@@ -39,8 +36,8 @@ class CoupledBodies {
   void shape_matrices();
   bool solve_stage(const SubstepSpan& span, const PreparedLaw& law, StageNewton& newton);
   void factor(const SubstepSpan& span, const ContactLaw& law);
-  Power power() const;
-  void book(const SubstepSpan& span, const Power& first, const Power& second);
+  ContactPower power() const;
+  void book(const SubstepSpan& span, const std::array<ContactPower, 3>& powers);  // from the start on
   template <class F>
   void each_body(F f);
 

@@ -17,11 +17,13 @@ namespace topple {
 /// A substep and what all bodies share in it.
 struct SubstepSpan {
   static constexpr double k_gamma = 0.29289321881345254;  ///< 1 - 1/sqrt(2)
+  static constexpr double k_early =
+      0.35355339059327379;  ///< sqrt(2)/4, what the start and the first stage weigh
 
   const Parameters& parameters;
   const StepInputs &start, &end;
-  double h, gamma_dt, rest;  ///< s: its size, gamma h and (1 - gamma) h
-  StepInputs middle;         ///< where the first stage ends
+  double h, gamma_dt, early;  ///< s: its size, k_gamma h and k_early h
+  StepInputs middle;          ///< where the first stage ends
 
   SubstepSpan(const Parameters& parameters_, const StepInputs& start_, const StepInputs& end_, double h_)
       : parameters(parameters_),
@@ -29,8 +31,13 @@ struct SubstepSpan {
         end(end_),
         h(h_),
         gamma_dt(k_gamma * h),
-        rest((1 - k_gamma) * h),
-        middle(parameters, start.time + gamma_dt) {}
+        early(k_early * h),
+        middle(parameters, start.time + 2 * gamma_dt) {}
+
+  /// Integral over the substep of what has these values at its start and at the ends of its stages.
+  double integral(double at_start, double first, double second) const {
+    return early * (at_start + first) + gamma_dt * second;
+  }
 };
 
 /// How an implicit substep went, unless it is reached with nothing changed, and its local error over the
@@ -132,6 +139,10 @@ class ImplicitSubstep {
   PackVec3 spin() const { return r_ * (body_.inertia_ * transposed_times(r_, now_->u.angular)); }
   double spring(int k) const { return body_.basis_->frequency[k] * body_.basis_->frequency[k]; }
   double modal_mass(int k) const { return 1 + span_.gamma_dt * spring(k) * (span_.gamma_dt + damping_); }
+  // What accelerates mode k.
+  double pull(const Acting& acting, double amplitude, double rate, int k) const {
+    return acting.load[k] - spring(k) * (amplitude + damping_ * rate);
+  }
   void guess_rates(const Amplitudes& load);
   void book_modes(StepEnergy& booked) const;
 
@@ -145,7 +156,7 @@ class ImplicitSubstep {
   const double allowed_;
   double damping_ = 0;  // s, damping_time()
   Acting start_;
-  PackVec3 omega0_, spin0_, gravity_, field_, turning_;
+  PackVec3 velocity0_, omega0_, spin0_, gravity_, field_, turning_;
   PackMat3 r_;
   Origin from_;
   Stage one_, two_, *now_ = &one_;

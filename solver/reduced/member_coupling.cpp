@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <Eigen/LU>
 
+#include "solver/contact/member_pairs.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
+namespace {
+
+constexpr double k_wide = 5e-3;  // m, gap that is not followed exactly
+
+}  // namespace
 
 MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
                                std::span<const ElementPair> candidate_pairs,
@@ -23,52 +28,17 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
       modes_(bodies_.size(), 0),
       loads_(bodies_.size()),
       acceleration_(bodies_.size()) {
-  std::map<ElementPair, std::array<Segment, 2>> segments;
-  for (const auto& [a, b] : candidate_pairs) {
-    const std::array<Segment, 2> both{segment_of(a, states), segment_of(b, states)};
-    segments.emplace(ElementPair{both[0].element, both[1].element}, both);
-  }
-  for (const auto& [elements, both] : segments) {
-    MemberPair pair;
-    pair.elements = elements;
-    pair.L = contact_length(model, elements);
-    double inverse = 0;
-    int k = 0;
-    for (const Segment& segment : both) {
-      for (const int node : segment.node) pair.node[k++] = number_of(node);
-      const Body& body = model.bodies[model.node_body[segment.node[0]]];
-      if (nodes_[pair.node[k - 1]].body >= 0) inverse += std::max(1, body.contact_point_count) / body.mass;
-    }
-    pair.mass = 1 / inverse;
-    pair.start.fill(Vec3::Zero());
-    pair.stick.fill(Vec3::Zero());
-    pairs_.push_back(pair);
-    elements_of_.push_back({both[0].count, both[1].count});
-  }
+  const auto is_own = [this](int body) { return std::ranges::find(bodies_, body) != bodies_.end(); };
+  pairs_ = member_pairs(model, candidate_pairs,
+                        {.by_elements = [&](int body, int) { return traits(states[body].level).has_modes; },
+                         .number = [this](int node) { return number_of(node); },
+                         .inverse_mass =
+                             [&](int body) {
+                               const Body& own = model.bodies[body];
+                               return is_own(body) ? std::max(1, own.contact_point_count) / own.mass : 0;
+                             }});
   for (auto* array : {&position_, &velocity_, &arm_}) array->assign(nodes_.size(), Vec3::Zero());
   shape_.assign(nodes_.size() * k_modes, Vec3::Zero());
-}
-
-MemberCoupling::Segment MemberCoupling::segment_of(int e, std::span<const BodyState> states) const {
-  const Element& element = model_.elements[e];
-  const Member& member = model_.members[element.member];
-  if (traits(states[member.body].level).has_modes) return {e, 1, {element.node[0], element.node[1]}};
-  const int last = member.first_element + member.element_count - 1;
-  return {member.first_element,
-          member.element_count,
-          {model_.elements[member.first_element].node[0], model_.elements[last].node[1]}};
-}
-
-MemberForce MemberCoupling::force(const MemberTouch& touch) const {
-  MemberForce force{pairs_[touch.pair].elements, touch.at.s, touch.at.t, touch.depth, touch.out.force};
-  const auto find = [](int count, int& element, double& place) {
-    const int which = std::min(static_cast<int>(place * count), count - 1);
-    element += which;
-    place = place * count - which;
-  };
-  find(elements_of_[touch.pair][0], force.elements.a, force.s);
-  find(elements_of_[touch.pair][1], force.elements.b, force.t);
-  return force;
 }
 
 int MemberCoupling::number_of(int node) {
@@ -92,6 +62,19 @@ void MemberCoupling::start(std::span<MemberPair> pairs) const {
     std::array<Vec3, 4>& x = pair.start;
     for (int k = 0; k < 4; ++k) x[k] = position_[pair.node[k]];
     pair.gap = nearest_points(x[0], x[1], x[2], x[3]).between.norm() - pair.L;
+  }
+}
+
+void MemberCoupling::go_on(std::span<MemberPair> pairs) const {
+  for (MemberPair& pair : pairs) {
+    std::array<double, 4> way;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& x = position_[pair.node[k]];
+      way[k] = (x - pair.start[k]).squaredNorm();
+      pair.start[k] = x;
+    }
+    pair.gap -= std::sqrt(std::max(way[0], way[1])) + std::sqrt(std::max(way[2], way[3]));
+    if (!(pair.gap > k_wide)) start({&pair, 1});
   }
 }
 
@@ -137,14 +120,16 @@ void MemberCoupling::place(int body, const BodyState& s) {
   const Body& own = model_.bodies[bodies_[body]];
   const Vec3& omega = s.angular_velocity;
   const Vec3 turning = s.rotation.conjugate() * s.moment - omega.cross(own.inertia * omega);
-  acceleration_[body] = {s.force / own.mass, s.rotation * own.inertia.inverse() * turning,
-                         s.rotation * omega};
+  const Vec3 linear = s.force / own.mass, angular = own.inertia.inverse() * turning;
+  acceleration_[body] = {linear, s.rotation * angular, s.rotation * omega,
+                         s.velocity.norm() + own.reach * omega.norm(),
+                         linear.norm() + own.reach * (angular.norm() + omega.squaredNorm())};
 }
 
 Vec3 MemberCoupling::acceleration(int k) const {
   if (nodes_[k].body < 0) return Vec3::Zero();
-  const auto& [linear, angular, spin] = acceleration_[nodes_[k].body];
-  return linear + angular.cross(arm_[k]) + spin.cross(spin.cross(arm_[k]));
+  const Acceleration& of = acceleration_[nodes_[k].body];
+  return of.linear + of.angular.cross(arm_[k]) + of.spin.cross(of.spin.cross(arm_[k]));
 }
 
 double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double within) const {
@@ -152,6 +137,13 @@ double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double with
   const auto& x = position_;
   for (const MemberPair& pair : pairs) {
     if (!(pair.gap > 0)) continue;
+    double way = 0;
+    for (const int body : bodies_of(pair)) {
+      if (body < 0) continue;
+      const Acceleration& of = acceleration_[body];
+      way += modes_[body] > 0 ? pair.gap : soonest * (of.speed + soonest / 2 * of.gain);
+    }
+    if (way < pair.gap) continue;
     const auto& n = pair.node;
     const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
     const double l = at.between.norm(), gap = l - pair.L;

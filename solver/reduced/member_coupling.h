@@ -46,6 +46,8 @@ class MemberCoupling {
 
   /// `pairs` start where the nodes are; their gaps there are known from here on.
   void start(std::span<MemberPair> pairs) const;
+  /// The same for pairs that moved little since they started; gaps of some millimetres are lower bounds.
+  void go_on(std::span<MemberPair> pairs) const;
   /// Held nodes stand where they are in `state`.
   void place_held(const State& state);
   /// Nodes of a body at `pose` that moves at u; r: its rotation matrix.
@@ -59,8 +61,6 @@ class MemberCoupling {
   /// pairs start; infinite: not within `within`.
   double next_touch(std::span<const MemberPair> pairs, double within) const;
 
-  /// Force of a touch, with the elements and places where it acts.
-  MemberForce force(const MemberTouch& touch) const;
   /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
   /// Calls add with the parts of J^T t J, t of each_tangent(): block (i, j) of six unknowns belongs to group
@@ -73,18 +73,13 @@ class MemberCoupling {
   using Columns = Eigen::Matrix<double, 3, 6>;
   struct Acceleration {
     Vec3 linear, angular, spin;  // m/s^2, rad/s^2, rad/s
+    double speed, gain;          // m/s, m/s^2: of no point of an undeformed body greater
   };
   struct Node {
     int body, node;  // index into the model
     Vec3 place;      // m, from the centre of gravity, reference axes
   };
-  // A straight part of a body that others touch: an element, or the member that begins with it.
-  struct Segment {
-    int element, count;
-    std::array<int, 2> node;  // index into the model
-  };
   struct RigidSum;
-  Segment segment_of(int element, std::span<const BodyState> states) const;
   int number_of(int node);
   Vec3 acceleration(int node) const;
   Vec3 shape(const Node& node, int mode) const;
@@ -94,8 +89,7 @@ class MemberCoupling {
   std::vector<Node> nodes_;
   std::vector<std::vector<int>> nodes_of_;  // per body
   std::vector<MemberPair> pairs_;
-  std::vector<std::array<int, 2>> elements_of_;  // per pair, of its segments
-  std::vector<int> modes_;                       // per body
+  std::vector<int> modes_;  // per body
   std::vector<Vec3> position_, velocity_, arm_;
   std::vector<Vec3> shape_;  // k_modes per node, floor's axes
   std::vector<BodyVelocity> loads_;

@@ -12,12 +12,14 @@
 // Rates of damped modes are multiplied by exp(-2 zeta w h) at the start of a substep: so what is at rest
 // stays at rest, and an amplitude decays as exp(-zeta w t).
 //
-// Implicit, for a rigid body on contacts that would make those substeps short: two stages of second order
-// that damp what is too fast for the substep (SDIRK2, gamma = 1 - 1/sqrt 2; Alexander 1977), on the rotation
-// vector from the start of the substep. The local error of the velocity, from the forces at the three
-// instants, decides how long a substep may be. It is filtered by (M - gamma h S)^-1 M with S the slope of the
-// stick springs: their fast vibration does not count, since no result depends on it. A substep ends where a
-// point is about to touch.
+// Implicit, for a rigid body on contacts that would make those substeps short: a stage by the trapezoidal
+// rule and one by backward differences, of second order together, that damp what is too fast for the substep
+// (TR-BDF2, gamma = 1 - 1/sqrt 2; Bank et al. 1985), on the rotation vector from the start of the substep.
+// Both stages are of second order by themselves: a body that turns about a stiff contact strains it by the
+// third power of the substep. The local error of the velocity, from the forces at the three instants, decides
+// how long a substep may be. It is filtered by (M - gamma h S)^-1 M with S the slope of the stick springs:
+// their fast vibration does not count, since no result depends on it. A substep ends where a point is about
+// to touch.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 #include "solver/state/step_result.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace topple {
@@ -23,6 +24,18 @@ StepStatus look_at_numbers(const Model& model, const Parameters& parameters, con
     status.body = body_not_finite(model, state);
   }
   return status;
+}
+
+MemberForce member_force(const MemberTouch& touch, const MemberPair& pair) {
+  MemberForce force{pair.elements, touch.at.s, touch.at.t, touch.depth, touch.out.force};
+  const auto find = [](int count, int& element, double& place) {
+    const int which = std::min(static_cast<int>(place * count), count - 1);
+    element += which;
+    place = place * count - which;
+  };
+  find(pair.count[0], force.elements.a, force.s);
+  find(pair.count[1], force.elements.b, force.t);
+  return force;
 }
 
 std::string StepStatus::message(const Model& model) const {

@@ -62,6 +62,9 @@ struct MemberForce {
   Vec3 force;    ///< N, on a; b has its opposite
 };
 
+/// That of a touch, on the elements and at the places where it acts.
+MemberForce member_force(const MemberTouch& touch, const MemberPair& pair);
+
 /// bad_parameter or not_finite, with the body, where is_finite refuses the parameters or the state (`nodes`:
 /// as there); else ok. A step calls it first: a bad number need not show in its result.
 StepStatus look_at_numbers(const Model& model, const Parameters& parameters, const State& state, bool nodes);

@@ -44,7 +44,8 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
   for (;;) {
     status = try_step(h);
     iterations += status.newton_iterations;
-    const double error = status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h) : 0;
+    const double error =
+        status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h, w.parts.with_frames()) : 0;
     if (status.ok() && error <= 1) {
       if (h == left) w.next.time = state.time + left;
       const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);

@@ -177,7 +177,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   const std::vector<double> growth = growing_loads(s);
   std::vector<double> x(6 * s.count);
   HingeStep hinges;
-  s.load_memory(state);
+  s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
   double last = 0;
   const auto blame = [&](int node) {

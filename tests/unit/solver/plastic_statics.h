@@ -22,7 +22,7 @@ class PlasticPath {
   /// Moves degree of freedom `direction` of a node by `step` under the model's loads times `factor`. False
   /// when Newton does not converge.
   bool move(int node, int direction, double step) {
-    system.load_memory(state);
+    system.load_memory(state, motion_);
     const BodyMotion start = motion_;
     const double reached = displacement(node, direction) + step;
     HingeStep hinges;

@@ -46,13 +46,13 @@ TEST(ImplicitSubstep, comes_to_the_motion_that_small_explicit_substeps_follow) {
   topple::Setup adaptive = stiff_block(k_tilt, 1e-4);
   adaptive.parameters.adaptive = true;
   adaptive.parameters.tolerance = 1e-2;
-  look(adaptive, 2e-2, 3e-3, 400);
+  look(adaptive, 1.4e-2, 7e-3, 370);
   adaptive.parameters.tolerance = 1e-3;
-  look(adaptive, 2.4e-3, 7e-4, 1300);
+  look(adaptive, 8e-4, 1.7e-3, 740);
   adaptive.parameters.tolerance = 1e-4;
-  look(adaptive, 7e-4, 1.6e-4, 5200);
-  look(stiff_block(k_tilt, 1e-3), 5e-3, 1.7e-3, 1500);
-  look(stiff_block(k_tilt, 4e-3), 5e-3, 1.7e-3, 375);
+  look(adaptive, 5e-5, 2.4e-4, 3740);
+  look(stiff_block(k_tilt, 1e-3), 2.5e-4, 1.1e-3, 1500);
+  look(stiff_block(k_tilt, 4e-3), 6.2e-4, 1.1e-3, 375);
 }
 
 // A bounce is followed whatever the step. The smoothing of the law, 1 mm/s, is a thousandth of the speed.

@@ -238,12 +238,12 @@ topple::Setup meets_a_frame(BodyModel model) {
   return setup;
 }
 
-// It is one too from before they touch until they are apart and calm again.
+// An elastic one is one too from before they touch until they are apart and calm again.
 TEST(ModelLevel, is_a_frame_while_one_is_near) {
-  topple::Setup setup = meets_a_frame(BodyModel::rigid);
+  topple::Setup setup = meets_a_frame(BodyModel::elastic);
   setup.parameters.models[1] = BodyModel::frame;
   topple::Run run(setup);
-  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::rigid);
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::elastic);
   while (!run.over()) ASSERT_TRUE(run.advance().ok());
   const auto& changes = run.outcome().bodies()[0].level_changes;
   ASSERT_FALSE(changes.empty());
@@ -297,7 +297,7 @@ TEST(ModelLevel, is_not_calm_while_a_frame_is_near) {
   setup.starts.push_back(add_cabinet(setup.model, spec));
   setup.run.settle = false;
   setup.parameters.gravity.setZero();
-  compute_as(setup, BodyModel::rigid);
+  compute_as(setup, BodyModel::elastic);
   setup.parameters.models[1] = BodyModel::frame;
   Simulation sim = simulate(setup);
   ASSERT_EQ(sim.state.bodies[0].reason, LevelReason::near);
