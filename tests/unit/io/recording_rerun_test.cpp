@@ -132,12 +132,15 @@ TEST_F(RerunTest, rows_stand_at_multiples_of_the_output_interval_whatever_the_st
   calm.replace(calm.find("400 gal"), 7, "1 gal");
   calm.replace(calm.find("\"0.7 ms\""), 8, "\"auto\"\nwant = [\"motion\"]");
   Session session(path("calm.h5"), parse_scene(calm, "calm"));
-  session.go_to(30);
+  session.go_to(60);
   session.finish();
   const Recording auto_steps(path("calm.h5"));
-  for (std::size_t k = 0; k + 1 < auto_steps.index().size(); ++k)
+  int in_one_step = 0;
+  for (std::size_t k = 0; k + 1 < auto_steps.index().size(); ++k) {
     EXPECT_EQ(auto_steps.index()[k].time, static_cast<double>(k) / 60);
-  EXPECT_GT(auto_steps.index().size(), 31u);
+    in_one_step += auto_steps.index()[k].step == auto_steps.index()[k + 1].step;
+  }
+  EXPECT_GT(in_one_step, 3);
   EXPECT_TRUE(again(auto_steps).differences.empty());
 }
 
