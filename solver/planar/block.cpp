@@ -1,0 +1,54 @@
+#include "solver/planar/block.h"
+
+namespace topple::planar {
+namespace {
+
+/// The reference of a mode, from the centre of gravity.
+Lever reference(const Block& block, Mode mode, Side side, double tilt) {
+  return mode == Mode::flight                             ? Lever{0, 0}
+         : mode == Mode::rock || mode == Mode::slide_rock ? lever(block, side, tilt)
+                                                          : lever(tilt, 0, -block.height);
+}
+
+}  // namespace
+
+Motion centre_of_gravity(const Block& block, const State& state) {
+  const Lever r = reference(block, state.mode, state.side, state.tilt);
+  return {state.x - r.x, state.z - r.z, state.x_velocity - r.z * state.rate,
+          state.z_velocity + r.x * state.rate};
+}
+
+State referred(const Block& block, const State& state, Mode mode, Side side) {
+  const Motion centre = centre_of_gravity(block, state);
+  const Lever r = reference(block, mode, side, state.tilt);
+  State to = state;
+  to.mode = mode, to.side = side;
+  to.x = centre.x + r.x, to.z = centre.z + r.z;
+  to.x_velocity = centre.x_velocity + r.z * state.rate;
+  to.z_velocity = centre.z_velocity - r.x * state.rate;
+  return to;
+}
+
+double energy(const Block& block, const State& state) {
+  const Motion centre = centre_of_gravity(block, state);
+  return (centre.x_velocity * centre.x_velocity + centre.z_velocity * centre.z_velocity +
+          block.inertia_over_mass() * state.rate * state.rate) /
+             2 +
+         block.gravity * (centre.z - block.height);
+}
+
+State standing(const Block& block, double tilt, double rate, double x_velocity) {
+  State state;
+  state.tilt = tilt, state.rate = rate, state.x_velocity = x_velocity;
+  state.slip = (x_velocity > 0) - (x_velocity < 0);
+  const double towards = tilt != 0 ? tilt : rate;
+  state.side = towards < 0 ? Side::left : Side::right;
+  if (towards != 0)
+    state.mode = state.slip == 0 ? Mode::rock : Mode::slide_rock;
+  else
+    state.mode = state.slip == 0 ? Mode::rest : Mode::slide;
+  (void)block;
+  return state;
+}
+
+}  // namespace topple::planar

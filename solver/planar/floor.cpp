@@ -1,0 +1,213 @@
+#include "solver/planar/floor.h"
+
+#include <cmath>
+
+#include "solver/math/elementary.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
+
+namespace topple::planar {
+namespace {
+
+using Line = Series<double>;
+
+Line line(double value, double slope) {
+  Line of(value);
+  of[1] = slope, of.degree = slope == 0 ? 0 : 1;
+  return of;
+}
+
+Line product(const Line& a, const Line& b) {
+  Line of;
+  of.degree = std::min(a.degree + b.degree, k_order);
+  for (int i = 0; i <= of.degree; ++i) {
+    double sum = 0;
+    for (int j = std::max(0, i - a.degree); j <= std::min(i, b.degree); ++j) sum += a[i - j] * b[j];
+    of[i] = sum;
+  }
+  return of;
+}
+
+void add(Line& to, double factor, const Line& of) {
+  for (int i = 0; i <= of.degree; ++i) to[i] = to.or_zero(i) + factor * of[i];
+  to.degree = std::max(to.degree, of.degree);
+}
+
+/// sin and cos of 2 pi turns: s' = c p', c' = -s p'.
+struct Wave {
+  Line sine, cosine;
+  explicit Wave(const Line& turns) {
+    double phase = turns[0] - std::floor(turns[0]);
+    const elementary::SinCos of = elementary::sin_cos(2 * k_pi * phase);
+    sine[0] = of.sine, cosine[0] = of.cosine;
+    sine.degree = cosine.degree = turns.degree == 0 ? 0 : k_order;
+    Line slope;
+    for (int i = 1; i <= turns.degree; ++i) slope[i - 1] = 2 * k_pi * i * turns[i];
+    for (int i = 0; i < sine.degree; ++i) {
+      const double reciprocal = k_reciprocal[static_cast<std::size_t>(i + 1)];
+      sine[i + 1] = reciprocal * product_term(cosine, slope, i, turns.degree - 1);
+      cosine[i + 1] = -reciprocal * product_term(sine, slope, i, turns.degree - 1);
+    }
+  }
+};
+
+/// A part of one shake, with the end of its validity.
+struct Part {
+  Line value{0};
+  double end = k_never;
+
+  void ends_at(double when, double t) {
+    if (when > t) end = std::min(end, when);
+  }
+};
+
+/// (1 - cos(pi x))/2, smoothly from 0 to 1.
+Line rise(const Line& x) {
+  Line half = x;
+  for (int i = 0; i <= x.degree; ++i) half[i] /= 2;
+  Line of = Wave(half).cosine;
+  for (int i = 0; i <= of.degree; ++i) of[i] /= -2;
+  of[0] += 0.5;
+  return of;
+}
+
+/// Share of the new values in an edit's ramp.
+Line share(const ParameterRamp& ramp, double t, Part& part) {
+  if (ramp.over == 0 || t >= ramp.since + ramp.over) return line(1, 0);
+  part.ends_at(ramp.since, t);
+  part.ends_at(ramp.since + ramp.over, t);
+  if (t < ramp.since) return line(0, 0);
+  return rise(line((t - ramp.since) / ramp.over, 1 / ramp.over));
+}
+
+Line turns_of(const Shake& shake, double t) {
+  const double turns = shake_turns(shake, t);
+  if (!traits(shake.kind).sweeps) return line(turns, shake.frequency);
+  const double rate = elementary::log(shake.last_frequency / shake.frequency) / shake.duration;
+  Line of(turns);
+  of.degree = k_order;
+  of[1] = shake.frequency * elementary::exp(rate * (t - shake.start));
+  for (int i = 2; i <= k_order; ++i) of[i] = of[i - 1] * rate / i;
+  return of;
+}
+
+/// When a sine or sweep has passed this many turns, s.
+double time_of(const Shake& shake, double turns) {
+  if (!traits(shake.kind).sweeps) return shake.start + shake.turned + (turns - shake.turns) / shake.frequency;
+  const double octaves = elementary::log(shake.last_frequency / shake.frequency);
+  if (octaves == 0) return shake.start + turns / shake.frequency;
+  return shake.start +
+         shake.duration / octaves * elementary::log1p(octaves * turns / (shake.frequency * shake.duration));
+}
+
+Line periodic(const Shake& shake, double t, Part& part) {
+  const double cycles =
+      traits(shake.kind).sweeps ? shake_turns(shake, shake.start + shake.duration) : shake.cycles;
+  const Line turns = turns_of(shake, t);
+  Line of = Wave(turns).sine;
+  if (shake.taper == 0) return of;
+  const auto window = [&](double full, const Line& x, bool rising) {
+    const double when = time_of(shake, full);
+    part.ends_at(when, t);
+    if (rising == (t < when)) of = product(of, rise(x));
+  };
+  Line x = turns;
+  for (int i = 0; i <= x.degree; ++i) x[i] /= shake.taper;
+  window(shake.taper, x, true);
+  if (cycles > 0) {
+    for (int i = 0; i <= x.degree; ++i) x[i] = -x[i];
+    x[0] += cycles / shake.taper;
+    window(cycles - shake.taper, x, false);
+  }
+  return of;
+}
+
+struct PulseSeries {
+  Shake::Shape kind;
+  double turns;  ///< of the sine in its duration; 0: constant
+};
+constexpr PulseSeries k_pulses[] = {
+    {Shake::Shape::half_sine, 0.5}, {Shake::Shape::full_sine, 1}, {Shake::Shape::rectangle, 0}};
+
+Line pulse(const Shake& shake, double t, Part& part) {
+  for (const double kink : traits(shake.shape).kinks) part.ends_at(shake.start + kink * shake.duration, t);
+  const double turns = row_of(k_pulses, shake.shape).turns;
+  if (turns == 0) return line(1, 0);
+  return Wave(line(turns * (t - shake.start) / shake.duration, turns / shake.duration)).sine;
+}
+
+/// One component `since` seconds after the record's start at `start`.
+Line recorded(const AccelerogramComponent& component, double start, double t, Part& part) {
+  const std::size_t last = component.samples.size() - 1;
+  const auto sample_time = [&](std::size_t i) { return start + static_cast<double>(i) * component.interval; };
+  auto i = static_cast<std::size_t>((t - start) / component.interval);
+  while (i <= last && sample_time(i + 1) <= t) ++i;
+  while (i > 0 && sample_time(i) > t) --i;
+  if (i >= last) return line(0, 0);
+  part.ends_at(sample_time(i + 1), t);
+  const double slope = (component.samples[i + 1] - component.samples[i]) / component.interval;
+  return line(component.samples[i] + slope * (t - sample_time(i)), slope);
+}
+
+struct Kind {
+  Shake::Kind kind;
+  Line (*shape)(const Shake&, double t, Part&);  ///< over the amplitude; null: of a record
+};
+constexpr Kind k_kinds[] = {{Shake::Kind::sine, periodic},
+                            {Shake::Kind::sweep, periodic},
+                            {Shake::Kind::pulse, pulse},
+                            {Shake::Kind::record, nullptr}};
+
+void add_shake(const Shake& shake, const Vec3& along, double t, FloorSeries& out) {
+  Part part;
+  part.ends_at(shake.start, t);
+  part.ends_at(shake_end(shake), t);
+  if (t >= shake.start && t < shake_end(shake)) {
+    const Line share_now = share(shake.ramp, t, part);
+    const auto ramped = [&](double before, double now) {
+      Line of(before);
+      add(of, now - before, share_now);
+      return of;
+    };
+    const auto add_along = [&](const Vec3& direction, const Line& of) {
+      if (direction.dot(along) != 0) add(out.horizontal, direction.dot(along), of);
+      if (direction.z() != 0) add(out.vertical, direction.z(), of);
+    };
+    if (const auto shape = row_of(k_kinds, shake.kind).shape) {
+      const Line of = shape(shake, t, part);
+      const Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
+      if (share_now.degree == 0 && share_now[0] == 1)
+        add_along(now, of);
+      else
+        for (const Vec3& axis : {along, Vec3(Vec3::UnitZ())})
+          add_along(axis, product(of, ramped(shake.amplitude_before.dot(axis), now.dot(axis))));
+    } else {
+      const Line scale = ramped(shake.scale_before, shake.on ? shake.scale : 0);
+      for (const AccelerogramComponent& component : shake.record->components)
+        add_along(component.direction, product(scale, recorded(component, shake.start, t, part)));
+    }
+  }
+  out.end = std::min(out.end, part.end);
+}
+
+}  // namespace
+
+Floor floor_at_rest() {
+  return {[](const void*, double, FloorSeries& out) {
+            out.horizontal = out.vertical = Line(0);
+            out.end = k_never;
+          },
+          nullptr};
+}
+
+Floor shaken(const ShakenPlane& plane) {
+  return {[](const void* floor, double t, FloorSeries& out) {
+            const auto& of = *static_cast<const ShakenPlane*>(floor);
+            out.horizontal = out.vertical = Line(0);
+            out.end = k_never;
+            for (const Shake& shake : of.shakes) add_shake(shake, of.along, t, out);
+          },
+          &plane};
+}
+
+}  // namespace topple::planar

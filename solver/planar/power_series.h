@@ -1,0 +1,97 @@
+// Power series of the time since the start of a step, and where they change sign. P: double, or a pack of
+// runs (pack.h).
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+namespace topple::planar {
+
+inline constexpr int k_order = 20;           ///< highest power of an acceleration that is kept
+inline constexpr int k_terms = k_order + 3;  ///< of a motion: that, integrated twice
+inline constexpr double k_never = 1e300;     ///< s
+inline constexpr auto k_reciprocal = [] {    ///< 1/i
+  std::array<double, k_terms + 1> of{};
+  for (int i = 1; i <= k_terms; ++i) of[static_cast<std::size_t>(i)] = 1. / i;
+  return of;
+}();
+
+/// term[0] + term[1] t + ... + term[degree] t^degree; what lies above is undefined.
+template <class P>
+struct Series {
+  std::array<P, k_terms> term;
+  int degree = 0;
+
+  Series() = default;
+  Series(P constant) { term[0] = constant; }
+  P& operator[](int i) { return term[static_cast<std::size_t>(i)]; }
+  const P& operator[](int i) const { return term[static_cast<std::size_t>(i)]; }
+
+  P at(P t) const {
+    P sum = (*this)[degree];
+    for (int i = degree; i-- > 0;) sum = (*this)[i] + t * sum;
+    return sum;
+  }
+  P slope_at(P t) const {
+    P sum(0);
+    for (int i = degree; i > 0; --i) sum = P(i) * (*this)[i] + t * sum;
+    return sum;
+  }
+  /// Term i, 0 beyond the degree.
+  P or_zero(int i) const { return i <= degree ? (*this)[i] : P(0); }
+};
+
+/// Term i of the product a b, b known to its degree and a to term i - first_of_b.
+template <class P>
+[[gnu::always_inline]] inline P product_term(const Series<P>& a, const Series<P>& b, int i, int b_degree,
+                                             int first_of_b = 0) {
+  P even(0), odd(0);  // two sums, for the processor's sake
+  const int last = std::min(i, b_degree);
+  int j = first_of_b;
+  for (; j < last; j += 2) {
+    even = even + a[i - j] * b[j];
+    odd = odd + a[i - j - 1] * b[j + 1];
+  }
+  if (j == last) even = even + a[i - j] * b[j];
+  return even + odd;
+}
+template <class P>
+[[gnu::always_inline]] inline P product_term(const Series<P>& a, const Series<P>& b, int i) {
+  return product_term(a, b, i, i);
+}
+
+/// The first t in 0..span at which the polynomial falls below zero, else k_never. One that begins below zero
+/// and does not rise above it within k_arming falls at 0; what an event has just set to zero may begin a
+/// rounding error below it. No root is missed: the polynomial is split until the signs of its Bernstein
+/// coefficients tell (Descartes' rule), down to 2^-45 of the span.
+double first_fall(const Series<double>& polynomial, double sign, double offset, double span);
+
+inline constexpr double k_arming = 1e-7;  ///< s
+
+/// Where the series of a step end: at order `highest`, or earlier where the terms within `span` fall below
+/// `tolerance`; then how long they hold.
+class Truncation {
+ public:
+  Truncation(double span, double tolerance, int highest);
+
+  /// Term i of a series of accelerations has this size; called for i = 0, 1, ...; true for the last.
+  bool ends(int i, double size) {
+    const double here = size * power_;
+    const bool last = i >= highest_ || (i >= k_fewest && here <= tolerance_ && before_ <= tolerance_);
+    if (last) last_ = i, size_ = size, size_before_ = unscaled_before_;
+    before_ = here, unscaled_before_ = size;
+    power_ *= span_;
+    return last;
+  }
+  /// Time within which the last two terms stay below the tolerance, s, at most the span.
+  double length() const;
+  void limit(double span) { span_ = std::min(span_, span); }  ///< before the first term
+
+ private:
+  static constexpr int k_fewest = 5;
+  double span_, tolerance_;
+  int highest_, last_ = 0;
+  double power_ = 1, before_ = 0, unscaled_before_ = 0, size_ = 0, size_before_ = 0;
+};
+
+}  // namespace topple::planar
