@@ -137,6 +137,7 @@ Truncation::Truncation(double span, double tolerance, int highest)
 
 double Truncation::length() const {
   double length = span_;
+  if (tolerance_ == 0) return length;
   if (size_ > 0 && last_ > 0) length = std::min(length, rough_root(tolerance_ / size_, last_));
   if (size_before_ > 0 && last_ > 1)
     length = std::min(length, rough_root(tolerance_ / size_before_, last_ - 1));

@@ -35,9 +35,9 @@ enum class Event {
 std::string_view word(Event event);
 
 /// An infinite sequence of impacts is cut when the next rise, the floor's acceleration held, stays below this
-/// tilt d, and the block would stay on its base. With the accelerations q that brings it back and the ratio e
+/// tilt d, and the block would stay on its base. With the acceleration q that brings it back and the ratio e
 /// of rates at an impact, what is left out is a tilt of d and a rate of sqrt(2 q d), during
-/// sqrt(8 d/q)/(1 - e).
+/// sqrt(8 d/q)/(1 - e); a slip slower than that rate times the radius of gyration about the edge ends too.
 inline constexpr double k_settled = 1e-14;  // rad
 inline constexpr double k_jam = 1e-3;
 
