@@ -3,11 +3,19 @@
 namespace topple::planar {
 namespace {
 
+bool on_edge(Mode mode) {
+  return mode == Mode::rock || mode == Mode::slide_rock;
+}
+
 /// The reference of a mode, from the centre of gravity.
 Lever reference(const Block& block, Mode mode, Side side, double tilt) {
-  return mode == Mode::flight                             ? Lever{0, 0}
-         : mode == Mode::rock || mode == Mode::slide_rock ? lever(block, side, tilt)
-                                                          : lever(tilt, 0, -block.height);
+  if (mode == Mode::flight) return {0, 0};
+  return on_edge(mode) ? lever(block, side, tilt) : lever(tilt, 0, -block.height);
+}
+
+bool same_reference(const State& state, Mode mode, Side side) {
+  if (state.mode == Mode::flight || mode == Mode::flight) return state.mode == mode;
+  return on_edge(mode) == on_edge(state.mode) && (!on_edge(mode) || side == state.side);
 }
 
 }  // namespace
@@ -19,10 +27,11 @@ Motion centre_of_gravity(const Block& block, const State& state) {
 }
 
 State referred(const Block& block, const State& state, Mode mode, Side side) {
-  const Motion centre = centre_of_gravity(block, state);
-  const Lever r = reference(block, mode, side, state.tilt);
   State to = state;
   to.mode = mode, to.side = side;
+  if (same_reference(state, mode, side)) return to;
+  const Motion centre = centre_of_gravity(block, state);
+  const Lever r = reference(block, mode, side, state.tilt);
   to.x = centre.x + r.x, to.z = centre.z + r.z;
   to.x_velocity = centre.x_velocity + r.z * state.rate;
   to.z_velocity = centre.z_velocity - r.x * state.rate;

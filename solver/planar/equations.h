@@ -77,26 +77,29 @@ void integrate(Series<P>& position, Series<P>& velocity, int last, const Acceler
   position.degree = last + 2, velocity.degree = last + 1;
 }
 
-/// Size of a term, over gravity; a pack's largest, so that all lanes keep the same terms.
+/// Size of a term.
 inline double magnitude(double a) {
   return std::abs(a);
 }
 
-/// Degree of what the floor's series make.
+/// Leaves the terms of the floor's motion that count; returns the last.
 template <class P>
-int floor_terms(Solution<P>& s, Truncation& truncation) {
-  for (int i = 0;; ++i)
-    if (truncation.ends(i, magnitude(s.horizontal.or_zero(i)) + magnitude(s.vertical.or_zero(i)))) return i;
+int cut_floor(Solution<P>& s, Truncation& truncation) {
+  int i = 0;
+  while (!truncation.ends(i, magnitude(s.horizontal.or_zero(i)) + magnitude(s.vertical.or_zero(i)))) ++i;
+  s.horizontal.degree = std::min(s.horizontal.degree, i);
+  s.vertical.degree = std::min(s.vertical.degree, i);
+  return i;
 }
 
 template <class P>
 void resting(const Coefficients<P>&, Solution<P>& s, Truncation& truncation) {
-  floor_terms(s, truncation);
+  cut_floor(s, truncation);
 }
 
 template <class P>
 void sliding(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
-  integrate(s.x, s.x_velocity, floor_terms(s, truncation),
+  integrate(s.x, s.x_velocity, cut_floor(s, truncation),
             [&](int i) { return -(s.horizontal.or_zero(i) + c.friction * s.vertical.or_zero(i)); });
 }
 

@@ -158,7 +158,8 @@ constexpr Kind k_kinds[] = {{Shake::Kind::sine, periodic},
                             {Shake::Kind::pulse, pulse},
                             {Shake::Kind::record, nullptr}};
 
-void add_shake(const Shake& shake, const Vec3& along, double t, FloorSeries& out) {
+/// Returns how long it holds.
+double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizontal, Line& vertical) {
   Part part;
   part.ends_at(shake.start, t);
   part.ends_at(shake_end(shake), t);
@@ -170,8 +171,8 @@ void add_shake(const Shake& shake, const Vec3& along, double t, FloorSeries& out
       return of;
     };
     const auto add_along = [&](const Vec3& direction, const Line& of) {
-      if (direction.dot(along) != 0) add(out.horizontal, direction.dot(along), of);
-      if (direction.z() != 0) add(out.vertical, direction.z(), of);
+      if (direction.dot(along) != 0) add(horizontal, direction.dot(along), of);
+      if (direction.z() != 0) add(vertical, direction.z(), of);
     };
     if (const auto shape = row_of(k_kinds, shake.kind).shape) {
       const Line of = shape(shake, t, part);
@@ -187,25 +188,27 @@ void add_shake(const Shake& shake, const Vec3& along, double t, FloorSeries& out
         add_along(component.direction, product(scale, recorded(component, shake.start, t, part)));
     }
   }
-  out.end = std::min(out.end, part.end);
+  return part.end;
 }
 
 }  // namespace
 
 Floor floor_at_rest() {
-  return {[](const void*, double, FloorSeries& out) {
-            out.horizontal = out.vertical = Line(0);
-            out.end = k_never;
+  return {[](const void*, double, Line& horizontal, Line& vertical) {
+            horizontal = vertical = 0;
+            return k_never;
           },
           nullptr};
 }
 
 Floor shaken(const ShakenPlane& plane) {
-  return {[](const void* floor, double t, FloorSeries& out) {
+  return {[](const void* floor, double t, Line& horizontal, Line& vertical) {
             const auto& of = *static_cast<const ShakenPlane*>(floor);
-            out.horizontal = out.vertical = Line(0);
-            out.end = k_never;
-            for (const Shake& shake : of.shakes) add_shake(shake, of.along, t, out);
+            horizontal = vertical = 0;
+            double end = k_never;
+            for (const Shake& shake : of.shakes)
+              end = std::min(end, add_shake(shake, of.along, t, horizontal, vertical));
+            return end;
           },
           &plane};
 }

@@ -8,16 +8,11 @@
 
 namespace topple::planar {
 
-/// Of the time since t, m/s^2, valid from t on.
-struct FloorSeries {
-  Series<double> horizontal, vertical;
-  double end;  ///< s, > t: of the first kink or jump after t; k_never when none
-};
-
-/// How a floor moves. `series` fills terms up to k_order at least unless a polynomial has fewer; at a kink it
-/// is what comes after. It allocates nothing.
+/// How a floor moves. `series` sets its horizontal and vertical acceleration, m/s^2, as series of the time
+/// since t, to k_order at least unless they are polynomials, and returns how long they hold: the time > t of
+/// the next kink or jump, s, k_never when none. At a kink they are what comes after. It allocates nothing.
 struct Floor {
-  void (*series)(const void* floor, double t, FloorSeries& out);
+  double (*series)(const void* floor, double t, Series<double>& horizontal, Series<double>& vertical);
   const void* floor;
 };
 

@@ -1,33 +1,27 @@
 #include "solver/planar/integrator.h"
 
+#include <cmath>
+
 namespace topple::planar {
 namespace {
 
 constexpr int k_most_without_progress = 100;
 constexpr double k_together = 1e-12;  // s, within which events count as simultaneous
 
-/// Series of the floor and first terms of the motion.
-void begin(const Block& block, const Floor& floor, const State& state, Step& step) {
-  Solution<double>& s = step.solution;
-  floor.series(floor.floor, state.time, step.floor);
-  s.horizontal = step.floor.horizontal, s.vertical = step.floor.vertical;
-  s.vertical[0] += block.gravity;
-}
-
+/// First terms of the motion.
 void set_motion(const Block& block, const State& state, Solution<double>& s) {
-  const auto first = [](Series<double>& of, double value) { of[0] = value, of.degree = 0; };
-  first(s.tilt, state.tilt), first(s.rate, state.rate);
-  first(s.x, state.x), first(s.x_velocity, state.x_velocity);
-  first(s.z, state.z), first(s.z_velocity, state.z_velocity);
+  s.tilt = state.tilt, s.rate = state.rate;
+  s.x = state.x, s.x_velocity = state.x_velocity;
+  s.z = state.z, s.z_velocity = state.z_velocity;
   const bool flies = state.mode == Mode::flight;
   const Lever r = flies ? lever(-state.tilt, 1, 0) : lever(block, state.side, state.tilt);
-  first(s.lever_x, r.x), first(s.lever_z, r.z);
+  s.lever_x = r.x, s.lever_z = r.z;
 }
 
 Coefficients<double> coefficients(const Block& block, const State& state) {
   const double widest = std::max(std::abs(block.left), std::abs(block.right));
   return {block.inertia_over_mass(), block.edge(state.side), block.height,
-          block.kinetic_friction * state.slip, elementary::hypot(widest, block.height)};
+          block.kinetic_friction * state.slip, std::sqrt(widest * widest + block.height * block.height)};
 }
 
 /// Time in which the rocking after an impact surely comes to an end were the accelerations constant, s: small
@@ -48,12 +42,13 @@ State state_after(const Step& step, double since) {
   return state;
 }
 
-const Guard* first_guard(Step& step) {
+const Guard* first_guard(Step& step, int highest) {
   const Guard* first = nullptr;
   double when = step.length;
+  const Falls falls(when, highest);
   for (int i = 0; i < step.guards.count; ++i) {
     const Guard& guard = step.guards.guard[static_cast<std::size_t>(i)];
-    const double fall = first_fall(*guard.of, guard.sign, guard.offset, step.length);
+    const double fall = falls.first(*guard.of, guard.sign, guard.offset);
     if (fall <= when - (first ? k_together : 0)) first = &guard, when = fall;
   }
   step.length = when;
@@ -72,14 +67,15 @@ Event event_of(const Guard& guard, const State& before, const State& after) {
 
 Event advance(const Block& block, const Floor& floor, const Controls& controls, double until, State& state,
               Step& step) {
-  begin(block, floor, state, step);
   Solution<double>& s = step.solution;
+  step.floor_end = floor.series(floor.floor, state.time, s.horizontal, s.vertical);
+  s.vertical[0] += block.gravity;
   const Situation start{block, s.horizontal[0], s.vertical[0]};
   if (state.undecided) state = decided(start, state);
   step.start = state;
   set_motion(block, state, s);
 
-  const double end = std::min(until, step.floor.end);
+  const double end = std::min(until, step.floor_end);
   Truncation truncation(std::min(end - state.time, controls.longest), controls.tolerance * block.gravity,
                         controls.order);
   if (state.mode == Mode::rock || state.mode == Mode::slide_rock) truncation.limit(rise(start, state));
@@ -89,10 +85,10 @@ Event advance(const Block& block, const Floor& floor, const Controls& controls, 
 
   step.guards.count = 0;
   mode.guard({block, state, s, controls.last_tilt}, step.guards);
-  const Guard* guard = first_guard(step);
+  const Guard* guard = first_guard(step, truncation.last() + 2);
   const bool at_end = !guard && state.time + step.length >= end;
   state = state_after(step, step.length);
-  if (at_end) state.time = end, state.undecided = end == step.floor.end;
+  if (at_end) state.time = end, state.undecided = end == step.floor_end;
   if (!guard) return step.without_progress = 0, Event::none;
 
   step.without_progress = step.length > k_together ? 0 : step.without_progress + 1;

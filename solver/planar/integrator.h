@@ -1,6 +1,6 @@
 // Motion of a block from event to event by Taylor series of high order: exact but for rounding and what the
 // tolerance leaves. Between events a step is a polynomial, which is the dense output, and in which the guards
-// of the mode find the next event (first_fall: none is missed). Allocates nothing.
+// of the mode find the next event (Falls: none is missed). Allocates nothing.
 #pragma once
 
 #include "solver/planar/floor.h"
@@ -21,7 +21,7 @@ struct Step {
   State start;
   double length = 0;  ///< s
   Solution<double> solution;
-  FloorSeries floor;
+  double floor_end = 0;  ///< s, of the series of the floor
   Guards guards;
   int without_progress = 0;  ///< events in a row that came at once
 };

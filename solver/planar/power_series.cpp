@@ -19,6 +19,7 @@ constexpr auto k_one_over_binomial = [] {  // of n over i
   return table;
 }();
 constexpr double k_narrowest = 0x1p-45;
+constexpr double k_last_step = 0x1p-35;  // of Newton's method: its square is left
 
 /// On 0..1, all leading terms that are zero removed: the sign for t > 0 stays.
 struct Polynomial {
@@ -27,12 +28,6 @@ struct Polynomial {
 
   double operator[](int i) const { return a[static_cast<std::size_t>(i)]; }
 
-  /// A lower bound of the values: t q >= min(0, least q).
-  double lower_bound() const {
-    double low = (*this)[degree];
-    for (int i = degree; i-- > 0;) low = (*this)[i] + std::min(0., low);
-    return low;
-  }
   /// Falls within low..high, in which it changes its sign once; by Newton's method, bisection where that
   /// leaves.
   double root(double low, double high, double t) const {
@@ -42,7 +37,7 @@ struct Polynomial {
       (value > 0 ? low : high) = t;
       double next = t - value / slope;
       if (!(next > low && next < high)) next = (low + high) / 2;
-      if (std::abs(next - t) <= 0x1p-53 * t || next == low || next == high) return next;
+      if (std::abs(next - t) <= k_last_step * t || next == low || next == high) return next;
       t = next;
     }
     return t;
@@ -92,14 +87,15 @@ struct Bernstein {
   }
 };
 
-double fall_within(const Polynomial& p, Bernstein part, double from, double width) {
+double fall_within(const Polynomial& p, const Bernstein& part, double from, double width) {
   const int changes = part.sign_changes();
   if (changes == 0 || (changes == 1 && part.first_sign() < 0)) return k_never;
   if (changes == 1) return p.root(from, from + width, from + width * part.crossing());
   if (width < k_narrowest) return k_never;  // touches zero
-  const Bernstein left = part.split();
+  Bernstein right = part;
+  const Bernstein left = right.split();
   const double fall = fall_within(p, left, from, width / 2);
-  return fall < k_never ? fall : fall_within(p, part, from + width / 2, width / 2);
+  return fall < k_never ? fall : fall_within(p, right, from + width / 2, width / 2);
 }
 
 /// x^(1/n) within a hundredth, x > 0.
@@ -112,24 +108,40 @@ double rough_root(double x, int n) {
 
 }  // namespace
 
-double first_fall(const Series<double>& polynomial, double sign, double offset, double span) {
-  Polynomial p{};
-  double power = 1;
+Falls::Falls(double span, int highest) : span_(span) {
+  power_[0] = 1;
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(highest); ++i) power_[i] = power_[i - 1] * span;
+}
+
+double Falls::first(const Series<double>& polynomial, double sign, double offset) const {
+  if (lower_bound(polynomial, sign, offset) > 0) return k_never;
+  Polynomial p;
   p.degree = -1;
-  for (int i = 0; i <= polynomial.degree; ++i, power *= span) {
-    const double term = (sign * polynomial[i] + (i == 0 ? offset : 0)) * power;
-    if (p.degree < 0 && term == 0) continue;
-    p.a[static_cast<std::size_t>(++p.degree)] = term;
+  for (int i = 0; i <= polynomial.degree; ++i) {
+    const double term = scaled(polynomial, sign, i) + (i == 0 ? offset : 0);
+    if (p.degree >= 0 || term != 0) p.a[static_cast<std::size_t>(++p.degree)] = term;
   }
-  if (p.degree < 0 || p.lower_bound() > 0) return k_never;
-  const Bernstein whole(p);
+  if (p.degree < 0) return k_never;
   if (p[0] < 0) {
     Polynomial negative = p;
     for (double& a : negative.a) a = -a;
-    if (!(span * fall_within(negative, Bernstein(negative), 0, 1) <= k_arming)) return 0;
+    if (!(span_ * fall_within(negative, Bernstein(negative), 0, 1) <= k_arming)) return 0;
   }
-  const double fall = fall_within(p, whole, 0, 1);
-  return fall < k_never ? std::min(fall * span, span) : k_never;
+  const double fall = fall_within(p, Bernstein(p), 0, 1);
+  return fall < k_never ? std::min(fall * span_, span_) : k_never;
+}
+
+double Falls::lower_bound(const Series<double>& p, double sign, double offset) const {
+  double rest = 0, also = 0;  // two sums, for the processor's sake
+  int i = k_nested;
+  for (; i < p.degree; i += 2) {
+    rest += std::min(0., scaled(p, sign, i));
+    also += std::min(0., scaled(p, sign, i + 1));
+  }
+  if (i == p.degree) rest += std::min(0., scaled(p, sign, i));
+  double low = rest + also;
+  for (int k = std::min(p.degree, k_nested - 1); k >= 0; --k) low = scaled(p, sign, k) + std::min(0., low);
+  return low + offset;
 }
 
 Truncation::Truncation(double span, double tolerance, int highest)

@@ -23,7 +23,11 @@ struct Series {
   int degree = 0;
 
   Series() = default;
-  Series(P constant) { term[0] = constant; }
+  Series(P constant) { *this = constant; }
+  Series& operator=(P constant) {
+    term[0] = constant, degree = 0;
+    return *this;
+  }
   P& operator[](int i) { return term[static_cast<std::size_t>(i)]; }
   const P& operator[](int i) const { return term[static_cast<std::size_t>(i)]; }
 
@@ -60,13 +64,31 @@ template <class P>
   return product_term(a, b, i, i);
 }
 
-/// The first t in 0..span at which the polynomial falls below zero, else k_never. One that begins below zero
-/// and does not rise above it within k_arming falls at 0; what an event has just set to zero may begin a
-/// rounding error below it. No root is missed: the polynomial is split until the signs of its Bernstein
-/// coefficients tell (Descartes' rule), down to 2^-45 of the span.
-double first_fall(const Series<double>& polynomial, double sign, double offset, double span);
-
 inline constexpr double k_arming = 1e-7;  ///< s
+
+/// Where polynomials fall below zero within 0..span, s.
+class Falls {
+ public:
+  /// Of polynomials up to this degree.
+  Falls(double span, int highest);
+
+  /// The first t at which sign * polynomial + offset falls below zero, else k_never. One that begins below
+  /// zero and does not rise above it within k_arming falls at 0; what an event has just set to zero may begin
+  /// a rounding error below it. No root is missed: the polynomial is split until the signs of its Bernstein
+  /// coefficients tell (Descartes' rule), down to 2^-45 of the span.
+  double first(const Series<double>& polynomial, double sign, double offset) const;
+
+ private:
+  static constexpr int k_nested = 4;
+  double scaled(const Series<double>& p, double sign, int i) const {
+    return sign * p[i] * power_[static_cast<std::size_t>(i)];
+  }
+  /// Of its values: t q >= min(0, least q), term by term from k_nested on.
+  double lower_bound(const Series<double>& polynomial, double sign, double offset) const;
+
+  double span_;
+  std::array<double, k_terms> power_;
+};
 
 /// Where the series of a step end: at order `highest`, or earlier where the terms within `span` fall below
 /// `tolerance`; then how long they hold.
@@ -85,6 +107,7 @@ class Truncation {
   }
   /// Time within which the last two terms stay below the tolerance, s, at most the span.
   double length() const;
+  int last() const { return last_; }                          ///< order of the last term
   void limit(double span) { span_ = std::min(span_, span); }  ///< before the first term
 
  private:

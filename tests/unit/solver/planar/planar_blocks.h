@@ -26,10 +26,10 @@ struct SteadyFloor {
   double horizontal, vertical = 0;
 };
 inline planar::Floor moved(const SteadyFloor& floor) {
-  return {[](const void* of, double, planar::FloorSeries& out) {
-            out.horizontal = static_cast<const SteadyFloor*>(of)->horizontal;
-            out.vertical = static_cast<const SteadyFloor*>(of)->vertical;
-            out.end = planar::k_never;
+  return {[](const void* of, double, planar::Series<double>& horizontal, planar::Series<double>& vertical) {
+            horizontal = static_cast<const SteadyFloor*>(of)->horizontal;
+            vertical = static_cast<const SteadyFloor*>(of)->vertical;
+            return planar::k_never;
           },
           &floor};
 }
