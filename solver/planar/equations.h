@@ -9,8 +9,7 @@
 // s: sign of the slip velocity. (Yim, Chopra and Penzien 1980; Shenton 1996.)
 #pragma once
 
-#include <cmath>
-
+#include "solver/math/pack.h"
 #include "solver/planar/power_series.h"
 
 namespace topple::planar {
@@ -77,13 +76,15 @@ void integrate(Series<P>& position, Series<P>& velocity, int last, const Acceler
   position.degree = last + 2, velocity.degree = last + 1;
 }
 
-/// Size of a term.
-inline double magnitude(double a) {
-  return std::abs(a);
+template <class P>
+[[gnu::always_inline]] inline P magnitude(P a) {
+  return with_sign_of(a, P(1));
 }
 
+// A Truncation says after which term the series end: ends(i, size of term i of the accelerations).
+
 /// Leaves the terms of the floor's motion that count; returns the last.
-template <class P>
+template <class P, class Truncation>
 int cut_floor(Solution<P>& s, Truncation& truncation) {
   int i = 0;
   while (!truncation.ends(i, magnitude(s.horizontal.or_zero(i)) + magnitude(s.vertical.or_zero(i)))) ++i;
@@ -92,18 +93,18 @@ int cut_floor(Solution<P>& s, Truncation& truncation) {
   return i;
 }
 
-template <class P>
+template <class P, class Truncation>
 void resting(const Coefficients<P>&, Solution<P>& s, Truncation& truncation) {
   cut_floor(s, truncation);
 }
 
-template <class P>
+template <class P, class Truncation>
 void sliding(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
   integrate(s.x, s.x_velocity, cut_floor(s, truncation),
             [&](int i) { return -(s.horizontal.or_zero(i) + c.friction * s.vertical.or_zero(i)); });
 }
 
-template <class P>
+template <class P, class Truncation>
 void rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
   const P inverse = P(1) / (c.inertia + s.lever_x[0] * s.lever_x[0] + s.lever_z[0] * s.lever_z[0]);
   int i = 0;
@@ -122,7 +123,7 @@ void rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
   s.tangential.degree = s.normal.degree = i;
 }
 
-template <class P>
+template <class P, class Truncation>
 void slide_rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
   const P inverse = P(1) / c.inertia;
   P over_first(0);
@@ -148,7 +149,7 @@ void slide_rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncat
   });
 }
 
-template <class P>
+template <class P, class Truncation>
 void flying(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
   int i = 0;
   for (;; ++i) {

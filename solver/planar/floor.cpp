@@ -41,7 +41,7 @@ struct Wave {
     const elementary::SinCos of = elementary::sin_cos(2 * k_pi * phase);
     sine[0] = of.sine, cosine[0] = of.cosine;
     sine.degree = cosine.degree = turns.degree == 0 ? 0 : k_order;
-    Line slope;
+    Line slope(0);
     for (int i = 1; i <= turns.degree; ++i) slope[i - 1] = 2 * k_pi * i * turns[i];
     for (int i = 0; i < sine.degree; ++i) {
       const double reciprocal = k_reciprocal[static_cast<std::size_t>(i + 1)];

@@ -9,7 +9,7 @@
 namespace topple::planar {
 
 struct Controls {
-  double tolerance = 1e-12;  ///< last terms of the accelerations, over gravity; 0: all steps as the longest
+  double tolerance = 1e-11;  ///< last terms of the accelerations, over gravity; 0: all steps as the longest
   double longest = 10;       ///< s, step
   int order = k_order;       ///< highest power in the accelerations, 2..k_order
   double last_tilt =

@@ -76,11 +76,11 @@ void guard_flight(const GuardedMotion& of, Guards& guards) {
 }
 
 constexpr ModeTraits k_modes[] = {
-    {Mode::rest, "rest", resting<double>, guard_rest},
-    {Mode::slide, "slide", sliding<double>, guard_slide},
-    {Mode::rock, "rock", rocking<double>, guard_rock},
-    {Mode::slide_rock, "slide-rock", slide_rocking<double>, guard_slide_rock},
-    {Mode::flight, "flight", flying<double>, guard_flight},
+    {Mode::rest, "rest", resting, guard_rest},
+    {Mode::slide, "slide", sliding, guard_slide},
+    {Mode::rock, "rock", rocking, guard_rock},
+    {Mode::slide_rock, "slide-rock", slide_rocking, guard_slide_rock},
+    {Mode::flight, "flight", flying, guard_flight},
 };
 
 }  // namespace

@@ -35,10 +35,9 @@ struct Polynomial {
       double value = (*this)[degree], slope = 0;
       for (int i = degree; i-- > 0;) slope = value + t * slope, value = (*this)[i] + t * value;
       (value > 0 ? low : high) = t;
-      double next = t - value / slope;
-      if (!(next > low && next < high)) next = (low + high) / 2;
-      if (std::abs(next - t) <= k_last_step * t || next == low || next == high) return next;
-      t = next;
+      const double next = t - value / slope;
+      if (std::abs(next - t) <= k_last_step * t) return std::clamp(next, low, high);
+      t = next > low && next < high ? next : (low + high) / 2;
     }
     return t;
   }
