@@ -46,18 +46,27 @@ double energy(const Block& block, const State& state) {
          block.gravity * (centre.z - block.height);
 }
 
-State standing(const Block& block, double tilt, double rate, double x_velocity) {
+State standing(double tilt, double rate, double x_velocity) {
   State state;
-  state.tilt = tilt, state.rate = rate, state.x_velocity = x_velocity;
-  state.slip = (x_velocity > 0) - (x_velocity < 0);
+  state.tilt = tilt, state.rate = rate;
   const double towards = tilt != 0 ? tilt : rate;
   state.side = towards < 0 ? Side::left : Side::right;
-  if (towards != 0)
-    state.mode = state.slip == 0 ? Mode::rock : Mode::slide_rock;
+  state.mode = towards != 0 ? Mode::rock : Mode::rest;
+  return left_behind(state, -x_velocity);
+}
+
+State left_behind(const State& state, double jump) {
+  State to = state;
+  to.x_velocity -= jump;
+  to.undecided = true;
+  if (state.mode == Mode::flight) return to;
+  to.slip = (to.x_velocity > 0) - (to.x_velocity < 0);
+  const bool slips = to.slip != 0;
+  if (on_edge(state.mode))
+    to.mode = slips ? Mode::slide_rock : Mode::rock;
   else
-    state.mode = state.slip == 0 ? Mode::rest : Mode::slide;
-  (void)block;
-  return state;
+    to.mode = slips ? Mode::slide : Mode::rest;
+  return to;
 }
 
 }  // namespace topple::planar

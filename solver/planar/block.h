@@ -71,6 +71,9 @@ double energy(const Block& block, const State& state);
 
 /// Standing on its base, or on the edge that the tilt (if none, the rate) is towards, which moves at
 /// x_velocity. The reference is at x = 0.
-State standing(const Block& block, double tilt = 0, double rate = 0, double x_velocity = 0);
+State standing(double tilt = 0, double rate = 0, double x_velocity = 0);
+
+/// After the floor's horizontal velocity jumped by this, m/s: the block stays behind.
+State left_behind(const State& state, double jump);
 
 }  // namespace topple::planar

@@ -18,10 +18,8 @@ namespace topple::planar {
 template <class P>
 struct Coefficients {
   P inertia;   ///< k^2, m^2
-  P edge;      ///< of the edge that touches, along the base from the centre of gravity, m
-  P height;    ///< m
   P friction;  ///< mu s
-  P size;      ///< m, largest distance of a point from the centre of gravity: scale of rates
+  P size;      ///< m, of the base's points the largest distance from the centre of gravity: scale of rates
 };
 
 /// Motion and forces in a step. Which are in use: mode.cpp.
@@ -34,13 +32,25 @@ struct Solution {
   Series<P> denominator, arm, spin;  ///< 1 + X E/k^2, E, th'^2
 };
 
-/// Term i + 1 of X and Z from terms up to i of the rate.
+/// Term i + 1 of X and Z from terms up to i of the rate; both products in one loop, as product_term.
 template <class P>
 [[gnu::always_inline]] inline void turn_lever(Solution<P>& s, int i) {
+  P even_x(0), odd_x(0), even_z(0), odd_z(0);
+  int j = 0;
+  for (; j < i; j += 2) {
+    const P even = s.rate[j], odd = s.rate[j + 1];
+    even_x = even_x + s.lever_z[i - j] * even;
+    even_z = even_z + s.lever_x[i - j] * even;
+    odd_x = odd_x + s.lever_z[i - j - 1] * odd;
+    odd_z = odd_z + s.lever_x[i - j - 1] * odd;
+  }
+  if (j == i) {
+    even_x = even_x + s.lever_z[0] * s.rate[i];
+    even_z = even_z + s.lever_x[0] * s.rate[i];
+  }
   const P reciprocal(k_reciprocal[static_cast<std::size_t>(i + 1)]);
-  const P x = product_term(s.lever_z, s.rate, i), z = product_term(s.lever_x, s.rate, i);
-  s.lever_x[i + 1] = reciprocal * x;
-  s.lever_z[i + 1] = -(reciprocal * z);
+  s.lever_x[i + 1] = reciprocal * (even_x + odd_x);
+  s.lever_z[i + 1] = -(reciprocal * (even_z + odd_z));
 }
 
 /// Terms of tilt and rate from term i of the angular acceleration.

@@ -41,6 +41,14 @@ struct Wave {
     const elementary::SinCos of = elementary::sin_cos(2 * k_pi * phase);
     sine[0] = of.sine, cosine[0] = of.cosine;
     sine.degree = cosine.degree = turns.degree == 0 ? 0 : k_order;
+    if (turns.degree == 1) {
+      const double rate = 2 * k_pi * turns[1];
+      for (int i = 0; i < k_order; ++i) {
+        const double factor = rate * k_reciprocal[static_cast<std::size_t>(i + 1)];
+        sine[i + 1] = factor * cosine[i], cosine[i + 1] = -factor * sine[i];
+      }
+      return;
+    }
     Line slope(0);
     for (int i = 1; i <= turns.degree; ++i) slope[i - 1] = 2 * k_pi * i * turns[i];
     for (int i = 0; i < sine.degree; ++i) {

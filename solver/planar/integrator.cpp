@@ -20,8 +20,8 @@ void set_motion(const Block& block, const State& state, Solution<double>& s) {
 
 Coefficients<double> coefficients(const Block& block, const State& state) {
   const double widest = std::max(std::abs(block.left), std::abs(block.right));
-  return {block.inertia_over_mass(), block.edge(state.side), block.height,
-          block.kinetic_friction * state.slip, std::sqrt(widest * widest + block.height * block.height)};
+  return {block.inertia_over_mass(), block.kinetic_friction * state.slip,
+          std::sqrt(widest * widest + block.height * block.height)};
 }
 
 /// Time in which the rocking after an impact surely comes to an end were the accelerations constant, s: small
@@ -86,6 +86,7 @@ Event advance(const Block& block, const Floor& floor, const Controls& controls, 
   step.guards.count = 0;
   mode.guard({block, state, s, controls.last_tilt}, step.guards);
   const Guard* guard = first_guard(step, truncation.last() + 2);
+  if (!std::isfinite(step.length)) return Event::stalled;
   const bool at_end = !guard && state.time + step.length >= end;
   state = state_after(step, step.length);
   if (at_end) state.time = end, state.undecided = end == step.floor_end;

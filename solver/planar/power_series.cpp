@@ -1,6 +1,7 @@
 #include "solver/planar/power_series.h"
 
 #include <cmath>
+#include <utility>
 
 namespace topple::planar {
 namespace {
@@ -50,8 +51,10 @@ struct Bernstein {
   explicit Bernstein(const Polynomial& p) : degree(p.degree) {
     const auto n = static_cast<std::size_t>(degree);
     for (std::size_t i = 0; i <= n; ++i) b[i] = p.a[i] * k_one_over_binomial[n][i];
-    for (std::size_t k = 0; k < n; ++k)
-      for (std::size_t i = n; i > k; --i) b[i] += b[i - 1];
+    for (std::size_t k = 0; k < n; ++k) {
+      double before = b[k];
+      for (std::size_t i = k + 1; i <= n; ++i) before = std::exchange(b[i], b[i] + before);
+    }
   }
   int sign_changes() const {
     int changes = 0;

@@ -178,10 +178,10 @@ EdgeForces edge_forces(const Situation& now, const State& state, int slip) {
     const double friction = now.block.kinetic_friction * slip;
     const double denominator = slipping_denominator(now.block, r, slip);
     const double normal = (now.vertical + r.z * spin) / denominator;
-    return {-friction * normal, normal, -(r.x + friction * r.z) * normal / k2, denominator};
+    return {-friction * normal, normal, -(r.x + friction * r.z) * normal / k2};
   }
   const double turn = (r.z * now.horizontal - r.x * now.vertical) / (k2 + r.x * r.x + r.z * r.z);
-  return {now.horizontal + r.x * spin - r.z * turn, now.vertical + r.z * spin + r.x * turn, turn, 1};
+  return {now.horizontal + r.x * spin - r.z * turn, now.vertical + r.z * spin + r.x * turn, turn};
 }
 
 State decided(const Situation& now, const State& state) {

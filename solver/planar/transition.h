@@ -52,7 +52,6 @@ struct Situation {
 struct EdgeForces {
   double tangential, normal;  ///< m/s^2
   double acceleration;
-  double denominator;  ///< of the normal force (equations.h); 1 without slip
 };
 /// slip: sign of the velocity; 0: the edge stays.
 EdgeForces edge_forces(const Situation& now, const State& state, int slip);

@@ -8,11 +8,11 @@
 
 #include "solver/planar/integrator.h"
 
-namespace topple::test {
+namespace topple::planar::test {
 
 /// A uniform rectangle of these half sizes, m.
-inline planar::Block uniform_block(double half_base, double half_height, double friction) {
-  planar::Block block;
+inline Block uniform_block(double half_base, double half_height, double friction) {
+  Block block;
   block.mass = 40;
   block.inertia = block.mass * (half_base * half_base + half_height * half_height) / 3;
   block.left = block.right = half_base;
@@ -25,11 +25,11 @@ inline planar::Block uniform_block(double half_base, double half_height, double 
 struct SteadyFloor {
   double horizontal, vertical = 0;
 };
-inline planar::Floor moved(const SteadyFloor& floor) {
-  return {[](const void* of, double, planar::Series<double>& horizontal, planar::Series<double>& vertical) {
+inline Floor moved(const SteadyFloor& floor) {
+  return {[](const void* of, double, Series<double>& horizontal, Series<double>& vertical) {
             horizontal = static_cast<const SteadyFloor*>(of)->horizontal;
             vertical = static_cast<const SteadyFloor*>(of)->vertical;
-            return planar::k_never;
+            return k_never;
           },
           &floor};
 }
@@ -41,19 +41,19 @@ inline Shake sine_shake(double amplitude, double frequency, const Vec3& directio
 }
 
 struct PlanarEvent {
-  planar::Event event;
-  planar::State before, after;
+  Event event;
+  State before, after;
 };
-using SeenStep = std::function<void(const planar::Step&)>;
+using SeenStep = std::function<void(const Step&)>;
 
 struct PlanarRun {
-  planar::State state;
+  State state;
   std::vector<PlanarEvent> events;
-  planar::Event last = planar::Event::none;
+  Event last = Event::none;
 
-  bool overturned() const { return last == planar::Event::overturn; }
-  const PlanarEvent& first(planar::Event kind) const {
-    static const PlanarEvent none{planar::Event::none, {.time = std::nan("")}, {.time = std::nan("")}};
+  bool overturned() const { return last == Event::overturn; }
+  const PlanarEvent& first(Event kind) const {
+    static const PlanarEvent none{Event::none, {.time = std::nan("")}, {.time = std::nan("")}};
     for (const PlanarEvent& one : events)
       if (one.event == kind) return one;
     return none;
@@ -61,20 +61,20 @@ struct PlanarRun {
 };
 
 /// Until a time, an overturn or so many events.
-inline PlanarRun run_planar(const planar::Block& block, const planar::Floor& floor, planar::State start,
-                            double until, const planar::Controls& controls = {},
+inline PlanarRun run_planar(const Block& block, const Floor& floor, State start, double until,
+                            const Controls& controls = {},
                             std::size_t most_events = std::numeric_limits<std::size_t>::max(),
                             const SeenStep& seen = nullptr) {
   PlanarRun run{start, {}};
-  planar::Step step;
+  Step step;
   while (run.state.time < until && run.events.size() < most_events) {
-    run.last = planar::advance(block, floor, controls, until, run.state, step);
+    run.last = advance(block, floor, controls, until, run.state, step);
     if (seen) seen(step);
-    if (run.last != planar::Event::none)
-      run.events.push_back({run.last, planar::state_within(step, step.start.time + step.length), run.state});
-    if (run.last == planar::Event::overturn || run.last == planar::Event::stalled) break;
+    if (run.last != Event::none)
+      run.events.push_back({run.last, state_within(step, step.start.time + step.length), run.state});
+    if (run.last == Event::overturn || run.last == Event::stalled) break;
   }
   return run;
 }
 
-}  // namespace topple::test
+}  // namespace topple::planar::test

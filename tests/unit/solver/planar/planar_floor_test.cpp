@@ -7,16 +7,16 @@
 #include "solver/model/excitation.h"
 #include "unit/solver/planar/planar_blocks.h"
 
-namespace topple::test {
+namespace topple::planar::test {
 namespace {
 
 // From kink to kink, aside of jumps.
 void expect_series_of(const std::vector<Shake>& shakes, double until, int least_pieces) {
-  const planar::ShakenPlane plane{shakes, Vec3(0.6, 0.8, 0)};
-  const planar::Floor floor = planar::shaken(plane);
+  const ShakenPlane plane{shakes, Vec3(0.6, 0.8, 0)};
+  const Floor floor = shaken(plane);
   int pieces = 0;
   for (double t = 0; t < until;) {
-    planar::Series<double> horizontal, vertical;
+    Series<double> horizontal, vertical;
     const double end = floor.series(floor.floor, t, horizontal, vertical);
     ASSERT_GT(end, t);
     ++pieces;
@@ -75,25 +75,25 @@ TEST(PlanarFloor, first_fall_is_that_of_many_samples) {
   int found = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     const double span = within(0.1, 3);
-    planar::Series<double> p(1);
+    Series<double> p(1);
     for (int roots = trial % 8; roots > 0; --roots) {  // times (1 - t/r)
       const double r = within(-0.5, 2) * span;
       p[p.degree + 1] = 0;
       for (int i = ++p.degree; i > 0; --i) p[i] -= p[i - 1] / r;
     }
-    double sampled = planar::k_never;
+    double sampled = k_never;
     constexpr int k_samples = 3000;
-    for (int i = 1; i <= k_samples && sampled == planar::k_never; ++i)
+    for (int i = 1; i <= k_samples && sampled == k_never; ++i)
       if (p.at(span * i / k_samples) < 0) sampled = span * i / k_samples;
-    const double fall = planar::Falls(span, p.degree).first(p, 1, 0);
+    const double fall = Falls(span, p.degree).first(p, 1, 0);
     double size = 0;
     for (int i = p.degree; i >= 0; --i) size = std::abs(p[i]) + span * size;
     SCOPED_TRACE(trial);
-    if (sampled < planar::k_never) {
+    if (sampled < k_never) {
       ++found;
       EXPECT_LE(fall, sampled);
       EXPECT_NEAR(p.at(fall), 0, 1e-12 * size);
-    } else if (fall < planar::k_never) {  // two roots between samples
+    } else if (fall < k_never) {  // two roots between samples
       EXPECT_LT(p.at(fall + 1e-9), 1e-9);
     }
   }
@@ -102,17 +102,17 @@ TEST(PlanarFloor, first_fall_is_that_of_many_samples) {
 
 TEST(PlanarFloor, two_roots_however_near_count_and_a_touch_does_not) {
   for (const double depth : {1e-4, 1e-8, 1e-12}) {
-    planar::Series<double> p(0.25 - depth);  // (t - 1/2)^2 - depth
+    Series<double> p(0.25 - depth);  // (t - 1/2)^2 - depth
     p[1] = -1, p[2] = 1, p.degree = 2;
-    EXPECT_NEAR(planar::Falls(1, 2).first(p, 1, 0), 0.5 - std::sqrt(depth), 1e-9);
-    EXPECT_EQ(planar::Falls(1, 2).first(p, 1, 1.5 * depth), planar::k_never);
+    EXPECT_NEAR(Falls(1, 2).first(p, 1, 0), 0.5 - std::sqrt(depth), 1e-9);
+    EXPECT_EQ(Falls(1, 2).first(p, 1, 1.5 * depth), k_never);
   }
-  planar::Series<double> rising(0);  // t, from a rounding error below zero
+  Series<double> rising(0);  // t, from a rounding error below zero
   rising[1] = 1, rising.degree = 1;
-  EXPECT_EQ(planar::Falls(1, 1).first(rising, 1, -1e-16), planar::k_never);
-  EXPECT_EQ(planar::Falls(1, 1).first(rising, 1, -1e-3), 0);
-  EXPECT_EQ(planar::Falls(1, 1).first(rising, -1, 0), 0);
-  EXPECT_EQ(planar::Falls(1, 1).first(rising, 0, 0), planar::k_never);
+  EXPECT_EQ(Falls(1, 1).first(rising, 1, -1e-16), k_never);
+  EXPECT_EQ(Falls(1, 1).first(rising, 1, -1e-3), 0);
+  EXPECT_EQ(Falls(1, 1).first(rising, -1, 0), 0);
+  EXPECT_EQ(Falls(1, 1).first(rising, 0, 0), k_never);
 }
 
 // So many terms whatever their size.
@@ -125,8 +125,8 @@ struct Fixed {
 };
 
 template <class P>
-std::array<planar::Series<P> planar::Solution<P>::*, 10> series_of_solution() {
-  using S = planar::Solution<P>;
+std::array<Series<P> Solution<P>::*, 10> series_of_solution() {
+  using S = Solution<P>;
   return {&S::horizontal, &S::vertical,   &S::tilt,    &S::rate,    &S::x,
           &S::x_velocity, &S::z_velocity, &S::lever_x, &S::lever_z, &S::z};
 }
@@ -137,11 +137,10 @@ double random_term(int lane, std::size_t series, int i) {
 
 // What ensembles in lanes rest on.
 TEST(PlanarFloor, series_of_four_blocks_in_a_pack_are_those_of_each_alone) {
-  constexpr int k_order = planar::k_order;
   const auto compare = [&](const auto& solve) {
-    planar::Solution<Four> pack;
-    std::array<planar::Solution<double>, 4> alone;
-    planar::Coefficients<Four> c{Four(0.3), Four(0.2), Four(0.9), Four(0.1), Four(1)};
+    Solution<Four> pack;
+    std::array<Solution<double>, 4> alone;
+    Coefficients<Four> c{Four(0.3), Four(0.1), Four(1)};
     for (int lane = 0; lane < 4; ++lane) {
       c.friction.set(lane, 0.1 * lane);
       for (std::size_t k = 0; k < 10; ++k) {
@@ -154,8 +153,8 @@ TEST(PlanarFloor, series_of_four_blocks_in_a_pack_are_those_of_each_alone) {
     Fixed fixed{k_order};
     solve(c, pack, fixed);
     for (int lane = 0; lane < 4; ++lane) {
-      planar::Solution<double>& one = alone[static_cast<std::size_t>(lane)];
-      solve(planar::Coefficients<double>{0.3, 0.2, 0.9, 0.1 * lane, 1}, one, fixed);
+      Solution<double>& one = alone[static_cast<std::size_t>(lane)];
+      solve(Coefficients<double>{0.3, 0.1 * lane, 1}, one, fixed);
       for (std::size_t k = 2; k < 10; ++k) {
         const auto& of_pack = pack.*series_of_solution<Four>()[k];
         const auto& of_one = one.*series_of_solution<double>()[k];
@@ -164,11 +163,11 @@ TEST(PlanarFloor, series_of_four_blocks_in_a_pack_are_those_of_each_alone) {
       }
     }
   };
-  compare([](const auto& c, auto& s, Fixed& fixed) { planar::sliding(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { planar::rocking(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { planar::slide_rocking(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { planar::flying(c, s, fixed); });
+  compare([](const auto& c, auto& s, Fixed& fixed) { sliding(c, s, fixed); });
+  compare([](const auto& c, auto& s, Fixed& fixed) { rocking(c, s, fixed); });
+  compare([](const auto& c, auto& s, Fixed& fixed) { slide_rocking(c, s, fixed); });
+  compare([](const auto& c, auto& s, Fixed& fixed) { flying(c, s, fixed); });
 }
 
 }  // namespace
-}  // namespace topple::test
+}  // namespace topple::planar::test

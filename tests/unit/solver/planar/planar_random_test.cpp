@@ -6,17 +6,13 @@
 
 #include "unit/solver/planar/planar_blocks.h"
 
-namespace topple::test {
+namespace topple::planar::test {
 namespace {
 
-using planar::Event;
-using planar::Mode;
-using planar::Side;
-
 struct RandomCase {
-  planar::Block block;
+  Block block;
   std::vector<Shake> shakes;
-  planar::State start;
+  State start;
 };
 
 RandomCase random_case(unsigned seed, bool shaken = true) {
@@ -26,7 +22,7 @@ RandomCase random_case(unsigned seed, bool shaken = true) {
   };
   const auto chance = [&](double share) { return within(0, 1) < share; };
   RandomCase of{uniform_block(within(0.05, 0.5), within(0.2, 1.2), 0), {}, {}};
-  planar::Block& block = of.block;
+  Block& block = of.block;
   block.inertia *= within(0.5, 1.5);
   if (chance(0.5)) block.left = within(0.05, 0.5);
   block.kinetic_friction = chance(0.1) ? 0 : chance(0.1) ? 1.5 : within(0, 1.2);
@@ -41,35 +37,34 @@ RandomCase random_case(unsigned seed, bool shaken = true) {
   // without friction it slides from the start: from rest the floor would pass it with the speed 0 again and
   // again
   const bool slides = block.kinetic_friction == 0 || chance(0.3);
-  of.start = planar::standing(block, tilt, 0, slides ? within(-2, 2) : 0);
+  of.start = standing(tilt, 0, slides ? within(-2, 2) : 0);
   if (chance(0.2)) {
-    of.start = planar::referred(block, of.start, Mode::flight, Side::right);
+    of.start = referred(block, of.start, Mode::flight, Side::right);
     of.start.z += within(0.01, 0.5), of.start.rate = within(-2, 2);
   }
   return of;
 }
 
-PlanarRun run_case(const RandomCase& of, double until, const planar::Controls& controls = {},
-                   std::size_t most = 1000, const SeenStep& seen = nullptr) {
-  const planar::ShakenPlane plane{of.shakes};
-  return run_planar(of.block, planar::shaken(plane), of.start, until, controls, most, seen);
+PlanarRun run_case(const RandomCase& of, double until, const Controls& controls = {}, std::size_t most = 1000,
+                   const SeenStep& seen = nullptr) {
+  const ShakenPlane plane{of.shakes};
+  return run_planar(of.block, shaken(plane), of.start, until, controls, most, seen);
 }
 
 // Forces by differences of the centre of gravity's velocity, so from nothing but the motion.
-void expect_laws(const planar::Block& block, const planar::Step& step, double share) {
+void expect_laws(const Block& block, const Step& step, double share) {
   constexpr double k_apart = 2e-6, k_exact = 1e-6;
   if (step.length < 1e-4) return;
   const double since = k_apart + share * (step.length - 2 * k_apart), t = step.start.time + since;
-  const planar::State s = planar::state_within(step, t), before = planar::state_within(step, t - k_apart),
-                      after = planar::state_within(step, t + k_apart);
-  const planar::Motion v0 = planar::centre_of_gravity(block, before),
-                       v1 = planar::centre_of_gravity(block, after);
+  const State s = state_within(step, t), before = state_within(step, t - k_apart),
+              after = state_within(step, t + k_apart);
+  const Motion v0 = centre_of_gravity(block, before), v1 = centre_of_gravity(block, after);
   const double f = (v1.x_velocity - v0.x_velocity) / (2 * k_apart) + step.solution.horizontal.at(since);
   const double n = (v1.z_velocity - v0.z_velocity) / (2 * k_apart) + step.solution.vertical.at(since);
   const double scale = k_exact * (10 + std::abs(n) + s.rate * s.rate * s.rate * s.rate);
   const double torque = block.inertia_over_mass() * (after.rate - before.rate) / (2 * k_apart);
   for (const Side side : {Side::left, Side::right}) {
-    const planar::State edge = planar::referred(block, s, Mode::rock, side);
+    const State edge = referred(block, s, Mode::rock, side);
     EXPECT_GT(edge.z, -1e-9);
   }
   EXPECT_GT(n, -scale);
@@ -84,7 +79,7 @@ void expect_laws(const planar::Block& block, const planar::Step& step, double sh
     EXPECT_LE(-block.height * f, block.right * n + scale);
     EXPECT_LE(block.height * f, block.left * n + scale);
   } else {
-    const planar::Lever r = planar::lever(block, s.side, s.tilt);
+    const Lever r = lever(block, s.side, s.tilt);
     EXPECT_NEAR(torque, r.z * f - r.x * n, scale);
   }
   if (s.slip != 0) {
@@ -101,7 +96,7 @@ TEST(PlanarRandom, forces_keep_newtons_and_coulombs_laws) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const RandomCase of = random_case(seed);
-    const PlanarRun run = run_case(of, 4, {}, 1000, [&](const planar::Step& step) {
+    const PlanarRun run = run_case(of, 4, {}, 1000, [&](const Step& step) {
       ++steps[static_cast<std::size_t>(step.start.mode)];
       for (const double share : {0.03, 0.3, 0.5, 0.8, 0.99}) expect_laws(of.block, step, share);
     });
@@ -117,14 +112,14 @@ TEST(PlanarRandom, no_event_is_missed) {
   for (unsigned seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const RandomCase of = random_case(seed);
-    planar::Controls fine;
+    Controls fine;
     fine.longest = 1e-3;
     const PlanarRun run = run_case(of, 4, {}, 12), other = run_case(of, 4, fine, 12);
     ASSERT_EQ(run.events.size(), other.events.size());
     for (std::size_t i = 0; i < run.events.size(); ++i) {
       ASSERT_EQ(run.events[i].event, other.events[i].event)
-          << i << ' ' << planar::word(run.events[i].event) << ' ' << run.events[i].after.time << ' '
-          << planar::word(other.events[i].event) << ' ' << other.events[i].after.time;
+          << i << ' ' << word(run.events[i].event) << ' ' << run.events[i].after.time << ' '
+          << word(other.events[i].event) << ' ' << other.events[i].after.time;
       ASSERT_NEAR(run.events[i].after.time, other.events[i].after.time, 1e-9) << i;
     }
     events += run.events.size();
@@ -136,16 +131,16 @@ TEST(PlanarRandom, energy_is_kept_between_events_and_never_made) {
   for (unsigned seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE(seed);
     const RandomCase of = random_case(seed, false);
-    double energy = planar::energy(of.block, of.start);
-    run_case(of, 4, {}, 1000, [&](const planar::Step& step) {
-      const double begin = planar::energy(of.block, step.start);
-      const double end = planar::energy(of.block, planar::state_within(step, step.start.time + step.length));
-      EXPECT_LE(begin, energy + 1e-10);
+    double left = energy(of.block, of.start);
+    run_case(of, 4, {}, 1000, [&](const Step& step) {
+      const double begin = energy(of.block, step.start);
+      const double end = energy(of.block, state_within(step, step.start.time + step.length));
+      EXPECT_LE(begin, left + 1e-10);
       if (step.start.slip == 0 || of.block.kinetic_friction == 0)
         EXPECT_NEAR(end, begin, 1e-10);
       else
         EXPECT_LE(end, begin + 1e-10);
-      energy = end;
+      left = end;
     });
     if (HasFailure()) break;
   }
@@ -153,13 +148,13 @@ TEST(PlanarRandom, energy_is_kept_between_events_and_never_made) {
 
 // A fall without events; the term of order n is the last of the accelerations: error h^(n+1).
 TEST(PlanarRandom, order_of_convergence_is_that_of_the_series) {
-  const planar::Block block = uniform_block(0.19, 0.895, 1.5);
+  const Block block = uniform_block(0.19, 0.895, 1.5);
   const Shake shake = sine_shake(1, 2);
-  const planar::ShakenPlane plane{{&shake, 1}};
+  const ShakenPlane plane{{&shake, 1}};
   const auto tilt = [&](double step, int order) {
-    planar::Controls controls;
+    Controls controls;
     controls.tolerance = 0, controls.longest = step, controls.order = order;
-    return run_planar(block, planar::shaken(plane), planar::standing(block, 0.15), 0.8, controls).state.tilt;
+    return run_planar(block, shaken(plane), standing(0.15), 0.8, controls).state.tilt;
   };
   const double exact = tilt(0.005, 16);
   for (const int order : {3, 5, 7, 9, 10, 12}) {
@@ -171,14 +166,14 @@ TEST(PlanarRandom, order_of_convergence_is_that_of_the_series) {
 TEST(PlanarRandom, copied_state_goes_on_with_the_same_bits) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     const RandomCase of = random_case(seed);
-    const planar::ShakenPlane plane{of.shakes};
-    const planar::Floor floor = planar::shaken(plane);
-    planar::State whole = of.start, parts = of.start;
-    planar::Step step;
+    const ShakenPlane plane{of.shakes};
+    const Floor floor = shaken(plane);
+    State whole = of.start, parts = of.start;
+    Step step;
     for (int i = 0; i < 30 && whole.time < 4; ++i) {
-      planar::Step fresh;
-      planar::advance(of.block, floor, {}, 4, whole, step);
-      planar::advance(of.block, floor, {}, 4, parts, fresh);
+      Step fresh;
+      advance(of.block, floor, {}, 4, whole, step);
+      advance(of.block, floor, {}, 4, parts, fresh);
       EXPECT_EQ(whole.tilt, parts.tilt);
       EXPECT_EQ(whole.x, parts.x);
       EXPECT_EQ(whole.time, parts.time);
@@ -187,4 +182,4 @@ TEST(PlanarRandom, copied_state_goes_on_with_the_same_bits) {
 }
 
 }  // namespace
-}  // namespace topple::test
+}  // namespace topple::planar::test

@@ -3,15 +3,10 @@
 
 #include "unit/solver/planar/planar_blocks.h"
 
-namespace topple::test {
+namespace topple::planar::test {
 namespace {
 
-using planar::Event;
-using planar::Mode;
-
-constexpr double k_gravity = 9.80665;
-
-planar::Block slab(double friction) {
+Block slab(double friction) {
   return uniform_block(0.5, 0.01, friction);
 }
 
@@ -33,11 +28,11 @@ SlipStop slip_stop(double eta) {
 TEST(PlanarSliding, slip_with_stops_is_the_closed_form) {
   const double a0 = 7, w = 2 * k_pi * 2;
   for (const double friction : {0.45, 0.5, 0.6, 0.7}) {
-    const planar::Block block = slab(friction);
+    const Block block = slab(friction);
     const Shake shake = sine_shake(a0, 2);
-    const planar::ShakenPlane plane{{&shake, 1}};
-    const SlipStop exact = slip_stop(friction * k_gravity / a0);
-    const PlanarRun run = run_planar(block, planar::shaken(plane), planar::standing(block), 4, {}, 16);
+    const ShakenPlane plane{{&shake, 1}};
+    const SlipStop exact = slip_stop(friction * k_standard_gravity / a0);
+    const PlanarRun run = run_planar(block, shaken(plane), standing(), 4, {}, 16);
     ASSERT_EQ(run.events.size(), 16U) << friction;
     double x = 0;
     for (std::size_t half = 0; half < 8; ++half) {
@@ -56,13 +51,13 @@ TEST(PlanarSliding, slip_with_stops_is_the_closed_form) {
 TEST(PlanarSliding, slip_without_stops_has_the_closed_peak_to_peak) {
   const double a0 = 7, w = 2 * k_pi * 2;
   for (const double friction : {0., 0.1, 0.3}) {
-    const planar::Block block = slab(friction);
+    const Block block = slab(friction);
     const Shake shake = sine_shake(a0, 2);
-    const planar::ShakenPlane plane{{&shake, 1}};
+    const ShakenPlane plane{{&shake, 1}};
     // without friction the floor moves on beneath: x = (a0/w^2)(sin wt - w t)
-    const planar::State start = planar::standing(block, 0, 0, friction == 0 ? a0 / w : 0);
-    const PlanarRun run = run_planar(block, planar::shaken(plane), start, 60);
-    const double eta = friction * k_gravity / a0;
+    const State start = standing(0, 0, friction == 0 ? a0 / w : 0);
+    const PlanarRun run = run_planar(block, shaken(plane), start, 60);
+    const double eta = friction * k_standard_gravity / a0;
     const double exact = 2 * a0 / (w * w) * std::sqrt(1 - std::pow(k_pi * eta / 2, 2));
     ASSERT_GT(run.events.size(), 200U);
     const PlanarEvent &last = run.events.back(), &before = run.events[run.events.size() - 2];
@@ -72,21 +67,21 @@ TEST(PlanarSliding, slip_without_stops_has_the_closed_peak_to_peak) {
 }
 
 TEST(PlanarSliding, static_friction_holds_until_it_is_exceeded) {
-  planar::Block block = slab(0.3);
+  Block block = slab(0.3);
   block.static_friction = 0.5;
   const Shake shake = sine_shake(7, 2);
-  const planar::ShakenPlane plane{{&shake, 1}};
-  const PlanarRun run = run_planar(block, planar::shaken(plane), planar::standing(block), 2);
-  EXPECT_NEAR(run.events[0].after.time, std::asin(0.5 * k_gravity / 7) / (4 * k_pi), 1e-9);
-  const planar::Block weak = slab(0.3);
-  EXPECT_NEAR(run_planar(weak, planar::shaken(plane), planar::standing(weak), 2).events[0].after.time,
-              std::asin(0.3 * k_gravity / 7) / (4 * k_pi), 1e-9);
+  const ShakenPlane plane{{&shake, 1}};
+  const PlanarRun run = run_planar(block, shaken(plane), standing(), 2);
+  EXPECT_NEAR(run.events[0].after.time, std::asin(0.5 * k_standard_gravity / 7) / (4 * k_pi), 1e-9);
+  const Block weak = slab(0.3);
+  EXPECT_NEAR(run_planar(weak, shaken(plane), standing(), 2).events[0].after.time,
+              std::asin(0.3 * k_standard_gravity / 7) / (4 * k_pi), 1e-9);
 }
 
-Mode mode_under(const planar::Block& block, const SteadyFloor& floor) {
-  planar::State state = planar::standing(block);
-  planar::Step step;
-  planar::advance(block, moved(floor), {}, 1e-9, state, step);
+Mode mode_under(const Block& block, const SteadyFloor& floor) {
+  State state = standing();
+  Step step;
+  advance(block, moved(floor), {}, 1e-9, state, step);
   return step.start.mode;
 }
 
@@ -98,7 +93,7 @@ TEST(PlanarSliding, modes_meet_where_shenton_states) {
   constexpr double k_aside = 1e-12;
   for (const double s : {1.5, 3., 8.})
     for (const double vertical : {0., -3., 4.}) {
-      const double g = k_gravity + vertical;
+      const double g = k_standard_gravity + vertical;
       const auto mode = [&](double a, double friction) {
         return mode_under(uniform_block(half_base, s * half_base, friction), {a * g, vertical});
       };
@@ -117,29 +112,28 @@ TEST(PlanarSliding, modes_meet_where_shenton_states) {
 }
 
 TEST(PlanarSliding, without_friction_the_centre_of_gravity_of_a_tilted_block_falls_straight) {
-  const planar::Block block = uniform_block(0.19, 0.895, 0);
-  const planar::State start = planar::standing(block, 0.1);
-  const double x = planar::centre_of_gravity(block, start).x;
-  const PlanarRun run = run_planar(block, planar::floor_at_rest(), start, 5);
+  const Block block = uniform_block(0.19, 0.895, 0);
+  const State start = standing(0.1);
+  const double x = centre_of_gravity(block, start).x;
+  const PlanarRun run = run_planar(block, floor_at_rest(), start, 5);
   ASSERT_GT(run.events.size(), 3U);
-  for (const PlanarEvent& one : run.events)
-    EXPECT_NEAR(planar::centre_of_gravity(block, one.after).x, x, 1e-11);
+  for (const PlanarEvent& one : run.events) EXPECT_NEAR(centre_of_gravity(block, one.after).x, x, 1e-11);
 }
 
 TEST(PlanarSliding, a_floor_that_falls_faster_than_bodies_do_loses_the_block) {
-  const planar::Block block = uniform_block(0.19, 0.895, 0.5);
+  const Block block = uniform_block(0.19, 0.895, 0.5);
   const double a0 = 15, w = 2 * k_pi * 1.5;
   const Shake shake = sine_shake(-a0, 1.5, Vec3::UnitZ());
-  const planar::ShakenPlane plane{{&shake, 1}};
-  const PlanarRun run = run_planar(block, planar::shaken(plane), planar::standing(block), 3, {}, 2);
+  const ShakenPlane plane{{&shake, 1}};
+  const PlanarRun run = run_planar(block, shaken(plane), standing(), 3, {}, 2);
   ASSERT_EQ(run.events.size(), 2U);
   EXPECT_EQ(run.events[0].event, Event::take_off);
-  const double leaves = std::asin(k_gravity / a0);
+  const double leaves = std::asin(k_standard_gravity / a0);
   EXPECT_NEAR(run.events[0].after.time, leaves / w, 1e-9);
   // gap = -g t^2/2 + (a0/w^2)(cos phi t w - (sin(phi + w t) - sin phi))
   const double t = run.events[1].after.time - leaves / w;
   const double gap =
-      -k_gravity * t * t / 2 +
+      -k_standard_gravity * t * t / 2 +
       a0 / (w * w) * (std::cos(leaves) * w * t - (std::sin(leaves + w * t) - std::sin(leaves)));
   EXPECT_GT(t, 0.1);
   EXPECT_NEAR(gap, 0, 1e-9);
@@ -148,18 +142,67 @@ TEST(PlanarSliding, a_floor_that_falls_faster_than_bodies_do_loses_the_block) {
 }
 
 TEST(PlanarSliding, a_thrown_block_flies_a_parabola_until_an_edge_lands) {
-  const planar::Block block = uniform_block(0.19, 0.895, 0.5);
-  planar::State start;
+  const Block block = uniform_block(0.19, 0.895, 0.5);
+  State start;
   start.mode = Mode::flight;
   start.z = 2, start.tilt = 0.3, start.x_velocity = 1.1, start.z_velocity = 2, start.rate = 0.7;
-  const PlanarRun run = run_planar(block, planar::floor_at_rest(), start, 3, {}, 1);
+  const PlanarRun run = run_planar(block, floor_at_rest(), start, 3, {}, 1);
   ASSERT_EQ(run.last, Event::landing);
-  const planar::State& hit = run.events[0].before;
+  const State& hit = run.events[0].before;
   EXPECT_NEAR(hit.x, 1.1 * hit.time, 1e-12);
-  EXPECT_NEAR(hit.z, 2 + 2 * hit.time - k_gravity / 2 * hit.time * hit.time, 1e-12);
+  EXPECT_NEAR(hit.z, 2 + 2 * hit.time - k_standard_gravity / 2 * hit.time * hit.time, 1e-12);
   EXPECT_NEAR(hit.tilt, 0.3 + 0.7 * hit.time, 1e-12);
   EXPECT_NEAR(hit.z, block.right * std::sin(hit.tilt) + block.height * std::cos(hit.tilt), 1e-12);
 }
 
+// A rod that slips forward on its edge, mu X Z beyond k^2 + X^2: no force that friction allows keeps the edge
+// out of the floor (Painleve), so it stops at once, about the edge with the angular momentum that it had
+// there.
+TEST(PlanarSliding, a_slip_that_would_press_the_edge_into_the_floor_stops_at_once) {
+  const Block block = uniform_block(0.02, 1, 1.6);
+  const double tilt = -0.6, speed = 0.5;  // on the left edge, the centre of gravity beyond it
+  State state = standing(tilt, 0, speed);
+  const Lever r = lever(block, Side::left, tilt);
+  ASSERT_LT(1 + r.x * (r.x + block.kinetic_friction * r.z) / block.inertia_over_mass(), 0);
+  Step step;
+  advance(block, floor_at_rest(), {}, 1e-6, state, step);
+  EXPECT_EQ(step.start.mode, Mode::rock);
+  EXPECT_NEAR(step.start.rate, -r.z * speed / (block.inertia_over_mass() + r.x * r.x + r.z * r.z), 1e-14);
+}
+
+TEST(PlanarSliding, a_floor_whose_velocity_jumps_leaves_the_block_behind) {
+  const Block block = slab(0.3);
+  const PlanarRun run = run_planar(block, floor_at_rest(), left_behind(standing(), 1.2), 3);
+  const double decelerates = 0.3 * k_standard_gravity;
+  EXPECT_NEAR(run.first(Event::stick).after.time, 1.2 / decelerates, 1e-12);
+  EXPECT_NEAR(run.state.x, -1.2 * 1.2 / (2 * decelerates), 1e-12);
+  EXPECT_EQ(run.state.mode, Mode::rest);
+}
+
+// The impulse of an impact beyond the cone of friction: momentum along the floor by kinetic friction alone.
+TEST(PlanarSliding, an_impact_beyond_the_cone_of_friction_slips) {
+  Block block = uniform_block(0.3, 0.8, 1.5);
+  const double tilt = 0.1;
+  const State start = referred(block, standing(tilt), Mode::flight, Side::right);
+  for (const double friction : {0.05, 0.1, 1.5}) {
+    block.static_friction = block.kinetic_friction = friction;
+    State high = start;
+    high.z += 0.1;
+    const PlanarRun run = run_planar(block, floor_at_rest(), high, 3, {}, 1);
+    ASSERT_EQ(run.last, Event::landing);
+    const Motion before = centre_of_gravity(block, run.events[0].before),
+                 after = centre_of_gravity(block, run.state);
+    const double push = after.z_velocity - before.z_velocity, drag = after.x_velocity - before.x_velocity;
+    EXPECT_EQ(run.state.mode, friction < 1 ? Mode::slide_rock : Mode::rock);
+    if (friction < 1)
+      EXPECT_NEAR(drag, -run.state.slip * friction * push, 1e-14);
+    else
+      EXPECT_LT(std::abs(drag), friction * push);
+    const Lever r = lever(block, run.state.side, run.state.tilt);
+    EXPECT_NEAR(block.inertia_over_mass() * (run.state.rate - run.events[0].before.rate),
+                r.z * drag - r.x * push, 1e-14);
+  }
+}
+
 }  // namespace
-}  // namespace topple::test
+}  // namespace topple::planar::test
