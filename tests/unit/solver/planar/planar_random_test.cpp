@@ -21,7 +21,9 @@ RandomCase random_case(unsigned seed, bool shaken = true) {
     return low + (high - low) * static_cast<double>(rng()) / 0x1p32;
   };
   const auto chance = [&](double share) { return within(0, 1) < share; };
-  RandomCase of{uniform_block(within(0.05, 0.5), within(0.2, 1.2), 0), {}, {}};
+  // one draw a statement: compilers order arguments as they like
+  const double half_base = within(0.05, 0.5), half_height = within(0.2, 1.2);
+  RandomCase of{uniform_block(half_base, half_height, 0), {}, {}};
   Block& block = of.block;
   block.inertia *= within(0.5, 1.5);
   if (chance(0.5)) block.left = within(0.05, 0.5);
@@ -29,8 +31,10 @@ RandomCase random_case(unsigned seed, bool shaken = true) {
   block.static_friction = block.kinetic_friction * (chance(0.5) ? 1 : within(1, 1.5));
   if (chance(0.3)) block.restitution = within(0, 1);
   if (shaken) {
-    of.shakes.push_back(sine_shake(within(0, 12), within(0.3, 5)));
-    if (chance(0.5)) of.shakes.push_back(sine_shake(within(0, 14), within(0.3, 5), Vec3::UnitZ()));
+    const double across = within(0, 12), frequency = within(0.3, 5);
+    of.shakes.push_back(sine_shake(across, frequency));
+    const double up = within(0, 14), frequency_up = within(0.3, 5);
+    if (chance(0.5)) of.shakes.push_back(sine_shake(up, frequency_up, Vec3::UnitZ()));
     if (chance(0.3)) of.shakes[0].kind = Shake::Kind::pulse, of.shakes[0].duration = within(0.1, 0.8);
   }
   const double tilt = chance(0.5) ? within(-0.3, 0.3) : 0;
