@@ -95,6 +95,16 @@ void expect_laws(const Block& block, const Step& step, double share) {
   }
 }
 
+// The forces by which modes are chosen are those of the series.
+void expect_forces_of_series(const Block& block, const Step& step) {
+  const Solution<double>& s = step.solution;
+  if (step.start.mode != Mode::rock && step.start.mode != Mode::slide_rock) return;
+  const EdgeForces f = edge_forces({block, s.horizontal[0], s.vertical[0]}, step.start, step.start.slip);
+  EXPECT_NEAR(f.normal, s.normal[0], 1e-9 * (1 + std::abs(f.normal)));
+  EXPECT_NEAR(f.acceleration, s.rate.or_zero(1), 1e-9 * (1 + std::abs(f.acceleration)));
+  if (step.start.slip == 0) EXPECT_NEAR(f.tangential, s.tangential[0], 1e-9 * (1 + std::abs(f.tangential)));
+}
+
 TEST(PlanarRandom, forces_keep_newtons_and_coulombs_laws) {
   std::array<int, 5> steps{};
   for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -102,6 +112,7 @@ TEST(PlanarRandom, forces_keep_newtons_and_coulombs_laws) {
     const RandomCase of = random_case(seed);
     const PlanarRun run = run_case(of, 4, {}, 1000, [&](const Step& step) {
       ++steps[static_cast<std::size_t>(step.start.mode)];
+      expect_forces_of_series(of.block, step);
       for (const double share : {0.03, 0.3, 0.5, 0.8, 0.99}) expect_laws(of.block, step, share);
     });
     EXPECT_NE(run.last, Event::stalled);
