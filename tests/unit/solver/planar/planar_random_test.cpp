@@ -102,7 +102,9 @@ void expect_forces_of_series(const Block& block, const Step& step) {
   const EdgeForces f = edge_forces({block, s.horizontal[0], s.vertical[0]}, step.start, step.start.slip);
   EXPECT_NEAR(f.normal, s.normal[0], 1e-9 * (1 + std::abs(f.normal)));
   EXPECT_NEAR(f.acceleration, s.rate.or_zero(1), 1e-9 * (1 + std::abs(f.acceleration)));
-  if (step.start.slip == 0) EXPECT_NEAR(f.tangential, s.tangential[0], 1e-9 * (1 + std::abs(f.tangential)));
+  if (step.start.slip == 0) {
+    EXPECT_NEAR(f.tangential, s.tangential[0], 1e-9 * (1 + std::abs(f.tangential)));
+  }
 }
 
 TEST(PlanarRandom, forces_keep_newtons_and_coulombs_laws) {
