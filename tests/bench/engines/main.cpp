@@ -1,17 +1,19 @@
-// engines_bench DIR: the same rocking block in every engine that was found when this was built. Writes
-// DIR/engines.csv, .svg and .png and prints the tables.
+// engines_bench DIR [rooms [ROOM]]: the same rocking block in every engine that was found when this was
+// built, then rooms of many boxes in topple and MuJoCo; or only the rooms, or one of them. Writes
+// DIR/engines.csv, .svg and .png and DIR/rooms.csv and prints the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bench/engines/files.h"
 #include "bench/engines/results.h"
+#include "bench/engines/rooms.h"
 #include "solver/study/common/gnuplot.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/rows.h"
@@ -35,14 +37,7 @@ std::vector<Engine> engines() {
   return found;
 }
 
-void write(const std::filesystem::path& path, const std::string& content) {
-  std::ofstream file(path, std::ios::binary);
-  file << content;
-  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
-}
-
-void run(const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
+void run_block(const std::filesystem::path& folder) {
   Results results{engines(), reference(), {}};
   fmt::print("{}, one core\n", study::processor_name());
   for (const Engine& engine : results.engines)
@@ -80,12 +75,16 @@ void run(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) {
-    fmt::print(stderr, "usage: engines_bench DIR\n");
+  const bool only_rooms = count > 2 && std::string(arguments[2]) == "rooms";
+  if (count < 2 || count > 4 || (count > 2 && !only_rooms)) {
+    fmt::print(stderr, "usage: engines_bench DIR [rooms [ROOM]]\n");
     return 2;
   }
   try {
-    run(arguments[1]);
+    const std::filesystem::path folder = arguments[1];
+    std::filesystem::create_directories(folder);
+    if (!only_rooms) run_block(folder);
+    run_rooms(folder, count > 3 ? arguments[3] : "");
   } catch (const std::exception& error) {
     fmt::print(stderr, "engines_bench: {}\n", error.what());
     return 1;

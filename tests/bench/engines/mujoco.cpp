@@ -1,12 +1,10 @@
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
-#include <stdexcept>
 
 #include "bench/engines/block.h"
+#include "bench/engines/mujoco_model.h"
 
 namespace topple::bench {
 namespace {
@@ -31,34 +29,16 @@ std::string description(double h, const Options& options) {
 
 class World {
  public:
-  World(const Case& c, double h, const Options& options) {
-    const std::string text = description(h, options);
-    auto files = std::make_unique<mjVFS>();
-    mj_defaultVFS(files.get());
-    mj_makeEmptyFileVFS(files.get(), "block.xml", static_cast<int>(text.size()));
-    std::memcpy(files->filedata[0], text.data(), text.size());
-    char error[200] = "";
-    model_ = mj_loadXML("block.xml", files.get(), error, sizeof error);
-    mj_deleteVFS(files.get());
-    if (!model_) throw std::runtime_error(std::string("MuJoCo: ") + error);
-    data_ = mj_makeData(model_);
+  World(const Case& c, double h, const Options& options)
+      : model_(mujoco_model(description(h, options))), data_(mj_makeData(model_.get())) {
     const mjtNum start[] = {c.middle_x(), 0, c.middle_z(), std::cos(c.tilt / 2), 0, std::sin(c.tilt / 2), 0};
     std::copy(std::begin(start), std::end(start), data_->qpos);
     model_->opt.gravity[2] = -k_gravity;
   }
-  ~World() {
-    mj_deleteData(data_);
-    mj_deleteModel(model_);
-  }
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
-
   bool step(double floor) {
     model_->opt.gravity[0] = -floor;
-    mj_step(model_, data_);
-    for (const mjWarningStat& warning : data_->warning)
-      if (warning.number > 0) return false;
-    return true;
+    mj_step(model_.get(), data_.get());
+    return !mujoco_gave_up(*data_);
   }
   double tilt() const {
     const mjtNum* q = data_->qpos + 3;
@@ -66,15 +46,14 @@ class World {
   }
 
  private:
-  mjModel* model_;
-  mjData* data_;
+  MujocoModel model_;
+  MujocoData data_;
 };
 
 }  // namespace
 
 Engine mujoco_engine() {
-  mju_user_warning = [](const char*) {
-  };  // else it goes to a file in the working folder; World sees those that count
+  silence_mujoco();
   Engine engine{"MuJoCo", mj_versionString(), "Newton solver, box on a plane", {}};
   // implicit differs from Euler in the derivatives of velocity-dependent forces: here only by its cost
   for (const char* integrator : {"Euler", "RK4"})
