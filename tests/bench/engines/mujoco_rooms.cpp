@@ -16,7 +16,8 @@ constexpr double k_rest = 1;  // s, to come to rest before t = 0 where the scene
 
 struct Options {
   bool elliptic;
-  double time_constant;  ///< s, of solref
+  double softness;  ///< s, root of mass over stiffness of a contact
+  double damping;   ///< over the critical one
 };
 
 /// The box of centre lines about which a body of topple rocks; surfaces are `radius` outside of it.
@@ -49,7 +50,8 @@ std::string body_text(const Body& body, const Box& box, int index) {
       box.half.x(), box.half.y(), box.half.z());
 }
 
-/// The margin of a pair is where contact begins: it makes edges as round as those of topple.
+/// The margin of a pair is where contact begins: it makes edges as round as those of topple. solref is a time
+/// over the damping ratio, and that ratio: whatever bounces, the stiffness is the same.
 std::string room_text(const Setup& setup, double h, const Options& options) {
   const ContactLaw& law = setup.parameters.contact;
   std::string bodies, pairs;
@@ -70,7 +72,7 @@ std::string room_text(const Setup& setup, double h, const Options& options) {
 {}</worldbody><contact>
 {}</contact></mujoco>)",
       h, options.elliptic ? "elliptic" : "pyramidal", options.elliptic ? 10 : 1, law.friction, law.friction,
-      options.time_constant, damping_ratio(law.restitution), bodies, pairs);
+      options.softness / options.damping, options.damping, bodies, pairs);
 }
 
 class MujocoRoom : public RoomSimulation {
@@ -96,7 +98,12 @@ class MujocoRoom : public RoomSimulation {
     const mjtNum* q = data_->qpos + 7 * body + 3;
     return std::acos(std::clamp(1 - 2 * (q[1] * q[1] + q[2] * q[2]), -1., 1.));
   }
-  std::string failure() const override { return "a warning"; }
+  std::string failure() const override {
+    for (int kind = 0; kind < mjNWARNING; ++kind)
+      if (const mjWarningStat& warning = data_->warning[kind]; warning.number > 0)
+        return mju_warningText(kind, warning.lastinfo);
+    return "";
+  }
 
  private:
   void place(int b) {
@@ -124,19 +131,23 @@ class MujocoRoom : public RoomSimulation {
 
 }  // namespace
 
-std::vector<RoomSetting> mujoco_room_settings() {
+std::vector<RoomSetting> mujoco_room_settings(const Setup& setup) {
   silence_mujoco();
+  std::vector<double> dampings{1};
+  if (const double e = setup.parameters.contact.restitution; e > 0) dampings.push_back(damping_ratio(e));
   std::vector<RoomSetting> settings;
-  for (const bool elliptic : {true, false})
-    for (const double constant : {0.02, 0.})
-      for (const double h : {2e-3, 1e-3, 2.5e-4}) {
-        const Options options{elliptic, constant > 0 ? constant : 2 * h};
-        settings.push_back(
-            {"MuJoCo", mj_versionString(),
-             fmt::format("Newton, {}, solref {}", elliptic ? "elliptic" : "pyramidal",
-                         constant > 0 ? fmt::format("{:g} ms", 1e3 * constant) : "2 h"),
-             h, [=](const Setup& setup) { return std::make_unique<MujocoRoom>(setup, h, options); }});
-      }
+  for (const double damping : dampings)
+    for (const bool elliptic : {true, false})
+      for (const double softness : {0.02, 0.})
+        for (const double h : {2e-3, 1e-3, 2.5e-4}) {
+          const Options options{elliptic, softness > 0 ? softness : 2 * h, damping};
+          settings.push_back(
+              {"MuJoCo", mj_versionString(),
+               fmt::format("{}, solref {}{}", elliptic ? "elliptic" : "pyramidal",
+                           softness > 0 ? fmt::format("{:g} ms", 1e3 * softness) : "2 h",
+                           damping < 1 ? ", bounces" : ""),
+               h, [=](const Setup& room) { return std::make_unique<MujocoRoom>(room, h, options); }});
+        }
   return settings;
 }
 

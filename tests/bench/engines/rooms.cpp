@@ -148,10 +148,10 @@ std::string line(const RoomSetting& setting, const RoomTrial& trial, const RoomE
       trial.failure.empty() ? "" : fmt::format(" gave up at {:.3f} s: {}", trial.end, trial.failure));
 }
 
-std::vector<RoomSetting> settings() {
+std::vector<RoomSetting> settings([[maybe_unused]] const Setup& setup) {
   std::vector<RoomSetting> found = topple_room_settings();
 #ifdef WITH_MUJOCO
-  for (RoomSetting& setting : mujoco_room_settings()) found.push_back(std::move(setting));
+  for (RoomSetting& setting : mujoco_room_settings(setup)) found.push_back(std::move(setting));
 #endif
   return found;
 }
@@ -168,7 +168,7 @@ void run(const Room& room, ordered_json& rows) {
     std::fflush(stdout);
   };
   show(by, reference);
-  for (const RoomSetting& setting : settings()) show(setting, run_room(setting, room.setup));
+  for (const RoomSetting& setting : settings(room.setup)) show(setting, run_room(setting, room.setup));
 }
 
 }  // namespace

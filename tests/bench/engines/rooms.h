@@ -40,7 +40,8 @@ struct RoomSetting {
 };
 std::vector<RoomSetting> topple_room_settings();
 RoomSetting topple_room_reference(const Room& room);
-std::vector<RoomSetting> mujoco_room_settings();
+/// Bouncing as the scene does, too, where it does.
+std::vector<RoomSetting> mujoco_room_settings(const Setup& setup);
 
 /// All settings in each room, or in the one that is named. Writes FOLDER/rooms.csv and prints a table of
 /// each.
