@@ -20,7 +20,7 @@ struct Options {
   double damping;   ///< over the critical one
 };
 
-/// The box of centre lines about which a body of topple rocks; surfaces are `radius` outside of it.
+/// The box of centre lines about which a body of topple rocks; its faces are `radius` outside of it.
 struct Box {
   Vec3 middle, half;  ///< m, reference pose
   double radius;      ///< m
@@ -39,40 +39,35 @@ double damping_ratio(double restitution) {
   return decay / std::hypot(decay, std::numbers::pi);
 }
 
-std::string body_text(const Body& body, const Box& box, int index) {
-  const Vec3 arm = body.centre_of_gravity - box.middle;
+/// Centre lines meet the floor, which is raised by their radius; faces meet each other.
+std::string body_text(const Body& body, const Box& box) {
+  const Vec3 arm = body.centre_of_gravity - box.middle, face = box.half.array() + box.radius;
   const Mat3& I = body.inertia;
   return fmt::format(
       R"(<body><freejoint/><inertial pos="{} {} {}" mass="{}" fullinertia="{} {} {} {} {} {}"/>
-<geom name="b{}" type="box" size="{} {} {}"/></body>
+<geom class="base" size="{} {} {}"/><geom class="face" size="{} {} {}"/></body>
 )",
-      arm.x(), arm.y(), arm.z(), body.mass, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2), index,
-      box.half.x(), box.half.y(), box.half.z());
+      arm.x(), arm.y(), arm.z(), body.mass, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2),
+      box.half.x(), box.half.y(), box.half.z(), face.x(), face.y(), face.z());
 }
 
-/// The margin of a pair is where contact begins: it makes edges as round as those of topple. solref is a time
-/// over the damping ratio, and that ratio: whatever bounces, the stiffness is the same.
+/// solref is a time over the damping ratio, and that ratio: whatever bounces, the stiffness is the same.
 std::string room_text(const Setup& setup, double h, const Options& options) {
-  const ContactLaw& law = setup.parameters.contact;
-  std::string bodies, pairs;
-  for (int b = 0; b < setup.model.furniture_total(); ++b) {
-    const Body& body = setup.model.bodies[b];
-    const Box box = box_of(setup.model, body);
-    bodies += body_text(body, box, b);
-    pairs += fmt::format("<pair geom1=\"floor\" geom2=\"b{}\" margin=\"{}\"/>\n", b, box.radius);
-    for (int other = 0; other < b; ++other)
-      pairs += fmt::format("<pair geom1=\"b{}\" geom2=\"b{}\" margin=\"{}\"/>\n", other, b,
-                           box.radius + box_of(setup.model, setup.model.bodies[other]).radius);
-  }
+  const Model& model = setup.model;
+  std::string bodies;
+  for (int b = 0; b < model.furniture_total(); ++b)
+    bodies += body_text(model.bodies[b], box_of(model, model.bodies[b]));
   return fmt::format(
       R"(<mujoco><option timestep="{}" cone="{}" impratio="{}" solver="Newton"/>
-<default><geom contype="0" conaffinity="0"/>
-<pair condim="3" friction="{} {} 0 0 0" solref="{} {}"/></default>
-<worldbody><geom name="floor" type="plane" size="100 100 1"/>
-{}</worldbody><contact>
-{}</contact></mujoco>)",
-      h, options.elliptic ? "elliptic" : "pyramidal", options.elliptic ? 10 : 1, law.friction, law.friction,
-      options.softness / options.damping, options.damping, bodies, pairs);
+<size nconmax="1000" njmax="5000"/>
+<default><geom type="box" condim="3" friction="{} 0 0" solref="{} {}"/>
+<default class="base"><geom contype="1" conaffinity="0"/></default>
+<default class="face"><geom contype="2" conaffinity="2"/></default></default>
+<worldbody><geom type="plane" size="100 100 1" pos="0 0 {}" contype="0" conaffinity="1"/>
+{}</worldbody></mujoco>)",
+      h, options.elliptic ? "elliptic" : "pyramidal", options.elliptic ? 10 : 1,
+      setup.parameters.contact.friction, options.softness / options.damping, options.damping,
+      box_of(model, model.bodies[0]).radius, bodies);
 }
 
 class MujocoRoom : public RoomSimulation {

@@ -149,7 +149,7 @@ std::string line(const RoomSetting& setting, const RoomTrial& trial, const RoomE
 }
 
 std::vector<RoomSetting> settings([[maybe_unused]] const Setup& setup) {
-  std::vector<RoomSetting> found = topple_room_settings();
+  std::vector<RoomSetting> found{topple_room_setting()};
 #ifdef WITH_MUJOCO
   for (RoomSetting& setting : mujoco_room_settings(setup)) found.push_back(std::move(setting));
 #endif

@@ -38,7 +38,7 @@ struct RoomSetting {
   double step;  ///< s; 0: the scene's
   std::function<std::unique_ptr<RoomSimulation>(const Setup&)> start;
 };
-std::vector<RoomSetting> topple_room_settings();
+RoomSetting topple_room_setting();
 RoomSetting topple_room_reference(const Room& room);
 /// Bouncing as the scene does, too, where it does.
 std::vector<RoomSetting> mujoco_room_settings(const Setup& setup);

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "bench/engines/rooms.h"
-#include "solver/study/common/refinement.h"
 
 namespace topple::bench {
 namespace {
@@ -30,11 +29,9 @@ class ToppleRoom : public RoomSimulation {
 
 }  // namespace
 
-std::vector<RoomSetting> topple_room_settings() {
-  return {{"topple", TOPPLE_VERSION, "as the program runs it", 0,
-           [](const Setup& setup) { return std::make_unique<ToppleRoom>(setup); }},
-          {"topple", TOPPLE_VERSION, "half the step, a tenth of the tolerance", 0,
-           [](const Setup& setup) { return std::make_unique<ToppleRoom>(study::refined(setup)); }}};
+RoomSetting topple_room_setting() {
+  return {"topple", TOPPLE_VERSION, "as the program runs it", 0,
+          [](const Setup& setup) { return std::make_unique<ToppleRoom>(setup); }};
 }
 
 RoomSetting topple_room_reference(const Room& room) {
