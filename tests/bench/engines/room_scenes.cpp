@@ -15,13 +15,13 @@ std::string shelves(int along, int across, double gap) {
     for (int j = 0; j < across; ++j)
       copies += fmt::format("[{}, {}, 0], ", i * (depth + gap), j * (width + gap));
   return fmt::format(
-      "topple = 1\n[run]\nduration = \"10 s\"\ntime_step = \"auto\"\nwant = [\"motion\"]\n"
+      "topple = 1\n[run]\nduration = \"6 s\"\ntime_step = \"auto\"\nwant = [\"motion\"]\n"
       "[[shake]]\ntype = \"sine\"\nfrequency = \"1 Hz\"\namplitude = \"300 gal\"\ndirection = [1, 0, 0]\n"
       "[contact]\nfriction = 0.5\n[floor]\n"
       "[[material]]\nname = \"wood\"\nyoung = \"6 GPa\"\npoisson = 0.3\ndensity = \"650 kg/m^3\"\n"
       "[[section]]\nname = \"post\"\nshape = \"solid\"\nsize = [{2}, {2}]\n"
       "[[cabinet]]\nname = \"shelf\"\nsize = [{0}, {1}, 1.77]\nmass = \"150 kg\"\ninertia = \"solid\"\n"
-      "section = \"post\"\nmaterial = \"wood\"\nbase = \"edges\"\nshelves = 3\npanel_thickness = \"15 mm\"\n"
+      "section = \"post\"\nmaterial = \"wood\"\nshelves = 3\npanel_thickness = \"15 mm\"\n"
       "copies = [{3}]\n",
       depth - post, width - post, post, copies);
 }
