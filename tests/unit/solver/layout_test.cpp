@@ -44,7 +44,7 @@ const std::map<std::string, Rooms> k_parts = {
     {"solver",
      {{"solver/math", {}},
       {"solver/model", {"math"}},
-      {"solver/planar", {"model", "math"}},
+      {"solver/planar", {"contact", "model", "math"}},
       {"solver/element", {"model", "math"}},
       {"solver/contact", {"model", "math"}},
       {"solver/state", {"contact", "element", "model", "math"}},

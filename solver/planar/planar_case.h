@@ -1,0 +1,74 @@
+// A body of a model as a planar block, and where it cannot be one.
+//
+// The penalty force holds back the centre line of a contact point at half its width over the floor's face, so
+// that with infinitely stiff contacts a body rocks about the nodes of its base: the planar floor lies that
+// much over the face.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "solver/model/model.h"
+#include "solver/model/parameters.h"
+#include "solver/planar/integrator.h"
+
+namespace topple::planar {
+
+/// Why a body is no planar block.
+enum class Obstacle {
+  none,
+  floor,      ///< no level plane under it, or gravity not straight down
+  held,       ///< supports, loads or anchors
+  base,       ///< no flat base of one contact width
+  law,        ///< the contact law has no limit of stiff contacts in which friction holds and impacts end
+  direction,  ///< it is shaken, moved or tilted out of one vertical plane
+  stands,     ///< does not begin on the floor
+  symmetry,   ///< about that plane: contact points, products of inertia
+  edge,       ///< the base ends in one point to a side
+  between,    ///< contact points of the base between its edges take a part of each landing
+  early,      ///< another contact point meets the floor before it has overturned
+  near,       ///< a wall or body is within its fall
+  jump        ///< the floor's velocity jumps upward or downward
+};
+
+/// An Obstacle is an enumerator and a row of the table in planar_case.cpp.
+struct ObstacleTraits {
+  Obstacle kind;
+  const char* word;
+  const char* phrase;  ///< "a wall or body is within its fall"
+};
+const ObstacleTraits& traits(Obstacle obstacle);
+
+/// A block and the motion that it begins with.
+struct PlanarCase {
+  Block block;
+  State start;          ///< x: from below the centre of gravity in the reference pose, along `along`
+  Vec3 along, across;   ///< unit, horizontal; a tilt is a rotation about `across`
+  Vec3 origin;          ///< m, world: x = z = 0
+  double last_tilt[2];  ///< rad, by Side, at which another contact point meets the floor
+  double farthest;      ///< m, |x| of the centre of gravity up to which nothing else is within reach
+
+  /// Contacts have a restitution e > 0. What bounces on an edge keeps its angular momentum about it, so that
+  /// Housner's ratio is left once it has come to rest there, but it moves meanwhile: with e = 0.5 a cabinet
+  /// that is let go is 0.1 % of its critical angle off after four impacts, one that is shaken 1 %.
+  bool bounces = false;
+
+  double critical(Side side) const;  ///< rad, at which the centre of gravity stands above this edge
+  Controls controls() const;
+};
+
+/// Of a body that starts so. `obstacle`, if asked for: why there is none. Model levels, integrators, wanted
+/// accuracy and the penalty coefficient are the caller's to look at.
+std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,
+                                      std::span<const BodyStart> starts, int body,
+                                      Obstacle* obstacle = nullptr);
+
+/// As body_pose(): of the centre of gravity, m, floor's frame, and from the reference pose.
+struct Pose {
+  Vec3 centre;
+  Quat rotation;
+};
+Pose pose(const PlanarCase& of, const State& state);
+
+}  // namespace topple::planar

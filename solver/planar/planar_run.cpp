@@ -1,0 +1,66 @@
+#include "solver/planar/planar_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/model/excitation.h"
+
+namespace topple::planar {
+namespace {
+
+/// Of the shakes that begin at this instant.
+State jumped(const PlanarCase& of, const std::vector<Shake>& shakes, const State& state) {
+  const Vec3 jump = floor_velocity_jump(shakes, state.time, std::nextafter(state.time, k_never));
+  return jump.isZero(0) ? state : left_behind(state, jump.dot(of.along));
+}
+
+}  // namespace
+
+PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double duration)
+    : case_(of),
+      shakes_(std::move(shakes)),
+      plane_{shakes_, of.along},
+      controls_(of.controls()),
+      duration_(duration),
+      state_(jumped(of, shakes_, of.start)) {
+  observe();
+}
+
+double PlanarRun::next_jump() const {
+  double next = k_never;
+  for (const Shake& shake : shakes_)
+    if (shake.initial_velocity == Shake::Start::jump && shake.start > state_.time)
+      next = std::min(next, shake.start);
+  return next;
+}
+
+Event PlanarRun::advance() {
+  const double jump = next_jump();
+  last_ = topple::planar::advance(case_.block, shaken(plane_), controls_, std::min(duration_, jump), state_,
+                                  step_);
+  observe();
+  if (state_.time == jump) state_ = jumped(case_, shakes_, state_);
+  return last_;
+}
+
+bool PlanarRun::over() const {
+  return state_.time >= duration_ || last_ == Event::overturn || last_ == Event::stalled || left_;
+}
+
+void PlanarRun::observe() {
+  if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
+  left_ = std::abs(centre_of_gravity(case_.block, state_).x) > case_.farthest;
+  const double sign = state_.tilt < 0 ? -1 : 1;
+  const double critical = case_.critical(state_.tilt < 0 ? Side::left : Side::right);
+  if (sign * state_.tilt <= critical) {
+    beyond_since_.reset();
+  } else if (!beyond_since_) {
+    const Series<double>& tilt = step_.solution.tilt;
+    const double fall =
+        step_.length > 0 ? Falls(step_.length, tilt.degree).first(tilt, -sign, critical) : k_never;
+    beyond_since_ = fall < k_never ? step_.start.time + fall : state_.time;
+  }
+}
+
+}  // namespace topple::planar

@@ -1,0 +1,49 @@
+// A run of a planar block on a floor that shakes, and what became of it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/planar/planar_case.h"
+
+namespace topple::planar {
+
+/// The case must outlive the run.
+class PlanarRun {
+ public:
+  /// duration: s.
+  PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double duration);
+  PlanarRun(const PlanarRun&) = delete;
+  PlanarRun& operator=(const PlanarRun&) = delete;
+
+  /// One step, at the end of which the floor's velocity jumps where a shake begins with that. Must not be
+  /// called when over().
+  Event advance();
+  /// Time is up, the block has overturned or got stuck, or something else may be within reach.
+  bool over() const;
+  bool stuck() const { return last_ == Event::stalled; }
+  bool left() const { return left_; }  ///< came within reach of something else: not known what it does
+
+  const State& state() const { return state_; }
+  const Step& step() const { return step_; }                ///< the newest
+  std::optional<double> lifted() const { return lifted_; }  ///< s, first uplift
+  /// s: the tilt has been beyond the critical angle since (as BodyOutcome::beyond_since).
+  std::optional<double> beyond_since() const { return beyond_since_; }
+
+ private:
+  double next_jump() const;
+  void observe();
+
+  const PlanarCase& case_;
+  std::vector<Shake> shakes_;
+  ShakenPlane plane_;
+  Controls controls_;
+  double duration_;
+  State state_;
+  Step step_;
+  Event last_ = Event::none;
+  bool left_ = false;
+  std::optional<double> lifted_, beyond_since_;
+};
+
+}  // namespace topple::planar
