@@ -205,19 +205,16 @@ double meeting_tilt(double ahead, double above, double lift) {
 
 bool meets_early(Candidate& c) {
   const Block& block = c.found.block;
-  for (const Side side : {Side::left, Side::right}) {
-    double& last = c.found.last_tilt[static_cast<std::size_t>(side)];
-    last = Controls().last_tilt;
-    const double sign = side == Side::right ? 1 : -1;
+  double& last = c.found.controls.last_tilt;
+  for (const Side side : {Side::left, Side::right})
     for (const ContactPoint& point : c.points()) {
       const Vec3 at = c.place(point);
-      const double ahead = sign * (at.x() - block.edge(side)), above = at.y() + block.height;
+      const double above = at.y() + block.height, sign = side == Side::right ? 1 : -1;
+      const double ahead = sign * (at.x() - block.edge(side));
       if (above > k_same_place)
         last = std::min(last, meeting_tilt(ahead, above, (point.width - c.width) / 2));
     }
-    if (last < k_last_tilt || last < c.found.critical(side)) return true;
-  }
-  return false;
+  return last < std::max({k_last_tilt, c.found.critical(Side::left), c.found.critical(Side::right)});
 }
 
 /// Least |x| at which the body may come within reach of something else, from its horizontal and vertical
@@ -284,10 +281,6 @@ const ObstacleTraits& traits(Obstacle obstacle) {
 
 double PlanarCase::critical(Side side) const {
   return elementary::atan2(side == Side::right ? block.right : block.left, block.height);
-}
-
-Controls PlanarCase::controls() const {
-  return {.last_tilt = std::min(last_tilt[0], last_tilt[1])};
 }
 
 std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,

@@ -7,7 +7,6 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
@@ -43,19 +42,18 @@ const ObstacleTraits& traits(Obstacle obstacle);
 /// A block and the motion that it begins with.
 struct PlanarCase {
   Block block;
-  State start;          ///< x: from below the centre of gravity in the reference pose, along `along`
-  Vec3 along, across;   ///< unit, horizontal; a tilt is a rotation about `across`
-  Vec3 origin;          ///< m, world: x = z = 0
-  double last_tilt[2];  ///< rad, by Side, at which another contact point meets the floor
-  double farthest;      ///< m, |x| of the centre of gravity up to which nothing else is within reach
+  State start;         ///< x: from below the centre of gravity in the reference pose, along `along`
+  Vec3 along, across;  ///< unit, horizontal; a tilt is a rotation about `across`
+  Vec3 origin;         ///< m, world: x = z = 0
+  Controls controls;   ///< last_tilt: at which another contact point meets the floor, on either side
+  double farthest;     ///< m, |x| of the centre of gravity up to which nothing else is within reach
 
   /// Contacts have a restitution e > 0. What bounces on an edge keeps its angular momentum about it, so that
   /// Housner's ratio is left once it has come to rest there, but it moves meanwhile: with e = 0.5 a cabinet
-  /// that is let go is 0.1 % of its critical angle off after four impacts, one that is shaken 1 %.
+  /// that is let go is 0.3 % of its critical angle off after four impacts, one that is shaken 5 %.
   bool bounces = false;
 
   double critical(Side side) const;  ///< rad, at which the centre of gravity stands above this edge
-  Controls controls() const;
 };
 
 /// Of a body that starts so. `obstacle`, if asked for: why there is none. Model levels, integrators, wanted

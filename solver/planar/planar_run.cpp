@@ -21,7 +21,6 @@ PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double dur
     : case_(of),
       shakes_(std::move(shakes)),
       plane_{shakes_, of.along},
-      controls_(of.controls()),
       duration_(duration),
       state_(jumped(of, shakes_, of.start)) {
   observe();
@@ -37,8 +36,8 @@ double PlanarRun::next_jump() const {
 
 Event PlanarRun::advance() {
   const double jump = next_jump();
-  last_ = topple::planar::advance(case_.block, shaken(plane_), controls_, std::min(duration_, jump), state_,
-                                  step_);
+  last_ = topple::planar::advance(case_.block, shaken(plane_), case_.controls, std::min(duration_, jump),
+                                  state_, step_);
   observe();
   if (state_.time == jump) state_ = jumped(case_, shakes_, state_);
   return last_;

@@ -37,7 +37,6 @@ class PlanarRun {
   const PlanarCase& case_;
   std::vector<Shake> shakes_;
   ShakenPlane plane_;
-  Controls controls_;
   double duration_;
   State state_;
   Step step_;

@@ -37,6 +37,8 @@ struct Case {
 struct Simulation {
   std::function<double()> advance;  ///< takes one step; the time after it, s; NaN: the engine gave up
   std::function<double()> tilt;     ///< rad, towards +x
+  /// rad, at a time within the newest step, s; empty: known at its end alone.
+  std::function<double(double)> tilt_within = {};
 };
 
 /// A point of an engine's grid.
@@ -54,7 +56,8 @@ struct Engine {
 
 inline constexpr double k_steps[] = {1e-4, 2.5e-4, 5e-4, 1e-3, 2e-3, 4e-3};  ///< s, of every engine
 
-Engine topple_engine();
+Engine planar_engine();  ///< topple's planar block
+Engine topple_engine();  ///< its bodies on penalty contacts
 Engine mujoco_engine();
 Engine bullet_engine();
 Engine ode_engine();

@@ -24,7 +24,7 @@ using namespace topple;
 using namespace topple::bench;
 
 std::vector<Engine> engines() {
-  std::vector<Engine> found{topple_engine()};
+  std::vector<Engine> found{planar_engine(), topple_engine()};
 #ifdef WITH_MUJOCO
   found.push_back(mujoco_engine());
 #endif

@@ -11,8 +11,8 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_milli = 1e3;
-constexpr double k_tilt_errors[] = {0.1, 0.03, 0.01, 0.003};  // deg
-constexpr double k_fall_errors[] = {0.3, 0.1, 0.03, 0.01};    // s
+constexpr double k_tilt_errors[] = {0.1, 0.03, 0.01, 0.003, 1e-6};       // deg
+constexpr double k_fall_errors[] = {0.3, 0.1, 0.03, 0.01, 0.003, 1e-6};  // s
 
 ordered_json number(const std::optional<double>& value, double scale = 1) {
   return value ? ordered_json(*value * scale) : ordered_json();
@@ -109,14 +109,14 @@ std::string tables(const Results& results) {
       k_fall / k_degree);
   for (const double gal : k_amplitudes) out += fmt::format(" {:g} gal |", gal);
   out += "\n|---|---|---|---|---|---|---|---|\n| Housner, no sliding | | | | |";
-  for (const double fall : results.theory.falls) out += fmt::format(" {:.3f} |", fall);
+  for (const double fall : results.theory.falls) out += fmt::format(" {:.4f} |", fall);
   out += "\n";
   for (int e = 0; e < static_cast<int>(results.engines.size()); ++e)
     for (const Trial* trial : front(results.trials, e, &Trial::falling)) {
       const Setting& setting = results.engines[e].grid[trial->setting];
       out += fmt::format("| {} | {} | {} | {:.3g} | {:.2g} |", results.engines[e].name, step_text(setting),
                          setting.contact, k_milli * *trial->falling.cpu, *trial->falling.error);
-      for (const auto& fall : trial->falling.falls) out += " " + text(fall, 1, "{:.3f}") + " |";
+      for (const auto& fall : trial->falling.falls) out += " " + text(fall, 1, "{:.4f}") + " |";
       out += "\n";
     }
   out += "\nms per simulated second of the cheapest setting within an error\n";

@@ -5,6 +5,7 @@
 
 #include "bench/engines/block.h"
 #include "solver/io/scene/scene.h"
+#include "solver/planar/planar_run.h"
 #include "solver/run/run.h"
 
 namespace topple::bench {
@@ -71,7 +72,56 @@ Simulation start(const Case& c, const Options& options) {
           }};
 }
 
+planar::PlanarCase planar_case(const Case& c, double tolerance) {
+  planar::Block block;
+  block.mass = k_mass;
+  block.inertia = k_mass * (k_size[0] * k_size[0] + k_size[2] * k_size[2]) / 12;
+  block.left = block.right = k_size[0] / 2;
+  block.height = k_size[2] / 2;
+  block.static_friction = block.kinetic_friction = k_friction;
+  block.gravity = k_gravity;
+  return {.block = block,
+          .start = planar::standing(c.tilt),
+          .along = Vec3::UnitX(),
+          .across = Vec3::UnitY(),
+          .origin = Vec3::Zero(),
+          .controls = {.tolerance = tolerance},
+          .farthest = planar::k_never};
+}
+
+Shake sine(const Case& c) {
+  Shake shake;
+  shake.amplitude = c.amplitude, shake.frequency = c.frequency;
+  return shake;
+}
+
+struct PlanarWorld {
+  PlanarWorld(const Case& c, double tolerance)
+      : block(planar_case(c, tolerance)), run(block, {sine(c)}, 10) {}
+  const planar::PlanarCase block;
+  planar::PlanarRun run;
+};
+
+Simulation start_planar(const Case& c, double tolerance) {
+  auto world = std::make_shared<PlanarWorld>(c, tolerance);
+  return {[world] {
+            if (world->run.over()) return std::nan("");
+            world->run.advance();
+            return world->run.state().time;
+          },
+          [world] { return world->run.state().tilt; },
+          [world](double time) { return planar::state_within(world->run.step(), time).tilt; }};
+}
+
 }  // namespace
+
+Engine planar_engine() {
+  Engine engine{"topple planar", TOPPLE_VERSION, "a planar block, from event to event", {}};
+  for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11})
+    engine.grid.push_back({0, fmt::format("planar, tolerance {:g}", tolerance),
+                           [=](const Case& c) { return start_planar(c, tolerance); }});
+  return engine;
+}
 
 Engine topple_engine() {
   Engine engine{"topple",

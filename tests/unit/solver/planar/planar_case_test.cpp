@@ -197,7 +197,7 @@ TEST(PlanarCase, block_is_that_of_the_base_and_the_centre_of_gravity) {
   EXPECT_NEAR(found->block.height, 0.895, 1e-4);
   EXPECT_NEAR(found->block.mass, 40, 1e-2);
   EXPECT_NEAR(found->block.inertia, 11, 1e-2);
-  EXPECT_NEAR(found->last_tilt[0], k_pi / 2, 1e-3);
+  EXPECT_NEAR(found->controls.last_tilt, k_pi / 2, 1e-3);
 }
 
 TEST(PlanarCase, says_what_stands_in_the_way) {
