@@ -63,10 +63,17 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
   return text;
 }
 
+std::string models_in_words(const study::OverturnPlan& plan, const study::OverturnMap& map) {
+  if (map.planar == map.run) return fmt::format("{} runs as planar blocks\n", map.run);
+  const std::string why = study::why_not_planar(plan);
+  return fmt::format("{} of {} runs as planar blocks{}\n", map.planar, map.run,
+                     why.empty() ? "" : "; the scene itself is none: " + why);
+}
+
 Findings overturn_findings(const study::OverturnPlan& plan, const study::OverturnMap& map) {
   double cpu = 0;
   for (const study::OverturnPoint& point : map.points) cpu += point.cpu;
-  ordered_json entries{{"run", map.run}, {"of", map.of}, {"cpu_s", cpu}};
+  ordered_json entries{{"run", map.run}, {"of", map.of}, {"planar", map.planar}, {"cpu_s", cpu}};
   entries.update(map_as_json(plan, map));
   entries["rows"] = rows_as_json(plan, map);
   return {
@@ -87,7 +94,7 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
       .entries = entries,
       .chart = [&plan, &map](const std::string& origin,
                              study::ChartFormat format) { return overturn_chart(plan, map, origin, format); },
-      .text = picture(plan, map) + fit_in_words(plan, map),
+      .text = picture(plan, map) + fit_in_words(plan, map) + models_in_words(plan, map),
       .pace = fmt::format(", {:.3g} ms CPU time a run", 1e3 * cpu / std::max(1, map.run))};
 }
 

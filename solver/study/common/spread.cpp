@@ -16,12 +16,17 @@ Interval wilson(int hits, int trials) {
   return {std::max((middle - half) / scale, 0.), std::min((middle + half) / scale, 1.)};
 }
 
-Setup shaken_by(const Setup& setup, double factor) {
-  Setup changed = setup;
-  for (Shake& shake : changed.parameters.shakes) {
+std::vector<Shake> shaken_by(std::vector<Shake> shakes, double factor) {
+  for (Shake& shake : shakes) {
     shake.amplitude *= factor;
     shake.scale *= factor;
   }
+  return shakes;
+}
+
+Setup shaken_by(const Setup& setup, double factor) {
+  Setup changed = setup;
+  changed.parameters.shakes = shaken_by(setup.parameters.shakes, factor);
   return changed;
 }
 

@@ -21,6 +21,9 @@ struct Interval {
 /// Source: E. B. Wilson, J. Am. Stat. Assoc. 22, 1927, 209-212.
 Interval wilson(int hits, int trials);
 
+/// Amplitudes and scales times `factor`.
+std::vector<Shake> shaken_by(std::vector<Shake> shakes, double factor);
+
 /// The same scene with the amplitude or scale of every shake times `factor`.
 Setup shaken_by(const Setup& setup, double factor);
 

@@ -9,6 +9,7 @@
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/study/common/measure.h"
+#include "solver/study/common/rows.h"
 
 namespace topple::study {
 namespace {
@@ -37,6 +38,14 @@ std::vector<std::string> additions(const io::Scene& scene) {
   if (!run || !run->find("want")) out.push_back("run.want=[\"motion\"]");
   if (!run || !run->find("stop_when")) out.push_back("run.stop_when=all-overturned");
   return out;
+}
+
+/// Before anything shakes. `edit`: that of the axis's key.
+void set_at_once(const Model& model, const Axis& axis, int place, Edit edit, Parameters& parameters) {
+  constexpr double k_before = -1e9;  // s
+  edit.value = edited_value(parameters, edit.key, edit.index);
+  edit.value.x() = axis.in_si(place);
+  apply(edit, model, k_before, parameters);
 }
 
 }  // namespace
@@ -80,52 +89,127 @@ std::vector<int> case_order(const OverturnPlan& plan) {
   return order;
 }
 
+struct OverturnRunner::Row {
+  std::string status = "completed";
+  Fallen fallen = {};
+  bool planar = false, gave_up = false;
+
+  std::string text(double cpu) const {
+    ordered_json fell = ordered_json::array();
+    for (const std::optional<double>& time : fallen.fell) fell.push_back(or_null(time));
+    ordered_json row{{"status", status}, {"fell", fell}, {"lifted", fallen.lifted}, {"cpu_s", cpu}};
+    if (planar) row["planar"] = true;
+    return row.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  }
+};
+
+namespace {
+
+Setup read_scene(const OverturnPlan& plan, std::vector<std::string> changes) {
+  changes.insert(changes.begin(), plan.set.begin(), plan.set.end());
+  return io::parse_scene(plan.scene.text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
+}
+
+/// Shakes at a point, by edits; none where the axes change something else, or when a shake begins.
+std::optional<std::vector<Shake>> edited_shakes(const OverturnPlan& plan, const Setup& own, int point) {
+  Parameters parameters = own.parameters;
+  for (const auto& [axis, place] :
+       {std::pair(&plan.x, point % plan.x.count()), std::pair(&plan.y, point / plan.x.count())}) {
+    std::optional<Edit> edit = io::parse_edit_key(axis->key);
+    if (axis->table != "shake" || !edit) return std::nullopt;
+    set_at_once(own.model, *axis, place, *edit, parameters);
+  }
+  for (std::size_t k = 0; k < parameters.shakes.size(); ++k)
+    if (parameters.shakes[k].start != own.parameters.shakes[k].start) return std::nullopt;
+  return parameters.shakes;
+}
+
+}  // namespace
+
+std::string why_not_planar(const OverturnPlan& plan) {
+  std::string why;
+  planar_cases(read_scene(plan, {}), &why);
+  return why;
+}
+
+void OverturnRunner::read(int point) {
+  setup_.reset();
+  trouble_.clear();
+  try {
+    setup_ = read_scene(
+        *plan_, {plan_->x.change(point % plan_->x.count()), plan_->y.change(point / plan_->x.count())});
+  } catch (const InputError& error) {
+    trouble_ = error.what();
+  }
+}
+
+void OverturnRunner::begin(int point) {
+  const bool first = point_ < 0;
+  point_ = point;
+  setup_.reset();
+  trouble_.clear();
+  planar_.clear();
+  if (first) {
+    own_ = read_scene(*plan_, {});
+    if (planar_cases(*own_).empty()) own_.reset();
+  }
+  if (own_)
+    if (std::optional<std::vector<Shake>> shakes = edited_shakes(*plan_, *own_, point)) {
+      own_->parameters.shakes = shakes_ = std::move(*shakes);
+      planar_ = planar_cases(*own_);
+      if (!planar_.empty()) return;
+    }
+  read(point);
+  if (!setup_) return;
+  shakes_ = setup_->parameters.shakes;
+  planar_ = planar_cases(*setup_);
+}
+
+OverturnRunner::Row OverturnRunner::run_rigid(double factor, const std::function<bool()>& give_up) const {
+  Row row;
+  const Setup setup = factor != 1 ? shaken_by(*setup_, factor) : *setup_;
+  Run run(setup);
+  while (!run.over() && !row.gave_up) {
+    run.advance();
+    row.gave_up = give_up();
+  }
+  if (!run.status().ok()) row.status = run.status().message(setup.model);
+  for (int b = 0; b < setup.model.furniture_total(); ++b) {
+    const BodyOutcome& body = run.outcome().bodies()[static_cast<std::size_t>(b)];
+    row.fallen.fell.push_back(body.beyond_since);
+    row.fallen.lifted |= body.first_uplift.has_value();
+  }
+  return row;
+}
+
 std::string OverturnRunner::run(int k, const std::function<bool()>& give_up) {
   const OverturnPlan& plan = *plan_;
-  const int point = k / plan.ensemble;
-  std::string status = "completed";
-  ordered_json fell = ordered_json::array();
-  bool lifted = false, gave_up = false;
+  const int point = k / plan.ensemble, member = k % plan.ensemble;
+  Row row;
   const double cpu = cpu_time_of(
       [&] {
-        if (point != point_) {
-          point_ = point;
-          setup_.reset();
-          trouble_.clear();
-          std::vector<std::string> changes = plan.set;
-          changes.push_back(plan.x.change(point % plan.x.count()));
-          changes.push_back(plan.y.change(point / plan.x.count()));
-          try {
-            setup_ =
-                io::parse_scene(plan.scene.text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
-          } catch (const InputError& error) {
-            trouble_ = error.what();
-          }
-        }
-        if (!setup_) {
-          status = trouble_;
-          return;
-        }
+        if (point != point_) begin(point);
         const double turn =
-            2 * scattered(static_cast<std::uint64_t>(point), static_cast<std::uint64_t>(k % plan.ensemble)) -
-            1;
-        const Setup setup = plan.spread > 0 ? shaken_by(*setup_, 1 + plan.spread * turn) : *setup_;
-        Run run(setup);
-        while (!run.over() && !gave_up) {
-          run.advance();
-          gave_up = give_up();
+            2 * scattered(static_cast<std::uint64_t>(point), static_cast<std::uint64_t>(member)) - 1;
+        const double factor = plan.spread > 0 ? 1 + plan.spread * turn : 1;
+        if (!planar_.empty()) {
+          const std::optional<Fallen> fallen =
+              run_planar(planar_, shaken_by(shakes_, factor), (setup_ ? setup_ : own_)->run.duration, [&] {
+                row.gave_up = give_up();
+                return row.gave_up;
+              });
+          row.planar = fallen.has_value();
+          if (fallen) row.fallen = *fallen;
+          if (row.planar || row.gave_up) return;
+          if (!setup_ && trouble_.empty()) read(point);
         }
-        if (!run.status().ok()) status = run.status().message(setup.model);
-        for (int b = 0; b < setup.model.furniture_total(); ++b) {
-          const BodyOutcome& body = run.outcome().bodies()[static_cast<std::size_t>(b)];
-          fell.push_back(body.beyond_since ? ordered_json(*body.beyond_since) : ordered_json(nullptr));
-          lifted |= body.first_uplift.has_value();
-        }
+        if (setup_)
+          row = run_rigid(factor, give_up);
+        else
+          row.status = trouble_;
       },
       0);
-  if (gave_up) return "";
-  return ordered_json{{"status", status}, {"fell", fell}, {"lifted", lifted}, {"cpu_s", cpu}}.dump(
-      -1, ' ', false, ordered_json::error_handler_t::replace);
+  return row.gave_up ? "" : row.text(cpu);
 }
 
 const char* name(Verdict verdict) {
@@ -225,7 +309,6 @@ std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int 
 }
 
 std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k) {
-  constexpr double k_before = -1e9;  // s: at once, since nothing shakes yet
   const Model& model = plan.scene.setup.model;
   const Axis &along = map.fragility_along_y ? plan.y : plan.x,
              &other = map.fragility_along_y ? plan.x : plan.y;
@@ -236,9 +319,7 @@ std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& 
       if (axis->table != "shake") continue;
       std::optional<Edit> edit = io::parse_edit_key(axis->key);
       if (!edit) return {};
-      edit->value = edited_value(parameters, edit->key, edit->index);
-      edit->value.x() = axis->in_si(place);
-      apply(*edit, model, k_before, parameters);
+      set_at_once(model, *axis, place, *edit, parameters);
     }
     out.push_back(floor_peak(parameters.shakes, plan.scene.setup.run.duration));
   }
@@ -264,7 +345,9 @@ OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& row
       const std::string& row = rows[static_cast<std::size_t>(p * plan.ensemble + member)];
       if (row.empty()) continue;
       ++map.run;
-      add_run(point, ordered_json::parse(row), counts);
+      const ordered_json read = ordered_json::parse(row);
+      map.planar += read.value("planar", false);
+      add_run(point, read, counts);
     }
     std::ranges::sort(point.times);
     if (point.runs > 0)

@@ -13,6 +13,7 @@
 #include "solver/study/overturn/criteria.h"
 #include "solver/study/overturn/floor_peak.h"
 #include "solver/study/overturn/fragility.h"
+#include "solver/study/overturn/planar_runs.h"
 
 namespace topple::study {
 
@@ -51,21 +52,34 @@ nlohmann::ordered_json settings_of(const OverturnPlan& plan);
 /// rounds over all points that come to 4, 16, 64 ... runs.
 std::vector<int> case_order(const OverturnPlan& plan);
 
-/// Runs cases one after another; the scene of a point is read once for those that follow each other.
+/// Runs cases one after another: as planar blocks where planar_cases() finds them, else as `topple run` does.
+/// The scene of a point is read once for those that follow each other, or not at all where it is a planar one
+/// and the axes change its shakes alone.
 class OverturnRunner {
  public:
   explicit OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {}
   /// A row of JSON in one line: "status" ("completed", or why it failed), "fell" (s, per piece of furniture,
-  /// null: it stands), "lifted" (a side of any lifted), "cpu_s". Empty: give_up() came true, it is asked
-  /// after each step.
+  /// null: it stands), "lifted" (a side of any lifted), "cpu_s", of planar blocks "planar" (true). Empty:
+  /// give_up() came true, it is asked after each step.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
+  struct Row;
+  void begin(int point);
+  void read(int point);
+  Row run_rigid(double factor, const std::function<bool()>& give_up) const;
+
   const OverturnPlan* plan_;
   int point_ = -1;
-  std::optional<Setup> setup_;
-  std::string trouble_;  ///< why there is no setup
+  std::optional<Setup> own_;                ///< the scene's; its parameters those of the point by its edits
+  std::optional<Setup> setup_;              ///< of the point
+  std::string trouble_;                     ///< why there is no setup
+  std::vector<planar::PlanarCase> planar_;  ///< empty: it is not planar
+  std::vector<Shake> shakes_;               ///< of the point
 };
+
+/// Why the scene itself is not run as planar blocks; empty: it is.
+std::string why_not_planar(const OverturnPlan& plan);
 
 /// From the worst to the best that is known.
 enum class Verdict { not_computed, failed, all, some, rocks, stands };
@@ -93,6 +107,7 @@ struct OverturnMap {
   std::vector<std::string> bodies;  ///< furniture
   std::vector<OverturnPoint> points;
   int run = 0, of = 0;  ///< cases
+  int planar = 0;       ///< runs that were planar blocks
   Criteria criteria;
   /// Along the axis that is an amplitude or scale of a shake, at each value of the other.
   std::vector<Fragility> fragility;

@@ -22,7 +22,7 @@ using End = StabilityRun::End;
 
 constexpr const char* k_steps = "run.time_step=0.03 ms..30 ms:10";
 constexpr double k_softest = 0.2, k_stiffest = 100;  // of the scene's alpha
-constexpr double k_most_alpha = 1e6;                 // kgf
+constexpr double k_most_kgf = 1e6;                   // kgf
 constexpr const char* k_ends[] = {"completed",   "not set up", "not settled",   "refused",
                                   "no solution", "growth",     "passed through"};
 
@@ -30,7 +30,7 @@ constexpr const char* k_ends[] = {"completed",   "not set up", "not settled",   
 std::string usual_alphas(const Setup& scene) {
   const double own = scene.parameters.contact.alpha / k_standard_gravity;
   return fmt::format("contact.alpha={:.6g} kgf..{:.6g} kgf:10log", k_softest * own,
-                     std::min(k_stiffest * own, k_most_alpha));
+                     std::min(k_stiffest * own, k_most_kgf));
 }
 
 bool is_numerical(const Axis& axis) {

@@ -159,6 +159,53 @@ TEST(OverturnMap, rounds_come_to_one_four_and_all_runs_at_each_point) {
   EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), 54u);
 }
 
+OverturnPlan steel_cabinet(const std::vector<std::string>& set, const std::string& x = "") {
+  return plan_overturn(io::load_scene("cabinet", set), x.empty() ? "shake.1.frequency=0.3..0.7:3" : x,
+                       "shake.1.amplitude=150 gal..350 gal:5", 1, 0);
+}
+
+// Contacts of 1e6 kgf leave 1e-3 of the critical angle (planar_case_test.cpp). A fall that begins near
+// balance grows with exp(p t), p = 2.6/s: less by a thousandth of the angle, later by 0.1 s, 3 %.
+TEST(OverturnMap, planar_blocks_have_the_verdicts_of_rigid_bodies_on_hard_contacts) {
+  const OverturnPlan blocks = steel_cabinet({});
+  const OverturnPlan bodies =
+      steel_cabinet({"cabinet.cabinet.model=rigid", "contact.alpha=1e6 kgf", "contact.normal_speed=1e-4"});
+  EXPECT_EQ(why_not_planar(blocks), "");
+  EXPECT_EQ(why_not_planar(bodies), "cabinet: its model is named");
+  const OverturnMap planar = gather(blocks, run_all(blocks)), rigid = gather(bodies, run_all(bodies));
+  EXPECT_EQ(planar.planar, 15);
+  EXPECT_EQ(rigid.planar, 0);
+  int fallen = 0;
+  for (std::size_t p = 0; p < 15; ++p) {
+    const OverturnPoint &a = planar.points[p], &b = rigid.points[p];
+    EXPECT_EQ(a.verdict, b.verdict) << p;
+    fallen += a.overturned;
+    if (a.overturned && b.overturned) {
+      EXPECT_NEAR(a.times[0], b.times[0], 0.05 * b.times[0]) << p;
+    }
+  }
+  EXPECT_GT(fallen, 3);
+  EXPECT_LT(fallen, 12);
+}
+
+// By an edit of the shake, and by reading the scene where an axis changes something else.
+TEST(OverturnMap, planar_blocks_do_not_depend_on_how_their_shake_was_set) {
+  const OverturnPlan edited = steel_cabinet({});
+  const OverturnPlan read = steel_cabinet({"shake.1.frequency=0.5"}, "contact.friction=0.5..0.7:3");
+  const OverturnMap a = gather(edited, run_all(edited)), b = gather(read, run_all(read));
+  EXPECT_EQ(b.planar, 15);
+  for (std::size_t row = 0; row < 5; ++row)
+    EXPECT_EQ(a.points[3 * row + 1].times, b.points[3 * row + 1].times) << row;
+}
+
+TEST(OverturnMap, says_why_a_scene_is_not_planar) {
+  const auto why = [](const std::vector<std::string>& set) { return why_not_planar(steel_cabinet(set)); };
+  EXPECT_EQ(why({"contact.restitution=0.3"}), "contacts bounce");
+  EXPECT_EQ(why({"contact.alpha=50 kgf"}), "contacts are soft");
+  EXPECT_EQ(why({"run.want=[\"stress\"]"}), "stresses are asked for");
+  EXPECT_EQ(why({"cabinet.cabinet.base=edges"}), "cabinet: its base has contact points between its edges");
+}
+
 TEST(OverturnMap, what_was_not_run_is_open_in_every_result) {
   const OverturnPlan plan = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2");
   std::vector<std::string> rows(4);

@@ -1,0 +1,32 @@
+// Runs of scenes whose bodies are planar blocks.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/planar/planar_case.h"
+#include "solver/run/run.h"
+
+namespace topple::study {
+
+/// What became of the furniture of a scene.
+struct Fallen {
+  std::vector<std::optional<double>> fell;  ///< s, per piece; none: it stands
+  bool lifted = false;                      ///< a side of any
+};
+
+/// The blocks of a scene that asks for motion alone, whose furniture is all `auto` and rigid by its own rules
+/// (model_level.h), without restitution, on contacts no softer than those of scenes that name none. Empty:
+/// it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
+std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
+
+/// Runs them. None: give_up() came true, which is asked after each step, or it is not known what they do:
+/// one came within reach of something else, or a slip jammed again and again.
+/// duration: s.
+std::optional<Fallen> run_planar(const std::vector<planar::PlanarCase>& cases,
+                                 const std::vector<Shake>& shakes, double duration,
+                                 const std::function<bool()>& give_up);
+
+}  // namespace topple::study
