@@ -94,7 +94,8 @@ std::string panel(const Results& results, Part Trial::*part, double unit, double
                     absent, study::k_grey);
   return out +
          fmt::format(
-             "set xrange [0.003:300]\nset format x '%g'\nset xtics nomirror (0.01,0.1,1,10,100)\nset mxtics 10\n"
+             "set xrange [0.001:300]\nset format x '%g'\nset xtics nomirror (0.001,0.01,0.1,1,10,100)\nset "
+             "mxtics 10\n"
              "set yrange [{}:{}]\nset format y '10^{{%T}}'\nset ytics nomirror 1e-10,100\nset mytics 1\n"
              "set xlabel 'CPU time per simulated second, ms' offset 0,0.2\nset ylabel {} offset 0.4,0\n",
              least, most, gnuplot_quoted(axis)) +
@@ -109,10 +110,10 @@ std::string chart(const Results& results, study::ChartFormat format) {
       format, header(results) +
                   panel(results, &Trial::rocking, k_degree, k_left, k_left + width, "rocking",
                         fmt::format("Let go at half of the critical angle, {:g} s", k_window),
-                        "error of the tilt, root mean square, deg", 1e-9, 200, 0) +
+                        "error of the tilt, root mean square, deg", 1e-10, 200, 0) +
                   panel(results, &Trial::falling, 1., k_left + width + k_gap, k_width - k_right, "falling",
                         "Shaken at 2 Hz: worst of 690, 695, 700 gal", "error of the time of passing 45°, s",
-                        1e-9, 10, 6));
+                        1e-10, 10, 6));
 }
 
 }  // namespace topple::bench
