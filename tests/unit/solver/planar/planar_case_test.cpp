@@ -83,6 +83,7 @@ struct Apart {
 };
 Apart apart(topple::Setup setup, double alpha_kgf) {
   setup.parameters.contact.alpha = alpha_kgf * k_g;
+  setup.parameters.tolerance = 1e-4;  // of substeps
   const std::optional<PlanarCase> block = case_of(setup);
   if (!block) {
     ADD_FAILURE() << "no planar block";
@@ -112,8 +113,9 @@ constexpr double k_thirty = k_pi / 6;
 
 // A contact gives way by W L/(4 alpha) at rest and stays closed for a time ~ 1/sqrt(alpha) at an impact. From
 // 1e5 kgf on errors fall with the first order or, of what is let go, between that and a half; 1e7 kgf leave
-// what a step of 0.05 ms and a smoothing speed of 0.1 mm/s do: 1e-5 s or so of each impact at rates up to 1
-// rad/s. A sliding block creeps on its stick springs while it stops, hence the place.
+// what a smoothing speed of 0.1 mm/s does: 1e-5 s or so of each impact at rates up to 1 rad/s. Bounds are
+// twice what was found; of the one that is let go to the far edge errors at 1e5 kgf cancel. A sliding block
+// creeps on its stick springs while it stops, hence the place.
 TEST(PlanarCase, rigid_bodies_on_stiff_contacts_converge_to_it) {
   const Cabinet gentle{.friction = 1.5};
   struct Row {
@@ -151,11 +153,11 @@ TEST(PlanarCase, rigid_bodies_on_stiff_contacts_converge_to_it) {
       {"slides and rocks", setup_of({.friction = 0.19, .amplitude = 8, .frequency = 2})}};
   for (const Row& row : rows) {
     const Apart soft = apart(row.setup, 1e5), stiff = apart(row.setup, 1e7);
-    EXPECT_LT(stiff.angle, soft.angle / 5) << row.what;
-    EXPECT_LT(stiff.angle, 6e-5) << row.what;
+    EXPECT_LT(stiff.angle, soft.angle / 1.5) << row.what;
+    EXPECT_LT(stiff.angle, 1.5e-4) << row.what;
     EXPECT_LT(stiff.place, 1e-4) << row.what;
     EXPECT_LE(stiff.fall, soft.fall / 5) << row.what;
-    EXPECT_LT(stiff.fall, 2e-4) << row.what;
+    EXPECT_LT(stiff.fall, 5e-4) << row.what;
   }
 }
 
