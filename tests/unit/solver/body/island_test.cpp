@@ -477,6 +477,46 @@ TEST(Island, bracket_of_a_body_that_another_pushes_holds_what_a_frame_s_does) {
   for (const double pull : pulls) EXPECT_NEAR(pull, pulls[0], 0.05 * pulls[0]);
 }
 
+// A heavy elastic box lies on a rigid one when a frame comes near: what their contacts hold is neither lost
+// nor found when the elastic one becomes a frame.
+TEST(Island, what_contacts_hold_is_kept_when_a_frame_comes_near) {
+  topple::Setup setup;
+  setup.model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.size = Vec3(0.5, 0.6, 0.3);
+  spec.cg_height = 0.15;
+  for (const double mass : {20., 200.}) {
+    spec.name = mass < 100 ? "lower" : "upper";
+    spec.mass = mass;
+    setup.starts.push_back(add_cabinet(setup.model, spec));
+    spec.at.z() += 0.33;
+  }
+  spec = tall_cabinet();
+  spec.name = "comes";
+  spec.at.x() = -0.58;
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.model.planes.push_back(ground());
+  setup.parameters.adaptive = true;
+  setup.parameters.contact.alpha = 500 * k_g;
+  setup.parameters.shakes.clear();
+  compute_as(setup, BodyModel::rigid);
+  setup.parameters.models[1] = BodyModel::elastic;
+  setup.parameters.models[2] = BodyModel::frame;
+  setup.starts[2].velocity = Vec3(1, 0, 0);
+  setup.run.settle = false;
+  setup.run.duration = 0.3;
+  topple::Run run(setup);
+  double held = 0;  // J, when it becomes one
+  while (!run.over()) {
+    if (run.state().bodies[1].level == ModelLevel::elastic) held = run.state().energy.contact;
+    ASSERT_TRUE(run.advance().ok());
+  }
+  EXPECT_GT(held, 0.1);
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::rigid);
+  EXPECT_EQ(run.state().bodies[1].level, ModelLevel::frame);
+  EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+}
+
 // Four islands: whoever advances them.
 TEST(Island, threads_do_not_change_a_bit) {
   const auto run_with = [](int workers) {
