@@ -468,7 +468,7 @@ TEST(Island, bracket_of_a_body_that_another_pushes_holds_what_a_frame_s_does) {
     setup.starts[0].velocity = Vec3(0.5, 0, 0);
     setup.starts[0].angular_velocity = Vec3(0, 0.5, 0);
     setup.run.settle = false;
-    setup.run.duration = 0.6;
+    setup.run.duration = 0.3;
     topple::Run run(setup);
     while (!run.over()) ASSERT_TRUE(run.advance().ok());
     EXPECT_LT(run.state().energy.balance_error(), 1e-3);
