@@ -57,7 +57,7 @@ struct NodePack {
   Four real;                                  ///< 1; 0: a repeated node
   Four mass;                                  ///< kg; 0: a repeated node
   Four inverse_mass;                          ///< 1/kg
-  PackMatrix<Four> inertia, inverse_inertia;  ///< BodySystem::inertia (0: a repeated node) and its inverse
+  PackMatrix<Four> inertia, inverse_inertia;  ///< of the node (0: a repeated one), kg m^2, and its inverse
 };
 
 /// Factor of a load at time t: its history, linear between its points and constant outside; without one 1.
@@ -77,7 +77,7 @@ class BodySystem {
  public:
   BodySystem(const Model& model, int body);
   /// `candidate_pairs`: pairs of elements that may touch, in order; of each, one or both belong to `bodies`,
-  /// the other to a held body. `rigid`: those of `bodies` that are no frames, in order; some are.
+  /// the other to a held body. `rigid`: those of `bodies` that are no frames, in order; not all.
   BodySystem(const Model& model, std::vector<int> bodies, std::vector<ElementPair> candidate_pairs,
              std::vector<int> rigid = {});
 

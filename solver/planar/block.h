@@ -18,7 +18,7 @@ struct Block {
   double static_friction = 0;  ///< not below kinetic_friction
   double kinetic_friction = 0;
   /// Factor on the rate that a block without slip keeps at an impact of its base by Housner's condition
-  /// (impact.h); 0: comes to rest on it.
+  /// (transition.h); 0: comes to rest on it.
   double restitution = 1;
   double gravity = 9.80665;  ///< m/s^2
 
