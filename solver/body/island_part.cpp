@@ -47,7 +47,7 @@ void IslandPart::place(const State& state) {
 void IslandPart::start_pairs(const State& state) {
   place(state);
   sticks_.load(state, coupling_.pairs());
-  coupling_.start(coupling_.pairs());
+  coupling_.start();
 }
 
 // All that touches between members at `state`.
@@ -223,7 +223,7 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {
   double limit = ReducedPart::time_limit(parameters, state);
   place(state);
-  coupling_.start(coupling_.pairs());
+  coupling_.start();
   for (const MemberPair& pair : coupling_.pairs()) {
     if (pair.gap > 0) continue;
     for (const int b : coupling_.bodies_of(pair)) {

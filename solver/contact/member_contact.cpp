@@ -8,146 +8,17 @@
 namespace topple {
 namespace {
 
-constexpr double k_aligned = 1e-6;  // of k_parallel: there is no nearest point, and kappa is below 1e-11
-constexpr double k_thin = 0.02;  // of L: nearer than this the turning of the normal is left out of tangents
-
 using Ends = PairVector;
 
 Ends gather(const MemberPair& pair, std::span<const Vec3> x) {
   return {x[pair.node[0]], x[pair.node[1]], x[pair.node[2]], x[pair.node[3]]};
 }
 
-NearestPoints nearest_at(int place, const Ends& x) {
-  switch (place) {
-    case 0:
-      return nearest_points(x[0], x[1], x[2], x[3]);
-    case 1:
-    case 2: {
-      NearestPoints at = nearest_points(x[place - 1], x[2], x[3]);
-      at.s = place - 1;
-      return at;
-    }
-    default: {
-      const NearestPoints at = nearest_points(x[place - 1], x[0], x[1]);
-      return {at.t, double(place - 3), at.t_free, false, -at.between};
-    }
-  }
-}
-
-std::array<double, 4> shares(const NearestPoints& at) {
-  return {1 - at.s, at.s, at.t - 1, -at.t};
-}
-
-// sin^2 of the angle of two lines with its derivatives by their ends.
-struct Crossing {
-  double sine2;
-  PairVector by_end;
-};
-
-Crossing crossing(const Ends& x) {
-  const Vec3 da = x[1] - x[0], db = x[3] - x[2];
-  const double la = da.norm(), lb = db.norm();
-  const Vec3 u = da / la, v = db / lb;
-  const double cosine = u.dot(v);
-  const Vec3 by_a = -2 * cosine / la * (v - cosine * u), by_b = -2 * cosine / lb * (u - cosine * v);
-  return {u.cross(v).squaredNorm(), {Vec3(-by_a), by_a, Vec3(-by_b), by_b}};
-}
-
-ContactLaw weighted(ContactLaw law, double weight) {
-  law.alpha *= weight;
-  return law;
-}
-
-class PairFinder {
- public:
-  PairFinder(const ContactLaw& law, const MemberPair& pair, int index, std::span<const Vec3> position,
-             std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found)
-      : law_(law), pair_(pair), index_(index), x_(gather(pair, position)), found_(found) {
-    const auto furthest = [&](int k) {
-      return std::max((x_[k] - pair.start[k]).squaredNorm(), (x_[k + 1] - pair.start[k + 1]).squaredNorm());
-    };
-    approach2_ = 2 * (furthest(0) + furthest(2));
-    if (pair.gap > 0 && approach2_ < pair.gap * pair.gap) return;
-    const NearestPoints nearest = nearest_at(0, x_);
-    if (!(nearest.between.squaredNorm() < pair.L * pair.L)) return;
-    velocity_ = gather(pair, velocity);
-    const Ends x0 = gather(pair, start);
-    for (int k = 0; k < 4; ++k) travel_[k] = x_[k] - x0[k];
-    const Crossing lines = crossing(x_);
-    const double x = std::min(lines.sine2 / k_parallel, 1.);
-    const double kappa = x < k_aligned ? 0 : x * x * (3 - 2 * x);
-    const std::size_t first = found.touches.size();
-    if (kappa > 0) add(0, nearest, kappa);
-    if (kappa == 1) return;
-    for (int place = 1; place < 5; ++place) add(place, nearest_at(place, x_), (1 - kappa) / 4);
-    if (kappa == 0 || !traits(law).stores_energy) return;
-    blend(lines, x, first);
-  }
-
- private:
-  void add(int place, const NearestPoints& at, double weight) {
-    const double distance = at.between.norm();
-    if (!(distance < pair_.L)) return;
-    MemberTouch touch;
-    touch.pair = index_;
-    touch.place = place;
-    touch.share = shares(at);
-    touch.weight = weight;
-    touch.at = at;
-    touch.ends = x_;
-    // ends that have come no nearer than the distance have not passed each other
-    if (distance * distance > approach2_) {
-      touch.l = distance;
-      touch.normal = at.between / distance;
-    } else {
-      const Vec3 before = nearest_at(place, pair_.start).between;
-      touch.l = at.between.dot(before) < 0 ? -distance : distance;
-      touch.normal = distance > 0 ? Vec3(at.between / touch.l) : Vec3(before.normalized());
-    }
-    touch.depth = 1 - touch.l / pair_.L;
-    Vec3 relative_velocity = Vec3::Zero(), stick = pair_.stick[place];
-    for (int k = 0; k < 4; ++k) {
-      relative_velocity += touch.share[k] * velocity_[k];
-      stick += touch.share[k] * travel_[k];
-    }
-    touch.input = {touch.normal, touch.depth, pair_.L, relative_velocity, stick, pair_.mass, true};
-    touch.out = contact_force(weighted(law_, weight), touch.input);
-    found_.touches.push_back(touch);
-  }
-
-  void blend(const Crossing& lines, double x, std::size_t first) {
-    MemberBlend blend;
-    blend.pair = index_;
-    blend.slope = 6 * x * (1 - x) / k_parallel;
-    blend.curvature = (6 - 12 * x) / (k_parallel * k_parallel);
-    blend.surplus = 0;
-    blend.by_sine = lines.by_end;
-    blend.by_surplus.fill(Vec3::Zero());
-    for (std::size_t i = first; i < found_.touches.size(); ++i) {
-      const MemberTouch& touch = found_.touches[i];
-      const double part = touch.place == 0 ? 1 : -0.25;
-      blend.surplus += part * penalty_energy(law_, touch.depth, pair_.L, true);
-      const double force = part * penalty_force(law_, touch.depth, true);
-      for (int k = 0; k < 4; ++k) blend.by_surplus[k] -= force * touch.share[k] * touch.normal;
-    }
-    found_.blends.push_back(blend);
-  }
-
-  const ContactLaw& law_;
-  const MemberPair& pair_;
-  const int index_;
-  const Ends x_;
-  Ends velocity_, travel_;  // m/s; m, since `start`
-  double approach2_;        // m^2, bound of the square by which they have come nearer since MemberPair::start
-  MemberContacts& found_;
-};
-
 // How the moving of the nearest points changes the tangent: mixed derivatives of half the squared distance by
 // the nodes and the free ones of s, t, times `factor` and the inverse of the second derivatives by the
 // latter, times the same.
-void add_sliding(const MemberTouch& touch, double factor, PairTangent& tangent) {
-  const Ends& x = touch.ends;
-  const Vec3 da = x[1] - x[0], db = x[3] - x[2], &d = touch.at.between;
+void add_sliding(const MemberTouch& touch, const Ends& x, double factor, PairTangent& tangent) {
+  const Vec3 da = x[1] - x[0], db = x[3] - x[2], d = touch.l * touch.input.normal;
   PairVector by_s, by_t;
   for (int k = 0; k < 4; ++k) {
     by_s[k] = touch.share[k] * da;
@@ -157,22 +28,22 @@ void add_sliding(const MemberTouch& touch, double factor, PairTangent& tangent) 
   by_s[1] += d;
   by_t[2] += d;
   by_t[3] -= d;
-  double ss = touch.at.s_free ? da.squaredNorm() : 1, tt = touch.at.t_free ? db.squaredNorm() : 1,
-         st = touch.at.s_free && touch.at.t_free ? -da.dot(db) : 0;
+  double ss = touch.s_free ? da.squaredNorm() : 1, tt = touch.t_free ? db.squaredNorm() : 1,
+         st = touch.s_free && touch.t_free ? -da.dot(db) : 0;
   const double determinant = ss * tt - st * st;
   const auto add = [&](const PairVector& left, double of_s, double of_t) {
     PairTangent::Product& product = tangent.products[tangent.product_count++];
     product.left = left;
     for (int k = 0; k < 4; ++k) product.right[k] = factor / determinant * (of_s * by_s[k] + of_t * by_t[k]);
   };
-  if (touch.at.s_free) add(by_s, tt, -st);
-  if (touch.at.t_free) add(by_t, -st, ss);
+  if (touch.s_free) add(by_s, tt, -st);
+  if (touch.t_free) add(by_t, -st, ss);
 }
 
 bool slips(const ContactLaw& law, const MemberTouch& touch) {
   constexpr double k_rounding = 1e-9;
   const Vec3& v = touch.input.velocity;
-  const double along = (v - touch.normal.dot(v) * touch.normal).squaredNorm();
+  const double along = (v - touch.input.normal.dot(v) * touch.input.normal).squaredNorm();
   return !(touch.out.tangential.norm() <
            (1 - k_rounding) * friction_coefficient(law, along) * touch.out.normal);
 }
@@ -185,14 +56,6 @@ Vec3 relative(const MemberTouch& touch, const MemberPair& pair, std::span<const 
   return sum;
 }
 
-void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
-                          std::span<const Vec3> position, std::span<const Vec3> velocity,
-                          std::span<const Vec3> start, MemberContacts& found) {
-  found.clear();
-  for (int i = 0; i < static_cast<int>(pairs.size()); ++i)
-    PairFinder(law, pairs[i], i, position, velocity, start, found);
-}
-
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force) {
   for (const MemberTouch& touch : contacts.touches)
     for (int k = 0; k < 4; ++k) force[pairs[touch.pair].node[k]] += touch.share[k] * touch.out.force;
@@ -201,44 +64,46 @@ void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pair
       force[pairs[blend.pair].node[k]] -= blend.slope * blend.surplus * blend.by_sine[k];
 }
 
-void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                  double velocity_factor, const std::function<void(const PairTangent&)>& f) {
+PairTangent touch_tangent(const ContactLaw& law, const MemberTouch& touch, const MemberPair& pair,
+                          std::span<const Vec3> position, double velocity_factor) {
   PairTangent tangent;
-  for (const MemberTouch& touch : contacts.touches) {
-    tangent.pair = touch.pair;
-    tangent.share = touch.share;
-    tangent.product_count = 0;
-    Mat3 by_position, by_velocity;
-    contact_force(weighted(law, touch.weight), touch.input, by_position, by_velocity);
-    tangent.local = -by_position - velocity_factor * by_velocity;
-    const Mat3 across = Mat3::Identity() - touch.normal * touch.normal.transpose();
-    tangent.stick.setZero();
-    if (traits(law).sticks && !slips(law, touch)) tangent.stick = across * tangent.local * across;
-    if (touch.l > k_thin * pairs[touch.pair].L) {
-      tangent.local -= touch.out.normal / touch.l * across;
-      add_sliding(touch, touch.out.normal / touch.l, tangent);
-    }
-    f(tangent);
+  tangent.pair = touch.pair;
+  tangent.share = touch.share;
+  tangent.product_count = 0;
+  Mat3 by_position, by_velocity;
+  contact_force(weighted(law, touch), touch.input, by_position, by_velocity);
+  tangent.local = -by_position - velocity_factor * by_velocity;
+  const Vec3& n = touch.input.normal;
+  const Mat3 across = Mat3::Identity() - n * n.transpose();
+  tangent.stick.setZero();
+  if (traits(law).sticks && !slips(law, touch)) tangent.stick = across * tangent.local * across;
+  if (touch.l > k_thin * pair.L) {
+    tangent.local -= touch.out.normal / touch.l * across;
+    add_sliding(touch, gather(pair, position), touch.out.normal / touch.l, tangent);
   }
+  return tangent;
+}
+
+PairTangent blend_tangent(const MemberBlend& blend) {
+  PairTangent tangent;
+  tangent.pair = blend.pair;
   tangent.share.fill(0);
   tangent.local.setZero();
   tangent.stick.setZero();
-  for (const MemberBlend& blend : contacts.blends) {
-    tangent.pair = blend.pair;
-    tangent.product_count = 2;
-    for (int k = 0; k < 4; ++k) {
-      tangent.products[0].left[k] = blend.by_sine[k];
-      tangent.products[0].right[k] =
-          blend.curvature * blend.surplus * blend.by_sine[k] + blend.slope * blend.by_surplus[k];
-      tangent.products[1].left[k] = blend.by_surplus[k];
-      tangent.products[1].right[k] = blend.slope * blend.by_sine[k];
-    }
-    f(tangent);
+  tangent.product_count = 2;
+  for (int k = 0; k < 4; ++k) {
+    tangent.products[0].left[k] = blend.by_sine[k];
+    tangent.products[0].right[k] =
+        blend.curvature * blend.surplus * blend.by_sine[k] + blend.slope * blend.by_surplus[k];
+    tangent.products[1].left[k] = blend.by_surplus[k];
+    tangent.products[1].right[k] = blend.slope * blend.by_sine[k];
   }
+  return tangent;
 }
 
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                 double velocity_factor, const std::function<void(int i, int j, const Mat3& block)>& add) {
+                 std::span<const Vec3> position, double velocity_factor,
+                 const std::function<void(int i, int j, const Mat3& block)>& add) {
   const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
     for (int k = 0; k < 4; ++k)
@@ -249,15 +114,16 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
         add(pair.node[k], pair.node[m], block);
       }
   };
-  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add_all));
+  for (const MemberTouch& touch : contacts.touches)
+    add_all(touch_tangent(law, touch, pairs[touch.pair], position, velocity_factor));
+  for (const MemberBlend& blend : contacts.blends) add_all(blend_tangent(blend));
 }
 
 void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
   for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
   for (MemberTouch& touch : contacts.touches) {
     pairs[touch.pair].stick[touch.place] = touch.input.stick = touch.out.stick;
-    if (traits(law).sticks && slips(law, touch))
-      touch.out = contact_force(weighted(law, touch.weight), touch.input);
+    if (traits(law).sticks && slips(law, touch)) touch.out = contact_force(weighted(law, touch), touch.input);
   }
 }
 
@@ -266,7 +132,7 @@ double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
   double sum = 0;
   for (const MemberTouch& touch : contacts.touches) {
     if (traits(law).stores_energy)
-      sum += touch.weight * penalty_energy(law, touch.depth, pairs[touch.pair].L, true);
+      sum += touch.weight * penalty_energy(law, touch.input.depth, pairs[touch.pair].L, true);
     sum += touch.out.stick_energy;
   }
   return sum;
@@ -283,7 +149,8 @@ int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pair
     for (int i = 0; i < 2; ++i)
       for (int j = 2; j < 4; ++j) travel = std::max(travel, (x1[i] - x0[i] - x1[j] + x0[j]).norm());
     if (travel <= pair.L / 2) continue;
-    const double before = nearest_at(0, x0).between.norm(), after = nearest_at(0, x1).between.norm();
+    const double before = nearest_points(x0[0], x0[1], x0[2], x0[3]).between.norm(),
+                 after = nearest_points(x1[0], x1[1], x1[2], x1[3]).between.norm();
     if (std::min(before, after) < pair.L + travel) return k;
   }
   return -1;

@@ -20,6 +20,7 @@
 namespace topple {
 
 inline constexpr double k_parallel = 1e-2;  ///< sin^2 of the angle below which kappa < 1
+inline constexpr double k_thin = 0.02;      ///< of L, see PairTangent
 
 /// A vector at each end of two elements: of a, then of b.
 using PairVector = std::array<Vec3, 4>;
@@ -49,14 +50,18 @@ struct MemberTouch {
   int place;  ///< 0: where they are nearest; 1, 2: first and second end of a over b; 3, 4: of b over a
   std::array<double, 4> share;  ///< of the ends' motion in that of a's point relative to b's: sum share x
   double weight;                ///< of its U in E: kappa or (1 - kappa)/4
-  NearestPoints at;
-  std::array<Vec3, 4> ends;  ///< m, of a, then of b
-  Vec3 normal;               ///< unit, from b to a; keeps its side while l goes through zero
-  double l;                  ///< m, along the normal; <= 0: they went through each other
-  double depth;              ///< 1 - l/L
-  ContactInput input;
+  double s, t;                  ///< where, see NearestPoints
+  bool s_free, t_free;          ///< likewise
+  double l;                     ///< m, along the normal; <= 0: they went through each other
+  ContactInput input;           ///< its normal, from b to a, keeps its side while l goes through zero
   ContactOutput out;
 };
+
+/// `law` with the touch's share of alpha.
+inline ContactLaw weighted(ContactLaw law, const MemberTouch& touch) {
+  law.alpha *= touch.weight;
+  return law;
+}
 
 /// Part of the force of two nearly parallel elements by kappa' = d(kappa)/d(sin^2):
 ///   -kappa' (U - (sum of U at the ends)/4) d(sin^2)/dx
@@ -91,7 +96,8 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
 
 /// -d(force)/d(position) - velocity_factor d(force)/d(velocity) of one place or blend, N/m: between the ends
-/// k and m of the pair  share_k share_m local + sum of left_k right_m^T over products.
+/// k and m of the pair  share_k share_m local + sum of left_k right_m^T over products. The factor in 1/s;
+/// without the second derivatives of sin^2 and, below l = k_thin L, without the turning of the normal.
 struct PairTangent {
   struct Product {
     PairVector left, right;
@@ -103,13 +109,13 @@ struct PairTangent {
   std::array<Product, 2> products;
   int product_count;
 };
-/// Calls f with the tangent of everything that touches, the factor in 1/s, without the second derivatives of
-/// sin^2 and, below l = 0.02 L, without the turning of the normal.
-void each_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                  double velocity_factor, const std::function<void(const PairTangent&)>& f);
-/// Calls add(i, j, block) with their sums between each two nodes of what touches.
+PairTangent touch_tangent(const ContactLaw& law, const MemberTouch& touch, const MemberPair& pair,
+                          std::span<const Vec3> position, double velocity_factor);
+PairTangent blend_tangent(const MemberBlend& blend);
+/// Calls add(i, j, block) with their sums between each two nodes of what touches at `position`.
 void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
-                 double velocity_factor, const std::function<void(int i, int j, const Mat3& block)>& add);
+                 std::span<const Vec3> position, double velocity_factor,
+                 const std::function<void(int i, int j, const Mat3& block)>& add);
 
 /// What touches leaves its stick springs in `pairs`; those of other places become zero. Springs that slipped
 /// are shorter from here on, and forces those of the shorter ones.

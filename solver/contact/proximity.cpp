@@ -27,15 +27,9 @@ NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1) {
 }
 
 NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
-  const Vec3 u = a1 - a0, v = b1 - b0, r = a0 - b0;
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ur = u.dot(r), vr = v.dot(r);
-  const double det = uu * vv - uv * uv;
-  // of parallel lines any pair of points opposite each other is nearest
-  double s = det > 1e-14 * uu * vv ? std::clamp((uv * vr - vv * ur) / det, 0., 1.) : 0.5;
-  double t = std::clamp((uv * s + vr) / vv, 0., 1.);
-  s = std::clamp((uv * t - ur) / uu, 0., 1.);
-  t = std::clamp((uv * s + vr) / vv, 0., 1.);
-  return {s, t, s > 0 && s<1, t> 0 && t < 1, r + s * u - t * v};
+  const PackVector<double> u = packed(Vec3(a1 - a0)), v = packed(Vec3(b1 - b0)), r = packed(Vec3(a0 - b0));
+  const auto [s, t] = nearest_places(u, v, r);
+  return {s, t, s > 0 && s<1, t> 0 && t < 1, unpacked(r + s * u - t * v)};
 }
 
 double contact_length(const Model& model, const ElementPair& pair) {

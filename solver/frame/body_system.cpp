@@ -180,7 +180,7 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
   add_forces(contacts.members, member_pairs_, force);
   if constexpr (with_tangent) {
     const auto add = [&](int i, int j, const Mat3& slope) { add_slope(i, j, slope, motion); };
-    add_tangent(law, contacts.members, member_pairs_, velocity_factor, std::ref(add));
+    add_tangent(law, contacts.members, member_pairs_, motion.position, velocity_factor, std::ref(add));
   }
   carry_forces<with_tangent>(motion);
 }

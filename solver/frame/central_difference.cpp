@@ -74,8 +74,7 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
     double greatest = 0, change = 0;
     for (MemberTouch& touch : s.contacts.members.touches) {
       const MemberPair& pair = s.member_pairs()[touch.pair];
-      ContactLaw weighted = law;
-      weighted.alpha *= touch.weight;
+      const ContactLaw own = weighted(law, touch);
       Vec3 rest = Vec3::Zero();
       double inverse = 0;
       for (int k = 0; k < 4; ++k) {
@@ -88,7 +87,7 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
       Vec3& v = touch.input.velocity;
       for (int iteration = 0; iteration < 30; ++iteration) {
         Mat3 by_position, by_velocity;
-        touch.out = contact_force(weighted, touch.input, by_position, by_velocity);
+        touch.out = contact_force(own, touch.input, by_position, by_velocity);
         const Mat3 slope = Mat3::Identity() - inverse * by_velocity;
         const Vec3 correction = slope.inverse() * (v - rest - inverse * touch.out.force);
         v -= correction;

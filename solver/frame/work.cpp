@@ -36,7 +36,7 @@ void book_work(const BodySystem& s, const StepSpan& span, const BodyMotion& star
                    end.position[pair.node] - start.position[pair.node], sign, energy);
     for (const MemberTouch& touch : contacts.members.touches) {
       const MemberPair& pair = s.member_pairs()[touch.pair];
-      book_contact(touch.out, touch.normal,
+      book_contact(touch.out, touch.input.normal,
                    relative(touch, pair, end.position) - relative(touch, pair, start.position), sign, energy);
     }
   };
@@ -51,10 +51,11 @@ void book_work(const BodySystem& s, const StepSpan& span, const BodyMotion& star
   for (const TouchingPair& pair : contacts_end.planes)
     change.book_end(pair.depth, pair.L, pair.out.stick_energy);
   for (const MemberTouch& touch : contacts_start.members.touches)
-    change.book_start(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight,
+    change.book_start(touch.input.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight,
                       true);
   for (const MemberTouch& touch : contacts_end.members.touches)
-    change.book_end(touch.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+    change.book_end(touch.input.depth, s.member_pairs()[touch.pair].L, touch.out.stick_energy, touch.weight,
+                    true);
 }
 
 }  // namespace topple

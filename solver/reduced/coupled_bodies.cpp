@@ -163,7 +163,7 @@ ContactPower CoupledBodies::power() const {
   ContactPower power{0, 0};
   for (const MemberTouch& touch : now_.touches) {
     const Vec3& v = touch.input.velocity;
-    power.damping -= (touch.out.normal - touch.out.conservative) * touch.normal.dot(v);
+    power.damping -= (touch.out.normal - touch.out.conservative) * touch.input.normal.dot(v);
     power.friction -= touch.out.tangential.dot(v);
   }
   return power;
@@ -180,9 +180,9 @@ void CoupledBodies::book(const SubstepSpan& span, const std::array<ContactPower,
   if (before.alpha == after.alpha && before.q == after.q) return;
   LawChange change(before, after, *booked_);
   for (const MemberTouch& touch : start_.touches)
-    change.book_start(touch.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+    change.book_start(touch.input.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
   for (const MemberTouch& touch : now_.touches)
-    change.book_end(touch.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
+    change.book_end(touch.input.depth, pairs_[touch.pair].L, touch.out.stick_energy, touch.weight, true);
 }
 
 ImplicitOutcome CoupledBodies::substep(const SubstepSpan& span) {

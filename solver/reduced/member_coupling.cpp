@@ -10,6 +10,7 @@
 #include "solver/contact/member_pairs.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
+#include "solver/reduced/rigid_pair_slopes.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
@@ -57,15 +58,52 @@ int MemberCoupling::number_of(int node) {
   return number;
 }
 
-void MemberCoupling::start(std::span<MemberPair> pairs) const {
-  for (MemberPair& pair : pairs) {
-    std::array<Vec3, 4>& x = pair.start;
-    for (int k = 0; k < 4; ++k) x[k] = position_[pair.node[k]];
-    pair.gap = nearest_points(x[0], x[1], x[2], x[3]).between.norm() - pair.L;
+namespace {
+
+// Gaps of pairs where they start, four at a time.
+class GapFinder {
+ public:
+  ~GapFinder() { find(); }
+  void add(MemberPair& pair) {
+    pair_[count_++] = &pair;
+    if (count_ == 4) find();
+  }
+
+ private:
+  void find() {
+    if (count_ == 0) return;
+    std::array<PackVector<Four>, 4> x;
+    for (int k = 0; k < 4; ++k)
+      for (int end = 0; end < 4; ++end) set_lane(x[end], k, pair_[k < count_ ? k : 0]->start[end]);
+    const PackVector<Four> u = x[1] - x[0], v = x[3] - x[2], r = x[0] - x[2];
+    const auto [s, t] = nearest_places(u, v, r);
+    const PackVector<Four> between = r + s * u - t * v;
+    const Four distance = sqrt(dot(between, between));
+    for (int k = 0; k < count_; ++k) pair_[k]->gap = distance[k] - pair_[k]->L;
+    count_ = 0;
+  }
+
+  std::array<MemberPair*, 4> pair_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+void MemberCoupling::start() {
+  GapFinder gaps;
+  for (MemberPair& pair : pairs_) {
+    bool known = pair.gap != 0;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& x = position_[pair.node[k]];
+      known = known && x == pair.start[k];
+      pair.start[k] = x;
+    }
+    if (!known) gaps.add(pair);
   }
 }
 
 void MemberCoupling::go_on(std::span<MemberPair> pairs) const {
+  GapFinder gaps;
   for (MemberPair& pair : pairs) {
     std::array<double, 4> way;
     for (int k = 0; k < 4; ++k) {
@@ -74,7 +112,7 @@ void MemberCoupling::go_on(std::span<MemberPair> pairs) const {
       pair.start[k] = x;
     }
     pair.gap -= std::sqrt(std::max(way[0], way[1])) + std::sqrt(std::max(way[2], way[3]));
-    if (!(pair.gap > k_wide)) start({&pair, 1});
+    if (!(pair.gap > k_wide)) gaps.add(pair);
   }
 }
 
@@ -167,97 +205,36 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
     load.linear = load.angular = {0, 0, 0};
     load.rate.setZero();
   }
-  const auto push = [&](int k, const Vec3& force) {
-    const int body = nodes_[k].body;
-    if (body < 0) return;
-    BodyVelocity& load = loads_[body];
-    load.linear = load.linear + packed(force);
-    load.angular = load.angular + packed(Vec3(arm_[k].cross(force)));
-    for (int mode = 0; mode < modes_[body]; ++mode) load.rate[mode] += shape_[k * k_modes + mode].dot(force);
-  };
-  for (const MemberTouch& touch : contacts.touches)
-    for (int k = 0; k < 4; ++k) push(pairs[touch.pair].node[k], touch.share[k] * touch.out.force);
+  for (const MemberTouch& touch : contacts.touches) {
+    const auto& node = pairs[touch.pair].node;
+    const Vec3& force = touch.out.force;
+    for (int side = 0; side < 2; ++side) {
+      const int first = node[2 * side], second = node[2 * side + 1], body = nodes_[first].body;
+      if (body < 0) continue;
+      const double* const share = &touch.share[2 * side];
+      BodyVelocity& load = loads_[body];
+      load.linear = side == 0 ? load.linear + packed(force) : load.linear - packed(force);
+      load.angular = load.angular +
+                     cross(share[0] * packed(arm_[first]) + share[1] * packed(arm_[second]), packed(force));
+      for (int mode = 0; mode < modes_[body]; ++mode)
+        load.rate[mode] +=
+            (share[0] * shape_[first * k_modes + mode] + share[1] * shape_[second * k_modes + mode])
+                .dot(force);
+    }
+  }
   for (const MemberBlend& blend : contacts.blends)
-    for (int k = 0; k < 4; ++k)
-      push(pairs[blend.pair].node[k], -blend.slope * blend.surplus * blend.by_sine[k]);
+    for (int k = 0; k < 4; ++k) {
+      const int node = pairs[blend.pair].node[k], body = nodes_[node].body;
+      if (body < 0) continue;
+      const Vec3 force = -blend.slope * blend.surplus * blend.by_sine[k];
+      BodyVelocity& load = loads_[body];
+      load.linear = load.linear + packed(force);
+      load.angular = load.angular + packed(Vec3(arm_[node].cross(force)));
+      for (int mode = 0; mode < modes_[body]; ++mode)
+        load.rate[mode] += shape_[node * k_modes + mode].dot(force);
+    }
   return loads_;
 }
-
-namespace {
-
-// Unknowns of a rigid body: J^T of a force on a point, and of a 3 x 3 slope between points of two bodies.
-struct RigidArm {
-  double share;  // of the point's motion that is the body's
-  Vec3 arm;      // m, from the centre of gravity, times that
-
-  Vec6 carry(const Vec3& force) const {
-    Vec6 out;
-    out << share * force, arm.cross(force);
-    return out;
-  }
-};
-
-Mat6 carried(const RigidArm& a, const Mat3& slope, const RigidArm& b) {
-  Mat3 turned;  // -slope [arm]
-  for (int k = 0; k < 3; ++k) turned.row(k) = b.arm.cross(slope.row(k).transpose()).transpose();
-  Mat6 out;
-  out.topLeftCorner<3, 3>() = a.share * b.share * slope;
-  out.topRightCorner<3, 3>() = a.share * turned;
-  for (int k = 0; k < 3; ++k) {
-    out.block<3, 1>(3, k) = b.share * a.arm.cross(slope.col(k));
-    out.block<3, 1>(3, 3 + k) = a.arm.cross(turned.col(k));
-  }
-  return out;
-}
-
-}  // namespace
-
-// Of two rigid bodies that touch in many places: their blocks, added up before they are handed on.
-struct MemberCoupling::RigidSum {
-  std::array<int, 2> bodies{-1, -1};
-  Mat6 block[2][2], of_stick[2][2];
-
-  void add(const MemberCoupling& of, const MemberPair& pair, const PairTangent& tangent) {
-    RigidArm at_touch[2];
-    Vec6 left[2][2], right[2][2];
-    for (int side = 0; side < 2; ++side) {
-      if (bodies[side] < 0) continue;
-      at_touch[side] = {0, Vec3::Zero()};
-      for (int p = 0; p < tangent.product_count; ++p) left[side][p] = right[side][p] = Vec6::Zero();
-      for (int k = 2 * side; k < 2 * side + 2; ++k) {
-        const RigidArm end{1, of.arm_[pair.node[k]]};
-        at_touch[side].share += tangent.share[k];
-        at_touch[side].arm += tangent.share[k] * end.arm;
-        for (int p = 0; p < tangent.product_count; ++p) {
-          left[side][p] += end.carry(tangent.products[p].left[k]);
-          right[side][p] += end.carry(tangent.products[p].right[k]);
-        }
-      }
-    }
-    const bool sticks = !tangent.stick.isZero(0);
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) {
-        if (bodies[a] < 0 || bodies[b] < 0) continue;
-        block[a][b] += carried(at_touch[a], tangent.local, at_touch[b]);
-        for (int p = 0; p < tangent.product_count; ++p)
-          block[a][b].noalias() += left[a][p] * right[b][p].transpose();
-        if (sticks) of_stick[a][b] += carried(at_touch[a], tangent.stick, at_touch[b]);
-      }
-  }
-  void begin(const std::array<int, 2>& which) {
-    bodies = which;
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) {
-        block[a][b].setZero();
-        of_stick[a][b].setZero();
-      }
-  }
-  void hand_on(const AddBlock& add) const {
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b)
-        if (bodies[a] >= 0 && bodies[b] >= 0) add(bodies[a], 0, bodies[b], 0, block[a][b], of_stick[a][b]);
-  }
-};
 
 void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& contacts,
                                 std::span<const MemberPair> pairs, double velocity_factor,
@@ -274,18 +251,12 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     }
     return j;
   };
-  RigidSum rigid;
+  const auto are_rigid = [&](const std::array<int, 2>& bodies) {
+    return std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; });
+  };
   const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
     const std::array<int, 2> bodies = bodies_of(pair);
-    if (std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; })) {
-      if (bodies != rigid.bodies) {
-        rigid.hand_on(add);
-        rigid.begin(bodies);
-      }
-      rigid.add(*this, pair, tangent);
-      return;
-    }
     std::array<std::array<Columns, k_most_groups>, 2> at_touch;
     std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
     for (int side = 0; side < 2; ++side) {
@@ -315,8 +286,47 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
           }
       }
   };
-  each_tangent(law, contacts, pairs, velocity_factor, std::ref(add_all));
-  rigid.hand_on(add);
+  RigidPairSlopes rigid(law, position_, arm_, velocity_factor);
+  std::array<int, 2> of_rigid{-1, -1};
+  const auto hand_on = [&] {
+    rigid.end();
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (of_rigid[i] >= 0 && of_rigid[j] >= 0)
+          add(of_rigid[i], 0, of_rigid[j], 0, rigid.block(i, j), rigid.of_stick(i, j));
+  };
+  const auto take_rigid = [&](const MemberPair& pair) {
+    const std::array<int, 2> bodies = bodies_of(pair);
+    if (!are_rigid(bodies)) return false;
+    if (bodies != of_rigid) {
+      hand_on();
+      rigid.begin();
+      of_rigid = bodies;
+    }
+    return true;
+  };
+  const auto add_one = [&](const auto& of, auto add_rigid, auto tangent) {
+    const MemberPair& pair = pairs[of.pair];
+    if (take_rigid(pair))
+      add_rigid(pair);
+    else
+      add_all(tangent());
+  };
+  auto blend = contacts.blends.begin();
+  const auto add_blends = [&](int before) {
+    for (; blend != contacts.blends.end() && blend->pair < before; ++blend)
+      add_one(
+          *blend, [&](const MemberPair& pair) { rigid.add_blend(blend_tangent(*blend), pair); },
+          [&] { return blend_tangent(*blend); });
+  };
+  for (const MemberTouch& touch : contacts.touches) {
+    add_blends(touch.pair);
+    add_one(
+        touch, [&](const MemberPair& pair) { rigid.add(touch, pair); },
+        [&] { return touch_tangent(law, touch, pairs[touch.pair], position_, velocity_factor); });
+  }
+  add_blends(std::numeric_limits<int>::max());
+  hand_on();
 }
 
 }  // namespace topple

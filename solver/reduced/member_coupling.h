@@ -44,9 +44,9 @@ class MemberCoupling {
     for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) f(k, nodes_[k].body);
   }
 
-  /// `pairs` start where the nodes are; their gaps there are known from here on.
-  void start(std::span<MemberPair> pairs) const;
-  /// The same for pairs that moved little since they started; gaps of some millimetres are lower bounds.
+  /// pairs() start where the nodes are; their gaps there are known from here on.
+  void start();
+  /// The same for copies of pairs that moved little since they started; gaps of some millimetres are lower bounds.
   void go_on(std::span<MemberPair> pairs) const;
   /// Held nodes stand where they are in `state`.
   void place_held(const State& state);
@@ -63,8 +63,8 @@ class MemberCoupling {
 
   /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
-  /// Calls add with the parts of J^T t J, t of each_tangent(): block (i, j) of six unknowns belongs to group
-  /// i of body a and j of b.
+  /// Calls add with the parts of J^T t J, t: PairTangent of all that touches. Block (i, j) of six unknowns
+  /// belongs to group i of body a and j of b.
   using AddBlock = std::function<void(int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick)>;
   void each_block(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                   double velocity_factor, const AddBlock& add) const;
@@ -79,7 +79,6 @@ class MemberCoupling {
     int body, node;  // index into the model
     Vec3 place;      // m, from the centre of gravity, reference axes
   };
-  struct RigidSum;
   int number_of(int node);
   Vec3 acceleration(int node) const;
   Vec3 shape(const Node& node, int mode) const;

@@ -109,7 +109,7 @@ TEST(MemberContact, force_and_moment_of_the_pair_vanish) {
 Eigen::Matrix<double, 12, 12> tangent_of(const ContactLaw& law, const MemberContacts& found, const Pair& pair,
                                          double factor) {
   Eigen::Matrix<double, 12, 12> sum = Eigen::Matrix<double, 12, 12>::Zero();
-  add_tangent(law, found, pair.pairs, factor,
+  add_tangent(law, found, pair.pairs, pair.position, factor,
               [&](int i, int j, const Mat3& block) { sum.block<3, 3>(3 * i, 3 * j) += block; });
   return sum;
 }
