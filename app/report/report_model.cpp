@@ -102,6 +102,7 @@ std::string settings_section(ReportPage& page) {
       {page.say(words::k_contact), traits(p.contact).word},
       {page.say(words::k_alpha),
        fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
+      {page.say(words::k_member_share), short_shown(p.contact.member_share)},
       {page.say(words::k_q), short_shown(p.contact.q)},
       {page.say(words::k_mu), short_shown(p.contact.friction)}};
   if (traits(p.contact).has_restitution) {

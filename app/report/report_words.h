@@ -246,6 +246,7 @@ inline constexpr Phrase k_steps{"{0} steps, {1} rejected", "{0}ステップ、�
 inline constexpr Phrase k_adaptive{"adaptive, tolerance {0}, mean {1} ms", "可変、許容誤差 {0}、平均 {1} ms"};
 inline constexpr Phrase k_contact{"contact law", "接触則"};
 inline constexpr Phrase k_alpha{"penalty coefficient α", "ペナルティ係数 α"};
+inline constexpr Phrase k_member_share{"share of α between members", "部材間での α の割合"};
 inline constexpr Phrase k_q{"penalty index q", "ペナルティ指数 q"};
 inline constexpr Phrase k_mu{"friction coefficient μ", "摩擦係数 μ"};
 inline constexpr Phrase k_restitution{"restitution", "反発係数"};

@@ -8,7 +8,7 @@
 namespace topple {
 namespace {
 
-constexpr double k_early_uplift = 0.02, k_landing = 0.02, k_depth = 0.01;
+constexpr double k_early_uplift = 0.02, k_landing = 0.02, k_depth = 0.01, k_knock = 1e-4, k_lean = 0.01;
 
 struct Edge {
   double distance;  // m, of the centre of gravity
@@ -30,11 +30,14 @@ Edge edge_of_base(const Model& model, const Body& body, const Plane& floor, std:
   return edge;
 }
 
-double of_edge(const Edge& edge, double weight, double height, double q) {
+// Depths to which a body may sink, m.
+double on_floor(const Edge& edge, double height) {
   const double b = edge.distance, slope = b / height;
-  const double depth =
-      std::min(b * slope * std::min(2 * k_early_uplift, k_landing * slope * slope), k_depth * edge.width);
-  return weight / edge.points * elementary::pow(edge.width / depth, q);
+  return std::min(b * slope * std::min(2 * k_early_uplift, k_landing * slope * slope), k_depth * edge.width);
+}
+
+double on_members(const Edge& edge, double height) {
+  return std::min({k_knock * height, k_lean * edge.distance, k_depth * edge.width});
 }
 
 bool is_supported(const Model& model, int body) {
@@ -42,9 +45,10 @@ bool is_supported(const Model& model, int body) {
                      [&](const Support& support) { return model.node_body[support.node] == body; });
 }
 
-}  // namespace
-
-std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+// The greatest of all edges of bases. depth(edge, height of the centre of gravity over it, m)
+template <class Depth>
+std::optional<double> greatest_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity,
+                                     Depth depth) {
   constexpr double k_upright = 0.7;  // of the normal of a floor
   const auto floor = std::find_if(model.planes.begin(), model.planes.end(),
                                   [](const Plane& plane) { return plane.normal.z() > k_upright; });
@@ -60,10 +64,21 @@ std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, con
     for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
       const Edge edge = edge_of_base(model, body, face, i);
       if (!(edge.distance > 0) || !(height > 0)) continue;
-      alpha = std::max(alpha.value_or(0), of_edge(edge, body.mass * gravity.norm(), height, law.q));
+      const double each = body.mass * gravity.norm() / edge.points;
+      alpha = std::max(alpha.value_or(0), each * elementary::pow(edge.width / depth(edge, height), law.q));
     }
   }
   return alpha;
+}
+
+}  // namespace
+
+std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  return greatest_alpha(model, law, gravity, on_floor);
+}
+
+std::optional<double> member_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  return greatest_alpha(model, law, gravity, on_members);
 }
 
 }  // namespace topple

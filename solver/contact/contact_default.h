@@ -20,4 +20,13 @@ namespace topple {
 /// - The depth is at most a hundredth of L.
 std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity);
 
+/// Least alpha between members, N, with which bodies that knock and lean on each other move nearly as rigid
+/// ones; none, and the formula for alpha, as above.
+///   d = min(1e-4 h, 0.01 b, 0.01 L)
+/// - A knock of a body on as many contacts takes pi sqrt(d/g), at most 0.031 sqrt(h/g), half a hundredth of
+///   what its fall takes.
+/// - A body that leans with all its weight leans by d/h more, a hundredth of b/h.
+/// - The depth is at most a hundredth of L.
+std::optional<double> member_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity);
+
 }  // namespace topple

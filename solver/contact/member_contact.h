@@ -2,10 +2,10 @@
 //
 // Two elements a and b hold the energy
 //   E = kappa U(l) + (1 - kappa)/4 (sum of U at the two ends of a over b and of b over a),
-// U: penalty_energy with hardening, l: distance where the centre lines are nearest, kappa = x^2 (3 - 2 x),
-// with x = sin^2 of their angle over k_parallel, at most 1. So nearly parallel elements touch at their ends
-// and do not chatter about one moving point. Forces are derivatives of E, kappa's included: only damping and
-// friction take energy. They act on centre lines.
+// U: penalty_energy with hardening and the law's member_share of alpha, l: distance where the centre lines
+// are nearest, kappa = x^2 (3 - 2 x), with x = sin^2 of their angle over k_parallel, at most 1. So nearly
+// parallel elements touch at their ends and do not chatter about one moving point. Forces are derivatives of
+// E, kappa's included: only damping and friction take energy. They act on centre lines.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ struct MemberTouch {
   int pair;   ///< within the system
   int place;  ///< 0: where they are nearest; 1, 2: first and second end of a over b; 3, 4: of b over a
   std::array<double, 4> share;  ///< of the ends' motion in that of a's point relative to b's: sum share x
-  double weight;                ///< of its U in E: kappa or (1 - kappa)/4
+  double weight;                ///< of its U in E, kappa or (1 - kappa)/4, times member_share
   double s, t;                  ///< where, see NearestPoints
   bool s_free, t_free;          ///< likewise
   double l;                     ///< m, along the normal; <= 0: they went through each other

@@ -132,9 +132,9 @@ class TouchFinder {
       places_.push_back(at);
       if (places_.full()) touch();
     };
-    if (kappa > 0) add(0, kappa, s, t);
+    const double share = law_.member_share, rest = share * (1 - kappa) / 4;
+    if (kappa > 0) add(0, share * kappa, s, t);
     if (kappa == 1) return;
-    const double rest = (1 - kappa) / 4;
     add(1, rest, 0, 0);
     add(2, rest, 1, 0);
     add(3, rest, 0, 0);
@@ -142,8 +142,8 @@ class TouchFinder {
     if (kappa == 0 || !stores_energy_) return;
     MemberBlend& blend = found_.blends.emplace_back();
     blend.pair = at.pair;
-    blend.slope = 6 * sine * (1 - sine) / k_parallel;
-    blend.curvature = (6 - 12 * sine) / (k_parallel * k_parallel);
+    blend.slope = share * 6 * sine * (1 - sine) / k_parallel;
+    blend.curvature = share * (6 - 12 * sine) / (k_parallel * k_parallel);
     blend.surplus = 0;
   }
 

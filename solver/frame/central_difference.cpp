@@ -57,7 +57,8 @@ std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) 
   if (s.model.bodies.size() < 2) return sum;
   for (const auto& own : s.own_elements) {
     const double L = contact_length(s.model, {own.element, own.element});
-    for (const int i : {own.i, own.j}) sum[i] += law.alpha / L * (along + across) * Mat3::Identity();
+    for (const int i : {own.i, own.j})
+      sum[i] += law.member_share * law.alpha / L * (along + across) * Mat3::Identity();
   }
   return sum;
 }

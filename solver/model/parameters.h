@@ -25,6 +25,7 @@ struct ContactLaw {
   /// m/s. paper and printed law: smoothing eps of the direction v/sqrt(v^2 + eps^2). coulomb law: slip speed
   /// at which friction is half-way from static to kinetic.
   double slip_speed = 0.01;
+  double member_share = 1;  ///< of alpha, between members of different bodies
   bool operator==(const ContactLaw&) const = default;
   /// Static less kinetic friction, not below 0.
   double excess() const { return friction_static > friction ? friction_static - friction : 0; }

@@ -119,8 +119,9 @@ void MemberCoupling::go_on(std::span<MemberPair> pairs) const {
 double first_substep(const ContactLaw& law, std::span<const MemberPair> pairs) {
   double least = std::numeric_limits<double>::infinity();
   for (const MemberPair& pair : pairs)
-    least = std::min(least,
-                     k_resolved_bounce * std::sqrt(pair.mass * pair.L / (law.alpha * std::max(1., law.q))));
+    least = std::min(
+        least, k_resolved_bounce *
+                   std::sqrt(pair.mass * pair.L / (law.member_share * law.alpha * std::max(1., law.q))));
   return least;
 }
 

@@ -45,7 +45,8 @@ struct ContactAhead {
 inline ContactAhead contact_ahead(const ContactLaw& law, double gap, double closing, double L,
                                   bool between_members = false) {
   if (gap < 0)
-    return {std::numeric_limits<double>::infinity(), penalty_stiffness(law, -gap / L, L, between_members)};
+    return {std::numeric_limits<double>::infinity(),
+            (between_members ? law.member_share : 1) * penalty_stiffness(law, -gap / L, L, between_members)};
   return {closing_limit(gap, closing, L), 0};
 }
 

@@ -230,6 +230,11 @@ void add_contact(std::vector<Key>& keys) {
               "friction")
       .absent(law.slip_speed)
       .only_in({"dynamic"});
+  rows.number("member_share", 1e-3, 1, "share of alpha that members of two bodies have between them")
+      .absent(law.member_share)
+      .absent_means(
+          "1; where `alpha` is chosen, what lets bodies knock and lean on each other as rigid ones "
+          "(contact_default.h)");
 }
 
 // Of a floor or wall, a plane or made of members; `extent`: how far it goes by default, m.

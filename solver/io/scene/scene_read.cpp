@@ -174,14 +174,22 @@ void read_contact(const Entry& root, Setup& setup) {
   law.restitution = contact.number("restitution");
   law.normal_speed = contact.number("normal_speed");
   law.slip_speed = contact.number("slip_speed");
+  law.member_share = contact.number("member_share");
 }
 
 void choose_alpha(const Entry& root, Setup& setup) {
   if (root.entry("contact").has("alpha") || setup.run.analysis == Analysis::modes) return;
   ContactLaw& law = setup.parameters.contact;
-  const Key& key = *find_key("contact", "alpha");
-  if (const auto alpha = rigid_alpha(setup.model, law, setup.parameters.gravity))
-    law.alpha = std::clamp(*alpha, key.least, key.most);
+  const auto choose = [&](const char* name, double value) {
+    const Key& key = *find_key("contact", name);
+    return std::clamp(value, key.least, key.most);
+  };
+  const Vec3& gravity = setup.parameters.gravity;
+  const auto alpha = rigid_alpha(setup.model, law, gravity);
+  if (!alpha) return;
+  law.alpha = choose("alpha", *alpha);
+  if (!root.entry("contact").has("member_share"))
+    law.member_share = choose("member_share", *member_alpha(setup.model, law, gravity) / law.alpha);
 }
 
 bool is_beams(const Entry& entry) {

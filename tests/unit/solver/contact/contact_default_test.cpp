@@ -20,6 +20,14 @@ TEST(ContactDefault, slender_block_sinks_by_what_its_landing_allows) {
   EXPECT_NEAR(of(setup), setup.model.bodies[0].mass * k_g / 2 * 0.03 / depth, 1e-9 * of(setup));
 }
 
+TEST(ContactDefault, members_give_way_by_a_hundredth_of_what_a_lean_is) {
+  const topple::Setup setup = rocking_block(0, 1, 1e-3);
+  const double h = setup.model.bodies[0].centre_of_gravity.z() - 0.015, L = 0.03;
+  const double depth = std::min({1e-4 * h, 0.01 * 0.19, 0.01 * L}),
+               alpha = setup.model.bodies[0].mass * k_g / 2 * L / depth;
+  EXPECT_NEAR(member_alpha(setup.model, setup.parameters.contact, k_down).value_or(0), alpha, 1e-9 * alpha);
+}
+
 TEST(ContactDefault, contact_width_of_the_floor_counts_and_the_index_of_the_law) {
   topple::Setup setup = rocking_block(0, 1, 1e-3);
   const double narrow = of(setup);
