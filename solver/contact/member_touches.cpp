@@ -4,6 +4,7 @@
 
 #include "solver/contact/coulomb.h"
 #include "solver/contact/member_contact.h"
+#include "solver/contact/nearest_places.h"
 #include "solver/contact/penalty.h"
 
 namespace topple {

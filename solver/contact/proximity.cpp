@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact/nearest_places.h"
+
 namespace topple {
 namespace {
 

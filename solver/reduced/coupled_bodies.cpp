@@ -9,7 +9,8 @@
 namespace topple {
 namespace {
 
-constexpr double k_passed_error = 8;  // counts as this error: members moved too far to see them meet
+constexpr double k_least_part = 0.01;  // of a correction of Newton's
+constexpr double k_passed_error = 8;   // counts as this error: members moved too far to see them meet
 
 }  // namespace
 
@@ -121,9 +122,22 @@ void CoupledBodies::factor(const SubstepSpan& span, const ContactLaw& law) {
   coupling_.each_block(law, now_, pairs_, 1 / span.gamma_dt, std::ref(add));
 }
 
-// Newton for the velocities of a stage.
+// Takes `part` of corrections, of which there are as many as unknowns, off the velocities.
+void CoupledBodies::correct(std::span<const double> corrections, double part) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyVelocity by = taken(&corrections[6 * row_[b]], substeps_[b]->modes());
+    by.linear = part * by.linear;
+    by.angular = part * by.angular;
+    by.rate *= part;
+    substeps_[b]->correct(by);
+  }
+}
+
+// Newton for the velocities of a stage. A correction after which the next one is larger went too far: most of
+// it is taken back (natural monotonicity, Deuflhard 1974).
 bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law, StageNewton& newton) {
   newton.begin_stage();
+  double taken_part = 1;  // of the last correction
   for (int iteration = 0; iteration < k_newton_iterations; ++iteration) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       ImplicitSubstep& substep = *substeps_[b];
@@ -141,12 +155,22 @@ bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law,
     }
     matrix_.solve(side_.data());
     double size = 0, over = 0;
-    each_body([&](ImplicitSubstep& substep, const double* from) {
-      const double own = substep.correct(taken(from, substep.modes()));
+    each_body([&](const ImplicitSubstep& substep, const double* from) {
+      const double own = substep.size_of(taken(from, substep.modes()));
       size = std::max(size, own);
       over = std::max(over, own / substep.scale());
       if (!std::isfinite(own)) size = over = own;
     });
+    if (size > newton.last && taken_part > k_least_part) {
+      const double less = taken_part * std::clamp(newton.last / (2 * size), 0.1, 0.5);
+      correct(correction_, less - taken_part);
+      taken_part = less;
+      newton.fresh = true;
+      continue;
+    }
+    correct(side_, 1);
+    correction_ = side_;
+    taken_part = 1;
     const double rate = newton.rate(size, law);
     if (over * rate <= StageNewton::k_error) {
       newton.fresh = false;

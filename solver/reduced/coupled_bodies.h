@@ -34,6 +34,7 @@ class CoupledBodies {
   ImplicitOutcome substep(const SubstepSpan& span);
   void find(const ContactLaw& law);
   void shape_matrices();
+  void correct(std::span<const double> corrections, double part);
   bool solve_stage(const SubstepSpan& span, const PreparedLaw& law, StageNewton& newton);
   void factor(const SubstepSpan& span, const ContactLaw& law);
   ContactPower power() const;
@@ -57,7 +58,7 @@ class CoupledBodies {
   std::vector<int> row_;                      // per body, its first one; and their number
   std::vector<std::pair<int, int>> coupled_;  // rows that the matrices couple
   BlockLu matrix_, sticks_;
-  std::vector<double> side_;
+  std::vector<double> side_, correction_;
 };
 
 }  // namespace topple

@@ -163,17 +163,18 @@ void ImplicitSubstep::fill_with_sticks(ModeMatrix& matrix) const {
   if (modes_ > 0) body_.contacts_.add_stick_slope_of_modes(-span_.gamma_dt, modes_, matrix);
 }
 
-double ImplicitSubstep::correct(const BodyVelocity& by) {
+void ImplicitSubstep::correct(const BodyVelocity& by) {
   BodyVelocity& u = now_->u;
   u.linear = u.linear - by.linear;
   u.angular = u.angular - by.angular;
+  for (int k = 0; k < modes_; ++k) u.rate[k] -= by.rate[k];
+}
+
+double ImplicitSubstep::size_of(const BodyVelocity& correction) const {
   double size = 0;
-  for (int k = 0; k < modes_; ++k) {
-    u.rate[k] -= by.rate[k];
-    size += std::abs(by.rate[k]);
-  }
+  for (int k = 0; k < modes_; ++k) size += std::abs(correction.rate[k]);
   if (modes_ > 0) size /= std::sqrt(body_.mass_);
-  return size + velocity_size(body_.reach_, by.linear, by.angular);
+  return size + velocity_size(body_.reach_, correction.linear, correction.angular);
 }
 
 double ImplicitSubstep::scale() const {
@@ -334,7 +335,8 @@ bool solve_stage(ImplicitSubstep& substep, const PreparedLaw& law, StageNewton& 
       sticks = substep.stick_solver();
     }
     solver.solve(left.linear, left.angular);
-    const double size = substep.correct(left), rate = newton.rate(size, law);
+    substep.correct(left);
+    const double size = substep.size_of(left), rate = newton.rate(size, law);
     if (size * rate <= StageNewton::k_error * substep.scale()) {
       newton.fresh = false;
       substep.end_stage();

@@ -106,9 +106,10 @@ class ImplicitSubstep {
   RigidSolver stick_solver() const;
   void fill(ModeMatrix& matrix) const;
   void fill_with_sticks(ModeMatrix& matrix) const;
-  /// Takes it off the velocity; its size, m/s.
-  double correct(const BodyVelocity& by);
-  double scale() const;  ///< m/s, what errors of the velocity are measured by
+  /// Takes it off the velocity.
+  void correct(const BodyVelocity& by);
+  double size_of(const BodyVelocity& correction) const;  ///< m/s
+  double scale() const;                                  ///< m/s, what errors of the velocity are measured by
   void end_stage();
   /// Local error of the velocity times M, as residual; to be multiplied with the inverse matrix of stick
   /// springs. Then its size over that which is allowed.

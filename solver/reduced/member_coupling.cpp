@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "solver/contact/member_pairs.h"
+#include "solver/contact/nearest_places.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
 #include "solver/reduced/rigid_pair_slopes.h"

@@ -205,8 +205,8 @@ TEST(MemberContact, tangent_without_friction_is_the_second_derivative_of_the_ene
     pair.velocity[0] = pair.velocity[1] = Vec3(0.1, 0.2, 0.3);  // it slides, at no cost
     const MemberContacts found = pair.find(law);
     ASSERT_EQ(found.touches.size(), 1u);
-    ASSERT_EQ(found.touches[0].at.s_free, free[k][0]) << k;
-    ASSERT_EQ(found.touches[0].at.t_free, free[k][1]) << k;
+    ASSERT_EQ(found.touches[0].s_free, free[k][0]) << k;
+    ASSERT_EQ(found.touches[0].t_free, free[k][1]) << k;
     Eigen::Matrix<double, 12, 12> exact;
     const double h = 1e-6;
     for (int j = 0; j < 12; ++j) {
