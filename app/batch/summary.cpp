@@ -12,6 +12,7 @@
 #include "app/support/terms.h"
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
+#include "solver/body/planar_body.h"
 #include "solver/frame/integrator.h"
 
 namespace topple::app {
@@ -50,10 +51,20 @@ ordered_json models(const BodyOutcome& o) {
   return out;
 }
 
-ordered_json body(const Body& body, const BodyOutcome& o, const BodyMomentum& momentum) {
+/// Why one that `automatic` begins as a rigid body is no planar block.
+ordered_json not_planar(const Setup& setup, const BodyOutcome& o, int body) {
+  if (o.level_changes.empty() || o.level_changes.front().level != ModelLevel::rigid) return nullptr;
+  const std::string_view why =
+      why_not_planar(setup.model, setup.parameters, start_state(setup.model, setup.starts), body, false);
+  return why.empty() ? ordered_json(nullptr) : ordered_json(std::string(why));
+}
+
+ordered_json body(const Setup& setup, const BodyOutcome& o, const BodyMomentum& momentum, int index) {
+  const Body& body = setup.model.bodies[static_cast<std::size_t>(index)];
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
           {"models", models(o)},
+          {"not_planar", not_planar(setup, o, index)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
           {"first_uplift_s", number(o.first_uplift)},
@@ -163,24 +174,37 @@ std::string static_head(const ordered_json& s) {
   return out + "\n";
 }
 
-// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h).
+// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h), planar ones
+// Taylor series.
 std::string integrators(const ordered_json& s) {
-  bool frames = false, others = false;
+  bool frames = false, others = false, blocks = false;
   const auto look = [&](const ordered_json& model) {
-    (level_called(model.get<std::string>()).moves_nodes ? frames : others) = true;
+    const LevelTraits& level = level_called(model.get<std::string>());
+    (level.moves_nodes ? frames : level.has_block ? blocks : others) = true;
   };
   for (const auto& b : s["bodies"]) {
     look(b["model"]);
     for (const auto& change : b["models"]) look(change["model"]);
   }
   const auto named = s["integrator"].get<std::string>();
-  if (!frames) return "central differences";
-  return others && named != "central-difference" ? named + " (frames), central differences" : named;
+  std::string words = frames ? named : "";
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if (frames && others && named != "central-difference") words += " (frames)";
+  if (others && !(frames && named == "central-difference")) add("central differences");
+  if (blocks) add("Taylor series (planar)");
+  return words.empty() ? "central differences" : words;
 }
 
 // Of a body that is no frame.
 std::string allowed_error(const ordered_json& estimate) {
   return estimate.is_null() ? "" : fmt::format("; error about {:.2g} %", 100 * estimate.get<double>());
+}
+
+// Of the model that a body begins with.
+std::string not_planar(const ordered_json& body, const ordered_json& model) {
+  const bool first = &model == &body["models"].front();
+  return !first || body["not_planar"].is_null() ? ""
+                                                : "; not planar: " + body["not_planar"].get<std::string>();
 }
 
 std::string dynamic_head(const ordered_json& s) {
@@ -278,7 +302,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (int b = 0; b < model.furniture_total(); ++b)
-    out["bodies"].push_back(body(model.bodies[b], run.outcome().bodies()[b], body_momentum(model, state, b)));
+    out["bodies"].push_back(body(run.setup(), run.outcome().bodies()[b], body_momentum(model, state, b), b));
   out["anchors"] = anchors(run);
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {
@@ -387,9 +411,10 @@ std::string summary_table(const ordered_json& s) {
   }
   for (const auto& b : s["bodies"])
     for (const auto& model : b["models"])
-      out += fmt::format("{}: {} from {} s ({}{})\n", b["name"].get<std::string>(),
+      out += fmt::format("{}: {} from {} s ({}{}{})\n", b["name"].get<std::string>(),
                          model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
-                         model["reason"].get<std::string>(), allowed_error(model["error_estimate"]));
+                         model["reason"].get<std::string>(), not_planar(b, model),
+                         allowed_error(model["error_estimate"]));
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);

@@ -249,8 +249,10 @@ void draw_type(const Parameter& of) {
 
 void draw_model(const Parameter& of) {
   ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
-  of.row().choice(say(k_model), k_model_about,
-                  [&](int number) { return can_be(of.model(), of.index, static_cast<BodyModel>(number)); });
+  of.row().choice(say(k_model), k_model_about, [&](int number) {
+    const auto model = static_cast<BodyModel>(number);
+    return traits(model).by_edit && can_be(of.model(), of.index, model);
+  });
 }
 
 void draw_anchor(const Parameter& of) {

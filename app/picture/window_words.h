@@ -151,8 +151,10 @@ struct Japanese {
   Kind kind;
   std::string_view words;
 };
-inline constexpr Japanese<ModelLevel> k_levels[] = {
-    {ModelLevel::rigid, "剛体"}, {ModelLevel::elastic, "弾性"}, {ModelLevel::frame, "骨組"}};
+inline constexpr Japanese<ModelLevel> k_levels[] = {{ModelLevel::planar, "平面剛体"},
+                                                    {ModelLevel::rigid, "剛体"},
+                                                    {ModelLevel::elastic, "弾性"},
+                                                    {ModelLevel::frame, "骨組"}};
 inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::asked, "指定による"},
     {LevelReason::motion, "運動のみ必要"},
@@ -162,7 +164,13 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::deformation, "微小変形でない"},
     {LevelReason::near, "フレームの家具が近い"},
     {LevelReason::calm, "静穏に戻った"},
-    {LevelReason::bending, "剛体とみなすには曲がりすぎる"}};
+    {LevelReason::bending, "剛体とみなすには曲がりすぎる"},
+    {LevelReason::neighbour, "壁か他の家具が近い"},
+    {LevelReason::fall, "別の部分が床に当たる"},
+    {LevelReason::plane, "運動が鉛直面内でなくなった"},
+    {LevelReason::held, "固定具が働く"},
+    {LevelReason::contact, "接触条件の変更"},
+    {LevelReason::jammed, "すべりの停止が繰り返される"}};
 
 template <class Table, class Kind>
 Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {

@@ -24,7 +24,8 @@ struct LevelPhrase {
   ModelLevel kind;
   const Phrase& phrase;
 };
-constexpr LevelPhrase k_levels[] = {{ModelLevel::rigid, words::k_rigid},
+constexpr LevelPhrase k_levels[] = {{ModelLevel::planar, words::k_planar},
+                                    {ModelLevel::rigid, words::k_rigid},
                                     {ModelLevel::elastic, words::k_elastic},
                                     {ModelLevel::frame, words::k_frame}};
 

@@ -255,6 +255,8 @@ inline constexpr Phrase k_gravity{"gravity", "重力加速度"};
 inline constexpr Phrase k_bodies{"{0}: mass, computed as", "{0}：質量、計算モデル"};
 inline constexpr Phrase k_more_bodies{"{0} further bodies", "ほか{0}体"};
 inline constexpr Phrase k_rigid{"rigid body", "剛体"};
+inline constexpr Phrase k_planar{"rigid block in a vertical plane, exact between its events",
+                                 "鉛直面内の剛体（事象間は厳密）"};
 inline constexpr Phrase k_elastic{"rigid motion with elastic modes", "剛体運動+弾性モード"};
 inline constexpr Phrase k_frame{"frame of beam elements (ASI-Gauss family)", "はり要素骨組（ASI-Gauss系）"};
 inline constexpr Phrase k_overrides{"changed from the scene file", "シーンファイルからの変更"};

@@ -134,7 +134,7 @@ void FramePart::find_contacts(const StepInputs& now, const State& state) {
   system_.find_contacts(now.law, motion_, state.stick, motion_.position, contacts_);
 }
 
-void FramePart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+void FramePart::list_forces(const Parameters&, const StepInputs& now, const State& state, Forces& forces) {
   find_contacts(now, state);
   for (const TouchingPair& pair : contacts_.planes)
     forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});

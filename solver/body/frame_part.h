@@ -20,7 +20,8 @@ class FramePart final : public Part {
   BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
-  void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
+  void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
+                   Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
   void take_sticks(const State& state) override { system_.take_sticks(state); }
   void give_sticks(State& state) override { system_.give_sticks(state); }

@@ -27,7 +27,8 @@ class IslandPart final : public ReducedPart {
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
   void find_forces(const StepInputs& now, const State& state, bool with_members) override;
-  void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
+  void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
+                   Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
   void take_sticks(const State& state) override { sticks_.take(state); }
   void give_sticks(State& state) override { sticks_.give(coupling_.pairs(), state); }

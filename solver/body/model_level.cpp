@@ -36,6 +36,13 @@ constexpr BodyModelTraits k_models[] = {
      .takes_supports = false,
      .may_be_frame = true,
      .choose = least_that_answers},
+    {.kind = BodyModel::planar,
+     .word = "planar",
+     .bends = false,
+     .takes_supports = false,
+     .may_be_frame = false,
+     .by_edit = false,
+     .choose = asked<ModelLevel::planar>},
     {.kind = BodyModel::rigid,
      .word = "rigid",
      .bends = false,
@@ -78,6 +85,18 @@ const char* name(LevelReason reason) {
       return "calm again";
     case LevelReason::bending:
       return "it bends too much for a rigid body";
+    case LevelReason::neighbour:
+      return "a wall or another body is near";
+    case LevelReason::fall:
+      return "another part of it meets the floor";
+    case LevelReason::plane:
+      return "it is moved out of its plane";
+    case LevelReason::held:
+      return "an anchor holds it";
+    case LevelReason::contact:
+      return "its contacts were edited";
+    case LevelReason::jammed:
+      return "it jams again and again";
   }
   return "";
 }

@@ -1,25 +1,33 @@
 // Model levels: what each body is computed as, and how it changes in the middle of a run.
 //
 // A body stands on the level that Parameters::models names. automatic: rigid when nothing but motion is asked
-// for and its error is allowed, and then it does not yield; else elastic. An elastic body is a frame while
-// one is near (State::candidate_pairs, also over bodies between them); a rigid one is stepped with the frames
-// that are near, but for explicit methods, which know frames alone. An automatic one becomes a frame too once
+// for and its error is allowed, and then it does not yield; else elastic. One that would be rigid begins as a
+// planar block where it is one (PlanarBody::begin), alone, and that error too is allowed. An elastic body is
+// a frame while one is near (State::candidate_pairs, also over bodies between them); a rigid one is stepped
+// with the frames that are near, but for explicit methods, which know frames alone. An automatic one becomes
+// a frame too once
 //   - a section has sqrt(f + 1) > k_near_yield (f: plasticity.h),
 //   - its error is no longer allowed.
+// A planar block becomes a rigid body, and stays one, once
+//   - another body comes within the margin of the candidate pairs, or a wall within what it may travel,
+//   - another part of it is about to meet the floor, or its slip jams again and again,
+//   - an edit moves it out of its plane, puts an anchor on it or changes its contacts but for friction.
 //
 // Errors are allowed up to Parameters::accuracy. They are estimates of what a level leaves out, as a share of
 // the critical angle when motion is asked for, of the stress when that is:
 //   - rigid: rigid_error()
+//   - planar: that and hard_floor_error() (planar_body.h)
 //   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
 //     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, and for k_calm_for
 // sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
 //
-// Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the rigid
-// motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is left.
-// Linear momentum stays to rounding, angular momentum to the square of the deformation over the body's size;
-// the change of energy is booked as EnergyLedger::model_switch.
+// Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
+// bore. Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the
+// rigid motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is
+// left. Linear momentum stays to rounding, angular momentum to the square of the deformation over the body's
+// size; the change of energy is booked as EnergyLedger::model_switch.
 #pragma once
 
 #include <span>
@@ -60,6 +68,7 @@ struct BodyModelTraits {
   bool bends;           ///< needs Body::elastic
   bool takes_supports;  ///< and loads on nodes
   bool may_be_frame;    ///< where the scene needs one
+  bool by_edit = true;  ///< may be asked for while it runs
   /// Of a body that bears neither supports nor loads and has, if it bends, Body::elastic.
   LevelChoice (*choose)(const Model&, const Parameters&, int body);
 };

@@ -49,6 +49,7 @@ struct ModelSwitch::Switching {
   const Model& model;
   const Parameters& parameters;
   const StepInputs& now;
+  const StepInputs& end;
   State& state;
   Parts& parts;
 };
@@ -89,21 +90,42 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, const Param
   }
 }
 
+void ModelSwitch::find_near(const std::vector<Island>& islands) {
+  near_.assign(base_.size(), false);
+  for (const Island& island : islands)
+    if (!island.candidate_pairs.empty())
+      for (const int b : island.bodies) near_[b] = true;
+}
+
 // Of the body's present level (model_level.h); a frame is what the others are measured by.
 double ModelSwitch::error_estimate(const Model& model, const Parameters& parameters, const State& state,
                                    Parts& parts, int b) const {
   const BodyState& s = state.bodies[b];
   if (traits(s.level).moves_nodes) return 0;
+  if (traits(s.level).has_block) return rigid_error_[b] + parts.planar(b).hard_floor_error(parameters, state);
   if (!traits(s.level).has_modes) return rigid_error_[b];
   return elastic_error(model.bodies[b], parameters, parts.reduced(state, b).rotation_bound(s));
 }
 
+// Of a body on the level planar.
+LevelChoice ModelSwitch::choose_of_block(const Switching& on, int b) {
+  const BodyState& s = on.state.bodies[b];
+  const LevelChoice& base = base_[b];
+  const bool automatic = on.parameters.models[b] == BodyModel::automatic;
+  if (base.level != ModelLevel::planar && !(automatic && base.level == ModelLevel::rigid)) return base;
+  if (near_[b]) return {ModelLevel::rigid, LevelReason::neighbour};
+  const auto reason = on.parts.planar(b).plan(on.parameters, on.now, on.end, on.state.blocks[b]);
+  return reason ? LevelChoice{ModelLevel::rigid, *reason} : LevelChoice{s.level, s.reason};
+}
+
 // At the state of `on`, where the contacts of those that are not frames have been found.
 LevelChoice ModelSwitch::choose(const Switching& on, int b) {
-  const auto& [model, parameters, now, state, parts] = on;
+  const auto& [model, parameters, now, end, state, parts] = on;
   BodyState& s = state.bodies[b];
-  const LevelChoice& base = base_[b];
+  LevelChoice base = base_[b];
+  if (traits(base.level).has_block) base = {ModelLevel::rigid, s.reason};  // what left its plane stays so
   s.error_estimate = error_estimate(model, parameters, state, parts, b);
+  if (traits(s.level).has_block) return choose_of_block(on, b);
   if (base.level == ModelLevel::frame) return base;
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
@@ -139,6 +161,11 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   State& state = on.state;
   BodyState& s = state.bodies[b];
   const double height = body_pose(model, state, b).centre.dot(on.parameters.gravity);
+  if (traits(s.level).has_block) {
+    on.parts.planar(b).sink(on.parameters, on.now, state);
+    s.level = ModelLevel::rigid;
+    on.parts.reduced(state, b).find_contacts(on.now, s, state.stick);
+  }
   if (choice.level == ModelLevel::frame) {
     place_nodes(model, state);
     on.parts.reduced(state, b).add_residual(s, state);
@@ -165,17 +192,34 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   state.energy.gravity += model.bodies[b].mass * sunk;
 }
 
+// Where the body is one, and begins on the level rigid.
+void ModelSwitch::begin_block(const Switching& on, int b) {
+  BodyState& s = on.state.bodies[b];
+  const bool asked = traits(base_[b].level).has_block;
+  const bool may = asked || on.parameters.models[b] == BodyModel::automatic;
+  if (s.level != ModelLevel::rigid || near_[b] || !may) return;
+  const auto block = on.parts.planar(b).begin(on.parameters, on.state, asked);
+  if (!block) return;
+  on.state.blocks[b] = *block;
+  s.level = ModelLevel::planar;
+  on.parts.planar(b).balance(on.parameters, on.now, on.state);
+}
+
 void ModelSwitch::start(const Model& model, const Parameters& parameters, State& state, Parts& parts) {
   find_base(model, parameters);
   choice_ = base_;
   choose_islands(parts.islands(state), parameters, state);
+  find_near(parts.islands(state));
+  const StepInputs now(parameters, state.time);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    const LevelChoice& choice = choice_[b];
+    LevelChoice choice = choice_[b];
+    if (traits(choice.level).has_block) choice.level = ModelLevel::rigid;
     BodyState& s = state.bodies[b];
     if (s.level == ModelLevel::frame && choice.level != ModelLevel::frame)
       s = reduce(model, state, b, choice.level);
     s.level = choice.level;
     s.reason = choice.reason;
+    begin_block({model, parameters, now, now, state, parts}, b);
   }
   parts.arrange(state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
@@ -183,9 +227,10 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
 }
 
 bool ModelSwitch::update(const Model& model, const Parameters& parameters, const StepInputs& now,
-                         State& state, Parts& parts) {
-  const Switching on{model, parameters, now, state, parts};
+                         const StepInputs& end, State& state, Parts& parts) {
+  const Switching on{model, parameters, now, end, state, parts};
   find_base(model, parameters);
+  find_near(parts.islands(state));
   parts.arrange(state);
   parts.find_forces(now, state, watched_);
   choice_.clear();

@@ -20,10 +20,11 @@ class ModelSwitch {
   }
   /// Every body on its base level, or a frame where one is near. No energy is booked: the run begins here.
   void start(const Model& model, const Parameters& parameters, State& state, Parts& parts);
-  /// Finds the contacts of rigid and elastic bodies, then changes the levels of bodies that need it and books
-  /// EnergyLedger::model_switch. True: a body became a frame or is one no longer.
-  bool update(const Model& model, const Parameters& parameters, const StepInputs& now, State& state,
-              Parts& parts);
+  /// Of a step from `now` to `end`. Finds the contacts of rigid and elastic bodies, then changes the levels
+  /// of bodies that need it and books EnergyLedger::model_switch. True: a body became a frame or is one no
+  /// longer.
+  bool update(const Model& model, const Parameters& parameters, const StepInputs& now, const StepInputs& end,
+              State& state, Parts& parts);
 
  private:
   struct Switching;
@@ -32,6 +33,9 @@ class ModelSwitch {
                         int body) const;
   void find_base(const Model& model, const Parameters& parameters);
   LevelChoice choose(const Switching& on, int body);
+  LevelChoice choose_of_block(const Switching& on, int body);
+  void begin_block(const Switching& on, int body);
+  void find_near(const std::vector<Island>& islands);
   void choose_islands(const std::vector<Island>& islands, const Parameters& parameters, State& state);
   void change(const Switching& on, LevelChoice choice, int body);
 
@@ -40,6 +44,7 @@ class ModelSwitch {
   std::vector<char> watched_;        // per body, likewise: it becomes a frame before it yields
   std::vector<LevelChoice> choice_;  // per body
   std::vector<char> changed_;        // per body: its level, since the last step
+  std::vector<char> near_;           // per body: another may touch it
 };
 
 }  // namespace topple

@@ -59,7 +59,8 @@ class Part {
   /// Finds what acts on its rigid and elastic bodies at `state`; with_members: between members too.
   virtual void find_forces(const StepInputs&, const State&, [[maybe_unused]] bool with_members) {}
   /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.
-  virtual void list_forces(const StepInputs& now, const State& state, Forces& forces) = 0;
+  virtual void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
+                           Forces& forces) = 0;
   /// That of the newest step, or `hardest` where none of its own is greater.
   virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
   /// Until give_sticks it works on a copy of the stick springs between members, so that parts can advance in

@@ -5,6 +5,7 @@
 
 #include "solver/body/frame_part.h"
 #include "solver/body/island_part.h"
+#include "solver/body/planar_part.h"
 #include "solver/body/reduced_part.h"
 #include "solver/body/step_control.h"
 #include "solver/element/damping.h"
@@ -22,6 +23,7 @@ Parts::Parts(const Model& model)
       model_(model),
       islands_(model),
       reduced_(model.bodies.size()),
+      planar_(model.bodies.size()),
       divided_(islands_.divide({})),
       all_bodies_(model.bodies.size(), true) {}
 
@@ -62,10 +64,12 @@ void Parts::arrange(const State& state) {
   for (const BodyState& s : state.bodies) levels_.push_back(s.level);
   parts_.clear();
   std::vector<ModelBody> some;
+  std::vector<PlanarPart::Member> blocks;
   std::vector<BodySystem*> systems;
   std::vector<Coupled> coupled;
   const auto close_part = [&] {
     if (!some.empty()) parts_.push_back(std::make_shared<ReducedPart>(std::exchange(some, {}), sections));
+    if (!blocks.empty()) parts_.push_back(std::make_shared<PlanarPart>(std::exchange(blocks, {})));
   };
   const auto couple = [&](const Island& island) {
     std::vector<ModelLevel> own;
@@ -90,6 +94,9 @@ void Parts::arrange(const State& state) {
           if (!traits(levels_[own]).moves_nodes) rigid.push_back(own);
         }
         systems.push_back(islands_.system(part, rigid));
+      } else if (part.candidate_pairs.empty() && traits(levels_[b]).has_block) {
+        blocks.push_back({b, &planar(b)});
+        if (blocks.size() == k_bodies_per_part) close_part();
       } else if (part.candidate_pairs.empty()) {
         some.push_back({b, &reduced(state, b)});
         if (some.size() == k_bodies_per_part) close_part();
@@ -157,6 +164,11 @@ ReducedBody& Parts::reduced(const State& state, int body) {
   return *reduced_[body];
 }
 
+PlanarBody& Parts::planar(int body) {
+  if (!planar_[body]) planar_[body] = std::make_unique<PlanarBody>(model_, body);
+  return *planar_[body];
+}
+
 double jump_floor(const Model& model, const Vec3& floor, State& state) {
   double gain = 0;
   const auto push = [&](double mass, Vec3& velocity) {
@@ -166,6 +178,7 @@ double jump_floor(const Model& model, const Vec3& floor, State& state) {
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
+    if (traits(state.bodies[b].level).has_block) continue;  // PlanarBody does it, at the very instant
     if (state.bodies[b].level != ModelLevel::frame) {
       push(body.mass, state.bodies[b].velocity);
       continue;

@@ -8,6 +8,7 @@
 
 #include "solver/body/islands.h"
 #include "solver/body/part.h"
+#include "solver/body/planar_body.h"
 
 namespace topple {
 
@@ -23,8 +24,8 @@ class Parts {
   explicit Parts(const Model& model);
 
   /// Divides by the levels of bodies and the candidate pairs of `state`; where one of an island is a frame,
-  /// none is elastic. Rigid and elastic bodies that are alone, of which some make one part, come first, then
-  /// those that are not, then frames with the rigid bodies near them.
+  /// none is elastic. Planar, rigid and elastic bodies that are alone, of which some make one part, come
+  /// first, then those that are not, then frames with the rigid bodies near them.
   void arrange(const State& state);
   const std::vector<std::shared_ptr<Part>>& all() const { return parts_; }
   /// Per body: its steps are those of frames.
@@ -53,6 +54,7 @@ class Parts {
   /// One body as a rigid or elastic one, with the anchors of `state`; as a frame.
   ReducedBody& reduced(const State& state, int body);
   BodySystem& alone(int body) { return *islands_.alone(body); }
+  PlanarBody& planar(int body);
 
   /// Per element of the model, as the newest step or balance left them; of rigid and elastic bodies as
   /// Part::list_forces found them last.
@@ -64,6 +66,7 @@ class Parts {
   const Model& model_;
   Islands islands_;
   std::vector<std::unique_ptr<ReducedBody>> reduced_;  // per body, once it was one
+  std::vector<std::unique_ptr<PlanarBody>> planar_;    // likewise
   std::vector<Island> divided_;                        // by the candidate pairs of pairs_
   std::vector<ElementPair> pairs_;                     // of the last call of islands()
   std::vector<ModelLevel> levels_;                     // per body, of parts_; empty: there are none

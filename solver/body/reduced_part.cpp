@@ -76,7 +76,7 @@ void ReducedPart::find_forces(const StepInputs& now, const State& state, bool) {
   }
 }
 
-void ReducedPart::list_forces(const StepInputs& now, const State& state, Forces& forces) {
+void ReducedPart::list_forces(const Parameters&, const StepInputs& now, const State& state, Forces& forces) {
   find_forces(now, state, true);
   for (const auto& [index, body] : bodies_) {
     body->section_forces(state.bodies[index], sections_);

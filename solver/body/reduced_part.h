@@ -23,7 +23,8 @@ class ReducedPart : public Part {
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
   void find_forces(const StepInputs& now, const State& state, bool with_members) override;
-  void list_forces(const StepInputs& now, const State& state, Forces& forces) override;
+  void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
+                   Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
 
  protected:

@@ -9,9 +9,10 @@
 
 namespace topple {
 
-/// rigid: six unknowns. elastic: rigid motion and the lowest modes of small deformations in the body's frame.
+/// planar: a block in a vertical plane on a hard floor, exact between its events (solver/planar). rigid: six
+/// unknowns. elastic: rigid motion and the lowest modes of small deformations in the body's frame.
 /// frame: every node, with large rotations, hinges and fracture. Recordings hold these numbers.
-enum class ModelLevel : std::uint8_t { rigid = 0, elastic = 1, frame = 2 };
+enum class ModelLevel : std::uint8_t { rigid = 0, elastic = 1, frame = 2, planar = 3 };
 
 struct LevelTraits {
   ModelLevel kind;
@@ -19,10 +20,13 @@ struct LevelTraits {
   bool has_modes, has_stresses;
   bool moves_nodes;   ///< the nodes are the unknowns
   bool joins_frames;  ///< is stepped with frames that it may touch, in implicit methods
+  bool has_block;     ///< moves as State::blocks say, for itself alone
 };
-inline constexpr LevelTraits k_model_levels[] = {{ModelLevel::rigid, "rigid", false, false, false, true},
-                                                 {ModelLevel::elastic, "elastic", true, true, false, false},
-                                                 {ModelLevel::frame, "frame", false, true, true, true}};
+inline constexpr LevelTraits k_model_levels[] = {
+    {ModelLevel::planar, "planar", false, false, false, true, true},
+    {ModelLevel::rigid, "rigid", false, false, false, true, false},
+    {ModelLevel::elastic, "elastic", true, true, false, false, false},
+    {ModelLevel::frame, "frame", false, true, true, true, false}};
 constexpr const LevelTraits& traits(ModelLevel level) {
   return row_of(k_model_levels, level);
 }
@@ -37,7 +41,14 @@ enum class LevelReason : std::uint8_t {
   deformation = 5,        ///< it deforms too much for linear elasticity, by Parameters::accuracy
   near = 6,               ///< a frame may touch it, or a body that touches it (State::candidate_pairs)
   calm = 7,               ///< no reason for a higher level is left, and no hinge has formed
-  bending = 8             ///< it bends too much for a rigid body, by Parameters::accuracy
+  bending = 8,            ///< it bends too much for a rigid body, by Parameters::accuracy
+  // a planar block became a rigid body:
+  neighbour = 9,  ///< a wall or another body may touch it
+  fall = 10,      ///< another part of it is about to meet the floor
+  plane = 11,     ///< something moves it out of its plane
+  held = 12,      ///< an anchor
+  contact = 13,   ///< an edit of its contacts
+  jammed = 14     ///< its events come without progress
 };
 
 inline constexpr int k_modes = 12;  ///< most modes of a body on the level elastic
@@ -45,7 +56,7 @@ using Amplitudes = Eigen::Array<double, k_modes, 1>;
 
 /// Part of State, one per body. On the level frame the nodes hold the motion and only the first three members
 /// mean something; on the others the nodes follow from this (place_nodes). Modes are those of ElasticBasis,
-/// with amplitudes of zero on the level rigid.
+/// with amplitudes of zero on the levels planar and rigid.
 struct BodyState {
   ModelLevel level = ModelLevel::frame;
   LevelReason reason = LevelReason::asked;

@@ -72,7 +72,7 @@ struct Shake {
 
 /// What a body is computed as (method: model_level.h). automatic: the cheapest level that answers what is
 /// asked for. Recorded edits hold these numbers.
-enum class BodyModel { automatic = 0, rigid = 1, elastic = 2, frame = 3 };
+enum class BodyModel { automatic = 0, rigid = 1, elastic = 2, frame = 3, planar = 4 };
 
 /// Time integration of frames (table: integrator.h). Recorded edits hold these numbers, and
 /// k_automatic_integrator for "auto".

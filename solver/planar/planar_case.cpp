@@ -21,14 +21,14 @@ constexpr double k_last_tilt = k_pi / 3;  // rad, least: where a run counts a bo
 struct Candidate {
   const Model& model;
   const Parameters& parameters;
-  std::span<const BodyStart> starts;
+  const RigidMotion* motion;      ///< null: it moves along found.along already
+  std::span<const Vec3> centres;  ///< of all bodies; empty: not looked at
   int index;
   const Body& body;
   const Plane* floor = nullptr;
   double width = 0;  ///< m, contact width of the base
   PlanarCase found{};
 
-  const BodyStart& start() const { return starts[static_cast<std::size_t>(index)]; }
   const Vec3& node(const ContactPoint& point) const {
     return model.node_position[static_cast<std::size_t>(point.node)];
   }
@@ -57,9 +57,13 @@ bool has_no_floor(Candidate& c) {
 bool is_held(Candidate& c) {
   const auto on_body = [&](int node) { return c.model.node_body[static_cast<std::size_t>(node)] == c.index; };
   const auto any = [](const auto& all, const auto& is) { return std::any_of(all.begin(), all.end(), is); };
-  return any(c.model.supports, [&](const Support& one) { return on_body(one.node); }) ||
-         any(c.model.loads, [&](const Load& one) { return on_body(one.node); }) ||
-         any(c.model.anchors, [&](const Anchor& one) { return one.body == c.index; });
+  if (any(c.model.supports, [&](const Support& one) { return on_body(one.node); }) ||
+      any(c.model.loads, [&](const Load& one) { return on_body(one.node); }))
+    return true;
+  for (std::size_t k = 0; k < c.model.anchors.size(); ++k)
+    if (c.model.anchors[k].body == c.index && (c.parameters.anchors.empty() || c.parameters.anchors[k]))
+      return true;
+  return false;
 }
 
 bool has_no_base(Candidate& c) {
@@ -83,9 +87,9 @@ void each_direction(const Candidate& c, F f) {
       f(shake.direction);
     f(shake.amplitude_before);
   }
-  const BodyStart& start = c.start();
-  f(start.velocity);
-  for (const Vec3& turn : {start.rotation, start.angular_velocity}) f(turn.cross(Vec3::UnitZ()));
+  if (!c.motion) return;
+  f(c.motion->velocity);
+  for (const Vec3& turn : {c.motion->rotation, c.motion->angular_velocity}) f(turn.cross(Vec3::UnitZ()));
 }
 
 bool is_symmetric(const Candidate& c) {
@@ -106,14 +110,20 @@ void look_along(Candidate& c, const Vec3& horizontal) {
   c.found.across = Vec3::UnitZ().cross(c.found.along);
 }
 
+bool is_moved_across(const Candidate& c) {
+  bool leaves = false;
+  each_direction(c, [&](const Vec3& d) { leaves |= std::abs(d.dot(c.found.across)) > k_level * d.norm(); });
+  return leaves;
+}
+
 bool leaves_a_plane(Candidate& c) {
+  if (!c.motion) return is_moved_across(c);
   Vec3 greatest = Vec3::Zero();
   each_direction(c, [&](const Vec3& d) {
     const Vec3 horizontal(d.x(), d.y(), 0);
     if (horizontal.norm() > k_level * d.norm() && horizontal.norm() > greatest.norm()) greatest = horizontal;
   });
-  const BodyStart& start = c.start();
-  for (const Vec3& turn : {start.rotation, start.angular_velocity})
+  for (const Vec3& turn : {c.motion->rotation, c.motion->angular_velocity})
     if (std::abs(turn.z()) > k_level * turn.norm()) return true;
   if (greatest.isZero(0)) {  // any plane about which it is symmetric
     const std::vector<Vec3>& corners = c.body.support_polygon;
@@ -125,9 +135,7 @@ bool leaves_a_plane(Candidate& c) {
     return false;
   }
   look_along(c, greatest);
-  bool leaves = false;
-  each_direction(c, [&](const Vec3& d) { leaves |= std::abs(d.dot(c.found.across)) > k_level * d.norm(); });
-  return leaves;
+  return is_moved_across(c);
 }
 
 void set_block(Candidate& c) {
@@ -147,15 +155,16 @@ void set_block(Candidate& c) {
   block.static_friction = law.friction + law.excess();
   block.gravity = -c.parameters.gravity.z();
   found.bounces = law.restitution > 0;
+  found.floor = static_cast<int>(c.floor - c.model.planes.data());
   found.origin = {centre.x(), centre.y(), c.floor->point.z() + c.width / 2};
 }
 
 bool starts_elsewhere(Candidate& c) {
   set_block(c);
+  if (!c.motion) return false;
   PlanarCase& found = c.found;
-  const BodyStart& from = c.start();
-  const Vec3 centre =
-      from.pivot + exp_quaternion(from.rotation) * (c.body.centre_of_gravity - from.pivot) - found.origin;
+  const RigidMotion& from = *c.motion;
+  const Vec3 centre = from.centre - found.origin;
   State& state = found.start;
   state.mode = Mode::flight;
   state.tilt = from.rotation.dot(found.across);
@@ -231,11 +240,8 @@ double reachable(const Candidate& c, double rise) {
   }
   for (std::size_t b = 0; b < c.model.bodies.size(); ++b) {
     if (static_cast<int>(b) == c.index) continue;
-    const Body& other = c.model.bodies[b];
-    const BodyStart& start = c.starts[b];
-    const Vec3 there = start.pivot + exp_quaternion(start.rotation) * (other.centre_of_gravity - start.pivot);
-    const double apart = (there - c.body.centre_of_gravity).head<2>().norm();
-    least = std::min(least, (apart - c.body.reach - other.reach - 2 * c.width) / 2);
+    const double apart = (c.centres[b] - c.body.centre_of_gravity).head<2>().norm();
+    least = std::min(least, (apart - c.body.reach - c.model.bodies[b].reach - 2 * c.width) / 2);
   }
   return least;
 }
@@ -243,6 +249,8 @@ double reachable(const Candidate& c, double rise) {
 bool has_neighbours(Candidate& c) {
   const Block& block = c.found.block;
   const double edge = std::max(block.left, block.right), R = elementary::hypot(edge, block.height);
+  c.found.farthest = k_never;
+  if (c.centres.empty()) return false;
   c.found.farthest = reachable(c, R);
   return c.found.farthest < std::abs(c.found.start.x) + edge + R;
 }
@@ -273,6 +281,13 @@ constexpr Row k_obstacles[] = {
     {{Obstacle::none, "none", ""}, nullptr},
 };
 
+std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle) {
+  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles),
+                                  [&](const Row& row) { return !row.is_there || row.is_there(candidate); });
+  if (obstacle) *obstacle = found->kind;
+  return found->is_there ? std::nullopt : std::optional(candidate.found);
+}
+
 }  // namespace
 
 const ObstacleTraits& traits(Obstacle obstacle) {
@@ -285,11 +300,39 @@ double PlanarCase::critical(Side side) const {
 
 std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,
                                       std::span<const BodyStart> starts, int body, Obstacle* obstacle) {
-  Candidate candidate{model, parameters, starts, body, model.bodies[static_cast<std::size_t>(body)]};
-  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles),
-                                  [&](const Row& row) { return !row.is_there || row.is_there(candidate); });
-  if (obstacle) *obstacle = found->kind;
-  return found->is_there ? std::nullopt : std::optional(candidate.found);
+  std::vector<Vec3> centres;
+  for (std::size_t b = 0; b < starts.size(); ++b)
+    centres.push_back(starts[b].pivot + exp_quaternion(starts[b].rotation) *
+                                            (model.bodies[b].centre_of_gravity - starts[b].pivot));
+  const auto own = static_cast<std::size_t>(body);
+  const BodyStart& start = starts[own];
+  return planar_case(model, parameters,
+                     {centres[own], start.rotation, start.velocity, start.angular_velocity}, centres, body,
+                     obstacle);
+}
+
+std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,
+                                      const RigidMotion& motion, std::span<const Vec3> centres, int body,
+                                      Obstacle* obstacle) {
+  Candidate candidate{model,   parameters, &motion,
+                      centres, body,       model.bodies[static_cast<std::size_t>(body)]};
+  return looked_at(candidate, obstacle);
+}
+
+std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
+                                            const Vec3& along, int body, Obstacle* obstacle) {
+  Candidate candidate{model, parameters, nullptr, {}, body, model.bodies[static_cast<std::size_t>(body)]};
+  look_along(candidate, along);
+  return looked_at(candidate, obstacle);
+}
+
+PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body) {
+  Candidate candidate{model, parameters, nullptr, {}, body, model.bodies[static_cast<std::size_t>(body)]};
+  look_along(candidate, along);
+  has_no_floor(candidate);
+  has_no_base(candidate);
+  set_block(candidate);
+  return candidate.found;
 }
 
 Pose pose(const PlanarCase& of, const State& state) {

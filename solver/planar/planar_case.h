@@ -47,6 +47,7 @@ struct PlanarCase {
   State start;         ///< x: from below the centre of gravity in the reference pose, along `along`
   Vec3 along, across;  ///< unit, horizontal; a tilt is a rotation about `across`
   Vec3 origin;         ///< m, world: x = z = 0
+  int floor = -1;      ///< index into Model::planes
   Controls controls;   ///< last_tilt: at which another contact point meets the floor, on either side
   double farthest;     ///< m, |x| of the centre of gravity up to which nothing else is within reach
 
@@ -64,6 +65,23 @@ struct PlanarCase {
 std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,
                                       std::span<const BodyStart> starts, int body,
                                       Obstacle* obstacle = nullptr);
+
+/// How a body moves: its centre of gravity, m, and the rotation vector from its reference pose, rad; m/s,
+/// rad/s; world.
+struct RigidMotion {
+  Vec3 centre, rotation, velocity, angular_velocity;
+};
+/// The same of a body that moves so. `centres`: of gravity of all bodies, m; empty: walls and other bodies
+/// are the caller's to look at.
+std::optional<PlanarCase> planar_case(const Model& model, const Parameters& parameters,
+                                      const RigidMotion& motion, std::span<const Vec3> centres, int body,
+                                      Obstacle* obstacle = nullptr);
+/// The same of one that moves along this horizontal unit vector already; its state is not looked at, nor are
+/// walls and other bodies.
+std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
+                                            const Vec3& along, int body, Obstacle* obstacle = nullptr);
+/// Its block whatever stands in the way by now.
+PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body);
 
 /// As body_pose(): of the centre of gravity, m, floor's frame, and from the reference pose.
 struct Pose {

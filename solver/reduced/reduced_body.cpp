@@ -181,7 +181,7 @@ bool ReducedBody::known(const StepInputs& now, const BodyState& s) const {
   look(found.velocity, s.velocity);
   look(found.angular_velocity, s.angular_velocity);
   return bits(same) == k_all_lanes &&
-         (s.level == ModelLevel::rigid ||
+         (!traits(s.level).has_modes ||
           ((found.amplitude == s.amplitude).all() && (found.rate == s.rate).all()));
 }
 

@@ -23,12 +23,23 @@ struct Stored {
   std::int64_t number;
 };
 constexpr Stored<ModelLevel> k_levels[] = {
-    {ModelLevel::rigid, 0}, {ModelLevel::elastic, 1}, {ModelLevel::frame, 2}};
-constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},  {LevelReason::motion, 1},
-                                             {LevelReason::stress, 2}, {LevelReason::contact_frequency, 3},
-                                             {LevelReason::yield, 4},  {LevelReason::deformation, 5},
-                                             {LevelReason::near, 6},   {LevelReason::calm, 7},
-                                             {LevelReason::bending, 8}};
+    {ModelLevel::rigid, 0}, {ModelLevel::elastic, 1}, {ModelLevel::frame, 2}, {ModelLevel::planar, 3}};
+constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},   {LevelReason::motion, 1},
+                                             {LevelReason::stress, 2},  {LevelReason::contact_frequency, 3},
+                                             {LevelReason::yield, 4},   {LevelReason::deformation, 5},
+                                             {LevelReason::near, 6},    {LevelReason::calm, 7},
+                                             {LevelReason::bending, 8}, {LevelReason::neighbour, 9},
+                                             {LevelReason::fall, 10},   {LevelReason::plane, 11},
+                                             {LevelReason::held, 12},   {LevelReason::contact, 13},
+                                             {LevelReason::jammed, 14}};
+constexpr Stored<planar::Mode> k_block_modes[] = {{planar::Mode::rest, 0},
+                                                  {planar::Mode::slide, 1},
+                                                  {planar::Mode::rock, 2},
+                                                  {planar::Mode::slide_rock, 3},
+                                                  {planar::Mode::flight, 4}};
+constexpr Stored<planar::Side> k_sides[] = {{planar::Side::left, 0}, {planar::Side::right, 1}};
+constexpr Stored<int> k_slips[] = {{0, 0}, {1, 1}, {-1, -1}};
+constexpr Stored<bool> k_flags[] = {{false, 0}, {true, 1}};
 constexpr Stored<Hinge> k_hinges[] = {
     {Hinge::none, 0}, {Hinge::first, 1}, {Hinge::second, 2}, {Hinge::broken, 3}, {Hinge::middle, 4}};
 constexpr Stored<AnchorHold> k_holds[] = {
@@ -115,6 +126,21 @@ void each_number(AnyState& s, F f) {
   }
 }
 
+// The same of a body on the level planar; its time is that of the state.
+template <class AnyBlock, class F>
+void each_block_number(AnyBlock& b, F f) {
+  auto& m = b.motion;
+  each_choice(k_block_modes, m.mode, f);
+  each_choice(k_sides, m.side, f);
+  each_choice(k_slips, m.slip, f);
+  each_choice(k_flags, m.undecided, f);
+  for (auto* number :
+       {&m.x, &m.z, &m.tilt, &m.x_velocity, &m.z_velocity, &m.rate, &b.static_friction, &b.kinetic_friction})
+    f(*number);
+  for (auto* v : {&b.along, &b.floor})
+    for (int k = 0; k < 3; ++k) f((*v)[k]);
+}
+
 // Pairs of elements as numbers of eight bytes, as in a checkpoint.
 double as_number(const ElementPair& pair) {
   return std::bit_cast<double>(std::int64_t{pair.a} << 32 | pair.b);
@@ -125,7 +151,7 @@ ElementPair as_pair(double number) {
   return {static_cast<int>(bits >> 32), static_cast<int>(bits & 0xffffffff)};
 }
 
-// Calls f on the counts and entries of what touches, which differ from state to state.
+// Calls f on the counts and entries of what touches, which differ from state to state, and on the blocks.
 template <class F>
 void each_touching(const State& s, F f) {
   f(std::bit_cast<double>(static_cast<std::int64_t>(s.candidate_pairs.size())));
@@ -136,6 +162,11 @@ void each_touching(const State& s, F f) {
     f(std::bit_cast<double>(static_cast<std::int64_t>(stick.place)));
     for (int k = 0; k < 3; ++k) f(stick.stick[k]);
   }
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    if (traits(s.bodies[b].level).has_block) {
+      f(std::bit_cast<double>(static_cast<std::int64_t>(b)));
+      each_block_number(s.blocks[b], f);
+    }
 }
 
 // Inverse of each_touching; false when there are too few or too many numbers.
@@ -164,6 +195,11 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
     stick.place = static_cast<int>(place);
     for (int k = 0; k < 3; ++k) stick.stick[k] = read();
   }
+  while (next < numbers.size()) {
+    const auto body = std::bit_cast<std::int64_t>(read());
+    if (body < 0 || body >= static_cast<std::int64_t>(s.blocks.size())) return false;
+    each_block_number(s.blocks[static_cast<std::size_t>(body)], [&](double& x) { x = read(); });
+  }
   return next == numbers.size();
 }
 
@@ -177,6 +213,7 @@ void resize(const Model& model, State& state) {
   state.stick.assign(model.contact_points.size() * model.planes.size(), Vec3::Zero());
   state.elements.assign(model.elements.size(), {});
   state.bodies.assign(model.bodies.size(), {});
+  state.blocks.assign(model.bodies.size(), {});
   for (const Anchor& anchor : model.anchors) state.anchors.push_back({.length = anchor.length});
 }
 
@@ -228,6 +265,7 @@ State unpack(const Model& model, std::span<const double> numbers) {
   state.step = std::bit_cast<std::int64_t>(numbers[0]);
   std::size_t next = 1;
   each_number(state, [&](double& x) { x = numbers[next++]; });
+  for (BlockState& block : state.blocks) block.motion.time = state.time;
   return state;
 }
 
@@ -403,6 +441,7 @@ void copy_array(const std::vector<T>& from, std::vector<T>& to) {
 template <class F>
 void each_moved_array(F f) {
   f(&State::bodies);
+  f(&State::blocks);
   f(&State::stick);
   f(&State::member_sticks);
   f(&State::candidate_pairs);

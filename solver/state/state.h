@@ -12,6 +12,7 @@
 #include "solver/model/body_state.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
+#include "solver/planar/block.h"
 #include "solver/state/energy.h"
 
 namespace topple {
@@ -48,6 +49,15 @@ struct EnergyLedger {
   void close(const StepEnergy& exchanged, const BodyEnergy& held);
 };
 
+/// A body on the level planar.
+struct BlockState {
+  planar::State motion;         ///< at State::time
+  Vec3 along = Vec3::UnitX();   ///< unit, of its plane: +x of the motion
+  Vec3 floor = Vec3::Zero();    ///< m/s^2, acceleration of the floor at State::time,
+  double static_friction = -1;  ///< and frictions before it: where an edit changes them the mode is anew
+  double kinetic_friction = -1;
+};
+
 /// Motion of a run at one accepted step, in the floor's frame. Per-node arrays have Model::node_total()
 /// entries; those of bodies on the levels rigid and elastic follow from `bodies` when place_nodes
 /// (model_level.h) was called, as Run::state() does.
@@ -63,6 +73,7 @@ struct State {
   std::vector<Vec3> algorithmic_acceleration;          ///< a of generalized-alpha (Chung and Hulbert), m/s^2
   std::vector<Vec3> algorithmic_angular_acceleration;  ///< likewise, rad/s^2, material axes
   std::vector<BodyState> bodies;                       ///< one per body
+  std::vector<BlockState> blocks;                      ///< one per body; of those on the level planar
   /// Stick springs: tangential travel since sticking began, m; index point * planes + plane.
   std::vector<Vec3> stick;
   std::vector<MemberStick> member_sticks;  ///< in the order of elements, then places

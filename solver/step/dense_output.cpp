@@ -99,7 +99,16 @@ State state_between(const Model& model, const State& start, const State& end, do
 }
 
 State state_within_step(const Model& model, const State& end, double time, Workspace& workspace) {
-  return state_between(model, workspace.impl().next, end, time);
+  Workspace::Impl& w = workspace.impl();
+  State at = state_between(model, w.next, end, time);
+  bool any = false;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    if (!traits(w.next.bodies[b].level).has_block || !traits(at.bodies[b].level).has_block) continue;
+    any = true;
+    w.parts.planar(b).place_within(*w.parameters, w.next, time, at);
+  }
+  if (any) place_nodes(model, at);
+  return at;
 }
 
 }  // namespace topple

@@ -52,7 +52,8 @@ void find_candidates(const StepInProgress& s, double travel) {
 
 void switch_models(const StepInProgress& s) {
   const InPhase phase(&s.w.profile, Phase::models);
-  if (s.w.models.update(s.model, s.parameters, s.start, s.w.next, s.w.parts)) s.w.explicit_limit.reset();
+  if (s.w.models.update(s.model, s.parameters, s.start, *s.w.reached, s.w.next, s.w.parts))
+    s.w.explicit_limit.reset();
 }
 
 void apply_events(StepInProgress& s) {

@@ -14,7 +14,7 @@ const std::vector<ContactForce>& contact_forces(const Model&, const Parameters& 
   w.forces.members.clear();
   w.parts.arrange(state);
   const StepInputs now(parameters, state.time);
-  for (const auto& part : w.parts.all()) part->list_forces(now, state, w.forces);
+  for (const auto& part : w.parts.all()) part->list_forces(parameters, now, state, w.forces);
   std::sort(w.forces.contacts.begin(), w.forces.contacts.end(),
             [](const ContactForce& a, const ContactForce& b) {
               return std::tie(a.point, a.plane) < std::tie(b.point, b.plane);

@@ -72,6 +72,9 @@ void check_frequency(const Edit& edit, const Parameters& parameters, const Model
 
 void check_model(const Edit& edit, const Parameters&, const Model& model) {
   const auto asked = static_cast<BodyModel>(static_cast<int>(edit.value.x()));
+  if (!traits(asked).by_edit)
+    fail(edit,
+         "a body is " + std::string(traits(asked).word) + " from the start of a run on; a scene says so");
   if (!can_be(model, edit.index, asked))
     fail(edit, "\"" + model.bodies[edit.index].name + "\" cannot be " + traits(asked).word +
                    "; supports and loads take a frame, elastic and auto a scene that says so");

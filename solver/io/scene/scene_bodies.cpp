@@ -4,6 +4,7 @@
 #include <set>
 
 #include "solver/body/model_level.h"
+#include "solver/body/planar_body.h"
 #include "solver/contact/proximity.h"
 #include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
@@ -385,6 +386,23 @@ void read_bodies(const Entry& root, Setup& setup) {
   const State start = start_state(model, setup.starts);
   check_planes(of_body, setup, start);
   check_overlap(of_body, setup, start);
+}
+
+void check_planar(const Entry& root, const Setup& setup) {
+  const State start = start_state(setup.model, setup.starts);
+  int body = 0;
+  for (const char* const kind : {"cabinet", "frame"})
+    for (const Entry& entry : root.entries(kind)) {
+      const bool asked = traits(entry.chosen("model", body_models())).kind == BodyModel::planar;
+      const int end = body + static_cast<int>(std::max<std::size_t>(1, entry.vectors("copies").size()));
+      for (; body < end; ++body) {
+        if (!asked) continue;
+        const std::string_view why = why_not_planar(setup.model, setup.parameters, start, body, true);
+        if (!why.empty())
+          entry.fail("model",
+                     "\"" + setup.model.bodies[body].name + "\" is no planar block: " + std::string(why));
+      }
+    }
 }
 
 }  // namespace topple::io

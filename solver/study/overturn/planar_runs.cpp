@@ -22,8 +22,9 @@ std::string setting_against(const Setup& setup) {
 /// Empty: nothing in the body's model is against it.
 std::string model_against(const Setup& setup, int body) {
   const std::vector<BodyModel>& models = setup.parameters.models;
-  if (models.empty() || models[static_cast<std::size_t>(body)] != BodyModel::automatic)
-    return "its model is named";
+  const BodyModel asked = models.empty() ? BodyModel::frame : models[static_cast<std::size_t>(body)];
+  if (asked == BodyModel::planar) return "";
+  if (asked != BodyModel::automatic) return "its model is named";
   if (base_level(setup.model, setup.parameters, body).level != ModelLevel::rigid) return "it bends";
   return "";
 }

@@ -17,8 +17,8 @@ struct Fallen {
   bool lifted = false;                      ///< a side of any
 };
 
-/// The blocks of a scene that asks for motion alone, whose furniture is all `auto` and rigid by its own rules
-/// (model_level.h), without restitution, on contacts no softer than those of scenes that name none. Empty:
+/// The blocks of a scene that asks for motion alone, whose furniture is all `planar`, or `auto` and rigid by its own
+/// rules (model_level.h), without restitution, on contacts no softer than those of scenes that name none. Empty:
 /// it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 

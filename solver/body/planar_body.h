@@ -1,0 +1,82 @@
+// A body on the level planar: a block that is exact between its events (solver/planar). It is asked before
+// each step whether it is one until the end of the step; where not, it becomes a rigid body.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "solver/frame/step_span.h"
+#include "solver/model/model.h"
+#include "solver/planar/floor_exchange.h"
+#include "solver/planar/planar_case.h"
+#include "solver/state/energy.h"
+#include "solver/state/state.h"
+#include "solver/state/step_result.h"
+
+namespace topple {
+
+/// Estimated error of a hard floor, as a share of the critical angle, of a body on contacts of this law: a
+/// side lifts when the body leans by d/2b, d being how far it sinks on an edge alone, so that it begins to
+/// rock at g b/h (1 - d h/2b^2).
+///   d = L (W/(n alpha))^(1/q), the greater of both edges
+/// n: contact points on the edge; infinite where the centre of gravity is not above the base.
+double hard_floor_error(const Model& model, int body, const planar::PlanarCase& block, const ContactLaw& law);
+
+/// Why a body that would be rigid is no planar block where a run begins: "a wall or body is within its fall";
+/// empty: it is one. asked: as PlanarBody::begin.
+std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,
+                                int body, bool asked);
+
+/// One body: its block under the parameters seen last, and where its next step leads.
+class PlanarBody {
+ public:
+  PlanarBody(const Model& model, int body) : model_(model), body_(body) {}
+
+  /// The block of a body that moves so, or none; `asked`: walls, other bodies and the law's alpha do not
+  /// matter.
+  std::optional<BlockState> begin(const Parameters& parameters, const State& state, bool asked);
+
+  /// Advances `from` to the end of a step and keeps where it leads. The reason why the block is none, or does
+  /// not get there.
+  std::optional<LevelReason> plan(const Parameters& parameters, const StepInputs& start,
+                                  const StepInputs& end, const BlockState& from);
+  /// Makes `next` what plan() found; adds to `energy`.
+  void take_planned(State& next, StepEnergy& energy) const;
+  /// The motion at `time`, from that of `from`, the state at the start of the newest step.
+  void place_within(const Parameters& parameters, const State& from, double time, State& at);
+
+  /// Sets pose, velocity and what acts of State::bodies from State::blocks; returns the energies.
+  BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);
+  BodyEnergy energy(const State& state) const;
+  /// As above.
+  double hard_floor_error(const Parameters& parameters, const State& state);
+  /// It rests on its base, its centre of gravity above that.
+  bool stands(const Parameters& parameters, const State& state);
+  /// s: to the next event, or the longest step.
+  double time_limit(const Parameters& parameters, const State& state);
+  /// Appends its contacts with the floor; their depth is 0.
+  void list_contacts(const Parameters& parameters, const StepInputs& now, const State& state,
+                     std::vector<ContactForce>& forces);
+  /// It is a rigid body from here on: sinks into the springs of its contacts by what the floor bears there,
+  /// so that no force jumps.
+  void sink(const Parameters& parameters, const StepInputs& now, State& state);
+
+ private:
+  const planar::PlanarCase* block(const Parameters& parameters, const Vec3& along);
+  bool near_wall(const planar::State& motion, double h, double push) const;
+  planar::Situation situation(const StepInputs& now) const;
+
+  const Model& model_;
+  const int body_;
+  std::optional<Parameters> seen_;                      // for them hold:
+  planar::PlanarCase case_;                             //   the block,
+  planar::Obstacle obstacle_ = planar::Obstacle::none;  // what stands in its way,
+  std::vector<int> right_, left_;                       //   contact points of the model on the edges
+  double error_ = 0;                                    //   hard_floor_error()
+  planar::Step step_;
+  BlockState planned_;
+  planar::Exchanged exchanged_;
+};
+
+}  // namespace topple
