@@ -6,6 +6,7 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
+#include "solver/contact/contact_default.h"
 #include "solver/contact/contact_law.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
@@ -22,6 +23,8 @@ using planar::Side;
 constexpr double k_time_slack = 1e-9;  // s, as of the jumps of other bodies
 // Steps of a run are short, so that this takes few terms more: what is left is rounding.
 constexpr double k_tolerance = 1e-16;
+constexpr double k_growth = 30;         // hard_floor_error()
+constexpr double k_softer = 1 - 1e-6;   // alpha over that of a hard floor, which may be rounded
 constexpr double k_noise = 1e-12;       // rad, m/s, rad/s: what a best fit makes of nothing
 constexpr double k_same_place = 1e-7;   // m, as in planar_case.cpp
 constexpr double k_longest = 0.01;      // s, step of an adaptive run,
@@ -125,15 +128,16 @@ double sinking(const ContactLaw& law, double force, const std::vector<int>& poin
 
 double hard_floor_error(const Model& model, int body, const PlanarCase& found, const ContactLaw& law) {
   const planar::Block& block = found.block;
+  const std::optional<double> hard = rigid_alpha(model, law, Vec3(0, 0, -block.gravity));
   double greatest = 0;
   for (const Side side : {Side::left, Side::right}) {
     const double b = side == Side::right ? block.right : block.left;
     if (!(b > 0)) return std::numeric_limits<double>::infinity();
     const double d =
         sinking(law, block.mass * block.gravity, points_on(model, body, found, side), model, found.floor);
-    greatest = std::max(greatest, d * block.height / (2 * b * b));
+    greatest = std::max(greatest, k_growth * d * block.height / (2 * b * b));
   }
-  return greatest;
+  return hard && law.alpha >= k_softer * *hard ? 0 : greatest;
 }
 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,

@@ -16,11 +16,14 @@
 
 namespace topple {
 
-/// Estimated error of a hard floor, as a share of the critical angle, of a body on contacts of this law: a
-/// side lifts when the body leans by d/2b, d being how far it sinks on an edge alone, so that it begins to
-/// rock at g b/h (1 - d h/2b^2).
-///   d = L (W/(n alpha))^(1/q), the greater of both edges
-/// n: contact points on the edge; infinite where the centre of gravity is not above the base.
+/// Estimated error of a hard floor in place of contacts of this law, as a share of the critical angle: 0
+/// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one;
+/// else
+///   30 d h/2b^2,  d = L (W/(n alpha))^(1/q), the greater of both edges
+/// d: m, to which the body sinks on an edge alone; n: contact points on it. A side lifts when the body leans
+/// by d/2b, which is d h/2b^2 of the critical angle, and that grows while it rocks: 10 to 50 times until it
+/// lands or passes half of that angle (planar_body_test.cpp). Infinite where the centre of gravity is not
+/// above the base.
 double hard_floor_error(const Model& model, int body, const planar::PlanarCase& block, const ContactLaw& law);
 
 /// Why a body that would be rigid is no planar block where a run begins: "a wall or body is within its fall";

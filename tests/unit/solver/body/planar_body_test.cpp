@@ -2,7 +2,9 @@
 #include "solver/body/planar_body.h"
 
 #include <algorithm>
+#include <functional>
 
+#include "solver/contact/contact_default.h"
 #include "solver/math/rotation.h"
 #include "solver/model/accelerogram.h"
 #include "solver/planar/planar_run.h"
@@ -136,32 +138,36 @@ TEST(PlanarBody, run_is_that_of_the_block) {
 TEST(PlanarBody, energy_balance_holds_to_rounding) {
   for (const Case& one : cases()) {
     topple::Run run(one.setup);
-    double greatest = 0;
-    while (!run.over() && level_of(run) == ModelLevel::planar && run.advance().ok())
-      if (level_of(run) == ModelLevel::planar)
-        greatest = std::max(greatest, run.state().energy.balance_error());
-    EXPECT_LT(greatest, 1e-9) << one.what;
+    double greatest = 0, largest = 0;
+    while (!run.over() && level_of(run) == ModelLevel::planar && run.advance().ok()) {
+      if (level_of(run) != ModelLevel::planar) break;
+      greatest = std::max(greatest, std::abs(run.state().energy.unexplained()));
+      largest = run.state().energy.largest;
+    }
+    EXPECT_LT(greatest, 1e-9 * largest) << one.what;
     EXPECT_EQ(run.state().energy.model_switch == 0, level_of(run) == ModelLevel::planar) << one.what;
   }
 }
 
 TEST(PlanarBody, losses_stand_where_they_belong) {
-  topple::Run rocks(alone({.tilt = 0.1}));
-  topple::Run slides(with_shakes(alone({.cg_height = 0.7, .friction = 0.2}), {sine(5, 1)}));
+  const topple::Setup let_go = alone({.tilt = 0.1}),
+                      shaken = with_shakes(alone({.cg_height = 0.7, .friction = 0.2}), {sine(5, 1)});
+  topple::Run rocks(let_go), slides(shaken);
   while (!rocks.over()) rocks.advance();
   while (!slides.over()) slides.advance();
   const EnergyLedger &rocked = rocks.state().energy, &slid = slides.state().energy;
   EXPECT_EQ(rocked.friction, 0);
   EXPECT_GT(rocked.normal_damping, 0);
-  // it has come to rest
-  EXPECT_NEAR(rocked.normal_damping, rocked.start_total - rocked.gravity, 1e-9 * rocked.normal_damping);
+  EXPECT_NEAR(rocked.normal_damping, rocked.start_total - rocked.gravity - rocked.kinetic,
+              1e-9 * rocked.normal_damping);
   EXPECT_GT(slid.friction, 0);
   EXPECT_NEAR(slid.normal_damping, 0, 1e-12 * slid.friction);
   EXPECT_NEAR(slid.input - slid.kinetic, slid.friction, 1e-9 * slid.friction);
 }
 
 TEST(PlanarBody, floor_bears_the_weight_at_rest_and_the_edge_when_it_rocks) {
-  topple::Run rests(alone()), rocks(alone({.tilt = 0.05}));
+  const topple::Setup upright = alone(), tilted = alone({.tilt = 0.05});
+  topple::Run rests(upright), rocks(tilted);
   rests.advance(), rocks.advance();
   const double weight = rests.setup().model.bodies[0].mass * k_g;
   double sum = 0;
@@ -220,7 +226,8 @@ struct Climb {
   double apart = 0;  ///< rad, m; greatest so far from a rigid run
 };
 Climb climb(const topple::Setup& setup, double until, const std::function<void(topple::Run&)>& at_one = {}) {
-  topple::Run run(setup), rigid(as_rigid(setup));
+  const topple::Setup other = as_rigid(setup);
+  topple::Run run(setup), rigid(other);
   Climb out;
   bool done = false;
   while (run.time() < until) {
@@ -239,7 +246,8 @@ Climb climb(const topple::Setup& setup, double until, const std::function<void(t
       out.time = run.time();
       out.reason = run.state().bodies[0].reason;
     }
-    EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+    // the change books what the springs take up: the rest is the rigid body's own
+    EXPECT_LT(run.state().energy.balance_error(), 2 * rigid.state().energy.balance_error() + 1e-6);
   }
   return out;
 }
@@ -282,6 +290,8 @@ topple::Setup with_anchor() {
   return setup;
 }
 
+// Contacts of 1e6 kgf change the tilt by 1.5e-4 rad within a second of this sine, and by four times that on
+// the way to the floor; without a shake by 2e-6. Becoming a rigid body adds less.
 TEST(PlanarBody, becomes_a_rigid_body_that_moves_like_one) {
   const topple::Setup rocks = with_shakes(alone(), {sine(4, 1)});
   struct Row {
@@ -293,18 +303,18 @@ TEST(PlanarBody, becomes_a_rigid_body_that_moves_like_one) {
     std::function<void(topple::Run&)> at_one = {};
   };
   const Row rows[] = {
-      {"falls on another", falls_on_another(), 0.6, LevelReason::neighbour, 1e-3},
-      {"slides to a wall", slides_to_a_wall(), 1.5, LevelReason::neighbour, 1e-3},
-      {"overturns", with_shakes(alone(), {sine(6, 1)}), 2, LevelReason::fall, 1e-3},
-      {"an anchor", with_anchor(), 1.5, LevelReason::held, 1e-3,
+      {"falls on another", falls_on_another(), 1.2, LevelReason::neighbour, 1e-5},
+      {"slides to a wall", slides_to_a_wall(), 1.5, LevelReason::neighbour, 1e-5},
+      {"overturns", with_shakes(alone(), {sine(6, 1)}), 2, LevelReason::fall, 2e-3},
+      {"an anchor", with_anchor(), 1.5, LevelReason::held, 5e-4,
        [](topple::Run& run) { run.edit(set(Edit::Key::anchor, 1)); }},
-      {"another alpha", rocks, 1.5, LevelReason::contact, 1e-3,
+      {"another alpha", rocks, 1.5, LevelReason::contact, 5e-4,
        [](topple::Run& run) { run.edit(set(Edit::Key::alpha, 1e5 * k_g)); }},
-      {"bounces", rocks, 1.5, LevelReason::contact, 1e-3,
+      {"bounces", rocks, 1.5, LevelReason::contact, 5e-4,
        [](topple::Run& run) { run.edit(set(Edit::Key::restitution, 0.3)); }},
-      {"another direction", rocks, 1.5, LevelReason::plane, 1e-3,
+      {"another direction", rocks, 1.5, LevelReason::plane, 5e-4,
        [](topple::Run& run) { run.edit(turn_to(Vec3(1, 1, 0))); }},
-      {"asked for", rocks, 1.5, LevelReason::asked, 1e-3,
+      {"asked for", rocks, 1.5, LevelReason::asked, 5e-4,
        [](topple::Run& run) {
          run.edit(set(Edit::Key::model, static_cast<double>(static_cast<int>(BodyModel::rigid))));
        }},
@@ -314,7 +324,6 @@ TEST(PlanarBody, becomes_a_rigid_body_that_moves_like_one) {
     EXPECT_GT(found.time, 0.1) << row.what;
     EXPECT_EQ(found.reason, row.reason) << row.what << ": " << name(found.reason);
     EXPECT_LT(found.apart, row.apart) << row.what;
-    std::printf("%s: climbs at %.4f, apart %.2e\n", row.what, found.time, found.apart);
   }
 }
 
@@ -329,8 +338,7 @@ TEST(PlanarBody, takes_edits_within_its_plane) {
   for (const auto& edit : edits) {
     const Climb found = climb(rocks, 1.5, edit);
     EXPECT_LT(found.time, 0);
-    EXPECT_LT(found.apart, 1e-3);
-    std::printf("apart %.2e\n", found.apart);
+    EXPECT_LT(found.apart, 5e-4);
   }
 }
 
@@ -382,19 +390,35 @@ TEST(PlanarBody, automatic_begins_so_where_it_may) {
   }
 }
 
-// A side lifts at g b/h (1 - d h/2b^2) on contacts that sink by d: what a rigid body's first uplift differs
-// by.
-TEST(PlanarBody, estimate_is_what_soft_contacts_change_of_the_uplift) {
-  for (const double kgf : {1e3, 1e4, 1e5}) {
-    topple::Setup setup = alone();
-    setup.parameters.contact.alpha = kgf * k_g;
-    const auto block = planar::planar_case(setup.model, setup.parameters, setup.starts, 0);
-    ASSERT_TRUE(block);
-    const double estimate = hard_floor_error(setup.model, 0, *block, setup.parameters.contact);
-    const double b = block->block.right, h = block->block.height;
-    const double sinks = setup.model.bodies[0].mass * k_g / (2 * kgf * k_g) * 0.06;
-    EXPECT_NEAR(estimate, sinks * h / (2 * b * b), 1e-9) << kgf;
-  }
+// Before it lands or passes half of its critical angle: by theory a rigid body leans by d/2b before it lifts,
+// by experience that grows thirty times at most where nothing is near a tie.
+TEST(PlanarBody, estimate_bounds_what_soft_contacts_change) {
+  for (const double kgf : {2e3, 2e4})
+    for (const double over : {1.2, 2.}) {
+      topple::Setup setup = alone();
+      setup.parameters.contact.alpha = kgf * k_g;
+      setup.parameters.contact.friction = 1.2;
+      const auto block = planar::planar_case(setup.model, setup.parameters, setup.starts, 0);
+      ASSERT_TRUE(block);
+      const double critical = block->critical(planar::Side::right);
+      const double estimate = hard_floor_error(setup.model, 0, *block, setup.parameters.contact);
+      setup.parameters.shakes = {sine(over * k_g * std::tan(critical), 0.5)};
+      const topple::Setup other = as_rigid(setup);
+      topple::Run run(setup), rigid(other);
+      double most = 0;
+      while (!run.over()) {
+        ASSERT_TRUE(run.advance().ok() && rigid.advance().ok());
+        const BodyOutcome &a = run.outcome().bodies()[0], &b = rigid.outcome().bodies()[0];
+        if (a.impacts > 0 || b.impacts > 0 || a.tilt > critical / 2) break;
+        most = std::max(most, std::abs(a.tilt - b.tilt) / critical);
+      }
+      EXPECT_LT(most, estimate) << kgf << " kgf, " << over;
+      EXPECT_GT(most, estimate / 3) << kgf << " kgf, " << over;
+    }
+  topple::Setup hard = alone();
+  const auto block = planar::planar_case(hard.model, hard.parameters, hard.starts, 0);
+  hard.parameters.contact.alpha = *rigid_alpha(hard.model, hard.parameters.contact, hard.parameters.gravity);
+  EXPECT_EQ(hard_floor_error(hard.model, 0, *block, hard.parameters.contact), 0);
 }
 
 }  // namespace
