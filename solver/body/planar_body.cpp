@@ -162,6 +162,7 @@ std::optional<BlockState> PlanarBody::begin(const Parameters& parameters, const 
 const PlanarCase* PlanarBody::block(const Parameters& parameters, const Vec3& along) {
   if (!seen_ || case_.along != along || !(*seen_ == parameters)) {
     seen_ = parameters;
+    limited_.reset();
     const auto found = planar::planar_case_along(model_, parameters, along, body_, &obstacle_);
     case_ = found ? *found : planar::block_along(model_, parameters, along, body_);
     case_.along = along;
@@ -287,14 +288,17 @@ double PlanarBody::time_limit(const Parameters& parameters, const State& state) 
   const BlockState& s = state.blocks[body_];
   const PlanarCase* of = block(parameters, s.along);
   if (!of) return k_longest;
+  const std::array key{s.motion.time, s.motion.tilt, s.motion.rate, s.motion.x_velocity};
+  if (limited_ == key) return limit_;
+  limited_ = key;
   const planar::ShakenPlane plane{parameters.shakes, of->along};
   const planar::Floor floor = planar::shaken(plane);
   planar::State motion = s.motion;
   const double until = state.time + k_longest;
   while (motion.time < until)
     if (advance(of->block, floor, of->controls, until, motion, step_) != Event::none)
-      return std::clamp(motion.time + k_after_event - state.time, k_shortest, k_longest);
-  return k_longest;
+      return limit_ = std::clamp(motion.time + k_after_event - state.time, k_shortest, k_longest);
+  return limit_ = k_longest;
 }
 
 void PlanarBody::list_contacts(const Parameters& parameters, const StepInputs& now, const State& state,

@@ -2,6 +2,7 @@
 // each step whether it is one until the end of the step; where not, it becomes a rigid body.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -77,6 +78,8 @@ class PlanarBody {
   planar::Obstacle obstacle_ = planar::Obstacle::none;  // what stands in its way,
   std::vector<int> right_, left_;                       //   contact points of the model on the edges
   double error_ = 0;                                    //   hard_floor_error()
+  std::optional<std::array<double, 4>> limited_;  // motion that time_limit() was asked for last, under them,
+  double limit_ = 0;                              // s, and its answer; asked twice a step
   planar::Step step_;
   BlockState planned_;
   planar::Exchanged exchanged_;

@@ -422,7 +422,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-2";
+  return "topple-3";
 }
 
 }  // namespace topple

@@ -6,6 +6,12 @@
 namespace topple::planar {
 namespace {
 
+constexpr auto k_one_over = [] {  // 1/(1 + i)
+  std::array<double, 2 * k_terms> of{};
+  for (std::size_t i = 0; i < of.size(); ++i) of[i] = 1. / static_cast<double>(i + 1);
+  return of;
+}();
+
 /// Integral of a product over the step.
 double integral(const Series<double>& a, const Series<double>& b, double length) {
   std::array<double, k_terms> scaled;
@@ -15,7 +21,8 @@ double integral(const Series<double>& a, const Series<double>& b, double length)
   power = 1;
   for (int j = 0; j <= b.degree; ++j, power *= length) {
     double inner = 0;
-    for (int i = 0; i <= a.degree; ++i) inner += scaled[static_cast<std::size_t>(i)] / (i + j + 1);
+    for (int i = 0; i <= a.degree; ++i)
+      inner += scaled[static_cast<std::size_t>(i)] * k_one_over[static_cast<std::size_t>(i + j)];
     sum += b[j] * power * inner;
   }
   return sum;

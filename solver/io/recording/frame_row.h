@@ -91,7 +91,7 @@ struct FrameRow {
                                       ///< N, and where it acts, 0..1 from the first node to the second
   std::vector<double> energy;         ///< EnergyColumn
   std::vector<BodyNumbers> body;      ///< b
-  std::vector<std::uint8_t> level;    ///< b: 0 rigid, 1 elastic, 2 frame
+  std::vector<std::uint8_t> level;    ///< b: ModelLevel
   double floor_acceleration[3] = {};  ///< m/s^2
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs

@@ -68,6 +68,7 @@ const std::vector<Format>& formats() {
       {5, 6, false, {"member_contact"}, {k_damping}},
       {6, 6, true, {"member_contact"}},
       {7, 6, true, {}},
+      {8, 6, true, {}, {}, true},
       {k_format_version, 6, true, {}, {}, true}};
   return all;
 }
@@ -176,7 +177,7 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"member_contact", f32, {t, 4}, "N,N,N,1", "x,y,z,place"},
        {"energy", f64, {energy_columns(a > 0).size()}, energies.units.c_str(), energies.names.c_str()},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
-       {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame", ""},
+       {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame, 3 planar", ""},
        {"floor_acceleration", f64, {3}, "m/s^2", "x,y,z"},
        {"floor_displacement", f64, {3}, "m", "x,y,z"},
        {"load_factor", f64, {}, "1", ""},

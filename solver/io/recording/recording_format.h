@@ -29,7 +29,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 8;
+inline constexpr std::int32_t k_format_version = 9;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// How the recordings of one format differ from those of today.

@@ -10,7 +10,7 @@
 #include "solver/planar/planar_run.h"
 #include "unit/solver/body_models.h"
 
-namespace topple::test {
+namespace topple::test::planar_bodies {
 namespace {
 
 constexpr double k_step = 1e-3;  // s
@@ -422,4 +422,4 @@ TEST(PlanarBody, estimate_bounds_what_soft_contacts_change) {
 }
 
 }  // namespace
-}  // namespace topple::test
+}  // namespace topple::test::planar_bodies

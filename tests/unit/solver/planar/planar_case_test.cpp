@@ -13,13 +13,13 @@ using planar::PlanarCase;
 using planar::PlanarRun;
 
 /// A cabinet on its corners, as a rigid body with steps of 0.05 ms.
-struct Cabinet {
+struct PlanarCabinet {
   double yaw = 0, tilt = 0, cg_height = 1.05, friction = 0.6;
   double amplitude = 0, frequency = 1;  ///< m/s^2, Hz, along the yawed axis
   Shake::Start start = Shake::Start::rest;
 };
 
-topple::Setup prepared(topple::Setup setup, const Cabinet& of) {
+topple::Setup prepared(topple::Setup setup, const PlanarCabinet& of) {
   Parameters& p = setup.parameters;
   p.contact.friction = of.friction;
   p.contact.normal_speed = 1e-4;
@@ -33,7 +33,7 @@ topple::Setup prepared(topple::Setup setup, const Cabinet& of) {
   return setup;
 }
 
-topple::Setup setup_of(const Cabinet& of) {
+topple::Setup setup_of(const PlanarCabinet& of) {
   topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec spec = tall_cabinet();
@@ -49,7 +49,7 @@ topple::Setup setup_of(const Cabinet& of) {
 }
 
 /// A block whose centre of gravity stands `aside` of the middle of its base, m.
-topple::Setup lopsided(double aside, const Cabinet& of) {
+topple::Setup lopsided(double aside, const PlanarCabinet& of) {
   topple::Setup setup = rocking_block(of.tilt, 1, 1e-3);
   const double wide = 0.19, deep = 0.44, high = 1.79;
   FrameSpec spec;
@@ -117,12 +117,12 @@ constexpr double k_thirty = k_pi / 6;
 // twice what was found; of the one that is let go to the far edge errors at 1e5 kgf cancel. A sliding block
 // creeps on its stick springs while it stops, hence the place.
 TEST(PlanarCase, rigid_bodies_on_stiff_contacts_converge_to_it) {
-  const Cabinet gentle{.friction = 1.5};
+  const PlanarCabinet gentle{.friction = 1.5};
   struct Row {
     const char* what;
     topple::Setup setup;
   };
-  const auto with = [](Cabinet of, double tilt, double amplitude) {
+  const auto with = [](PlanarCabinet of, double tilt, double amplitude) {
     of.tilt = tilt, of.amplitude = amplitude;
     return of;
   };
