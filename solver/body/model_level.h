@@ -64,11 +64,12 @@ double elastic_error(const Body& body, const Parameters& parameters, double rota
 /// What a scene asks a body to be computed as.
 struct BodyModelTraits {
   BodyModel kind;
-  const char* word;     ///< in scenes
-  bool bends;           ///< needs Body::elastic
-  bool takes_supports;  ///< and loads on nodes
-  bool may_be_frame;    ///< where the scene needs one
-  bool by_edit = true;  ///< may be asked for while it runs
+  const char* word;          ///< in scenes
+  bool bends;                ///< needs Body::elastic
+  bool takes_supports;       ///< and loads on nodes
+  bool may_be_frame;         ///< where the scene needs one
+  bool by_edit = true;       ///< may be asked for while it runs
+  bool lists_start = false;  ///< outcomes say what it begins as
   /// Of a body that bears neither supports nor loads and has, if it bends, Body::elastic.
   LevelChoice (*choose)(const Model&, const Parameters&, int body);
 };

@@ -197,7 +197,11 @@ void ModelSwitch::begin_block(const Switching& on, int b) {
   BodyState& s = on.state.bodies[b];
   const bool asked = traits(base_[b].level).has_block;
   const bool may = asked || on.parameters.models[b] == BodyModel::automatic;
-  if (s.level != ModelLevel::rigid || near_[b] || !may) return;
+  if (s.level != ModelLevel::rigid || !may) return;
+  if (near_[b]) {
+    if (asked) s.reason = LevelReason::neighbour;
+    return;
+  }
   const auto block = on.parts.planar(b).begin(on.parameters, on.state, asked);
   if (!block) return;
   on.state.blocks[b] = *block;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/body/anchors.h"
+#include "solver/body/model_level.h"
 #include "solver/element/plasticity.h"
 #include "solver/frame/hinges.h"
 #include "solver/math/elementary.h"
@@ -168,8 +169,8 @@ void Outcome::observe_level(const Parameters& parameters, const State& state, st
   BodyOutcome& o = bodies_[b];
   const BodyState& now = state.bodies[b];
   o.always_rigid = o.always_rigid && !traits(now.level).has_stresses;
-  const bool automatic = !parameters.models.empty() && parameters.models[b] == BodyModel::automatic;
-  if (o.level != now.level && (o.level || automatic)) {
+  const bool listed = !parameters.models.empty() && traits(parameters.models[b]).lists_start;
+  if (o.level != now.level && (o.level || listed)) {
     events.push_back({.kind = Event::Kind::model,
                       .step = state.step,
                       .time = state.time,

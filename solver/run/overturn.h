@@ -85,7 +85,7 @@ struct BodyOutcome {
   double peak_pinch = 0;                ///< likewise between members, where 1 would be one through the other
   std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
   std::optional<ModelLevel> level;      ///< at this observation
-  std::vector<LevelChange> level_changes;  ///< of a body that is `automatic`, the first one included; at most
+  std::vector<LevelChange> level_changes;  ///< the first one where BodyModelTraits::lists_start; at most
                                            ///< k_kept_impacts
   std::vector<bool> lifted;                ///< per side of the support polygon
   double time = 0;                         ///< of this observation

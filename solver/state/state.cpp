@@ -358,6 +358,12 @@ class Finiteness {
     look_at(b.calm_since, b.substep, total(b.position), total(b.velocity), 1);
     look_at(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
   }
+  void look(const BlockState& b) {
+    const planar::State& m = b.motion;
+    look_at(m.x, m.z, m.tilt, m.rate, 0);
+    look_at(m.x_velocity, m.z_velocity, b.static_friction, b.kinetic_friction, 1);
+    look_at(total(b.along), total(b.floor), m.time, 0, 2);
+  }
   void look_at_rest(const State& s) {
     static_assert(sizeof(EnergyLedger) == 15 * sizeof(double));
     look(&s.energy.input, 15);
@@ -365,6 +371,8 @@ class Finiteness {
             s.load_factor + s.candidate_margin, 0);
     for (const MemberStick& stick : s.member_sticks) look_at(Four(total(stick.stick)), 0);
     for (const AnchorState& anchor : s.anchors) look_at(Four(anchor.length), 0);
+    for (std::size_t b = 0; b < s.blocks.size(); ++b)
+      if (traits(s.bodies[b].level).has_block) look(s.blocks[b]);
   }
   bool all() const {
     const Four all = (sums_[0] + sums_[1]) + (sums_[2] + sums_[3]);
@@ -415,6 +423,10 @@ int body_not_finite(const Model& model, const State& s) {
     if (is_odd(own.position) || is_odd(own.rotation.coeffs()) || is_odd(own.velocity) ||
         is_odd(own.angular_velocity) || is_odd(own.force) || is_odd(own.moment) || is_odd(own.amplitude) ||
         is_odd(own.rate) || is_odd(own.load))
+      return static_cast<int>(b);
+    if (const planar::State& m = s.blocks[b].motion;
+        traits(own.level).has_block &&
+        is_odd(Eigen::Array<double, 6, 1>{m.x, m.z, m.tilt, m.x_velocity, m.z_velocity, m.rate}))
       return static_cast<int>(b);
     const Body& body = model.bodies[b];
     for (int i = body.first_node; i < body.first_node + body.node_count; ++i)

@@ -327,6 +327,26 @@ TEST(PlanarBody, becomes_a_rigid_body_that_moves_like_one) {
   }
 }
 
+TEST(PlanarBody, a_number_that_is_none_ends_the_run) {
+  const topple::Setup setup = with_shakes(alone({.tilt = 0.05}), {sine(4, 1)});
+  topple::Run run(setup);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(run.advance().ok());
+  const std::function<double&(BlockState&)> numbers[] = {
+      [](BlockState& b) -> double& { return b.motion.x; },
+      [](BlockState& b) -> double& { return b.motion.tilt; },
+      [](BlockState& b) -> double& { return b.motion.rate; },
+      [](BlockState& b) -> double& { return b.motion.z_velocity; },
+      [](BlockState& b) -> double& { return b.along.x(); },
+      [](BlockState& b) -> double& { return b.static_friction; }};
+  for (const auto& number : numbers)
+    for (const double bad : {std::nan(""), -1e308, std::numeric_limits<double>::infinity()}) {
+      State state = run.state();
+      number(state.blocks[0]) = bad;
+      Workspace workspace(setup.model);
+      EXPECT_EQ(step(setup.model, setup.parameters, state, workspace).kind, StepStatus::Kind::not_finite);
+    }
+}
+
 // Amplitude, frequency and friction are edits that a block knows.
 TEST(PlanarBody, takes_edits_within_its_plane) {
   const topple::Setup rocks = with_shakes(alone(), {sine(3.5, 1)});

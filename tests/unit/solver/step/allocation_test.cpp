@@ -218,6 +218,31 @@ TEST_P(RockingAllocation, no_step_after_the_first_takes_memory_but_for_its_event
   EXPECT_EQ(planes, 3);
 }
 
+TEST(Allocation, no_step_of_a_planar_block_takes_memory_but_for_its_events) {
+  topple::Setup setup = shaken(4);
+  CabinetSpec spec = tall_cabinet();
+  spec.base = CabinetSpec::Base::corners;
+  setup.model = steel_model();
+  setup.starts = {add_cabinet(setup.model, spec)};
+  setup.model.planes.push_back(ground());
+  setup.parameters.models = {BodyModel::planar};
+  shake(setup, 4, 1);
+  topple::Run run(setup);
+  ASSERT_TRUE(run.advance().ok());
+  std::size_t most = 0;
+  while (!run.over()) {
+    const long before = allocations;
+    const std::size_t events = run.events().size();
+    ASSERT_TRUE(run.advance().ok());
+    if (run.events().size() == events) {
+      ASSERT_EQ(allocations, before) << run.time();
+    }
+    most = std::max(most, run.events().size());
+  }
+  EXPECT_EQ(run.state().bodies[0].level, ModelLevel::planar);
+  EXPECT_GT(most, 4u);
+}
+
 // A cabinet falls on another. Who comes near, or leaves, takes memory.
 TEST(Allocation, bodies_that_lie_on_each_other_take_no_memory) {
   topple::Setup setup = shaken(3);
