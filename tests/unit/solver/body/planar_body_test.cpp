@@ -208,7 +208,7 @@ TEST(PlanarBody, state_within_a_step_is_exact) {
   while (!other.over()) {
     other.advance();
     while (run.time() < other.time() - 1e-12) run.advance();
-    const Snapshot at = run.snapshot(other.time());
+    const topple::Snapshot at = run.snapshot(other.time());
     apart = std::max(apart, (at.state.bodies[0].position - other.state().bodies[0].position).norm());
   }
   EXPECT_LT(apart, 1e-12);

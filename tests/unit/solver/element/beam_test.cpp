@@ -39,11 +39,11 @@ void shift_stress_points(Model& model, double factor) {
 
 // A stubby member: the condition of its stiffness matrix, about 1e4, is what rounding is multiplied with.
 constexpr double k_rounding = 1e-12;
-constexpr double k_length = 0.4;
+constexpr double k_beam_length = 0.4;
 
 TEST(Beam, cantilever_tip_is_exact_with_two_elements_for_force_and_moment_in_both_planes) {
   const Stiffness c = stiffness(k_uneven, steel());
-  const double l = k_length, p = 10, m = 7;
+  const double l = k_beam_length, p = 10, m = 7;
   const auto load = [&](const Vec3& force, const Vec3& moment) {
     return linear_tip(cantilever(k_uneven, steel(), l, 1, force, moment));
   };
@@ -79,17 +79,17 @@ TEST(Beam, cantilever_tip_does_not_depend_on_the_members_direction) {
     SCOPED_TRACE(along.transpose());
     // node positions are rounded, a strain of 1e-16: times kGA = 1e7 N it must not show against the load
     const double p = 1e4;
-    const Tip tip = linear_tip(cantilever(plain_section(3e-4, 5e-8, 5e-8, 6e-8, 0.7, 0.7), steel(), k_length,
-                                          1, p * across, Vec3::Zero(), along));
-    const double exact = p * std::pow(k_length, 3) / (3 * c.eiz) + p * k_length / c.gay;
+    const Tip tip = linear_tip(cantilever(plain_section(3e-4, 5e-8, 5e-8, 6e-8, 0.7, 0.7), steel(),
+                                          k_beam_length, 1, p * across, Vec3::Zero(), along));
+    const double exact = p * std::pow(k_beam_length, 3) / (3 * c.eiz) + p * k_beam_length / c.gay;
     EXPECT_LT((tip.displacement - exact * across).norm(), k_rounding * exact);
   }
 }
 
 TEST(Beam, swapped_stress_points_bend_0_884_of_exact_and_the_midpoint_is_off_by_a_sixteenth) {
   const Stiffness c = stiffness(k_uneven, steel());
-  Model model = cantilever(k_uneven, steel(), k_length, 1, {0, 10, 0}, Vec3::Zero());
-  const double shear = 10 * k_length / c.gay, bending = 10 * std::pow(k_length, 3) / (3 * c.eiz);
+  Model model = cantilever(k_uneven, steel(), k_beam_length, 1, {0, 10, 0}, Vec3::Zero());
+  const double shear = 10 * k_beam_length / c.gay, bending = 10 * std::pow(k_beam_length, 3) / (3 * c.eiz);
   const auto bending_part = [&] { return (linear_tip(model).displacement.y() - shear) / bending; };
   EXPECT_NEAR(bending_part(), 1, k_rounding);
   shift_stress_points(model, -1);
