@@ -195,9 +195,9 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
 // Where the body is one, and begins on the level rigid.
 void ModelSwitch::begin_block(const Switching& on, int b) {
   BodyState& s = on.state.bodies[b];
+  if (s.level != ModelLevel::rigid) return;
   const bool asked = traits(base_[b].level).has_block;
-  const bool may = asked || on.parameters.models[b] == BodyModel::automatic;
-  if (s.level != ModelLevel::rigid || !may) return;
+  if (!asked && on.parameters.models[b] != BodyModel::automatic) return;
   if (near_[b]) {
     if (asked) s.reason = LevelReason::neighbour;
     return;
