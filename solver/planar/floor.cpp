@@ -201,6 +201,43 @@ double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizont
 
 }  // namespace
 
+namespace {
+
+/// Of a record alone, whose components are sampled together, from sample to sample.
+double quiet(const ShakenPlane& plane, double t, double until, std::span<const FloorSign> signs) {
+  if (plane.shakes.size() != 1) return t;
+  const Shake& shake = plane.shakes.front();
+  if (!traits(shake.kind).has_record || !shake.on || t < shake.start ||
+      (shake.ramp.over > 0 && t < shake.ramp.since + shake.ramp.over))
+    return t;
+  const std::vector<AccelerogramComponent>& components = shake.record->components;
+  const double interval = components.front().interval;
+  const std::size_t count = components.front().samples.size();
+  for (const AccelerogramComponent& one : components)
+    if (one.interval != interval || one.samples.size() != count) return t;
+  const auto all_positive = [&](std::size_t i) {
+    double along = 0, up = 0;
+    for (const AccelerogramComponent& one : components) {
+      along += one.direction.dot(plane.along) * one.samples[i];
+      up += one.direction.z() * one.samples[i];
+    }
+    along *= shake.scale, up *= shake.scale;
+    return std::ranges::all_of(signs, [&](const FloorSign& sign) {
+      return sign.along * along + sign.up * up + sign.offset > 0;
+    });
+  };
+  const auto time_of_sample = [&](std::size_t i) {
+    return shake.start + static_cast<double>(i) * interval;
+  };
+  auto i = static_cast<std::size_t>((t - shake.start) / interval);
+  double out = t;
+  if (i >= count || !all_positive(i)) return out;
+  while (++i < count && time_of_sample(i) <= until && all_positive(i)) out = std::max(t, time_of_sample(i));
+  return out;
+}
+
+}  // namespace
+
 Floor floor_at_rest() {
   return {[](const void*, double, Line& horizontal, Line& vertical) {
             horizontal = vertical = 0;
@@ -218,7 +255,10 @@ Floor shaken(const ShakenPlane& plane) {
               end = std::min(end, add_shake(shake, of.along, t, horizontal, vertical));
             return end;
           },
-          &plane};
+          &plane,
+          [](const void* floor, double t, double until, std::span<const FloorSign> signs) {
+            return quiet(*static_cast<const ShakenPlane*>(floor), t, until, signs);
+          }};
 }
 
 }  // namespace topple::planar

@@ -1,5 +1,6 @@
 #include "solver/planar/integrator.h"
 
+#include <array>
 #include <cmath>
 
 namespace topple::planar {
@@ -7,6 +8,7 @@ namespace {
 
 constexpr int k_most_without_progress = 100;
 constexpr double k_together = 1e-12;  // s, within which events count as simultaneous
+constexpr double k_margin = 1e-9;     // m/s^2, within which the guards of a block at rest decide
 
 /// First terms of the motion.
 void set_motion(const Block& block, const State& state, Solution<double>& s) {
@@ -42,6 +44,18 @@ State state_after(const Step& step, double since) {
   return state;
 }
 
+/// A kink of the floor up to which nothing wakes a block that rests, s; that of the series where none is known.
+double rest_end(const Block& block, const Floor& floor, const State& state, double until, double floor_end) {
+  if (!floor.quiet || floor_end >= until) return floor_end;
+  const double g = block.gravity, h = block.height, mu = block.static_friction;
+  const std::array<FloorSign, 5> signs{{{0, 1, g - k_margin},
+                                        {h, block.right, block.right * g - h * k_margin},
+                                        {-h, block.left, block.left * g - h * k_margin},
+                                        {1, mu, mu * g - k_margin},
+                                        {-1, mu, mu * g - k_margin}}};
+  return std::max(floor_end, floor.quiet(floor.floor, state.time, until, signs));
+}
+
 const Guard* first_guard(Step& step, int highest) {
   const Guard* first = nullptr;
   double when = step.length;
@@ -74,6 +88,13 @@ Event advance(const Block& block, const Floor& floor, const Controls& controls, 
   if (state.undecided) state = decided(start, state);
   step.start = state;
   set_motion(block, state, s);
+  if (state.mode == Mode::rest) {
+    if (const double calm = rest_end(block, floor, state, until, step.floor_end); calm > step.floor_end) {
+      step.floor_end = calm, step.length = calm - state.time, step.guards.count = 0, step.without_progress = 0;
+      state.time = calm, state.undecided = true;
+      return Event::none;
+    }
+  }
 
   const double end = std::min(until, step.floor_end);
   Truncation truncation(std::min(end - state.time, controls.longest), controls.tolerance * block.gravity,

@@ -16,7 +16,8 @@ struct Controls {
       1.5707;  ///< rad, at which the block has overturned; up to where its walls meet the floor
 };
 
-/// The newest step.
+/// The newest step. A block at rest passes as many lines of a record at once as cannot wake it; the
+/// solution's `horizontal` and `vertical` are then those of the first.
 struct Step {
   State start;
   double length = 0;  ///< s

@@ -22,6 +22,7 @@ PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double dur
       shakes_(std::move(shakes)),
       plane_{shakes_, of.along},
       duration_(duration),
+      critical_{of.critical(Side::left), of.critical(Side::right)},
       state_(jumped(of, shakes_, of.start)) {
   observe();
 }
@@ -51,7 +52,7 @@ void PlanarRun::observe() {
   if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
   left_ = std::abs(centre_of_gravity(case_.block, state_).x) > case_.farthest;
   const double sign = state_.tilt < 0 ? -1 : 1;
-  const double critical = case_.critical(state_.tilt < 0 ? Side::left : Side::right);
+  const double critical = critical_[state_.tilt < 0 ? 0 : 1];
   if (sign * state_.tilt <= critical) {
     beyond_since_.reset();
   } else if (!beyond_since_) {

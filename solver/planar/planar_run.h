@@ -1,6 +1,7 @@
 // A run of a planar block on a floor that shakes, and what became of it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -38,6 +39,7 @@ class PlanarRun {
   std::vector<Shake> shakes_;
   ShakenPlane plane_;
   double duration_;
+  std::array<double, 2> critical_;  ///< rad, towards the left and the right
   State state_;
   Step step_;
   Event last_ = Event::none;
