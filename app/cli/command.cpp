@@ -82,7 +82,7 @@ CLI::Option& add_read(CLI::App& command, const char* name, const char* type, Rea
               ->check(std::move(read), "", "read");
 }
 
-Reader share(double& value) {
+Reader share(std::optional<double>& value) {
   return [&value](const std::string& text) -> std::string {
     const bool percent = text.ends_with('%');
     const auto number = number_in<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));

@@ -85,7 +85,7 @@ Reader whole_number(Whole& value, int least, int most) {
   };
 }
 /// "5%" or "0.05", between both ends of 0..1.
-Reader share(double& value);
+Reader share(std::optional<double>& value);
 Reader seconds(std::optional<double>& value);
 
 /// --jobs

@@ -19,6 +19,7 @@
 #include "render/output/picture.h"
 #include "solver/study/common/anchors.h"
 #include "solver/study/common/measure.h"
+#include "solver/study/common/parallel.h"
 
 namespace topple::app {
 namespace {
@@ -145,6 +146,33 @@ std::string command_text(const ReportOptions& options) {
   return text + " --lang " + (options.language == Language::japanese ? "ja" : "en");
 }
 
+/// Levels and runs of a fragility that planar blocks do in a second or two.
+void add_fragility(Report& report, const ReportOptions& options) {
+  const io::Scene& scene = *report.scene;
+  constexpr const char* k_levels = "pga=50 gal..1500 gal:20";
+  constexpr double k_slide = 0.05;  // m
+  if (scene.setup.parameters.shakes.empty()) return;
+  const auto plan = std::make_shared<study::FragilityPlan>(study::plan_fragility(
+      scene, k_levels, {.runs = 128, .spread = k_spread, .vary = {"friction=normal:20%"}}, k_slide));
+  if (!study::is_planar(*plan)) return;
+  const int jobs = options.jobs.value_or(study::core_count());
+  std::vector<study::FragilityRunner> runners(static_cast<std::size_t>(jobs), study::FragilityRunner(*plan));
+  std::vector<std::string> rows(static_cast<std::size_t>(plan->cases()));
+  Progress progress(scene.name + ", fragility", "parts", plan->cases(), options.quiet);
+  study::for_each_case(
+      plan->cases(), jobs,
+      [&](int k, int worker) {
+        rows[static_cast<std::size_t>(k)] =
+            runners[static_cast<std::size_t>(worker)].run(k, [] { return interrupted(); });
+      },
+      [&](int done) {
+        progress.update(done);
+        return !interrupted();
+      });
+  report.fragility = gather(*plan, rows);
+  report.fragility_plan = plan;
+}
+
 int interrupted_report(const std::string& file) {
   log_message("interrupted; " + file + " is not written");
   return k_interrupted;
@@ -196,6 +224,7 @@ int report_command(const ReportOptions& options) {
                                          return !interrupted();
                                        });
   }
+  add_fragility(report, options);
   if (const auto bare = study::without_anchors(scene)) {
     RecordedRun without = record(*bare, "", {.quiet = options.quiet});
     report.without_anchors = std::move(without.summary);

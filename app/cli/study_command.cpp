@@ -14,6 +14,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/progress.h"
+#include "solver/io/common/units.h"
 
 namespace topple::app {
 namespace {
@@ -142,12 +143,35 @@ const Study& study_of(const StudyCall& call) {
        {std::tuple{"--x", !options.x.empty(), study.x != nullptr},
         std::tuple{"--y", !options.y.empty(), study.y != nullptr},
         std::tuple{"--ensemble", options.ensemble > 1, study.takes_ensemble},
+        std::tuple{"--vary", !options.vary.empty(), study.takes_ensemble},
+        std::tuple{"--slide", options.slide.has_value(), study.takes_slide},
         std::tuple{"--resume", options.resume, study.sweep != nullptr}})
     if (given && !taken) throw BadInput(std::string(name) + ": not of study " + kind);
   if (!study.sweep && started_ranks() > 1)
     throw BadInput("mpirun: study " + kind + " does not share its work among ranks; start it without mpirun");
   if (options.folder.empty()) throw BadInput("--output is required (topple study --help)");
   return study;
+}
+
+/// "amplitude (amplitude or scale of every shake, together), phase (...)".
+std::string factors_in_words() {
+  std::vector<std::string> words;
+  for (const study::FactorTraits& one : study::factor_table())
+    words.push_back(fmt::format("{} ({})", one.word, one.about));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// "30 mm", "0.03": above 0.
+Reader length(std::optional<double>& value) {
+  return [&value](const std::string& text) {
+    const std::optional<double> plain = number_in<double>(text);
+    const io::Quantity read =
+        plain ? io::Quantity{plain, ""} : io::parse_quantity(text, io::Dimension::length);
+    if (!read.si) return '"' + text + "\" " + read.problem;
+    if (!(*read.si > 0 && *read.si <= 100)) return '"' + text + "\" is not above 0 m up to 100 m";
+    value = read.si;
+    return std::string();
+  };
 }
 
 int study_command(const StudyCall& call) {
@@ -185,12 +209,28 @@ void add_study(Commands& commands) {
                        with_axes, fmt::join(x, "; ")));
   add_path(command, "--y", options.y, "KEY=FROM..TO:N",
            fmt::format("{}: the same, default {}", with_axes, fmt::join(y, "; ")));
+  const std::string with_ensemble = names_of([](const Study& study) { return study.takes_ensemble; });
   CLI::Option& ensemble =
-      add_read(command, "--ensemble", "N", whole_number(options.ensemble, 2, 10000),
-               names_of([](const Study& study) { return study.takes_ensemble; }) +
-                   ": runs a point, with amplitudes varied at random: probabilities and a fragility curve");
-  add_read(command, "--spread", "PERCENT%", share(options.spread), "of the amplitudes, default 5%")
+      add_read(command, "--ensemble", "N", whole_number(options.ensemble, 2, 1000000),
+               with_ensemble +
+                   ": runs a point or level (of fragility default 400), varied at random: "
+                   "probabilities and a fragility curve");
+  add_read(command, "--spread", "PERCENT%", share(options.spread),
+           "amplitudes of all shakes evenly within 1 -+ this, default 5% without --vary")
       .needs(&ensemble);
+  command
+      .add_option(
+          "--vary", options.vary,
+          fmt::format("{}: what an ensemble varies, once each: a factor with uniform:FROM..TO, normal:SD or "
+                      "lognormal:SD, or records=FILE,FILE (a folder: its files). Factors: {}",
+                      with_ensemble, factors_in_words()))
+      ->type_name("FACTOR=DISTRIBUTION")
+      ->allow_extra_args(false);
+  add_read(command, "--seed", "N", whole_number(options.seed, 0, 2147483647),
+           "of what is drawn, default 1; the same seed draws the same everywhere");
+  add_read(command, "--slide", "LENGTH", length(options.slide),
+           names_of([](const Study& study) { return study.takes_slide; }) +
+               ": sliding farther counts, such as \"30 mm\", default 50 mm");
   command.add_flag("--resume", options.resume, names_of([](const Study& study) {
                                                  return study.sweep != nullptr;
                                                }) + ": go on with the runs of one that was interrupted");

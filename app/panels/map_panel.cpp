@@ -119,13 +119,25 @@ std::vector<LogCurve> curves_of(const LogChart& chart, const study::Criteria& cr
   return curves;
 }
 
-/// x, y: as they are told.
-std::string cell_in_words(const OverturnFound& found, int i, int j, double x, double y) {
+/// A probability where neighbours disagree, else the verdict.
+std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   const study::OverturnPoint& at = point(found, i, j);
+  const auto place = static_cast<std::size_t>(j * found.plan->x.count() + i);
+  if (place < found.shares.size() && found.shares[place]) {
+    const study::CellShare& share = *found.shares[place];
+    const study::Interval within = study::wilson(share.overturned, share.runs);
+    return say(k_map_unsure, share.overturned, share.runs, 100 * share.probability(), 100 * within.low,
+               100 * within.high);
+  }
   std::string verdict = say(words_of(at.verdict));
   if (const auto time = at.time(0.5)) verdict += say(k_map_first_at, *time);
   if (at.verdict == Verdict::failed) verdict += say(k_colon) + at.status;
-  return say(k_map_cell, x, found.plan->x.unit, y, found.plan->y.unit, verdict);
+  return verdict;
+}
+
+/// x, y: as they are told.
+std::string cell_in_words(const OverturnFound& found, int i, int j, double x, double y) {
+  return say(k_map_cell, x, found.plan->x.unit, y, found.plan->y.unit, outcome_in_words(found, i, j));
 }
 
 /// The cell below the mouse: told, and loaded by a click.
@@ -180,6 +192,15 @@ void draw_steps(Player& player, const OverturnFound& found, std::string& refused
   step("##stronger", ImGuiDir_Up, i, j + 1);
 }
 
+/// Whether parameters other than the axes differ from these.
+bool has_changed(const Player& player, const study::OverturnPlan& plan, const Parameters& of) {
+  const auto of_axis = [&](Edit::Key key, int index) {
+    const std::string name = io::edit_key({key, index});
+    return name == plan.x.key || name == plan.y.key;
+  };
+  return parameters_differ(player.scene().setup.model, player.parameters(), of, of_axis);
+}
+
 bool can_have_map(const Player& player) {
   const Parameters& now = player.parameters();
   const Setup& setup = player.scene().setup;
@@ -189,9 +210,31 @@ bool can_have_map(const Player& player) {
 
 }  // namespace
 
-bool draw_map(Player& player, MapState& state, std::string& refused) {
+void update_map(const Player& player, MapState& state) {
+  using Follows = MapState::Follows;
+  const bool over = state.search && state.search->over();  // asked first: the last result comes before it
   const auto found = state.search ? state.search->result() : nullptr;
-  if (!found || !found->plan) return false;
+  if (found && found->plan && (over || !state.shown || state.follows != Follows::yes))
+    state.shown = found, state.shown_of = state.of;
+  const bool failed = over && found && !found->plan;
+  if (failed) state.shown.reset();
+  if (over && state.follows == Follows::untried) {
+    state.follows = failed ? Follows::no : Follows::yes;
+    if (failed) state.search.reset();  // a button asks for the map
+  }
+  if (state.follows == Follows::no || !can_have_map(player)) return;
+  if (state.search && !over) return;
+  const bool changed = !state.search || (state.shown ? has_changed(player, *state.shown->plan, state.of)
+                                                     : !(player.parameters() == state.of));
+  if (!changed) return;
+  state.of = player.parameters();
+  state.search = search_overturning(player.scene(), state.of, true);
+}
+
+bool draw_map(Player& player, MapState& state, std::string& refused) {
+  update_map(player, state);
+  const std::shared_ptr<const OverturnFound> found = state.shown;
+  if (!found) return false;
   const study::OverturnPlan& plan = *found->plan;
   const float line = ImGui::GetTextLineHeight();
   const float height = std::min(0.9f * ImGui::GetContentRegionAvail().x, 26 * line);
@@ -229,39 +272,45 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
       "%s",
       (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j, x, y))).c_str());
   draw_steps(player, *found, refused);
-  const auto of_axis = [&](Edit::Key of, int index) {
-    const std::string name = io::edit_key({of, index});
-    return name == plan.x.key || name == plan.y.key;
-  };
-  if (parameters_differ(player.scene().setup.model, player.parameters(), state.of, of_axis))
+  if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of))
     ImGui::TextWrapped("%s", say(k_map_stale).c_str());
   return true;
 }
 
 void draw_map_controls(const Player& player, MapState& state) {
+  using Follows = MapState::Follows;
   const auto found = state.search ? state.search->result() : nullptr;
-  if (state.search && !state.search->over()) {
-    const auto progress = static_cast<float>(state.search->progress());
-    if (found) ImGui::TextUnformatted(say(k_map_progress, found->map.run, found->map.of).c_str());
-    ImGui::ProgressBar(progress, {-1, 0.5f * ImGui::GetTextLineHeight()}, "");
-    if (ImGui::Button((say(k_cancel) + "##cancel-map").c_str())) state.search->stop();
-    return;
-  }
-  if (found && !found->failure.empty()) ImGui::TextWrapped("%s", say(k_map_failed, found->failure).c_str());
-  const bool can = can_have_map(player);
-  ImGui::BeginDisabled(!can);
-  const bool asked = ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(),
-                                   {found ? 0.f : -1.f, 0});
-  ImGui::EndDisabled();
-  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-    ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());
-  if (found) {
+  const bool searching = state.search && !state.search->over();
+  if (state.follows == Follows::untried) return;
+  if (state.follows == Follows::yes) {
+    ImGui::TextDisabled("%s", say(k_map_follows).c_str());
+  } else {
+    if (searching) {
+      const auto progress = static_cast<float>(state.search->progress());
+      if (found) ImGui::TextUnformatted(say(k_map_progress, found->map.run, found->map.of).c_str());
+      ImGui::ProgressBar(progress, {-1, 0.5f * ImGui::GetTextLineHeight()}, "");
+      if (ImGui::Button((say(k_cancel) + "##cancel-map").c_str())) state.search->stop();
+      return;
+    }
+    if (found && !found->failure.empty()) ImGui::TextWrapped("%s", say(k_map_failed, found->failure).c_str());
+    const bool can = can_have_map(player);
+    ImGui::BeginDisabled(!can);
+    const bool asked = ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(),
+                                     {found ? 0.f : -1.f, 0});
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+      ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());
+    if (asked) {
+      state.of = player.parameters();
+      state.search = search_overturning(player.scene(), state.of);
+      return;
+    }
+    if (!found) return;
     ImGui::SameLine();
-    if (ImGui::Button((say(k_map_close) + "##close-map").c_str())) state = {};
   }
-  if (asked) {
-    state.of = player.parameters();
-    state.search = search_overturning(player.scene(), state.of);
+  if (ImGui::Button((say(k_map_close) + "##close-map").c_str())) {
+    state = {};
+    state.follows = Follows::no;
   }
 }
 

@@ -10,10 +10,16 @@
 namespace topple::app {
 
 struct MapState {
-  std::unique_ptr<OverturnSearch> search;  ///< null: nobody asked for a map
-  Parameters of;                           ///< with which it began
-  Box cells;                               ///< as drawn last
+  std::unique_ptr<OverturnSearch> search;      ///< null: there is none yet
+  std::shared_ptr<const OverturnFound> shown;  ///< the newest map, of an earlier search until this one ends
+  Parameters of, shown_of;                     ///< with which the search began, and that of `shown`
+  /// It is computed anew whenever parameters change: where planar blocks do it, unless it was closed.
+  enum class Follows { untried, yes, no } follows = Follows::untried;
+  Box cells;  ///< as drawn last
 };
+
+/// Begins a search where the map follows the parameters, and takes over what is found.
+void update_map(const Player& player, MapState& state);
 
 /// Cells, criteria and the present shake. A click on a cell shakes like that; what was refused, and why, is
 /// left in `refused`. False: there is no map.

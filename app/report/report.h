@@ -1,6 +1,7 @@
 // The page that answers for an engineer: what was shaken how, what falls, how certain that is.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/intensity.h"
 #include "solver/study/common/spread.h"
+#include "solver/study/overturn/fragility_study.h"
 
 namespace topple::app {
 
@@ -47,6 +49,9 @@ struct Report {
   std::vector<KeyPicture> pictures;    ///< in the order of time
   double spread = 0;                   ///< of the input of `trials`
   std::vector<study::Trial> trials;    ///< empty: the floor does not shake
+  /// null: there is no fragility, as the scene is not run as planar blocks
+  std::shared_ptr<const study::FragilityPlan> fragility_plan = {};
+  study::FragilityResults fragility = {};
   int anchors = 0;
   std::optional<nlohmann::ordered_json> without_anchors;  ///< summary of the run; absent: there are none
 };

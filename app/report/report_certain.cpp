@@ -90,7 +90,7 @@ std::string certain_section(ReportPage& page) {
   return page.section(
       words::k_certain,
       (page.report().trials.empty() ? page.paragraph(page.say(words::k_no_probability)) : probability(page)) +
-          error(page));
+          fragility_part(page) + error(page));
 }
 
 }  // namespace topple::app

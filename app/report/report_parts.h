@@ -65,6 +65,8 @@ std::string floor_section(ReportPage& page);
 std::string falling_section(ReportPage& page);
 std::string anchors_section(ReportPage& page);
 std::string certain_section(ReportPage& page);
+/// Of the certain_section(); empty: there is no fragility.
+std::string fragility_part(ReportPage& page);
 std::string assumptions_section(ReportPage& page);
 std::string settings_section(ReportPage& page);
 

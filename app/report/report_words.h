@@ -173,6 +173,46 @@ inline constexpr Phrase k_interval_note{
 inline constexpr Phrase k_dots{"Figure {0}: each run. Filled: overturns; open: stays.",
                                "図{0}：各計算の結果。●：転倒、○：転倒せず。"};
 inline constexpr Phrase k_factor{"factor on the floor motion", "床の揺れの倍率"};
+inline constexpr Phrase k_fragility{"Fragility over the floor's peak acceleration",
+                                    "床の最大加速度に対するフラジリティ"};
+inline constexpr Phrase k_fragility_text{
+    "{0} runs as planar blocks at {1} levels of the peak acceleration from {2} to {3} gal, the motion scaled "
+    "to "
+    "each. Varied from run to run: {4}. Sliding counts from {5} mm on. A lognormal distribution is fitted; "
+    "its "
+    "median is the peak acceleration at which the chance is one half, β the standard deviation of its "
+    "logarithm.",
+    "揺れを最大加速度 {2}～{3} gal の {1} 段階に合わせ、平面剛体ブロックとして計 {0} "
+    "回計算した。計算ごとに変えたもの：{4}。{5} mm "
+    "を超える移動を滑りとする。対数正規分布を当てはめた。中央値は確率が1/"
+    "2となる最大加速度、βは対数標準偏差である"
+    "。"};
+inline constexpr Phrase k_state{"state", "状態"};
+inline constexpr Phrase k_state_uplift{"lifts a side", "浮き上がり"};
+inline constexpr Phrase k_state_slide{"slides", "滑り"};
+inline constexpr Phrase k_state_overturn{"overturns", "転倒"};
+inline constexpr Phrase k_any_body{"any body", "いずれかの家具"};
+inline constexpr Phrase k_median{"median, gal", "中央値 [gal]"};
+inline constexpr Phrase k_median_interval{"95 % interval, gal", "95 %信頼区間 [gal]"};
+inline constexpr Phrase k_in_no_run{"in no run", "該当なし"};
+inline constexpr Phrase k_no_curve{"no curve", "当てはめ不可"};
+inline constexpr Phrase k_of_west{"West, gal", "West [gal]"};
+inline constexpr Phrase k_of_ishiyama{"Ishiyama, gal", "石山 [gal]"};
+inline constexpr Phrase k_of_evaluation{"A_R50, gal", "A_R50 [gal]"};
+inline constexpr Phrase k_corner{"corner frequency, Hz", "境界振動数 [Hz]"};
+inline constexpr Phrase k_criteria_note{
+    "West: lifts above it. Ishiyama: below it does not overturn. A_R50: half overturn by the Japanese "
+    "evaluation, "
+    "by velocity above the corner frequency. Peak acceleration over 2π times peak velocity of this motion: "
+    "{0} Hz.",
+    "West：超えると浮き上がる。石山：下回れば転倒しない。A_R50："
+    "日本の評価法で半数が転倒する加速度（境界振動数を超えると速度で評価）。この揺れの最大加速度と最大速度の比"
+    "から求"
+    "めた振動数：{0} Hz。"};
+inline constexpr Phrase k_peak_acceleration{"peak acceleration of the floor, gal", "床の最大加速度 [gal]"};
+inline constexpr Phrase k_chance{"probability", "確率"};
+inline constexpr Phrase k_fragility_figure{"Figure {0}: fitted probability over the peak acceleration, {1}.",
+                                           "図{0}：最大加速度に対する確率の当てはめ（{1}）。"};
 inline constexpr Phrase k_no_probability{
     "The floor does not shake, so there is no input to vary; no probability is given.",
     "床が揺れないため、変化させる入力がなく、確率は求めない。"};

@@ -1,5 +1,7 @@
 #include "app/study/broadcast_scene.h"
 
+#include <algorithm>
+
 namespace topple::app {
 
 std::vector<std::string> broadcast_parts(const io::Scene& scene) {
@@ -16,6 +18,10 @@ io::Scene scene_from(const std::vector<std::string>& parts) {
   };
   io::Scene scene = io::parse_scene(parts[1], parts[0], {}, read);
   scene.name = parts[0];
+  for (std::size_t k = 2; k + 1 < parts.size();
+       k += 2)  // records of an ensemble, which the text does not name
+    if (std::ranges::find(scene.files, parts[k], &io::SceneFile::name) == scene.files.end())
+      scene.files.push_back({parts[k], parts[k + 1]});
   return scene;
 }
 

@@ -84,11 +84,9 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
                 {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},
                 {"cpu_s", "s, of the solving thread, the scene's reading included"}},
       .settings = {{"ensemble", plan.ensemble},
-                   {"spread", plan.spread},
-                   {"perturbation", plan.ensemble > 1
-                                        ? ordered_json("amplitude of every shake times a factor within "
-                                                       "1 -+ spread, even, from point and member")
-                                        : ordered_json(nullptr)},
+                   {"vary", plan.factors.texts},
+                   {"seed", plan.factors.seed},
+                   {"records", plan.factors.records},
                    {"duration_s", plan.scene.setup.run.duration},
                    {"set", plan.set}},
       .entries = entries,
@@ -98,7 +96,16 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
       .pace = fmt::format(", {:.3g} ms CPU time a run", 1e3 * cpu / std::max(1, map.run))};
 }
 
+constexpr double k_usual_spread = 0.05;
+
 }  // namespace
+
+study::Ensemble ensemble_of(const StudyOptions& options) {
+  return {.runs = options.ensemble,
+          .spread = options.spread.value_or(options.vary.empty() ? k_usual_spread : 0),
+          .vary = options.vary,
+          .seed = static_cast<std::uint64_t>(options.seed)};
+}
 
 const Study k_overturn_study = {
     .name = "overturn",
@@ -108,8 +115,7 @@ const Study k_overturn_study = {
     .takes_ensemble = true,
     .sweep = [](io::Scene scene, const StudyOptions& options) {
       const auto plan = std::make_shared<study::OverturnPlan>(
-          study::plan_overturn(std::move(scene), options.x, options.y, options.ensemble,
-                               options.ensemble > 1 ? options.spread : 0));
+          study::plan_overturn(std::move(scene), options.x, options.y, ensemble_of(options)));
       return sweep_of(plan, work_on(*plan), overturn_findings);
     }};
 

@@ -75,16 +75,40 @@ MakeWork work_on(const study::OverturnPlan& plan) {
   };
 }
 
-std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now) {
-  return search<OverturnFound>([scene, now](OverturnSearch& background) {
-    const auto plan = std::make_shared<const study::OverturnPlan>(
-        study::plan_overturn(changed_scene(scene, now), "", "", 1, 0));
+namespace {
+
+constexpr int k_cell_runs = 24;
+
+void search_cells(OverturnSearch& background, OverturnFound found) {
+  const study::CellRuns cells(*found.plan);
+  found.shares.resize(found.map.points.size());
+  const auto stopped = [&] { return background.stopped(); };
+  for (int point = 0; point < found.plan->points() && !stopped(); ++point)
+    if (neighbours_disagree(*found.plan, found.map, point))
+      found.shares[static_cast<std::size_t>(point)] = cells.run(point, k_cell_runs, stopped);
+  background.show(std::move(found));
+}
+
+}  // namespace
+
+std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now,
+                                                   bool planar_only) {
+  return search<OverturnFound>([scene, now, planar_only](OverturnSearch& background) {
+    const auto plan =
+        std::make_shared<const study::OverturnPlan>(study::plan_overturn(changed_scene(scene, now), "", ""));
+    if (planar_only)
+      if (const std::string why = why_not_planar(*plan); !why.empty())
+        return background.show({.failure = why});
     const int jobs = std::max(1, study::core_count() - 1);  // one is for what the window shows
+    study::OverturnMap map;
     work_through<OverturnFound>(
         background, case_order(*plan), jobs, work_on(*plan), [&] { return background.stopped(); },
         [&](const StudyRows& rows) {
-          return OverturnFound{.failure = "", .plan = plan, .map = gather(*plan, rows)};
+          map = gather(*plan, rows);
+          return OverturnFound{.failure = "", .plan = plan, .map = map};
         });
+    if (!background.stopped() && map.planar == map.of)
+      search_cells(background, {.failure = "", .plan = plan, .map = std::move(map)});
   });
 }
 

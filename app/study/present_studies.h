@@ -8,7 +8,7 @@
 #include "app/study/sweep.h"
 #include "app/support/background.h"
 #include "solver/run/edit.h"
-#include "solver/study/overturn/overturn_map.h"
+#include "solver/study/overturn/neighbourhood.h"
 #include "solver/study/precision/precision.h"
 
 namespace topple::app {
@@ -18,12 +18,16 @@ struct OverturnFound {
   std::string failure;
   std::shared_ptr<const study::OverturnPlan> plan = {};
   study::OverturnMap map = {};
+  /// Per point: runs within its cell, where neighbours disagree and the scene is run as planar blocks.
+  std::vector<std::optional<study::CellShare>> shares = {};
 };
 using OverturnSearch = Background<OverturnFound>;
 
 /// Over the usual axes of `topple study overturn`: frequency (of a pulse: duration) and amplitude of the
-/// first shake, coarse points first.
-std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now);
+/// first shake, coarse points first. `planar_only`: nothing but a failure where the scene is not run as
+/// planar blocks.
+std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const Parameters& now,
+                                                   bool planar_only = false);
 
 /// The work of `topple study overturn`.
 MakeWork work_on(const study::OverturnPlan& plan);

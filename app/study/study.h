@@ -12,6 +12,7 @@
 #include "app/study/sweep.h"
 #include "solver/io/scene/scene.h"
 #include "solver/study/common/chart.h"
+#include "solver/study/overturn/overturn_map.h"
 
 namespace topple::app {
 
@@ -45,7 +46,7 @@ using Solve = std::function<Findings(const std::function<bool(int done, int of)>
 struct Study {
   const char *name, *about;
   const char *x = nullptr, *y = nullptr;  ///< its usual axes, in words; null: it has none
-  bool takes_scene = true, takes_ensemble = false;
+  bool takes_scene = true, takes_ensemble = false, takes_slide = false;
   bool timed = false;  ///< CPU times count: one run at a time unless more are asked for
   const char* runs = "runs";
   const char* left_out = "the finest";  ///< by --quick
@@ -55,10 +56,14 @@ struct Study {
 };
 
 // In NAME_study.cpp.
-extern const Study k_overturn_study, k_stability_study, k_precision_study, k_elements_study, k_penalty_study;
+extern const Study k_overturn_study, k_fragility_study, k_stability_study, k_precision_study,
+    k_elements_study, k_penalty_study;
+/// Of the options of a study that takes one.
+study::Ensemble ensemble_of(const StudyOptions& options);
+
 /// In the order of --help.
-inline constexpr const Study* k_studies[] = {&k_overturn_study, &k_stability_study, &k_precision_study,
-                                             &k_elements_study, &k_penalty_study};
+inline constexpr const Study* k_studies[] = {&k_overturn_study,  &k_fragility_study, &k_stability_study,
+                                             &k_precision_study, &k_elements_study,  &k_penalty_study};
 
 /// The sweep of a plan with settings_of(), case_order() and gather(), of which `find` makes findings.
 template <class Plan, class Results>

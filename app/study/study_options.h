@@ -14,11 +14,14 @@ struct StudyOptions {
   std::optional<int> jobs;             ///< runs at a time; absent: 1 where CPU times count, else one per core
   bool quick = false;                  ///< within a time budget
   bool quiet = false;
-  std::string x, y;      ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
-  int ensemble = 1;      ///< runs a point
-  double spread = 0.05;  ///< of the input of more than one
-  bool resume = false;   ///< go on with the rows of a sweep that was interrupted
-  bool force = false;    ///< in place of files of any kind
+  std::string x, y;                    ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
+  int ensemble = 1;                    ///< runs a point
+  std::optional<double> spread = {};   ///< of the amplitudes of more than one
+  std::vector<std::string> vary = {};  ///< FACTOR=DISTRIBUTION
+  int seed = 1;                        ///< of what is drawn
+  std::optional<double> slide = {};    ///< m, of fragility
+  bool resume = false;                 ///< go on with the rows of a sweep that was interrupted
+  bool force = false;                  ///< in place of files of any kind
 };
 
 }  // namespace topple::app

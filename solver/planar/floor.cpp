@@ -222,13 +222,10 @@ double quiet(const ShakenPlane& plane, double t, double until, std::span<const F
       up += one.direction.z() * one.samples[i];
     }
     along *= shake.scale, up *= shake.scale;
-    return std::ranges::all_of(signs, [&](const FloorSign& sign) {
-      return sign.along * along + sign.up * up + sign.offset > 0;
-    });
+    return std::ranges::all_of(
+        signs, [&](const FloorSign& sign) { return sign.along * along + sign.up * up + sign.offset > 0; });
   };
-  const auto time_of_sample = [&](std::size_t i) {
-    return shake.start + static_cast<double>(i) * interval;
-  };
+  const auto time_of_sample = [&](std::size_t i) { return shake.start + static_cast<double>(i) * interval; };
   auto i = static_cast<std::size_t>((t - shake.start) / interval);
   double out = t;
   if (i >= count || !all_positive(i)) return out;

@@ -44,7 +44,8 @@ State state_after(const Step& step, double since) {
   return state;
 }
 
-/// A kink of the floor up to which nothing wakes a block that rests, s; that of the series where none is known.
+/// A kink of the floor up to which nothing wakes a block that rests, s; that of the series where none is
+/// known.
 double rest_end(const Block& block, const Floor& floor, const State& state, double until, double floor_end) {
   if (!floor.quiet || floor_end >= until) return floor_end;
   const double g = block.gravity, h = block.height, mu = block.static_friction;
@@ -90,7 +91,8 @@ Event advance(const Block& block, const Floor& floor, const Controls& controls, 
   set_motion(block, state, s);
   if (state.mode == Mode::rest) {
     if (const double calm = rest_end(block, floor, state, until, step.floor_end); calm > step.floor_end) {
-      step.floor_end = calm, step.length = calm - state.time, step.guards.count = 0, step.without_progress = 0;
+      step.floor_end = calm, step.length = calm - state.time, step.guards.count = 0,
+      step.without_progress = 0;
       state.time = calm, state.undecided = true;
       return Event::none;
     }

@@ -23,7 +23,8 @@ PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double dur
       plane_{shakes_, of.along},
       duration_(duration),
       critical_{of.critical(Side::left), of.critical(Side::right)},
-      state_(jumped(of, shakes_, of.start)) {
+      state_(jumped(of, shakes_, of.start)),
+      middle_at_start_(middle()) {
   observe();
 }
 
@@ -48,6 +49,13 @@ bool PlanarRun::over() const {
   return state_.time >= duration_ || last_ == Event::overturn || last_ == Event::stalled || left_;
 }
 
+/// m, x of the middle of the base.
+double PlanarRun::middle() const {
+  const Block& block = case_.block;
+  return centre_of_gravity(block, state_).x +
+         lever(state_.tilt, (block.right - block.left) / 2, -block.height).x;
+}
+
 void PlanarRun::observe() {
   if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
   left_ = std::abs(centre_of_gravity(case_.block, state_).x) > case_.farthest;
@@ -55,6 +63,7 @@ void PlanarRun::observe() {
   const double critical = critical_[state_.tilt < 0 ? 0 : 1];
   if (sign * state_.tilt <= critical) {
     beyond_since_.reset();
+    peak_slide_ = std::max(peak_slide_, std::abs(middle() - middle_at_start_));
   } else if (!beyond_since_) {
     const Series<double>& tilt = step_.solution.tilt;
     const double fall =

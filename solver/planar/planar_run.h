@@ -28,12 +28,16 @@ class PlanarRun {
   const State& state() const { return state_; }
   const Step& step() const { return step_; }                ///< the newest
   std::optional<double> lifted() const { return lifted_; }  ///< s, first uplift
+  /// m, greatest travel of the middle of the base at ends of steps, up to the critical angle (as
+  /// BodyOutcome::peak_slide).
+  double peak_slide() const { return peak_slide_; }
   /// s: the tilt has been beyond the critical angle since (as BodyOutcome::beyond_since).
   std::optional<double> beyond_since() const { return beyond_since_; }
 
  private:
   double next_jump() const;
   void observe();
+  double middle() const;
 
   const PlanarCase& case_;
   std::vector<Shake> shakes_;
@@ -44,6 +48,7 @@ class PlanarRun {
   Step step_;
   Event last_ = Event::none;
   bool left_ = false;
+  double middle_at_start_ = 0, peak_slide_ = 0;
   std::optional<double> lifted_, beyond_since_;
 };
 

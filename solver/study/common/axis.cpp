@@ -90,15 +90,13 @@ std::string Axis::change_to(double value) const {
   return fmt::format("{}={:.6g}{}{}", key, value, unit.empty() ? "" : " ", unit);
 }
 
-Axis parse_axis(const std::string& text, const io::Scene& scene) {
+Axis parse_axis(const std::string& text, const io::Key& key) {
   const std::size_t equals = text.find('='), dots = text.find("..", std::min(equals, text.size())),
                     colon = text.rfind(':');
   if (dots == std::string::npos || colon == std::string::npos || colon < dots)
     throw InputError('"' + text + "\": " + k_form);
   Axis axis;
-  axis.key = trimmed(text.substr(0, equals));
-  const io::SceneNumber number = io::number_in(scene, axis.key);
-  const io::Key& key = *number.key;
+  axis.key = axis_key(text);
   const auto of_key = [&](const InputError& error) { return InputError(axis.key + ": " + error.what()); };
   double from = 0, to = 0;
   int count = 0;
@@ -116,8 +114,6 @@ Axis parse_axis(const std::string& text, const io::Scene& scene) {
   axis.name = key.name;
   axis.unit = key.unit.empty() ? io::si_unit(key.dimension) : key.unit;
   axis.si = key.dimension == io::Dimension::none ? 1 : io::unit_value(axis.unit, key.dimension);
-  axis.entry = number.entry;
-  if (number.value) axis.own = *number.value / axis.si;
   axis.logarithmic = spacing.empty() ? from > 0 && to >= k_wide * from : spacing == "log";
   for (int i = 0; i < count; ++i) {
     const double part = i / (count - 1.);
@@ -126,6 +122,20 @@ Axis parse_axis(const std::string& text, const io::Scene& scene) {
   }
   if (std::adjacent_find(axis.values.begin(), axis.values.end(), std::greater_equal<>()) != axis.values.end())
     throw of_key(InputError("the values are too near each other for six digits"));
+  return axis;
+}
+
+std::string axis_key(const std::string& text) {
+  return trimmed(text.substr(0, text.find('=')));
+}
+
+Axis parse_axis(const std::string& text, const io::Scene& scene) {
+  if (text.find("..") == std::string::npos || text.rfind(':') == std::string::npos)
+    throw InputError('"' + text + "\": " + k_form);
+  const io::SceneNumber number = io::number_in(scene, axis_key(text));
+  Axis axis = parse_axis(text, *number.key);
+  axis.entry = number.entry;
+  if (number.value) axis.own = *number.value / axis.si;
   return axis;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_key.h"
 
 namespace topple::study {
 
@@ -39,6 +40,11 @@ struct Axis {
 /// "log" or "lin" after N names the spacing, else it goes by k_wide. Throws io::InputError, which does not
 /// say where the text stood.
 Axis parse_axis(const std::string& text, const io::Scene& scene);
+
+/// The same of a key that is none of a scene.
+Axis parse_axis(const std::string& text, const io::Key& key);
+/// KEY of such a text.
+std::string axis_key(const std::string& text);
 
 /// What `option`, "--x" or "--y", says; the error begins with it.
 Axis axis_of(const std::string& option, const std::string& text, const io::Scene& scene);

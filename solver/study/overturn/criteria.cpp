@@ -111,6 +111,14 @@ double ishiyama_velocity(const Standing& body) {
   return 0.4 * std::sqrt(8 * body.gravity * std::hypot(body.base, body.height) * (1 - c) / (3 * c * c));
 }
 
+double evaluation_acceleration(const Standing& body) {
+  return west_acceleration(body) * (1 + body.rigid_limit());
+}
+
+double evaluation_frequency(const Standing& body) {
+  return 15.6 / std::sqrt(100 * 2 * body.height) * std::pow(1 + body.rigid_limit(), -1.5);
+}
+
 Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   Criteria out;
   out.why_not = why_none(scene, x, y);

@@ -26,6 +26,16 @@ double west_acceleration(const Standing& body);
 /// Source: Y. Ishiyama, Earthquake Engineering and Structural Dynamics 10, 1982, 635-650.
 double ishiyama_velocity(const Standing& body);
 
+/// Median of the accelerations of a floor at which a body overturns by the Japanese evaluation method, below
+/// its corner frequency, m/s^2:
+///   A_R50 = A_0 (1 + A_0/g), A_0 = g b/h
+/// Source: M. Kaneko and Y. Hayashi, J. Struct. Constr. Eng. AIJ 536, 2000, 55-62.
+double evaluation_acceleration(const Standing& body);
+
+/// Its corner frequency, Hz, above which the velocity A_R50/(2 pi F_b) counts; H = 2 h in cm:
+///   F_b = 15.6/sqrt(H) (1 + b/h)^(-3/2)
+double evaluation_frequency(const Standing& body);
+
 /// The criteria that hold over these axes, and why there are none.
 struct Criteria {
   std::string bodies;  ///< names of those that they are for: the first to tip

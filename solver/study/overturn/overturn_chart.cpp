@@ -63,9 +63,7 @@ class Chart {
     const std::string what = plan_.ensemble > 1 ? "How often a body overturns in " : "What overturns in ";
     std::string settings = fmt::format("{:g} s simulated", plan_.scene.setup.run.duration);
     for (const std::string& change : plan_.set) settings += ", " + change;
-    if (plan_.ensemble > 1)
-      settings += fmt::format(". Amplitude of every shake times an even random factor in {:g} to {:g}",
-                              1 - plan_.spread, 1 + plan_.spread);
+    if (plan_.ensemble > 1) settings += ". Varied from run to run: " + plan_.factors.in_words();
     const int top = sheet_.height;
     return sheet_.label(bold(plain(what + plan_.scene.name), 1.5), k_left, top - 34) +
            sheet_.lines({plan_.scene.title, settings, origin + ", " + coverage()}, k_left, top - 74, 26,

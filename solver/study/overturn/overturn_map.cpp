@@ -1,8 +1,9 @@
 #include "solver/study/overturn/overturn_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "solver/io/scene/edit_text.h"
@@ -30,21 +31,11 @@ Axis axis_named(const std::string& option, const std::string& text, const char* 
   return axis_of(option, text.empty() ? axes->*usual : text, scene);
 }
 
-/// What the scene leaves out of [run].
-std::vector<std::string> additions(const io::Scene& scene) {
-  const io::Node root = io::parse_toml(scene.text, scene.name);
-  const io::Node* run = root.find("run");
-  std::vector<std::string> out;
-  if (!run || !run->find("want")) out.push_back("run.want=[\"motion\"]");
-  if (!run || !run->find("stop_when")) out.push_back("run.stop_when=all-overturned");
-  return out;
-}
-
-/// Before anything shakes. `edit`: that of the axis's key.
-void set_at_once(const Model& model, const Axis& axis, int place, Edit edit, Parameters& parameters) {
+/// Before anything shakes. `edit`: of the key; value: SI.
+void set_at_once(const Model& model, double value, Edit edit, Parameters& parameters) {
   constexpr double k_before = -1e9;  // s
   edit.value = edited_value(parameters, edit.key, edit.index);
-  edit.value.x() = axis.in_si(place);
+  edit.value.x() = value;
   apply(edit, model, k_before, parameters);
 }
 
@@ -56,26 +47,47 @@ const UsualAxes* usual_axes(const std::vector<Shake>& shakes) {
   return nullptr;
 }
 
-OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
-                           double spread) {
+FactorPlan plan_factors(const Ensemble& ensemble, const io::Scene& scene) {
+  if (ensemble.runs == 1) return {};
+  std::vector<std::string> texts = ensemble.vary;
+  if (ensemble.spread > 0) {
+    if (scene.setup.parameters.shakes.empty())
+      throw InputError("--ensemble: " + scene.name + " has no shake, whose amplitude would be varied");
+    if (std::ranges::any_of(texts, [](const std::string& text) { return text.starts_with("amplitude="); }))
+      throw InputError("--spread: --vary varies the amplitude already");
+    texts.insert(texts.begin(),
+                 fmt::format("amplitude=uniform:{}..{}", 1 - ensemble.spread, 1 + ensemble.spread));
+  }
+  FactorPlan plan = plan_factors(texts, scene);
+  plan.seed = ensemble.seed;
+  return plan;
+}
+
+OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y,
+                           const Ensemble& ensemble) {
   if (scene.setup.run.analysis != Analysis::dynamic)
     throw InputError("study overturn: " + scene.name + " is not dynamic; nothing overturns in it");
   if (scene.setup.model.furniture_total() == 0)
     throw InputError("study overturn: " + scene.name + " has no body that could overturn");
-  if (ensemble > 1 && scene.setup.parameters.shakes.empty())
-    throw InputError("--ensemble: " + scene.name + " has no shake, whose amplitude would be varied");
-  OverturnPlan plan{
-      .scene = std::move(scene), .x = {}, .y = {}, .ensemble = ensemble, .spread = spread, .set = {}};
+  OverturnPlan plan{.scene = {}, .x = {}, .y = {}, .ensemble = ensemble.runs};
+  plan.factors = plan_factors(ensemble, scene);
+  plan.scenes = scenes_of(plan.factors, scene);
+  plan.scene = with_files_of(plan.scenes);
   plan.x = axis_named("--x", x, &UsualAxes::x, plan.scene);
   plan.y = axis_named("--y", y, &UsualAxes::y, plan.scene);
   check_axes(plan.scene, plan.x, plan.y);
-  plan.set = additions(plan.scene);
+  plan.set = overturn_settings(plan.scene);
+  constexpr double k_most_cases = 1e7;  // rows are kept in memory
+  if (static_cast<double>(plan.points()) * plan.ensemble > k_most_cases)
+    throw InputError(fmt::format("--ensemble: {} points of {} runs are more than {:g} runs", plan.points(),
+                                 plan.ensemble, k_most_cases));
   return plan;
 }
 
 ordered_json settings_of(const OverturnPlan& plan) {
   ordered_json settings = settings_of("overturn", plan.scene, plan.x, plan.y);
-  settings.update({{"ensemble", plan.ensemble}, {"spread", plan.spread}});
+  settings["ensemble"] = plan.ensemble;
+  settings.update(settings_of(plan.factors));
   return settings;
 }
 
@@ -89,127 +101,117 @@ std::vector<int> case_order(const OverturnPlan& plan) {
   return order;
 }
 
-struct OverturnRunner::Row {
-  std::string status = "completed";
-  Fallen fallen = {};
-  bool planar = false, gave_up = false;
+namespace {
 
-  std::string text(double cpu) const {
-    ordered_json fell = ordered_json::array();
-    for (const std::optional<double>& time : fallen.fell) fell.push_back(or_null(time));
-    ordered_json row{{"status", status}, {"fell", fell}, {"lifted", fallen.lifted}, {"cpu_s", cpu}};
-    if (planar) row["planar"] = true;
-    return row.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string row_text(const RunEnd& end, double cpu) {
+  std::string fell;
+  bool lifted = false;
+  for (const BodyEnd& fate : end.of_bodies) {
+    fell += (fell.empty() ? "" : ",") + (fate.fell ? fmt::format("{}", *fate.fell) : "null");
+    lifted |= fate.lifted;
   }
-};
+  const std::string status =
+      ordered_json(end.status).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return fmt::format("{{\"status\":{},\"fell\":[{}],\"lifted\":{},\"cpu_s\":{}{}}}", status, fell, lifted,
+                     cpu, end.planar ? ",\"planar\":true" : "");
+}
+
+}  // namespace
 
 namespace {
 
-Setup read_scene(const OverturnPlan& plan, std::vector<std::string> changes) {
+io::Scene read_scene(const OverturnPlan& plan, const io::Scene& scene, std::vector<std::string> changes) {
   changes.insert(changes.begin(), plan.set.begin(), plan.set.end());
-  return io::parse_scene(plan.scene.text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
+  return io::parse_scene(scene.text, scene.name, changes, io::kept_files(scene));
 }
 
-/// Shakes at a point, by edits; none where the axes change something else, or when a shake begins.
-std::optional<std::vector<Shake>> edited_shakes(const OverturnPlan& plan, const Setup& own, int point) {
+}  // namespace
+
+io::Scene scene_of_runs(const OverturnPlan& plan) {
+  return read_scene(plan, plan.scene, {});
+}
+
+std::optional<std::vector<Shake>> edited_shakes(const OverturnPlan& plan, const Setup& own, double x,
+                                                double y) {
   Parameters parameters = own.parameters;
-  for (const auto& [axis, place] :
-       {std::pair(&plan.x, point % plan.x.count()), std::pair(&plan.y, point / plan.x.count())}) {
+  for (const auto& [axis, value] : {std::pair(&plan.x, x), std::pair(&plan.y, y)}) {
     std::optional<Edit> edit = io::parse_edit_key(axis->key);
     if (axis->table != "shake" || !edit) return std::nullopt;
-    set_at_once(own.model, *axis, place, *edit, parameters);
+    set_at_once(own.model, value, *edit, parameters);
   }
   for (std::size_t k = 0; k < parameters.shakes.size(); ++k)
     if (parameters.shakes[k].start != own.parameters.shakes[k].start) return std::nullopt;
   return parameters.shakes;
 }
 
-}  // namespace
-
 std::string why_not_planar(const OverturnPlan& plan) {
   std::string why;
-  planar_cases(read_scene(plan, {}), &why);
+  planar_cases(scene_of_runs(plan).setup, &why);
   return why;
 }
 
-void OverturnRunner::read(int point) {
-  setup_.reset();
-  trouble_.clear();
+OverturnRunner::OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {
+  for (const io::Scene& scene : plan.scenes) places_.push_back({.of = &scene});
+}
+
+void OverturnRunner::read(Place& place) const {
+  place.scene.reset();
+  place.trouble.clear();
+  const int nx = plan_->x.count();
   try {
-    setup_ = read_scene(
-        *plan_, {plan_->x.change(point % plan_->x.count()), plan_->y.change(point / plan_->x.count())});
+    place.scene =
+        read_scene(*plan_, *place.of, {plan_->x.change(place.point % nx), plan_->y.change(place.point / nx)});
   } catch (const InputError& error) {
-    trouble_ = error.what();
+    place.trouble = error.what();
   }
 }
 
-void OverturnRunner::begin(int point) {
-  const bool first = point_ < 0;
-  point_ = point;
-  setup_.reset();
-  trouble_.clear();
-  planar_.clear();
+void OverturnRunner::begin(Place& place, int point) const {
+  const bool first = place.point < 0;
+  const int nx = plan_->x.count();
+  place.point = point;
+  place.scene.reset();
+  place.trouble.clear();
+  place.planar.clear();
   if (first) {
-    own_ = read_scene(*plan_, {});
-    if (planar_cases(*own_).empty()) own_.reset();
+    place.own = read_scene(*plan_, *place.of, {}).setup;
+    if (planar_cases(*place.own).empty()) place.own.reset();
   }
-  if (own_)
-    if (std::optional<std::vector<Shake>> shakes = edited_shakes(*plan_, *own_, point)) {
-      own_->parameters.shakes = shakes_ = std::move(*shakes);
-      planar_ = planar_cases(*own_);
-      if (!planar_.empty()) return;
+  if (place.own)
+    if (std::optional<std::vector<Shake>> shakes =
+            edited_shakes(*plan_, *place.own, plan_->x.in_si(point % nx), plan_->y.in_si(point / nx))) {
+      place.own->parameters.shakes = place.shakes = std::move(*shakes);
+      place.duration = place.own->run.duration;
+      place.planar = planar_cases(*place.own);
+      if (!place.planar.empty()) return;
     }
-  read(point);
-  if (!setup_) return;
-  shakes_ = setup_->parameters.shakes;
-  planar_ = planar_cases(*setup_);
-}
-
-OverturnRunner::Row OverturnRunner::run_rigid(double factor, const std::function<bool()>& give_up) const {
-  Row row;
-  const Setup setup = factor != 1 ? shaken_by(*setup_, factor) : *setup_;
-  Run run(setup);
-  while (!run.over() && !row.gave_up) {
-    run.advance();
-    row.gave_up = give_up();
-  }
-  if (!run.status().ok()) row.status = run.status().message(setup.model);
-  for (int b = 0; b < setup.model.furniture_total(); ++b) {
-    const BodyOutcome& body = run.outcome().bodies()[static_cast<std::size_t>(b)];
-    row.fallen.fell.push_back(body.beyond_since);
-    row.fallen.lifted |= body.first_uplift.has_value();
-  }
-  return row;
+  read(place);
+  if (!place.scene) return;
+  place.shakes = place.scene->setup.parameters.shakes;
+  place.duration = place.scene->setup.run.duration;
+  place.planar = planar_cases(place.scene->setup);
 }
 
 std::string OverturnRunner::run(int k, const std::function<bool()>& give_up) {
-  const OverturnPlan& plan = *plan_;
-  const int point = k / plan.ensemble, member = k % plan.ensemble;
-  Row row;
+  const int point = k / plan_->ensemble, member = k % plan_->ensemble;
+  const int records = static_cast<int>(places_.size()), record = member % records;
+  Place& place = places_[static_cast<std::size_t>(record)];
+  RunEnd end;
   const double cpu = cpu_time_of(
       [&] {
-        if (point != point_) begin(point);
-        const double turn =
-            2 * scattered(static_cast<std::uint64_t>(point), static_cast<std::uint64_t>(member)) - 1;
-        const double factor = plan.spread > 0 ? 1 + plan.spread * turn : 1;
-        if (!planar_.empty()) {
-          const std::optional<Fallen> fallen =
-              run_planar(planar_, shaken_by(shakes_, factor), (setup_ ? setup_ : own_)->run.duration, [&] {
-                row.gave_up = give_up();
-                return row.gave_up;
-              });
-          row.planar = fallen.has_value();
-          if (fallen) row.fallen = *fallen;
-          if (row.planar || row.gave_up) return;
-          if (!setup_ && trouble_.empty()) read(point);
-        }
-        if (setup_)
-          row = run_rigid(factor, give_up);
-        else
-          row.status = trouble_;
+        if (point != place.point) begin(place, point);
+        const auto scene = [&]() -> const io::Scene& {
+          if (!place.scene && place.trouble.empty()) read(place);
+          if (!place.scene) throw InputError(place.trouble);
+          return *place.scene;
+        };
+        const auto stream = static_cast<std::uint64_t>(point) * static_cast<std::uint64_t>(records) +
+                            static_cast<std::uint64_t>(record);
+        end = run_varied({place.planar, place.shakes, place.duration, scene}, plan_->factors,
+                         plan_->factors.draw(stream, static_cast<std::uint32_t>(member / records)), give_up);
       },
       0);
-  return row.gave_up ? "" : row.text(cpu);
+  return end.gave_up ? "" : row_text(end, cpu);
 }
 
 const char* name(Verdict verdict) {
@@ -319,7 +321,7 @@ std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& 
       if (axis->table != "shake") continue;
       std::optional<Edit> edit = io::parse_edit_key(axis->key);
       if (!edit) return {};
-      set_at_once(model, *axis, place, *edit, parameters);
+      set_at_once(model, axis->in_si(place), *edit, parameters);
     }
     out.push_back(floor_peak(parameters.shakes, plan.scene.setup.run.duration));
   }

@@ -13,19 +13,29 @@
 #include "solver/study/overturn/criteria.h"
 #include "solver/study/overturn/floor_peak.h"
 #include "solver/study/overturn/fragility.h"
-#include "solver/study/overturn/planar_runs.h"
+#include "solver/study/overturn/varied_run.h"
 
 namespace topple::study {
 
-/// What is computed: a run at each point of two axes, or `ensemble` of them with the amplitude of every shake
-/// times a factor within 1 -+ spread, evenly distributed, that depends on point and member alone.
+/// Runs with drawn factors.
+struct Ensemble {
+  int runs = 1;       ///< 1: nothing is varied
+  double spread = 0;  ///< > 0: the amplitude of all shakes evenly within 1 -+ spread, beside `vary`
+  std::vector<std::string> vary = {};  ///< plan_factors()
+  std::uint64_t seed = 1;
+};
+/// Throws io::InputError when nothing could be varied.
+FactorPlan plan_factors(const Ensemble& ensemble, const io::Scene& scene);
+
+/// What is computed: a run at each point of two axes, or `ensemble` of them with factors that depend on
+/// point, member and seed alone.
 struct OverturnPlan {
-  io::Scene scene;
+  io::Scene scene;  ///< with the first record
   Axis x, y;
   int ensemble = 1;
-  double spread = 0;
-  std::vector<std::string> set;  ///< KEY=VALUE, what runs have that the scene leaves out: motion alone is
-                                 ///< wanted, and a run stops when all has overturned
+  FactorPlan factors = {};
+  std::vector<io::Scene> scenes = {};  ///< one per record, which members have in turn
+  std::vector<std::string> set = {};   ///< overturn_settings()
 
   int points() const { return x.count() * y.count(); }
   int cases() const { return points() * ensemble; }  ///< point ensemble + member
@@ -42,8 +52,8 @@ const UsualAxes* usual_axes(const std::vector<Shake>& shakes);
 /// `x`, `y`: as of --x and --y; empty: frequency (of a pulse: duration) and amplitude of the first shake,
 /// 24 by 24. Throws io::InputError when the scene is not dynamic, an axis is refused, or there is no shake to
 /// perturb.
-OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y, int ensemble,
-                           double spread);
+OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::string& y,
+                           const Ensemble& ensemble = {});
 
 /// What rows depend on, for KeptRows.
 nlohmann::ordered_json settings_of(const OverturnPlan& plan);
@@ -57,26 +67,38 @@ std::vector<int> case_order(const OverturnPlan& plan);
 /// and the axes change its shakes alone.
 class OverturnRunner {
  public:
-  explicit OverturnRunner(const OverturnPlan& plan) : plan_(&plan) {}
+  explicit OverturnRunner(const OverturnPlan& plan);
   /// A row of JSON in one line: "status" ("completed", or why it failed), "fell" (s, per piece of furniture,
   /// null: it stands), "lifted" (a side of any lifted), "cpu_s", of planar blocks "planar" (true). Empty:
   /// give_up() came true, it is asked after each step.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
-  struct Row;
-  void begin(int point);
-  void read(int point);
-  Row run_rigid(double factor, const std::function<bool()>& give_up) const;
+  /// The scene with one of the records, at a point.
+  struct Place {
+    const io::Scene* of;
+    int point = -1;
+    std::optional<Setup> own = {};        ///< the scene's; its parameters those of the point by its edits
+    std::optional<io::Scene> scene = {};  ///< of the point
+    std::string trouble = {};             ///< why there is no scene
+    std::vector<planar::PlanarCase> planar = {};  ///< empty: it is not planar
+    std::vector<Shake> shakes = {};
+    double duration = 0;
+  };
+  void begin(Place& place, int point) const;
+  void read(Place& place) const;
 
   const OverturnPlan* plan_;
-  int point_ = -1;
-  std::optional<Setup> own_;                ///< the scene's; its parameters those of the point by its edits
-  std::optional<Setup> setup_;              ///< of the point
-  std::string trouble_;                     ///< why there is no setup
-  std::vector<planar::PlanarCase> planar_;  ///< empty: it is not planar
-  std::vector<Shake> shakes_;               ///< of the point
+  std::vector<Place> places_;
 };
+
+/// The scene with what runs have besides.
+io::Scene scene_of_runs(const OverturnPlan& plan);
+
+/// Its shakes with these values of the axes, SI, by edits; none where the axes change something else, or when
+/// a shake begins.
+std::optional<std::vector<Shake>> edited_shakes(const OverturnPlan& plan, const Setup& own, double x,
+                                                double y);
 
 /// Why the scene itself is not run as planar blocks; empty: it is.
 std::string why_not_planar(const OverturnPlan& plan);

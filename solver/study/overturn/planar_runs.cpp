@@ -50,10 +50,10 @@ std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* wh
   return cases;
 }
 
-std::optional<Fallen> run_planar(const std::vector<planar::PlanarCase>& cases,
-                                 const std::vector<Shake>& shakes, double duration,
-                                 const std::function<bool()>& give_up) {
-  Fallen out;
+std::optional<std::vector<BodyEnd>> run_planar(const std::vector<planar::PlanarCase>& cases,
+                                               const std::vector<Shake>& shakes, double duration,
+                                               const std::function<bool()>& give_up) {
+  std::vector<BodyEnd> out;
   for (const planar::PlanarCase& one : cases) {
     planar::PlanarRun run(one, shakes, duration);
     while (!run.over()) {
@@ -61,8 +61,7 @@ std::optional<Fallen> run_planar(const std::vector<planar::PlanarCase>& cases,
       if (give_up()) return std::nullopt;
     }
     if (run.left() || run.stuck()) return std::nullopt;
-    out.fell.push_back(run.beyond_since());
-    out.lifted |= run.lifted().has_value();
+    out.push_back({run.beyond_since(), run.lifted().has_value(), run.peak_slide()});
   }
   return out;
 }

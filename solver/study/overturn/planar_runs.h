@@ -11,10 +11,11 @@
 
 namespace topple::study {
 
-/// What became of the furniture of a scene.
-struct Fallen {
-  std::vector<std::optional<double>> fell;  ///< s, per piece; none: it stands
-  bool lifted = false;                      ///< a side of any
+/// What became of a piece of furniture.
+struct BodyEnd {
+  std::optional<double> fell = {};  ///< s; none: it stands
+  bool lifted = false;              ///< a side of it
+  double slide = 0;                 ///< m, greatest up to the critical angle
 };
 
 /// The blocks of a scene that asks for motion alone, whose furniture is all `planar`, or `auto` and rigid by its own
@@ -22,11 +23,10 @@ struct Fallen {
 /// it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 
-/// Runs them. None: give_up() came true, which is asked after each step, or it is not known what they do:
-/// one came within reach of something else, or a slip jammed again and again.
-/// duration: s.
-std::optional<Fallen> run_planar(const std::vector<planar::PlanarCase>& cases,
-                                 const std::vector<Shake>& shakes, double duration,
-                                 const std::function<bool()>& give_up);
+/// Runs them, one fate each. None: give_up() came true, which is asked after each step, or it is not known
+/// what they do: one came within reach of something else, or a slip jammed again and again. duration: s.
+std::optional<std::vector<BodyEnd>> run_planar(const std::vector<planar::PlanarCase>& cases,
+                                               const std::vector<Shake>& shakes, double duration,
+                                               const std::function<bool()>& give_up);
 
 }  // namespace topple::study

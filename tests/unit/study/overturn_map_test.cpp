@@ -31,7 +31,8 @@ std::vector<std::string> run_all(const OverturnPlan& plan) {
 OverturnPlan pulses(const std::string& durations, const std::string& amplitudes, int ensemble = 1,
                     double spread = 0) {
   return plan_overturn(io::load_scene("verify/rocking-defaults-half-sine-4-above"),
-                       "shake.1.duration=" + durations, "shake.1.amplitude=" + amplitudes, ensemble, spread);
+                       "shake.1.duration=" + durations, "shake.1.amplitude=" + amplitudes,
+                       {.runs = ensemble, .spread = spread});
 }
 
 const test::Block k_block{0.19, 0.895, 4. / 3};
@@ -93,8 +94,8 @@ TEST(OverturnMap, a_rigid_block_does_not_lift_below_west) {
 // Samples stand 5 ms apart: at 2 Hz the peak lies up to 1.8 degrees beside one, 5e-4; the trapezoidal rule is
 // off by (w h)^2/12 = 3e-4.
 TEST(OverturnMap, peaks_of_the_floor_are_those_of_the_sine_the_pulse_and_the_record) {
-  const OverturnPlan sine = plan_overturn(io::load_scene("paper-a"), "shake.1.frequency=0.5..2:3",
-                                          "shake.1.amplitude=2..4:3", 1, 0);
+  const OverturnPlan sine =
+      plan_overturn(io::load_scene("paper-a"), "shake.1.frequency=0.5..2:3", "shake.1.amplitude=2..4:3");
   const OverturnMap none = gather(sine, std::vector<std::string>(9));
   for (int k = 0; k < 3; ++k) {
     const std::vector<FloorPeak> peaks = floor_peaks(sine, none, k);
@@ -109,8 +110,8 @@ TEST(OverturnMap, peaks_of_the_floor_are_those_of_the_sine_the_pulse_and_the_rec
   EXPECT_NEAR(half.acceleration / 6, 1, 1e-3);
   EXPECT_NEAR(half.velocity / (2 * 6 * 0.5 / std::numbers::pi), 1, 1e-3);
 
-  const OverturnPlan record = plan_overturn(io::load_scene("near-fault"), "contact.friction=0.3..0.6:2",
-                                            "shake.1.scale=0.5..2:4", 1, 0);
+  const OverturnPlan record =
+      plan_overturn(io::load_scene("near-fault"), "contact.friction=0.3..0.6:2", "shake.1.scale=0.5..2:4");
   const std::vector<FloorPeak> scaled = floor_peaks(record, gather(record, std::vector<std::string>(8)), 0);
   ASSERT_EQ(scaled.size(), 4u);
   for (int i = 0; i < 4; ++i) {
@@ -161,7 +162,7 @@ TEST(OverturnMap, rounds_come_to_one_four_and_all_runs_at_each_point) {
 
 OverturnPlan steel_cabinet(const std::vector<std::string>& set, const std::string& x = "") {
   return plan_overturn(io::load_scene("cabinet", set), x.empty() ? "shake.1.frequency=0.3..0.7:3" : x,
-                       "shake.1.amplitude=150 gal..350 gal:5", 1, 0);
+                       "shake.1.amplitude=150 gal..350 gal:5");
 }
 
 // Contacts of 1e6 kgf leave 1e-3 of the critical angle (planar_case_test.cpp). A fall that begins near
@@ -261,7 +262,7 @@ TEST(OverturnMap, a_run_that_is_given_up_has_no_row) {
 TEST(OverturnMap, scenes_that_cannot_be_built_at_a_point_have_a_row_that_says_so) {
   // no densities of its members put the centre of gravity of a cabinet so low
   const OverturnPlan plan = plan_overturn(io::load_scene("paper-a"), "cabinet.free.cg_height=0.01..1.05:2",
-                                          "shake.1.amplitude=1..1.1:2", 1, 0);
+                                          "shake.1.amplitude=1..1.1:2");
   const OverturnMap map = gather(plan, {OverturnRunner(plan).run(0, never), "", "", ""});
   EXPECT_EQ(map.points[0].verdict, Verdict::failed);
   EXPECT_EQ(map.points[0].failed, 1);
@@ -270,7 +271,7 @@ TEST(OverturnMap, scenes_that_cannot_be_built_at_a_point_have_a_row_that_says_so
 
 TEST(OverturnMap, the_study_adds_to_a_scene_what_it_leaves_out_alone) {
   const auto added = [](const std::vector<std::string>& set) {
-    return plan_overturn(io::load_scene("paper-a", set), "", "", 1, 0).set;
+    return plan_overturn(io::load_scene("paper-a", set), "", "").set;
   };
   EXPECT_EQ(added({}), (std::vector<std::string>{"run.want=[\"motion\"]", "run.stop_when=all-overturned"}));
   EXPECT_EQ(added({"run.want=[\"stress\"]", "run.stop_when=never"}), std::vector<std::string>{});
@@ -280,7 +281,7 @@ TEST(OverturnMap, plans_that_make_no_sense_are_refused) {
   const auto refused = [](const std::string& scene, const std::string& x, const std::string& y, int ensemble,
                           const std::string& part) {
     try {
-      plan_overturn(io::load_scene(scene), x, y, ensemble, 0.05);
+      plan_overturn(io::load_scene(scene), x, y, {.runs = ensemble, .spread = 0.05});
       ADD_FAILURE() << part;
     } catch (const io::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();

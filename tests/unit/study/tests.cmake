@@ -4,10 +4,13 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/convergence_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/criteria_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/factors_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fragility_study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fragility_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/intensity_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/kept_rows_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/low_discrepancy_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/overturn_map_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/penalty_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/precision_test.cpp

@@ -29,7 +29,7 @@ TEST(PresentStudies, the_map_has_the_rows_of_the_study_of_the_changed_scene) {
   ASSERT_EQ(found->failure, "");
 
   const auto changed = live_scene(k_rocking, {"run.duration=0.3", "contact.friction=0.2"});
-  const study::OverturnPlan plan = study::plan_overturn(*changed, "", "", 1, 0);
+  const study::OverturnPlan plan = study::plan_overturn(*changed, "", "");
   study::OverturnRunner runner(plan);
   std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
   int computed = 0;

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include "app/study/study.h"
+#include "solver/study/overturn/fragility_chart.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double k_usual_slide = 0.05;  // m
+constexpr int k_usual_runs = 400;       // at a level
+
+std::string between(const study::Interval& interval) {
+  return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
+}
+
+std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurve& curve,
+                    const study::StateTraits& state) {
+  std::string out = fmt::format("  {:<9}", state.word);
+  if (!curve.fit.fit) return out + "no curve: " + curve.fit.why_not + "\n";
+  const study::Lognormal& fit = *curve.fit.fit;
+  const std::string unit = plan.levels.unit.empty() ? "" : " " + plan.levels.unit;
+  out += fmt::format("median {:.4g}{} (95 %: {}), beta {:.3g} ({})", curve.median, unit,
+                     between(curve.median_of_runs), fit.beta, between(fit.beta_interval()));
+  if (curve.median_of_records)
+    out += fmt::format("; among records {}, beta {}", between(*curve.median_of_records),
+                       between(*curve.beta_of_records));
+  return out + "\n";
+}
+
+std::string criteria_in_words(const study::FragilityPlan& plan, const study::FragilityResults& results,
+                              std::size_t b) {
+  if (b >= results.criteria.size()) return "";
+  const study::BodyCriteria& c = results.criteria[b];
+  if (!c.why_not.empty()) return "  no criteria: " + c.why_not + "\n";
+  return fmt::format(
+      "  West {:.4g}, Ishiyama {:.4g}, evaluation A_R50 {:.4g} {} (corner {:.3g} Hz, motion {:.3g} Hz)\n",
+      c.west, c.ishiyama, c.evaluation, plan.levels.unit, c.corner, results.frequency);
+}
+
+std::string in_words(const study::FragilityPlan& plan, const study::FragilityResults& results) {
+  std::string text = fmt::format("probability over the {}{}, sliding over {:g} mm\n", plan.measure->title,
+                                 plan.levels.unit.empty() ? "" : ", " + plan.levels.unit, 1e3 * plan.slide);
+  for (std::size_t b = 0; b < results.bodies.size(); ++b) {
+    text += results.bodies[b] + "\n";
+    for (std::size_t s = 0; s < study::k_states; ++s)
+      text += line_of(plan, results.curves[b][s], study::damage_states()[s]);
+    text += criteria_in_words(plan, results, b);
+  }
+  if (results.failed > 0)
+    text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
+  return text + fmt::format("{} of {} runs as planar blocks{}\n", results.planar, results.runs,
+                            results.why_not_planar.empty()
+                                ? ""
+                                : "; the scene itself is none: " + results.why_not_planar);
+}
+
+Findings findings(const study::FragilityPlan& plan, const study::FragilityResults& results) {
+  ordered_json entries{{"run", results.runs},
+                       {"of", results.of},
+                       {"failed", results.failed},
+                       {"planar", results.planar},
+                       {"cpu_s", results.cpu}};
+  entries.update(curves_as_json(plan, results));
+  entries["rows"] = rows_as_json(plan, results);
+  return {
+      .title = "How likely bodies overturn in " + plan.scene.name + " over the " + plan.measure->title,
+      .units = {{"measure", plan.levels.unit},
+                {"median", plan.levels.unit + ", of a lognormal distribution; _95: by Fisher's information; "
+                                              "_95_of_records: records drawn anew from themselves"},
+                {"probability", "1, of runs; low, high: 95 % by Wilson's score"},
+                {"cpu_s", "s, of the solving threads"}},
+      .settings = {{"vary", plan.factors.texts},
+                   {"seed", plan.factors.seed},
+                   {"records", plan.factors.records},
+                   {"runs_of_a_record_at_a_level", plan.runs},
+                   {"slide_m", plan.slide},
+                   {"duration_s", plan.scene.setup.run.duration},
+                   {"set", plan.set}},
+      .entries = entries,
+      .chart = [&plan, &results](
+                   const std::string& origin,
+                   study::ChartFormat format) { return fragility_chart(plan, results, origin, format); },
+      .text = in_words(plan, results),
+      .each = fmt::format(" of {} each", plan.chunk),
+      .pace = fmt::format(", {:.4g} runs a second and core",
+                          static_cast<double>(results.runs) / std::max(1e-9, results.cpu))};
+}
+
+}  // namespace
+
+const Study k_fragility_study = {
+    .name = "fragility",
+    .about = "probability of uplift, sliding and overturning over a measure of the floor's motion",
+    .x = "pga=50 gal..2000 gal:24 (pga, pgv, arias, jma)",
+    .takes_ensemble = true,
+    .takes_slide = true,
+    .runs = "parts",
+    .sweep = [](io::Scene scene, const StudyOptions& options) {
+      study::Ensemble ensemble = ensemble_of(options);
+      if (options.ensemble == 1) ensemble.runs = k_usual_runs;
+      const auto plan = std::make_shared<study::FragilityPlan>(study::plan_fragility(
+          std::move(scene), options.x, ensemble, options.slide.value_or(k_usual_slide)));
+      const MakeWork make = [plan = plan.get()] {
+        return [runner = study::FragilityRunner(*plan)](int k, const std::function<bool()>& give_up) mutable {
+          return runner.run(k, give_up);
+        };
+      };
+      return sweep_of(plan, make, findings);
+    }};
+
+}  // namespace topple::app

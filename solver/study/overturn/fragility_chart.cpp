@@ -1,0 +1,217 @@
+#include "solver/study/overturn/fragility_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "solver/study/common/map_panel.h"
+
+namespace topple::study {
+namespace {
+
+constexpr int k_sheet_width = 1240;
+constexpr int k_head = 176, k_panel_head = 150, k_plot = 430, k_foot = 84;  // px, heights
+constexpr int k_from_left = 92, k_from_right = 26;                          // px, around a panel
+constexpr double k_lines = 22;                                              // px, pitch
+
+struct StateLook {
+  const char *colour, *point;
+};
+constexpr std::array<StateLook, k_states> k_looks_of_states{
+    {{"#0072b2", "pt 7"}, {"#d98a00", "pt 9"}, {"#a3203a", "pt 5"}}};
+
+/// As many decimals as the interval has sense for.
+std::string between(const Interval& interval) {
+  return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
+}
+
+class FragilityChart {
+ public:
+  FragilityChart(const FragilityPlan& plan, const FragilityResults& results)
+      : plan_(plan), results_(results), shown_(bodies_shown()), columns_(shown_.size() > 1 ? 2 : 1) {
+    const int rows = (static_cast<int>(shown_.size()) + columns_ - 1) / columns_;
+    sheet_ = {k_sheet_width, k_head + rows * (k_panel_head + k_plot + k_foot)};
+  }
+
+  std::string script(const std::string& origin, ChartFormat format) const {
+    std::string out = header(origin);
+    for (std::size_t k = 0; k < shown_.size(); ++k) out += panel(k);
+    return sheet_.script(format, out);
+  }
+
+ private:
+  std::vector<std::size_t> bodies_shown() const {
+    std::vector<std::size_t> order(results_.bodies.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (order.size() <= k_panels) return order;
+    const auto hits = [&](std::size_t b) {
+      int sum = 0;
+      for (const Level& level : results_.curves[b].back().levels) sum += level.hits;
+      return sum;
+    };
+    std::ranges::stable_sort(order, std::greater<>(), hits);
+    order.resize(k_panels);
+    std::ranges::sort(order);
+    if (order.back() + 1 != results_.bodies.size()) order.back() = results_.bodies.size() - 1;
+    return order;
+  }
+
+  std::string header(const std::string& origin) const {
+    const int top = sheet_.height;
+    const std::string varied = plan_.factors.texts.empty() ? "nothing" : plan_.factors.in_words();
+    std::string out = sheet_.label(bold(plain("How likely bodies overturn in " + plan_.scene.name), 1.5),
+                                   k_from_left, top - 34) +
+                      sheet_.lines({plan_.scene.title,
+                                    fmt::format("{:g} s simulated. Varied from run to run: {}",
+                                                plan_.scene.setup.run.duration, varied),
+                                    fmt::format("{}, {} of {} runs; {} shown of {}", origin, results_.runs,
+                                                results_.of, shown_.size(), results_.bodies.size())},
+                                   k_from_left, top - 74, 24, k_grey_as_is);
+    double x = k_from_left;
+    for (std::size_t s = 0; s < k_states; ++s) {
+      const std::string words = damage_states()[s].title +
+                                std::string(s == 1 ? fmt::format(" over {:g} mm", 1e3 * plan_.slide) : "");
+      out +=
+          sheet_.stroke(x, x + 34, top - 152, fmt::format("lc rgb '{}' lw 3", k_looks_of_states[s].colour)) +
+          sheet_.label("", x + 17, top - 152,
+                       fmt::format("point {} ps 1.1 lc rgb '{}'", k_looks_of_states[s].point,
+                                   k_looks_of_states[s].colour)) +
+          sheet_.label(words, x + 44, top - 152);
+      x += 84 + 9.2 * static_cast<double>(words.size());
+    }
+    return out + sheet_.label("bars: 95 % of the share (Wilson)", x, top - 152, k_grey);
+  }
+
+  /// What stands above a panel.
+  std::vector<std::string> words(std::size_t b) const {
+    std::vector<std::string> lines;
+    for (std::size_t s = 0; s < k_states; ++s) {
+      const FragilityCurve& curve = results_.curves[b][s];
+      const std::string state = damage_states()[s].title;
+      if (!curve.fit.fit) {
+        lines.push_back(state + ": no curve, " + curve.fit.why_not);
+        continue;
+      }
+      const std::string unit = plan_.levels.unit.empty() ? "" : " " + plan_.levels.unit;
+      const Interval median = curve.median_of_records.value_or(curve.median_of_runs),
+                     beta = curve.beta_of_records.value_or(curve.fit.fit->beta_interval());
+      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g})", state,
+                                  curve.median, unit, between(median), curve.fit.fit->beta, beta.low,
+                                  beta.high));
+    }
+    return lines;
+  }
+
+  std::string panel(std::size_t k) const {
+    const std::size_t b = shown_[k];
+    const double width = static_cast<double>(k_sheet_width) / columns_;
+    const double left = width * static_cast<double>(k % static_cast<std::size_t>(columns_)) + k_from_left,
+                 right = left - k_from_left + width - k_from_right;
+    const double top =
+        sheet_.height - k_head -
+        static_cast<double>(k / static_cast<std::size_t>(columns_)) * (k_panel_head + k_plot + k_foot);
+    const double plot_top = top - k_panel_head, bottom = plot_top - k_plot;
+    std::string out = sheet_.label(bold(plain(results_.bodies[b]), 1.15), left, top - 12) +
+                      sheet_.lines(shortened(words(b), right - left), left, top - 38, k_lines, k_grey_as_is);
+    out +=
+        sheet_.place(left, right, bottom, plot_top) + axis_scale("x", plan_.levels) +
+        axis_label("x", measure_axis(), "0,0.2") +
+        "unset logscale y\nset yrange [-0.02:1.02]\nset ytics 0.2 nomirror\nset ylabel 'probability' offset "
+        "1.2,0\nset border 3 lc rgb '#444444' lw 1\nset grid ytics lc rgb '#dddddd' lw 0.8\n";
+    Plot plot;
+    out += criteria(b, left, right, plot_top, plot);
+    for (std::size_t s = 0; s < k_states; ++s) add_curve(b, s, plot);
+    return out + plot.data + plot.command() + "unset label\nunset arrow\nunset object\n";
+  }
+
+  Axis measure_axis() const {
+    Axis axis = plan_.levels;
+    axis.key = plan_.measure->title;
+    return axis;
+  }
+
+  static std::vector<std::string> shortened(std::vector<std::string> lines, double width) {
+    const auto most = static_cast<std::size_t>(width / 8.3);
+    for (std::string& line : lines)
+      if (line.size() > most) line = line.substr(0, line.rfind(' ', most)) + " …";
+    return lines;
+  }
+
+  /// Lines across, with their names above the panel where they do not meet.
+  std::string criteria(std::size_t b, double left, double right, double top, Plot& plot) const {
+    if (b >= results_.criteria.size() || !results_.criteria[b].why_not.empty()) return "";
+    const BodyCriteria& c = results_.criteria[b];
+    struct Line {
+      const char *name, *dash;
+      double at;
+    };
+    std::vector<Line> lines{
+        {"West", "1", c.west}, {"Ishiyama", "(14,6)", c.ishiyama}, {"A_{R50}", "(4,4)", c.evaluation}};
+    std::ranges::sort(lines, {}, &Line::at);
+    const std::vector<double> ends = plan_.levels.edges();
+    const auto place = [&](double value) {
+      const double part = plan_.levels.logarithmic
+                              ? std::log(value / ends.front()) / std::log(ends.back() / ends.front())
+                              : (value - ends.front()) / (ends.back() - ends.front());
+      return left + part * (right - left);
+    };
+    std::string out;
+    double free = left - 60;
+    int row = 0;
+    for (const Line& line : lines) {
+      if (!(line.at > ends.front() && line.at < ends.back())) continue;
+      const std::string block = fmt::format("criterion{}", plot.layers.size());
+      plot.add(block, point_row(line.at, -0.02) + point_row(line.at, 1.02),
+               fmt::format("with lines lc rgb '#444444' lw 1.8 dt {} notitle", line.dash));
+      const double x = place(line.at);
+      row = x < free ? row + 1 : 0;
+      out += sheet_.label(line.name, x, top + 12 + 18 * row, "center textcolor rgb '#444444'");
+      free = x + 78;
+    }
+    return out;
+  }
+
+  void add_curve(std::size_t b, std::size_t s, Plot& plot) const {
+    const FragilityCurve& curve = results_.curves[b][s];
+    const StateLook& look = k_looks_of_states[s];
+    if (curve.fit.fit) {
+      const std::vector<double> ends = plan_.levels.edges();
+      std::string rows;
+      for (int n = 0; n <= 200; ++n) {
+        const double part = n / 200.;
+        const double at = plan_.levels.logarithmic ? ends.front() * std::pow(ends.back() / ends.front(), part)
+                                                   : std::lerp(ends.front(), ends.back(), part);
+        rows += point_row(at, curve.probability(plan_, at));
+      }
+      plot.add(fmt::format("fit{}", s), rows,
+               fmt::format("with lines lc rgb '{}' lw 3 notitle", look.colour));
+    }
+    std::string shares;
+    for (const Level& level : curve.levels) {
+      if (level.runs == 0) continue;
+      const Interval bounds = wilson(level.hits, level.runs);
+      shares += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", level.intensity,
+                            static_cast<double>(level.hits) / level.runs, bounds.low, bounds.high);
+    }
+    plot.data += data_block(fmt::format("shares{}", s), shares, 4);
+    plot.layers.push_back(fmt::format("$shares{} with yerrorbars {} ps 1 lw 1.6 lc rgb '{}' notitle", s,
+                                      look.point, look.colour));
+  }
+
+  const FragilityPlan& plan_;
+  const FragilityResults& results_;
+  const std::vector<std::size_t> shown_;
+  const int columns_;
+  Sheet sheet_{};
+};
+
+}  // namespace
+
+std::string fragility_chart(const FragilityPlan& plan, const FragilityResults& results,
+                            const std::string& origin, ChartFormat format) {
+  return FragilityChart(plan, results).script(origin, format);
+}
+
+}  // namespace topple::study

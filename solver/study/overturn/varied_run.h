@@ -1,0 +1,39 @@
+// One run of an ensemble.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solver/study/overturn/factors.h"
+#include "solver/study/overturn/planar_runs.h"
+
+namespace topple::study {
+
+/// What came out of a run.
+struct RunEnd {
+  std::string status = "completed";     ///< or why it failed
+  std::vector<BodyEnd> of_bodies = {};  ///< per piece of furniture; empty where it failed
+  bool planar = false;                  ///< as planar blocks, else with the rigid model
+  bool gave_up = false;                 ///< give_up() came true
+};
+
+/// What a run begins with, before anything is varied.
+struct RunStart {
+  const std::vector<planar::PlanarCase>& planar;  ///< empty: no planar blocks
+  const std::vector<Shake>& shakes;
+  double duration;  ///< s
+  std::function<const io::Scene&()>
+      scene;  ///< for the rigid model; throws io::InputError where there is none
+};
+
+/// As planar blocks where there are some, else, or where it is not known what they do, as `topple run` does.
+/// `values`: as drawn; give_up is asked after each step.
+RunEnd run_varied(const RunStart& start, const FactorPlan& plan, std::span<const double> values,
+                  const std::function<bool()>& give_up);
+
+/// What studies of overturning leave to no scene: [run] has these where the scene says nothing.
+std::vector<std::string> overturn_settings(const io::Scene& scene);
+
+}  // namespace topple::study

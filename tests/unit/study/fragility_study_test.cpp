@@ -1,0 +1,136 @@
+// Fragility: theory gives it back, records count, parts do not depend on their order.
+#include "solver/study/overturn/fragility_study.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "solver/study/common/standing.h"
+#include "study_cases.h"
+
+namespace topple::study {
+namespace {
+
+std::vector<std::string> run_all(const FragilityPlan& plan) {
+  std::vector<std::string> rows(static_cast<std::size_t>(plan.cases()));
+  FragilityRunner runner(plan);
+  for (const int k : case_order(plan)) rows[static_cast<std::size_t>(k)] = runner.run(k, never);
+  return rows;
+}
+
+/// A cabinet under a half-sine, which does not slide.
+io::Scene pulsed(double duration) {
+  return io::load_scene("cabinet", {"shake.1.type=pulse", "shake.1.shape=half-sine",
+                                    "shake.1.duration=" + std::to_string(duration), "run.duration=4 s",
+                                    "contact.friction=1.5"});
+}
+
+// The least half-sine of theory overturns; with amplitudes that are lognormal about the level the share is
+// Phi(ln(level/least)/beta). 512 points of the sequence at each of 24 levels give a share to a few times
+// 1/512, and the median to beta times that over the root of the levels in the middle.
+TEST(FragilityStudy, a_known_threshold_and_a_known_scatter_come_back) {
+  constexpr double k_beta = 0.3, k_duration = 0.4;
+  const FragilityPlan plan = plan_fragility(pulsed(k_duration), "pga=100 gal..1500 gal:24",
+                                            {.runs = 512, .vary = {"amplitude=lognormal:0.3"}}, 0.05);
+  const FragilityResults found = gather(plan, run_all(plan));
+  EXPECT_EQ(found.runs, 24 * 512);
+  EXPECT_EQ(found.planar, found.runs);
+  EXPECT_EQ(found.failed, 0);
+  const Setup& setup = plan.scene.setup;
+  const Standing body = *standing_towards(setup.model, setup.parameters, 0, Vec3::UnitX());
+  const double least = body.gravity * least_half_sine(body, std::numbers::pi / k_duration / body.p()) / k_gal;
+  const FragilityCurve& overturns = found.curves[0][2];
+  ASSERT_TRUE(overturns.fit.fit) << overturns.fit.why_not;
+  EXPECT_NEAR(overturns.median / least, 1, 2e-3);
+  EXPECT_NEAR(overturns.fit.fit->beta / k_beta, 1, 0.01);
+  const FragilityCurve& lifts = found.curves[0][0];
+  EXPECT_NEAR(lifts.median / (west_acceleration(body) / k_gal), 1, 2e-3);
+  EXPECT_NEAR(found.criteria[0].west / (west_acceleration(body) / k_gal), 1, 1e-9);
+  EXPECT_FALSE(found.curves[0][1].fit.fit);  // nothing slides
+  EXPECT_EQ(found.curves[0][1].fit.why_not, "no run overturns");
+}
+
+TEST(FragilityStudy, levels_of_any_measure_are_reached) {
+  const io::Scene scene = pulsed(0.4);
+  for (const MotionMeasure& measure : motion_measures()) {
+    const Setup& setup = scene.setup;
+    const double own = measure.of(setup.parameters.shakes, setup.run.duration);
+    const double wanted = measure.value(1.7 * measure.intensity(own));
+    const std::vector<Shake> scaled =
+        shaken_by(setup.parameters.shakes, amplitude_factor(measure, own, wanted));
+    EXPECT_NEAR(measure.of(scaled, setup.run.duration) / wanted, 1, 1e-9) << measure.title;
+  }
+}
+
+TEST(FragilityStudy, parts_are_the_same_in_any_order) {
+  const FragilityPlan plan =
+      plan_fragility(pulsed(0.4), "pga=200 gal..900 gal:3", {.runs = 150, .spread = 0.3}, 0.01);
+  EXPECT_EQ(plan.cases(), 3 * 3);  // 64, 64 and 22 runs
+  const std::vector<std::string> rows = run_all(plan);
+  FragilityRunner backwards(plan);
+  for (int k = plan.cases(); k-- > 0;)
+    EXPECT_EQ(without_time(backwards.run(k, never)), without_time(rows[static_cast<std::size_t>(k)])) << k;
+  EXPECT_EQ(backwards.run(0, [] { return true; }), "");
+  EXPECT_EQ(gather(plan, rows).runs, 450);
+}
+
+TEST(FragilityStudy, records_are_scaled_each_and_resampled) {
+  const FragilityPlan plan = plan_fragility(
+      io::load_scene("cabinet"), "pgv=5 cm/s..200 cm/s:8",
+      {.runs = 30, .spread = 0.2, .vary = {"records=near-fault.csv,long-period-x.AT2,long-period-y.EW"}},
+      0.05);
+  EXPECT_EQ(plan.records(), 3);
+  EXPECT_EQ(plan.runs, 10);
+  EXPECT_NE(plan.own[0], plan.own[1]);
+  const FragilityResults found = gather(plan, run_all(plan));
+  EXPECT_EQ(found.runs, 8 * 30);
+  const FragilityCurve& overturns = found.curves[0][2];
+  ASSERT_TRUE(overturns.fit.fit) << overturns.fit.why_not;
+  if (overturns.median_of_records) {
+    EXPECT_LE(overturns.median_of_records->low, overturns.median);
+    EXPECT_GE(overturns.median_of_records->high, overturns.median);
+  }
+}
+
+// The values that the method states, to the gal they are rounded to.
+TEST(FragilityStudy, the_evaluation_gives_the_published_medians) {
+  for (const auto& [limit, median] : {std::pair(174., 205.), std::pair(232., 287.), std::pair(327., 436.),
+                                      std::pair(315., 416.), std::pair(535., 826.)}) {
+    Standing body{};
+    body.gravity = 9.8, body.base = limit / 980, body.height = 1;
+    EXPECT_NEAR(evaluation_acceleration(body) * 100, median, 1.5);
+  }
+  // 10 B/sqrt(H) (1 + B/H)^2.5, cm/s, is the velocity at the corner
+  Standing body{};
+  body.gravity = 9.8, body.base = 0.2, body.height = 0.9;
+  const double B = 40, H = 180;
+  EXPECT_NEAR(100 * evaluation_acceleration(body) / (2 * std::numbers::pi * evaluation_frequency(body)) /
+                  (10 * B / std::sqrt(H) * std::pow(1 + B / H, 2.5)),
+              1, 1e-3);
+}
+
+TEST(FragilityStudy, plans_that_make_no_sense_are_refused) {
+  const auto refused = [](const io::Scene& scene, const std::string& levels, const Ensemble& ensemble,
+                          const std::string& message) {
+    try {
+      plan_fragility(scene, levels, ensemble, 0.05);
+      ADD_FAILURE() << message;
+    } catch (const io::InputError& error) {
+      EXPECT_EQ(std::string(error.what()).substr(0, message.size()), message);
+    }
+  };
+  const io::Scene scene = io::load_scene("cabinet");
+  const Ensemble few{.runs = 4, .spread = 0.05};
+  refused(io::load_scene("portal-pushover"), "", few, "study fragility: portal-pushover is not dynamic");
+  refused(scene, "pgd=1..2:3", few,
+          "--x \"pgd\": is not a measure of the floor's motion; known: pga, pgv, arias, jma");
+  refused(scene, "pga=1 cm/s..2 cm/s:3", few, "--x pga: \"1 cm/s\" is a velocity, expected an acceleration");
+  refused(scene, "pga=0..2:3", few, "--x pga: 0 gal is outside ");
+  refused(scene, "pga", few, "--x \"pga\": expected KEY=FROM..TO:N");
+  refused(scene, "pga=100 gal..900 gal:200", {.runs = 1000000, .spread = 0.05},
+          "--ensemble: 200 levels of 1000000 runs are more than 1e+08 runs");
+}
+
+}  // namespace
+}  // namespace topple::study
