@@ -22,7 +22,9 @@ std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurv
   const study::Lognormal& fit = *curve.fit.fit;
   const std::string unit = plan.levels.unit.empty() ? "" : " " + plan.levels.unit;
   out += fmt::format("median {:.4g}{} (95 %: {}), beta {:.3g} ({})", curve.median, unit,
-                     between(curve.median_of_runs), fit.beta, between(fit.beta_interval()));
+                     between(curve.median_of_runs), fit.beta, between(curve.beta_of_runs));
+  if (curve.scatter > 1)
+    out += fmt::format("; shares scatter {:.2g} times as far as by chance", curve.scatter);
   if (curve.median_of_records)
     out += fmt::format("; among records {}, beta {}", between(*curve.median_of_records),
                        between(*curve.beta_of_records));

@@ -55,7 +55,7 @@ Information information(const std::vector<Level>& levels, const Pair& c) {
   return out;
 }
 
-std::string why_none(const std::vector<Level>& levels) {
+std::string why_none(const std::vector<Level>& levels, const std::string& verb) {
   constexpr double k_far = std::numeric_limits<double>::infinity();
   double least_hit = k_far, most_hit = 0, least_miss = k_far, most_miss = 0;
   for (const auto& [a, n, k] : levels) {
@@ -63,14 +63,14 @@ std::string why_none(const std::vector<Level>& levels) {
     if (k < n) least_miss = std::min(least_miss, a), most_miss = std::max(most_miss, a);
   }
   if (levels.empty()) return "there is no run";
-  if (most_hit == 0) return "no run overturns";
-  if (most_miss == 0) return "every run overturns";
+  if (most_hit == 0) return "no run " + verb;
+  if (most_miss == 0) return "every run " + verb;
   if (most_miss < least_hit)
-    return fmt::format("every run overturns from {:.6g} on and none up to {:.6g}: the median lies between",
+    return fmt::format("every run {} from {:.6g} on and none up to {:.6g}: the median lies between", verb,
                        least_hit, most_miss);
   if (most_miss == least_hit)
     return fmt::format("runs differ at {:.6g} alone: the median lies near it", least_hit);
-  if (most_hit <= least_miss) return "overturning does not become more frequent";
+  if (most_hit <= least_miss) return "it does not become more frequent";
   return "";
 }
 
@@ -90,11 +90,11 @@ Interval Lognormal::beta_interval() const {
   return {beta / factor, beta * factor};
 }
 
-Fragility fit_fragility(const std::vector<Level>& all) {
+Fragility fit_fragility(const std::vector<Level>& all, const std::string& verb) {
   constexpr int k_most_steps = 100;
   std::vector<Level> levels;
   std::ranges::copy_if(all, std::back_inserter(levels), [](const Level& level) { return level.runs > 0; });
-  if (std::string why = why_none(levels); !why.empty()) return {std::nullopt, std::move(why)};
+  if (std::string why = why_none(levels, verb); !why.empty()) return {std::nullopt, std::move(why)};
   double runs = 0, mean = 0;
   for (const Level& level : levels) {
     runs += level.runs;
@@ -115,7 +115,7 @@ Fragility fit_fragility(const std::vector<Level>& all) {
     now = next;
     if (way.norm() < 1e-11 * c.norm()) break;
   }
-  if (!(c[1] > 0)) return {std::nullopt, "overturning does not become more frequent"};
+  if (!(c[1] > 0)) return {std::nullopt, "it does not become more frequent"};
   const Information at = information(levels, c);
   if (!c.allFinite() || !std::isfinite(now) || at.score.norm() > 1e-6 * runs)
     return {std::nullopt, "the likelihood has no maximum that could be found"};

@@ -38,6 +38,7 @@ struct Fragility {
 /// run or every run hits, when all intensities with hits are at or above all those with misses, or when the
 /// share of hits does not grow. Source: J. W. Baker, Earthquake Spectra 31, 2015, 579-599; for when one
 /// exists, M. J. Silvapulle, J. R. Stat. Soc. B 43, 1981, 310-313.
-Fragility fit_fragility(const std::vector<Level>& levels);
+/// `verb`: what a run that hits does, for why_not.
+Fragility fit_fragility(const std::vector<Level>& levels, const std::string& verb = "overturns");
 
 }  // namespace topple::study

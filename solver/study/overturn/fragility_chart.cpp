@@ -84,6 +84,14 @@ class FragilityChart {
     return out + sheet_.label("bars: 95 % of the share (Wilson)", x, top - 152, k_grey);
   }
 
+  std::string coverage() const {
+    std::string out = results_.runs == results_.of ? fmt::format("{} runs", results_.of)
+                                                   : fmt::format("{} of {} runs", results_.runs, results_.of);
+    if (shown_.size() < results_.bodies.size())
+      out += fmt::format("; {} of {} shown", shown_.size(), results_.bodies.size());
+    return out;
+  }
+
   /// What stands above a panel.
   std::vector<std::string> words(std::size_t b) const {
     std::vector<std::string> lines;
@@ -96,10 +104,10 @@ class FragilityChart {
       }
       const std::string unit = plan_.levels.unit.empty() ? "" : " " + plan_.levels.unit;
       const Interval median = curve.median_of_records.value_or(curve.median_of_runs),
-                     beta = curve.beta_of_records.value_or(curve.fit.fit->beta_interval());
-      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g})", state,
+                     beta = curve.beta_of_records.value_or(curve.beta_of_runs);
+      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g}){}", state,
                                   curve.median, unit, between(median), curve.fit.fit->beta, beta.low,
-                                  beta.high));
+                                  beta.high, curve.scatter > 1 ? "; a poor fit" : ""));
     }
     return lines;
   }

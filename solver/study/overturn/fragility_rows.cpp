@@ -23,8 +23,9 @@ ordered_json curve_json(const FragilityCurve& curve) {
           {"median_95", as_json(curve.median_of_runs)},
           {"median_95_of_records", as_json(curve.median_of_records)},
           {"beta", fit.beta},
-          {"beta_95", as_json(fit.beta_interval())},
+          {"beta_95", as_json(curve.beta_of_runs)},
           {"beta_95_of_records", as_json(curve.beta_of_records)},
+          {"scatter", curve.scatter},
           {"deviance", fit.deviance},
           {"freedom", fit.freedom}};
 }

@@ -50,14 +50,14 @@ Axis axis_of_levels(const MotionMeasure& measure, const std::string& text) {
   }
 }
 
-/// The levels as intensities that a lognormal distribution is of.
+/// The levels with intensities that a lognormal distribution is of.
 std::vector<Level> intensities(const FragilityPlan& plan, std::vector<Level> levels) {
-  for (Level& level : levels) level.intensity = plan.measure->intensity(level.intensity * plan.levels.si);
+  for (Level& level : levels) level.intensity = plan.measure->intensity(level.intensity);
   return levels;
 }
 
 double in_unit(const FragilityPlan& plan, double intensity) {
-  return plan.measure->value(intensity) / plan.levels.si;
+  return plan.measure->value(intensity);
 }
 
 using LevelsOfRecords = std::vector<std::vector<Level>>;
@@ -100,15 +100,26 @@ void draw_records(const FragilityPlan& plan, const LevelsOfRecords& records, Fra
   curve.beta_of_records = middle_of(std::move(betas));
 }
 
-FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& records) {
+/// Quantile 0.999 of chi^2 with this freedom (E. B. Wilson and M. M. Hilferty, 1931).
+double most_by_chance(int freedom) {
+  const double part = 2. / (9 * freedom);
+  return freedom * std::pow(1 - part + 3.0902 * std::sqrt(part), 3);
+}
+
+FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& records, const char* verb) {
   std::vector<int> all;
   for (std::size_t r = 0; r < records.size(); ++r) all.push_back(static_cast<int>(r));
   FragilityCurve curve;
   curve.levels = sum_of(records, all);
-  curve.fit = fit_fragility(intensities(plan, curve.levels));
+  curve.fit = fit_fragility(intensities(plan, curve.levels), verb);
   if (curve.fit.fit) {
-    const Interval median = curve.fit.fit->median_interval();
-    curve.median = in_unit(plan, curve.fit.fit->median);
+    Lognormal fit = *curve.fit.fit;
+    if (fit.freedom > 0 && fit.deviance > most_by_chance(fit.freedom))
+      curve.scatter = std::sqrt(fit.deviance / fit.freedom);
+    fit.median_error *= curve.scatter, fit.beta_error *= curve.scatter;
+    const Interval median = fit.median_interval();
+    curve.beta_of_runs = fit.beta_interval();
+    curve.median = in_unit(plan, fit.median);
     curve.median_of_runs = {in_unit(plan, median.low), in_unit(plan, median.high)};
   }
   draw_records(plan, records, curve);
@@ -270,7 +281,7 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
 }
 
 double FragilityCurve::probability(const FragilityPlan& plan, double value) const {
-  return fit.fit->probability(plan.measure->intensity(value * plan.levels.si));
+  return fit.fit->probability(plan.measure->intensity(value));
 }
 
 FragilityResults gather(const FragilityPlan& plan, const std::vector<std::string>& rows) {
@@ -304,7 +315,7 @@ FragilityResults gather(const FragilityPlan& plan, const std::vector<std::string
   }
   for (const auto& body : counts) {
     std::array<FragilityCurve, k_states> curves;
-    for (std::size_t s = 0; s < k_states; ++s) curves[s] = curve_of(plan, body[s]);
+    for (std::size_t s = 0; s < k_states; ++s) curves[s] = curve_of(plan, body[s], k_damage_states[s].verb);
     out.curves.push_back(std::move(curves));
   }
   out.frequency = median_frequency(plan);

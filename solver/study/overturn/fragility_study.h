@@ -75,8 +75,12 @@ class FragilityRunner {
 struct FragilityCurve {
   std::vector<Level> levels;  ///< in the axis's unit; of all records
   Fragility fit;              ///< over the measure's intensity
-  double median = 0;          ///< of the fit, in the axis's unit
-  Interval median_of_runs{};  ///< its 95 % interval by Fisher's information
+  /// Root of the deviance over its freedom where that is more than chance makes it (0.1 %), else 1: shares
+  /// scatter so about the curve, and standard errors are as much greater (quasi-likelihood; P. McCullagh and
+  /// J. A. Nelder, Generalized Linear Models, 1989, 4.5).
+  double scatter = 1;
+  double median = 0;                          ///< of the fit, in the axis's unit
+  Interval median_of_runs{}, beta_of_runs{};  ///< 95 % by Fisher's information and the scatter
   /// 95 % of the median and beta when the records are drawn anew from themselves; none with one record, or
   /// where fewer than nine in ten of the draws have a fit.
   std::optional<Interval> median_of_records, beta_of_records;

@@ -14,7 +14,8 @@ struct MotionMeasure {
   io::Key key;        ///< name, dimension, unit and range of its axis
   const char* title;  ///< "peak ground acceleration"
   double (*of)(const std::vector<Shake>& shakes, double duration);  ///< SI
-  /// Proportional to a power of all amplitudes: what lognormal distributions are of, and back.
+  /// Proportional to a power of all amplitudes: what lognormal distributions are of. Of a value in the axis's
+  /// unit, and back.
   double (*intensity)(double value);
   double (*value)(double intensity);
   double power;       ///< of the amplitudes in the intensity
@@ -22,7 +23,7 @@ struct MotionMeasure {
 };
 std::span<const MotionMeasure> motion_measures();
 
-/// Factor on all amplitudes with which `from` becomes `to`, both > 0, SI.
+/// Factor on all amplitudes with which `from` becomes `to`, both > 0, in one unit.
 double amplitude_factor(const MotionMeasure& measure, double from, double to);
 
 /// Arias intensity of the horizontal motion, m/s: pi/(2 g) times the integral of a^2.

@@ -36,6 +36,7 @@ struct OverturnPlan {
   FactorPlan factors = {};
   std::vector<io::Scene> scenes = {};  ///< one per record, which members have in turn
   std::vector<std::string> set = {};   ///< overturn_settings()
+  Criteria criteria = {};
 
   int points() const { return x.count() * y.count(); }
   int cases() const { return points() * ensemble; }  ///< point ensemble + member

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "solver/model/accelerogram.h"
 #include "solver/study/overturn/planar_runs.h"
 #include "solver/study/overturn/varied_run.h"
 #include "study_cases.h"
@@ -91,7 +92,7 @@ TEST(Factors, a_varied_block_is_the_block_of_the_varied_scene) {
   const double values[] = {1.25, 1.5, 0.8};
   planar::PlanarCase fast = own.front();
   vary(plan, values, fast);
-  const Setup slow_setup = varied_setup(plan, values, scene);
+  const topple::Setup slow_setup = varied_setup(plan, values, scene);
   const planar::PlanarCase slow = planar_cases(slow_setup).front();
   for (const auto& [a, b] :
        {std::pair(fast.block.left, slow.block.left), std::pair(fast.block.right, slow.block.right),

@@ -111,7 +111,7 @@ TEST_F(ManualTest, bash_offers_commands_options_scenes_and_files) {
 
 TEST_F(ManualTest, bash_offers_scenes_after_the_kind_of_a_study) {
   using Words = std::vector<std::string>;
-  const Words kinds{"overturn", "stability", "precision", "elements", "penalty"};
+  const Words kinds{"overturn", "fragility", "stability", "precision", "elements", "penalty"};
   EXPECT_EQ(offers("topple study ''"), kinds);
   EXPECT_EQ(offers("topple study -o overturn-study ''"), kinds);
   EXPECT_EQ(offers("topple study sta"), (Words{"stability"}));
