@@ -106,12 +106,26 @@ double most_by_chance(int freedom) {
   return freedom * std::pow(1 - part + 3.0902 * std::sqrt(part), 3);
 }
 
+/// A median beyond the levels is none that runs tell.
+void drop_extrapolated(const FragilityPlan& plan, FragilityCurve& curve, const char* verb) {
+  if (!curve.fit.fit) return;
+  const double median = in_unit(plan, curve.fit.fit->median);
+  if (median >= plan.levels.values.front() && median <= plan.levels.values.back()) return;
+  const bool above = median > plan.levels.values.back();
+  const Level& end = above ? curve.levels.back() : curve.levels.front();
+  curve.fit.fit.reset();
+  curve.fit.why_not = fmt::format(
+      "the median lies {} the levels, a run at {:.4g} {} in {:.2g} % of the cases", above ? "above" : "below",
+      end.intensity, verb, end.runs > 0 ? 100. * end.hits / end.runs : 0.);
+}
+
 FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& records, const char* verb) {
   std::vector<int> all;
   for (std::size_t r = 0; r < records.size(); ++r) all.push_back(static_cast<int>(r));
   FragilityCurve curve;
   curve.levels = sum_of(records, all);
   curve.fit = fit_fragility(intensities(plan, curve.levels), verb);
+  drop_extrapolated(plan, curve, verb);
   if (curve.fit.fit) {
     Lognormal fit = *curve.fit.fit;
     if (fit.freedom > 0 && fit.deviance > most_by_chance(fit.freedom))

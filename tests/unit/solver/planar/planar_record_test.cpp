@@ -58,7 +58,7 @@ TEST(PlanarRecord, passing_lines_that_cannot_wake_a_block_leaves_every_bit) {
   }
   EXPECT_GT(woken, 50);
   EXPECT_GT(still, 20);
-  EXPECT_LT(3 * steps, steps_one_by_one);
+  EXPECT_LT(2 * steps, steps_one_by_one);
 }
 
 // A step over many lines is one at rest: the motion within it is the start's.
