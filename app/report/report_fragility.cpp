@@ -1,6 +1,8 @@
 // Part of the report page: how likely bodies lift, slide and overturn over the floor's peak acceleration.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/report/report_parts.h"
 
 namespace topple::app {
@@ -28,10 +30,12 @@ std::string medians(const ReportPage& page, const study::FragilityResults& found
         row.push_back(interval(curve.median_of_runs));
         row.push_back(shown(curve.fit.fit->beta, 2));
       } else {
-        int hits = 0;
-        for (const study::Level& level : curve.levels) hits += level.hits;
-        row.push_back(page.say(hits == 0 ? words::k_in_no_run : words::k_no_curve));
-        row.insert(row.end(), 2, "\u2013");
+        const std::optional<study::Interval> step = curve.step();
+        const bool never =
+            std::ranges::all_of(curve.levels, [](const study::Level& level) { return level.hits == 0; });
+        row.push_back(page.say(never ? words::k_in_no_run : step ? words::k_jumps : words::k_no_curve));
+        row.push_back(step ? interval(*step) : "\u2013");
+        row.emplace_back("\u2013");
       }
       rows.push_back(std::move(row));
     }
@@ -72,10 +76,10 @@ std::string figure(ReportPage& page, const study::FragilityPlan& plan, const stu
       curve.x.push_back(chart.x_to * n / k_places);
       curve.y.push_back(curves[s].probability(plan, curve.x.back()));
     }
+    const std::string number = fmt::format("{} ", chart.curves.size() + 1);
     keys += fmt::format(
-        "<span><svg viewBox=\"0 0 46 16\"><line x1=\"0\" y1=\"8\" x2=\"46\" y2=\"8\" {}/></svg>{} "
-        "{}</span>\n",
-        svg_stroke(chart.curves.size()), chart.curves.size() + 1, escaped(curve.name));
+        "<span><svg viewBox=\"0 0 46 16\"><line x1=\"0\" y1=\"8\" x2=\"46\" y2=\"8\" {}/></svg>{}{}</span>\n",
+        svg_stroke(chart.curves.size()), number, escaped(curve.name));
     chart.curves.push_back(std::move(curve));
   }
   if (chart.curves.empty()) return "";

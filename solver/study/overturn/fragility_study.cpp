@@ -294,6 +294,15 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
   return row.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+std::optional<Interval> FragilityCurve::step() const {
+  std::optional<double> low, high;
+  for (std::size_t i = 0; i < levels.size() && levels[i].runs > 0 && levels[i].hits == 0; ++i)
+    low = levels[i].intensity;
+  for (std::size_t i = levels.size(); i-- > 0 && levels[i].runs > 0 && levels[i].hits == levels[i].runs;)
+    high = levels[i].intensity;
+  return low && high ? std::optional(Interval{*low, *high}) : std::nullopt;
+}
+
 double FragilityCurve::probability(const FragilityPlan& plan, double value) const {
   return fit.fit->probability(plan.measure->intensity(value));
 }
