@@ -142,11 +142,15 @@ const Study& study_of(const StudyCall& call) {
   for (const auto& [name, given, taken] :
        {std::tuple{"--x", !options.x.empty(), study.x != nullptr},
         std::tuple{"--y", !options.y.empty(), study.y != nullptr},
-        std::tuple{"--ensemble", options.ensemble > 1, study.takes_ensemble},
+        std::tuple{"--ensemble", options.ensemble.has_value(), study.takes_ensemble},
         std::tuple{"--vary", !options.vary.empty(), study.takes_ensemble},
         std::tuple{"--slide", options.slide.has_value(), study.takes_slide},
         std::tuple{"--resume", options.resume, study.sweep != nullptr}})
     if (given && !taken) throw BadInput(std::string(name) + ": not of study " + kind);
+  for (const auto& [name, given] :
+       {std::pair{"--spread", options.spread.has_value()}, std::pair{"--vary", !options.vary.empty()}})
+    if (given && options.ensemble.value_or(study.usual_runs) == 1)
+      throw BadInput(std::string(name) + " requires --ensemble");
   if (!study.sweep && started_ranks() > 1)
     throw BadInput("mpirun: study " + kind + " does not share its work among ranks; start it without mpirun");
   if (options.folder.empty()) throw BadInput("--output is required (topple study --help)");
@@ -210,14 +214,12 @@ void add_study(Commands& commands) {
   add_path(command, "--y", options.y, "KEY=FROM..TO:N",
            fmt::format("{}: the same, default {}", with_axes, fmt::join(y, "; ")));
   const std::string with_ensemble = names_of([](const Study& study) { return study.takes_ensemble; });
-  CLI::Option& ensemble =
-      add_read(command, "--ensemble", "N", whole_number(options.ensemble, 2, 1000000),
-               with_ensemble +
-                   ": runs a point or level (of fragility default 400), varied at random: "
-                   "probabilities and a fragility curve");
+  add_read(command, "--ensemble", "N", whole_number(options.ensemble, 2, 1000000),
+           with_ensemble +
+               ": runs a point or level (of fragility default 400), varied at random: "
+               "probabilities and a fragility curve");
   add_read(command, "--spread", "PERCENT%", share(options.spread),
-           "amplitudes of all shakes evenly within 1 -+ this, default 5% without --vary")
-      .needs(&ensemble);
+           "amplitudes of all shakes evenly within 1 -+ this, default 5% without --vary");
   command
       .add_option(
           "--vary", options.vary,

@@ -119,12 +119,13 @@ std::vector<LogCurve> curves_of(const LogChart& chart, const study::Criteria& cr
   return curves;
 }
 
-/// A probability where neighbours disagree, else the verdict.
+/// The verdict; where neighbours disagree what runs within the cell say too: a probability if they differ.
 std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   const study::OverturnPoint& at = point(found, i, j);
   const auto place = static_cast<std::size_t>(j * found.plan->x.count() + i);
-  if (place < found.shares.size() && found.shares[place]) {
-    const study::CellShare& share = *found.shares[place];
+  const bool near_an_edge = place < found.shares.size() && found.shares[place];
+  const study::CellShare share = near_an_edge ? *found.shares[place] : study::CellShare();
+  if (share.overturned > 0 && share.overturned < share.runs) {
     const study::Interval within = study::wilson(share.overturned, share.runs);
     return say(k_map_unsure, share.overturned, share.runs, 100 * share.probability(), 100 * within.low,
                100 * within.high);
@@ -132,6 +133,7 @@ std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   std::string verdict = say(words_of(at.verdict));
   if (const auto time = at.time(0.5)) verdict += say(k_map_first_at, *time);
   if (at.verdict == Verdict::failed) verdict += say(k_colon) + at.status;
+  if (near_an_edge) verdict += say(share.overturned > 0 ? k_map_all_fall : k_map_all_stand, share.runs);
   return verdict;
 }
 
@@ -279,9 +281,9 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
 
 void draw_map_controls(const Player& player, MapState& state) {
   using Follows = MapState::Follows;
-  const auto found = state.search ? state.search->result() : nullptr;
-  const bool searching = state.search && !state.search->over();
-  if (state.follows == Follows::untried) return;
+  const bool trying = state.follows == Follows::untried;  // whether the map can follow: nobody asked for it
+  const auto found = state.search && !trying ? state.search->result() : nullptr;
+  const bool searching = state.search && !trying && !state.search->over();
   if (state.follows == Follows::yes) {
     ImGui::TextDisabled("%s", say(k_map_follows).c_str());
   } else {
@@ -301,6 +303,7 @@ void draw_map_controls(const Player& player, MapState& state) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
       ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());
     if (asked) {
+      state.follows = Follows::no;
       state.of = player.parameters();
       state.search = search_overturning(player.scene(), state.of);
       return;

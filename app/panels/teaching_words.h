@@ -51,10 +51,15 @@ inline constexpr Phrase k_map_stale{"Other parameters have changed since; comput
 inline constexpr Phrase k_map_cell{"{0:.3g} {1}, {2:.4g} {3}: {4}", "{0:.3g} {1}、{2:.4g} {3}：{4}"};
 inline constexpr Phrase k_map_first_at{", the first at {0:.2f} s", "（最初は {0:.2f} s）"};
 inline constexpr Phrase k_map_unsure{
-    "neighbours disagree: a body overturns in {0} of {1} runs within this cell, probability {2:.0f} % "
-    "({3:.0f} to "
-    "{4:.0f} %)",
-    "周囲で結果が分かれる：このマス内の {1} 件中 {0} 件で転倒、確率 {2:.0f} %（{3:.0f}～{4:.0f} %）"};
+    "uncertain, neighbours disagree: a body overturns in {0} of {1} runs within this cell, probability "
+    "{2:.0f} % "
+    "({3:.0f} to {4:.0f} %)",
+    "不確か（周囲で結果が分かれる）：このマス内の {1} 件中 {0} 件で転倒、確率 {2:.0f} %（{3:.0f}～{4:.0f} "
+    "%）"};
+inline constexpr Phrase k_map_all_fall{"; neighbours disagree, all {0} runs within this cell overturn",
+                                       "。周囲で結果が分かれるが、このマス内の {0} 件はすべて転倒"};
+inline constexpr Phrase k_map_all_stand{"; neighbours disagree, none of {0} runs within this cell overturns",
+                                        "。周囲で結果が分かれるが、このマス内の {0} 件に転倒はない"};
 inline constexpr Phrase k_map_follows{"The map follows the sliders.", "マップはスライダーに追従します。"};
 inline constexpr Phrase k_map_here{"Now {0}.", "現在 {0}。"};
 inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",

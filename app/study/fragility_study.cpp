@@ -9,7 +9,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_usual_slide = 0.05;  // m
-constexpr int k_usual_runs = 400;       // at a level
 
 std::string between(const study::Interval& interval) {
   return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
@@ -98,12 +97,12 @@ const Study k_fragility_study = {
     .x = "pga=50 gal..2000 gal:24 (pga, pgv, arias, jma)",
     .takes_ensemble = true,
     .takes_slide = true,
+    .usual_runs = 400,
     .runs = "parts",
     .sweep = [](io::Scene scene, const StudyOptions& options) {
-      study::Ensemble ensemble = ensemble_of(options);
-      if (options.ensemble == 1) ensemble.runs = k_usual_runs;
-      const auto plan = std::make_shared<study::FragilityPlan>(study::plan_fragility(
-          std::move(scene), options.x, ensemble, options.slide.value_or(k_usual_slide)));
+      const auto plan = std::make_shared<study::FragilityPlan>(
+          study::plan_fragility(std::move(scene), options.x, ensemble_of(k_fragility_study, options),
+                                options.slide.value_or(k_usual_slide)));
       const MakeWork make = [plan = plan.get()] {
         return [runner = study::FragilityRunner(*plan)](int k, const std::function<bool()>& give_up) mutable {
           return runner.run(k, give_up);

@@ -100,8 +100,8 @@ constexpr double k_usual_spread = 0.05;
 
 }  // namespace
 
-study::Ensemble ensemble_of(const StudyOptions& options) {
-  return {.runs = options.ensemble,
+study::Ensemble ensemble_of(const Study& study, const StudyOptions& options) {
+  return {.runs = options.ensemble.value_or(study.usual_runs),
           .spread = options.spread.value_or(options.vary.empty() ? k_usual_spread : 0),
           .vary = options.vary,
           .seed = static_cast<std::uint64_t>(options.seed)};
@@ -114,8 +114,8 @@ const Study k_overturn_study = {
     .y = "its amplitude",
     .takes_ensemble = true,
     .sweep = [](io::Scene scene, const StudyOptions& options) {
-      const auto plan = std::make_shared<study::OverturnPlan>(
-          study::plan_overturn(std::move(scene), options.x, options.y, ensemble_of(options)));
+      const auto plan = std::make_shared<study::OverturnPlan>(study::plan_overturn(
+          std::move(scene), options.x, options.y, ensemble_of(k_overturn_study, options)));
       return sweep_of(plan, work_on(*plan), overturn_findings);
     }};
 

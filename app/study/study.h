@@ -47,6 +47,7 @@ struct Study {
   const char *name, *about;
   const char *x = nullptr, *y = nullptr;  ///< its usual axes, in words; null: it has none
   bool takes_scene = true, takes_ensemble = false, takes_slide = false;
+  int usual_runs = 1;  ///< of an ensemble without --ensemble
   bool timed = false;  ///< CPU times count: one run at a time unless more are asked for
   const char* runs = "runs";
   const char* left_out = "the finest";  ///< by --quick
@@ -59,7 +60,7 @@ struct Study {
 extern const Study k_overturn_study, k_fragility_study, k_stability_study, k_precision_study,
     k_elements_study, k_penalty_study;
 /// Of the options of a study that takes one.
-study::Ensemble ensemble_of(const StudyOptions& options);
+study::Ensemble ensemble_of(const Study& study, const StudyOptions& options);
 
 /// In the order of --help.
 inline constexpr const Study* k_studies[] = {&k_overturn_study,  &k_fragility_study, &k_stability_study,

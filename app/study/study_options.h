@@ -15,7 +15,7 @@ struct StudyOptions {
   bool quick = false;                  ///< within a time budget
   bool quiet = false;
   std::string x, y;                    ///< KEY=FROM..TO:N, of sweeps; empty: the usual ones
-  int ensemble = 1;                    ///< runs a point
+  std::optional<int> ensemble = {};    ///< runs a point or level
   std::optional<double> spread = {};   ///< of the amplitudes of more than one
   std::vector<std::string> vary = {};  ///< FACTOR=DISTRIBUTION
   int seed = 1;                        ///< of what is drawn

@@ -171,14 +171,16 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
                   "--x: not of study precision");
   expect_one_line({"study", "precision", "paper-a", "-o", "out", "--ensemble", "4"}, 2,
                   "--ensemble: not of study precision");
-  for (const char* size : {"1", "x", "10001"})
+  for (const char* size : {"1", "x", "1000001"})
     expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--ensemble", size}, 2,
-                    "--ensemble: \"" + std::string(size) + "\" is not a whole number in 2..10000");
+                    "--ensemble: \"" + std::string(size) + "\" is not a whole number in 2..1000000");
   for (const char* spread : {"0", "100%", "5 %", "x"})
     expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--ensemble", "4", "--spread", spread}, 2,
                     "--spread: \"" + std::string(spread) + "\" is not between 0% and 100%");
   expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--spread", "5%"}, 2,
                   "--spread requires --ensemble");
+  expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--vary", "phase"}, 2,
+                  "--vary requires --ensemble");
   expect_one_line({"study", "overturn", "paper-a", "-o", "out", "--x", "contact.friction=0..2:3"}, 2,
                   "--x contact.friction: 2 is outside 0..1.5");
   for (const char* jobs : {"", "0", "-1", "257", "two", "1.5"})

@@ -142,6 +142,36 @@ TEST_F(PresentPanels, cancel_stops_the_map_and_leaves_what_there_is_until_it_is_
   EXPECT_EQ(map().search, nullptr);
 }
 
+// A cabinet is run as a planar block: nobody asks for its map, and sliders other than the map's axes begin it
+// anew.
+TEST_F(PresentPanels, a_map_of_planar_blocks_appears_by_itself_and_follows_the_sliders) {
+  shell_->open(write("cabinet.toml", io::load_scene("cabinet").text));
+  ASSERT_TRUE(until([&] { return ready(); }));
+  viewer().show(Viewer::Tab::teach);
+  const auto whole = [&] { return map().shown && !map().shown->shares.empty(); };
+  ASSERT_TRUE(until_computed(whole));
+  EXPECT_EQ(map().follows, MapState::Follows::yes);
+  EXPECT_EQ(map().shown->map.run, 576);
+  EXPECT_EQ(map().shown->map.planar, 576);
+  const auto near_an_edge =
+      std::ranges::count_if(map().shown->shares, [](const auto& s) { return s.has_value(); });
+  EXPECT_GT(near_an_edge, 20);
+  EXPECT_LT(near_an_edge, 400);
+  const auto first = map().shown;
+  player().edit({Edit::Key::amplitude, 0, Vec3(1.5, 0, 0)});  // an axis: the map stays
+  for (int n = 0; n < 5; ++n) frame();
+  EXPECT_EQ(map().shown, first);
+  player().edit({Edit::Key::friction, 0, Vec3(0.1, 0, 0)});
+  ASSERT_TRUE(until_computed([&] { return map().shown != first && whole() && map().shown->map.run == 576; }));
+  EXPECT_EQ(map().shown_of.contact.friction, 0.1);
+  for (const study::OverturnPoint& point : map().shown->map.points)
+    EXPECT_EQ(point.overturned, 0);  // it slides away beneath: 0.1 g below West's 0.21 g
+  click(say(window_words::k_map_close) + "##close-map", "side/content");
+  for (int n = 0; n < 5; ++n) frame();
+  EXPECT_EQ(map().shown, nullptr);
+  EXPECT_EQ(map().search, nullptr);
+}
+
 TEST_F(PresentPanels, the_chart_of_precision_opens_beside_the_step_and_a_click_loads_a_setting) {
   open("\"0.05 s\"");
   click(say(window_words::k_precision) + "##precision", "side/content");
