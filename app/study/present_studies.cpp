@@ -95,10 +95,12 @@ std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const
                                                    bool planar_only) {
   return search<OverturnFound>([scene, now, planar_only](OverturnSearch& background) {
     const auto plan =
-        std::make_shared<const study::OverturnPlan>(study::plan_overturn(changed_scene(scene, now), "", ""));
-    if (planar_only)
-      if (const std::string why = why_not_planar(*plan); !why.empty())
-        return background.show({.failure = why});
+        std::make_shared<study::OverturnPlan>(study::plan_overturn(changed_scene(scene, now), "", ""));
+    const std::string why = why_not_planar(*plan);
+    if (planar_only && !why.empty()) return background.show({.failure = why});
+    const Setup& setup = plan->scene.setup;
+    // of planar blocks the cells come first: they take less time than the lines
+    plan->criteria = why.empty() ? study::Criteria() : criteria(setup, plan->x, plan->y);
     const int jobs = std::max(1, study::core_count() - 1);  // one is for what the window shows
     study::OverturnMap map;
     work_through<OverturnFound>(
@@ -107,8 +109,10 @@ std::unique_ptr<OverturnSearch> search_overturning(const io::Scene& scene, const
           map = gather(*plan, rows);
           return OverturnFound{.failure = "", .plan = plan, .map = map};
         });
-    if (!background.stopped() && map.planar == map.of)
-      search_cells(background, {.failure = "", .plan = plan, .map = std::move(map)});
+    if (background.stopped() || !why.empty()) return;
+    map.criteria = criteria(setup, plan->x, plan->y);
+    background.show({.failure = "", .plan = plan, .map = map});
+    if (map.planar == map.of) search_cells(background, {.failure = "", .plan = plan, .map = std::move(map)});
   });
 }
 

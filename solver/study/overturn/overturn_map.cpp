@@ -77,7 +77,6 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
   plan.y = axis_named("--y", y, &UsualAxes::y, plan.scene);
   check_axes(plan.scene, plan.x, plan.y);
   plan.set = overturn_settings(plan.scene);
-  plan.criteria = study::criteria(plan.scene.setup, plan.x, plan.y);
   constexpr double k_most_cases = 1e7;  // rows are kept in memory
   if (static_cast<double>(plan.points()) * plan.ensemble > k_most_cases)
     throw InputError(fmt::format("--ensemble: {} points of {} runs are more than {:g} runs", plan.points(),
@@ -359,7 +358,7 @@ OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& row
       point.verdict = Verdict::failed;
     map.points.push_back(std::move(point));
   }
-  map.criteria = plan.criteria;
+  map.criteria = plan.criteria ? *plan.criteria : criteria(plan.scene.setup, plan.x, plan.y);
   if (!is_intensity(plan.y) && !is_intensity(plan.x)) return map;
   map.fragility_along_y = is_intensity(plan.y);
   const Axis& other = map.fragility_along_y ? plan.x : plan.y;

@@ -34,9 +34,9 @@ struct OverturnPlan {
   Axis x, y;
   int ensemble = 1;
   FactorPlan factors = {};
-  std::vector<io::Scene> scenes = {};  ///< one per record, which members have in turn
-  std::vector<std::string> set = {};   ///< overturn_settings()
-  Criteria criteria = {};
+  std::vector<io::Scene> scenes = {};     ///< one per record, which members have in turn
+  std::vector<std::string> set = {};      ///< overturn_settings()
+  std::optional<Criteria> criteria = {};  ///< for gather(), which finds them where there are none
 
   int points() const { return x.count() * y.count(); }
   int cases() const { return points() * ensemble; }  ///< point ensemble + member
