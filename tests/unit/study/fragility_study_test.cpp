@@ -76,6 +76,41 @@ TEST(FragilityStudy, parts_are_the_same_in_any_order) {
   EXPECT_EQ(gather(plan, rows).runs, 450);
 }
 
+// What slides to within reach of a wall is run again with the rigid model. Such runs stand between planar
+// ones of a part; each of these ends as it does alone.
+TEST(FragilityStudy, runs_that_climb_are_counted_and_do_not_disturb_others) {
+  const io::Scene own = io::load_scene("cabinet");
+  const io::Scene scene = io::parse_scene(
+      own.text + "\n[[wall]]\nname = \"far\"\nat = [-3.2, 0]\nnormal = [1, 0, 0]\ntype = \"plane\"\n",
+      "walled.toml", {"contact.friction=0.1", "shake.1.frequency=0.25", "run.duration=4 s"});
+  const FragilityPlan plan =
+      plan_fragility(scene, "pga=150 gal..450 gal:2", {.runs = 24, .vary = {"friction=uniform:0.2..5"}}, 0.5);
+  ASSERT_TRUE(is_planar(plan));
+  const FragilityResults found = gather(plan, run_all(plan));
+  EXPECT_EQ(found.runs, 48);
+  EXPECT_EQ(found.failed, 0);
+  EXPECT_GT(found.planar, 8);
+  EXPECT_LT(found.planar, 44);
+  const io::Scene whole = io::parse_scene(plan.scene.text, plan.scene.name, plan.set);
+  const std::vector<planar::PlanarCase> blocks = planar_cases(whole.setup);
+  for (int level = 0; level < 2; ++level) {
+    const std::vector<Shake> shakes =
+        shaken_by(whole.setup.parameters.shakes,
+                  amplitude_factor(*plan.measure, plan.own.front(), plan.levels.in_si(level)));
+    std::array<int, k_states> hits{};
+    for (std::uint32_t member = 0; member < 24; ++member) {
+      const RunEnd end =
+          run_varied({blocks, shakes, whole.setup.run.duration, [&]() -> const io::Scene& { return whole; }},
+                     plan.factors, plan.factors.draw(static_cast<std::uint64_t>(level), member), never);
+      for (std::size_t s = 0; s < k_states; ++s)
+        hits[s] += damage_states()[s].is_there(end.of_bodies.front(), plan.slide);
+    }
+    for (std::size_t s = 0; s < k_states; ++s)
+      EXPECT_EQ(found.curves[0][s].levels[static_cast<std::size_t>(level)].hits, hits[s])
+          << level << ' ' << s;
+  }
+}
+
 TEST(FragilityStudy, records_are_scaled_each_and_resampled) {
   const FragilityPlan plan = plan_fragility(
       io::load_scene("cabinet"), "pgv=5 cm/s..200 cm/s:8",
