@@ -267,8 +267,10 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   if (!curves.empty()) key.lines(curves);
   add_present(list, key.entry(say(k_present)));
   key.end();
-  ImGui::TextWrapped(
-      "%s", (curves.empty() ? say(k_map_no_lines) : say(k_map_lines, found->map.criteria.bodies)).c_str());
+  if (!curves.empty())
+    ImGui::TextWrapped("%s", say(k_map_lines, found->map.criteria.bodies).c_str());
+  else if (!found->map.criteria.why_not.empty())  // else they are not there yet
+    ImGui::TextWrapped("%s", say(k_map_no_lines).c_str());
   const int i = place_on(plan.x, x), j = place_on(plan.y, y);
   ImGui::TextWrapped(
       "%s",
