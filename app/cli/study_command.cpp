@@ -207,12 +207,14 @@ void add_study(Commands& commands) {
   add_path(command, "-o,--output", options.folder, "DIR",
            "folder for KIND.csv, .json, .svg and .png (required)");
   add_set(command, options.overrides);
-  add_path(command, "--x", options.x, "KEY=FROM..TO:N",
-           fmt::format("{}: N values of a key, log or lin behind N names the spacing (else log from a ratio "
-                       "of 5 on); default {}",
-                       with_axes, fmt::join(x, "; ")));
+  add_path(
+      command, "--x", options.x, "KEY=FROM..TO:N",
+      fmt::format("{}: N values of a key (of fragility: of a measure), log or lin behind N names the spacing "
+                  "(else log from a ratio of 5 on); default {}",
+                  with_axes, fmt::join(x, "; ")));
   add_path(command, "--y", options.y, "KEY=FROM..TO:N",
-           fmt::format("{}: the same, default {}", with_axes, fmt::join(y, "; ")));
+           fmt::format("{}: the same, default {}",
+                       names_of([](const Study& study) { return study.y != nullptr; }), fmt::join(y, "; ")));
   const std::string with_ensemble = names_of([](const Study& study) { return study.takes_ensemble; });
   add_read(command, "--ensemble", "N", whole_number(options.ensemble, 2, 1000000),
            with_ensemble +

@@ -84,6 +84,8 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
                 {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},
                 {"cpu_s", "s, of the solving thread, the scene's reading included"}},
       .settings = {{"ensemble", plan.ensemble},
+                   {"perturbation",
+                    plan.ensemble > 1 ? ordered_json(plan.factors.in_words()) : ordered_json(nullptr)},
                    {"vary", plan.factors.texts},
                    {"seed", plan.factors.seed},
                    {"records", plan.factors.records},

@@ -55,6 +55,8 @@ State decided_on_base(const Situation& now, const State& state) {
   const Block& block = now.block;
   if (now.vertical <= 0) return taken_off(now, state, state.side);
   if (state.slip != 0) return slip_on_base(now, state, state.slip);
+  if (block.static_friction == 0)
+    return slip_on_base(now, state, 1);  // nothing holds it: either sign will do
   const double moment = block.height * now.horizontal;
   if (-moment > block.right * now.vertical) return lifted(now, state, Side::right);
   if (moment > block.left * now.vertical) return lifted(now, state, Side::left);

@@ -170,6 +170,19 @@ TEST(PlanarSliding, a_slip_that_would_press_the_edge_into_the_floor_stops_at_onc
   EXPECT_NEAR(step.start.rate, -r.z * speed / (block.inertia_over_mass() + r.x * r.x + r.z * r.z), 1e-14);
 }
 
+// Nothing drags it along: seen from the floor it goes as the floor does the other way,
+//   x = -(A/w) (t - sin(w t)/w), from rest and through every instant at which its velocity is zero.
+TEST(PlanarSliding, without_friction_it_stays_where_it_is_in_space) {
+  const double amplitude = 6, frequency = 0.7, w = 2 * k_pi * frequency;
+  const std::vector<Shake> shakes{sine_shake(amplitude, frequency)};
+  const ShakenPlane plane{shakes};
+  const PlanarRun run = run_planar(uniform_block(0.1, 0.9, 0), shaken(plane), standing(), 7);
+  EXPECT_EQ(run.state.time, 7);
+  EXPECT_EQ(run.state.mode, Mode::slide);
+  EXPECT_NEAR(run.state.x, -amplitude / w * (7 - std::sin(w * 7) / w), 1e-9);
+  EXPECT_TRUE(run.events.empty());
+}
+
 TEST(PlanarSliding, a_floor_whose_velocity_jumps_leaves_the_block_behind) {
   const Block block = slab(0.3);
   const PlanarRun run = run_planar(block, floor_at_rest(), left_behind(standing(), 1.2), 3);
