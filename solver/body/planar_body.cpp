@@ -12,6 +12,7 @@
 #include "solver/model/excitation.h"
 #include "solver/planar/integrator.h"
 #include "solver/reduced/tipping.h"
+#include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {
@@ -27,7 +28,7 @@ constexpr double k_growth = 30;         // hard_floor_error()
 constexpr double k_softer = 1 - 1e-6;   // alpha over that of a hard floor, which may be rounded
 constexpr double k_noise = 1e-12;       // rad, m/s, rad/s: what a best fit makes of nothing
 constexpr double k_same_place = 1e-7;   // m, as in planar_case.cpp
-constexpr double k_longest = 0.01;      // s, step of an adaptive run,
+constexpr double k_longest = 0.01;      // s, step of an adaptive run while it rocks or flies,
 constexpr double k_shortest = 1e-3;     // s, but for one that ends
 constexpr double k_after_event = 1e-7;  // s after an event
 constexpr double k_wall_margin = 1e-3;  // m
@@ -294,11 +295,12 @@ double PlanarBody::time_limit(const Parameters& parameters, const State& state) 
   const planar::ShakenPlane plane{parameters.shakes, of->along};
   const planar::Floor floor = planar::shaken(plane);
   planar::State motion = s.motion;
-  const double until = state.time + k_longest;
+  const bool flat = motion.mode == planar::Mode::rest || motion.mode == planar::Mode::slide;
+  const double longest = flat ? k_longest_step : k_longest, until = state.time + longest;
   while (motion.time < until)
     if (advance(of->block, floor, of->controls, until, motion, step_) != Event::none)
-      return limit_ = std::clamp(motion.time + k_after_event - state.time, k_shortest, k_longest);
-  return limit_ = k_longest;
+      return limit_ = std::clamp(motion.time + k_after_event - state.time, k_shortest, longest);
+  return limit_ = longest;
 }
 
 void PlanarBody::list_contacts(const Parameters& parameters, const StepInputs& now, const State& state,

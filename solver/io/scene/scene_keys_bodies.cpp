@@ -18,8 +18,7 @@ constexpr double k_degree = k_pi / 180;
 void add_model(Rows& rows, BodyModel absent) {
   rows.word("model", body_models(), absent,
             "what the body is computed as; auto: the least that answers `run.want` within `run.accuracy`, "
-            "frame with an integrator that is named. A body is a frame while one is within 50 mm; planar: a "
-            "block in a vertical plane on a hard floor, until something else is near or it falls flat")
+            "frame with an integrator that is named. A body is a frame while one is within 50 mm")
       .only_in({"dynamic"});
 }
 
