@@ -34,8 +34,7 @@ void guard_rest(const GuardedMotion& of, Guards& guards) {
 void guard_slide(const GuardedMotion& of, Guards& guards) {
   const double slip = of.start.slip;
   guards.add({&of.solution.vertical, 1, 0, Event::take_off, Side::right, taken_off});
-  if (of.block.static_friction > 0)
-    guards.add({&of.solution.x_velocity, slip, 0, Event::stick, Side::right, stopped_base});
+  guards.add({&of.solution.x_velocity, slip, 0, Event::stick, Side::right, stopped_base});
 }
 
 void guard_tilt(const GuardedMotion& of, Guards& guards) {

@@ -208,6 +208,7 @@ State slipping_base(const Situation& now, const State& state, Side) {
 }
 
 State stopped_base(const Situation& now, const State& state, Side) {
+  if (now.block.static_friction == 0) return slip_on_base(now, state, -state.slip);
   return decided_on_base(now, flat(now.block, state, 0));
 }
 
