@@ -51,9 +51,11 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
   }
   if (results.failed > 0)
     text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
+  const bool all = results.planar == results.runs;
   return text + fmt::format("{} of {} runs as planar blocks{}\n", results.planar, results.runs,
-                            results.why_not_planar.empty()
-                                ? ""
+                            all ? ""
+                            : results.why_not_planar.empty()
+                                ? study::k_climbed
                                 : "; the scene itself is none: " + results.why_not_planar);
 }
 
@@ -84,7 +86,7 @@ Findings findings(const study::FragilityPlan& plan, const study::FragilityResult
                    const std::string& origin,
                    study::ChartFormat format) { return fragility_chart(plan, results, origin, format); },
       .text = in_words(plan, results),
-      .each = fmt::format(" of {} each", plan.chunk),
+      .each = fmt::format(" of {} runs", plan.chunk),
       .pace = fmt::format(", {:.4g} runs a second and core",
                           static_cast<double>(results.runs) / std::max(1e-9, results.cpu))};
 }

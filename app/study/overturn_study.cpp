@@ -67,7 +67,7 @@ std::string models_in_words(const study::OverturnPlan& plan, const study::Overtu
   if (map.planar == map.run) return fmt::format("{} runs as planar blocks\n", map.run);
   const std::string why = study::why_not_planar(plan);
   return fmt::format("{} of {} runs as planar blocks{}\n", map.planar, map.run,
-                     why.empty() ? "" : "; the scene itself is none: " + why);
+                     why.empty() ? study::k_climbed : "; the scene itself is none: " + why);
 }
 
 Findings overturn_findings(const study::OverturnPlan& plan, const study::OverturnMap& map) {

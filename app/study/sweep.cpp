@@ -146,8 +146,8 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
   return std::nullopt;
 }
 
-std::string SweepEnd::runs_in_words(const std::string& of) const {
-  return fmt::format("{} of {} runs{}{}", run, rows.size(), of,
+std::string SweepEnd::runs_in_words(const std::string& what) const {
+  return fmt::format("{} of {} {}{}", run, rows.size(), what,
                      kept > 0 ? fmt::format(" ({} from before)", kept) : "");
 }
 

@@ -77,8 +77,8 @@ struct SweepEnd {
   int run = 0, kept = 0;          ///< cases that have a row, those of them from before included
   std::string file;               ///< where rows are kept; gone once all are there and written
   bool complete() const { return run == static_cast<int>(rows.size()); }
-  /// "12 of 40 runs", and how many of them are from before.
-  std::string runs_in_words(const std::string& of = "") const;
+  /// "12 of 40 runs", and how many of them are from before; `what`: "runs", "runs of 0.3 s".
+  std::string runs_in_words(const std::string& what) const;
   /// What --quick did to it; `what` it leaves out first.
   std::string left_in_words(bool quick, const char* what) const;
 };

@@ -29,4 +29,8 @@ std::optional<std::vector<BodyEnd>> run_planar(const std::vector<planar::PlanarC
                                                const std::vector<Shake>& shakes, double duration,
                                                const std::function<bool()>& give_up);
 
+/// What becomes of those runs, behind how many were planar.
+inline constexpr const char* k_climbed =
+    "; the others came within reach of something else, or stuck again and again";
+
 }  // namespace topple::study
