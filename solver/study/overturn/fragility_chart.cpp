@@ -66,8 +66,7 @@ class FragilityChart {
                       sheet_.lines({plan_.scene.title,
                                     fmt::format("{:g} s simulated. Varied from run to run: {}",
                                                 plan_.scene.setup.run.duration, varied),
-                                    fmt::format("{}, {} of {} runs; {} shown of {}", origin, results_.runs,
-                                                results_.of, shown_.size(), results_.bodies.size())},
+                                    origin + ", " + coverage()},
                                    k_from_left, top - 74, 24, k_grey_as_is);
     double x = k_from_left;
     for (std::size_t s = 0; s < k_states; ++s) {

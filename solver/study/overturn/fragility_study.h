@@ -85,7 +85,8 @@ struct FragilityCurve {
   /// where fewer than nine in ten of the draws have a fit.
   std::optional<Interval> median_of_records, beta_of_records;
 
-  /// From the greatest level up to which no run hits to the least from which every run does; none: one is missing.
+  /// From the greatest level up to which no run hits to the least from which every run does; none: one is
+  /// missing.
   std::optional<Interval> step() const;
   double probability(const FragilityPlan& plan, double value) const;  ///< of the fit, which there is
 };

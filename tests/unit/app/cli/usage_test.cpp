@@ -135,8 +135,9 @@ TEST_F(UsageTest, studies_that_cannot_be_are_refused) {
   expect_one_line({"study"}, 2, "KIND is required");
   expect_one_line({"study", "elements"}, 2, "--output is required (topple study --help)");
   expect_one_line({"study", "elements", "-o", ""}, 2, "--output: is empty");
-  expect_one_line({"study", "frob", "-o", "out"}, 2,
-                  "\"frob\" is not a study; known: elements, fragility, overturn, penalty, precision, stability");
+  expect_one_line(
+      {"study", "frob", "-o", "out"}, 2,
+      "\"frob\" is not a study; known: elements, fragility, overturn, penalty, precision, stability");
   expect_one_line({"study", "penalty", "-o", "out"}, 2,
                   "study penalty: SCENE is required (topple study --help)");
   expect_one_line({"study", "penalty", "paper-a"}, 2, "--output is required (topple study --help)");
