@@ -18,9 +18,9 @@ struct BodyEnd {
   double slide = 0;                 ///< m, greatest up to the critical angle
 };
 
-/// The blocks of a scene that asks for motion alone, whose furniture is all `planar`, or `auto` and rigid by its own
-/// rules (model_level.h), without restitution, on contacts no softer than those of scenes that name none. Empty:
-/// it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
+/// The blocks of a scene that asks for motion alone, whose furniture is all `planar`, or `auto` and rigid by
+/// its own rules (model_level.h), without restitution, on contacts no softer than those of scenes that name
+/// none. Empty: it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 
 /// Runs them, one fate each. None: give_up() came true, which is asked after each step, or it is not known
