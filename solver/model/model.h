@@ -80,6 +80,8 @@ struct Body {
   std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the level elastic
   /// rad/s, angular, of its first elastic mode (damping.h); 0: not known, it has no damping.
   double first_frequency = 0;
+  /// Of its base while it is a planar block: factor on the rate that an impact leaves by Housner's condition.
+  double restitution = 1;
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
 };
 

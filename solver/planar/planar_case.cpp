@@ -153,6 +153,7 @@ void set_block(Candidate& c) {
   const ContactLaw& law = c.parameters.contact;
   block.kinetic_friction = law.friction;
   block.static_friction = law.friction + law.excess();
+  block.restitution = c.body.restitution;
   block.gravity = -c.parameters.gravity.z();
   found.bounces = law.restitution > 0;
   found.floor = static_cast<int>(c.floor - c.model.planes.data());

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace topple::planar {
 namespace {
+
+constexpr double k_rounding = 1e-12;  // relative, of an energy
 
 int sign(double a) {
   return (a > 0) - (a < 0);
@@ -120,22 +123,34 @@ AfterImpact impact_of_edge(const Block& block, const State& state, Side side) {
 }
 
 /// The base, upright; v: of the centre of gravity. The block goes on about this edge.
-AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, Side side) {
+AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, Side side,
+                              double restitution) {
   const double k2 = block.inertia_over_mass(), u = block.edge(side), h = block.height;
   const auto about_edge = [&](double after) { return AfterImpact{h * after, u * after, after, 0}; };
-  const AfterImpact stuck = about_edge(block.restitution * (k2 * rate + h * v.x_velocity + u * v.z_velocity) /
-                                       (k2 + h * h + u * u));
+  const AfterImpact stuck =
+      about_edge(restitution * (k2 * rate + h * v.x_velocity + u * v.z_velocity) / (k2 + h * h + u * u));
   const double tangential = stuck.x_velocity - v.x_velocity;
   if (in_static_cone(block, tangential, stuck.z_velocity - v.z_velocity)) return stuck;
   const auto after = [&](int slip, AfterImpact& out) {
     const double friction = block.kinetic_friction * slip, denominator = 1 + u * (u - friction * h) / k2;
     const double push = (u * rate - v.z_velocity) / denominator;
-    out = about_edge(block.restitution * (rate + (friction * h - u) * push / k2));
+    out = about_edge(restitution * (rate + (friction * h - u) * push / k2));
     out.x_velocity = v.x_velocity - friction * (out.z_velocity - v.z_velocity);
     return denominator > k_jam && slip * (out.x_velocity - h * out.rate) > 0;
   };
   const double slip_before = v.x_velocity - h * rate;
   return slipped(slip_before != 0 ? sign(slip_before) : -sign(tangential), after, stuck);
+}
+
+AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, Side side) {
+  const AfterImpact out = impact_about_edge(block, v, rate, side, block.restitution);
+  if (block.restitution <= 1) return out;
+  const auto energy = [&](double x_velocity, double z_velocity, double turn) {
+    return x_velocity * x_velocity + z_velocity * z_velocity + block.inertia_over_mass() * turn * turn;
+  };
+  const bool gains = energy(out.x_velocity, out.z_velocity, out.rate) >
+                     energy(v.x_velocity, v.z_velocity, rate) * (1 + k_rounding);
+  return gains ? impact_about_edge(block, v, rate, side, 1) : out;
 }
 
 /// The state in which the centre of gravity moves so, an edge on the floor.
@@ -171,6 +186,14 @@ std::string_view word(Event event) {
                                                    "reversal", "take-off", "landing",  "impact",
                                                    "settled",  "jam",      "overturn", "stalled"};
   return words[static_cast<std::size_t>(event)];
+}
+
+double greatest_restitution(const Block& block) {
+  const double about_centre = block.inertia_over_mass() + block.height * block.height;
+  const double kept = about_centre - block.left * block.right;
+  const auto about = [&](double u) { return about_centre + u * u; };
+  return kept > 0 ? std::sqrt(about(block.left) * about(block.right)) / kept
+                  : std::numeric_limits<double>::infinity();
 }
 
 EdgeForces edge_forces(const Situation& now, const State& state, int slip) {

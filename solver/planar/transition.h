@@ -59,6 +59,12 @@ EdgeForces edge_forces(const Situation& now, const State& state, int slip);
 /// The mode that follows from the forces of this instant.
 State decided(const Situation& now, const State& state);
 
+/// The restitution factor up to which no impact of a rocking block without slip gains energy,
+///   sqrt((k^2 + h^2 + l^2)(k^2 + h^2 + r^2))/(k^2 + h^2 - l r);
+/// infinite where Housner's condition lets none rock on. With a factor above 1 another impact, after a flight
+/// or with slip, that would gain energy by it is Housner's.
+double greatest_restitution(const Block& block);
+
 /// What follows an event. `side`: the edge concerned.
 State lifted(const Situation& now, const State& state, Side side);
 State slipping_base(const Situation& now, const State& state, Side side);

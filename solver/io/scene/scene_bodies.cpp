@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "solver/body/candidates.h"
 #include "solver/body/model_level.h"
 #include "solver/body/planar_body.h"
 #include "solver/contact/proximity.h"
@@ -330,12 +331,13 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
         std::any_of(model.loads.begin(), model.loads.end(), its))
       entry.fail("model", "a body with supports or loads is computed as \"frame\"");
   }
-  const double damping = entry.number("damping");
+  const double damping = entry.number("damping"), restitution = entry.number("restitution");
   for (int b = static_cast<int>(model.bodies.size()) - count; b < static_cast<int>(model.bodies.size());
        ++b) {
     setup.parameters.models.push_back(asked);
     setup.parameters.damping.push_back(damping);
     Body& body = model.bodies[b];
+    body.restitution = restitution;
     if (how.bends) {
       body.elastic = elastic_basis(model, b);
       if (!how.may_be_frame && !body.elastic)
@@ -345,6 +347,41 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
     if (damping > 0 && body.first_frequency == 0)
       entry.fail("damping", "the body has no elastic mode: a part of it has no mass");
   }
+}
+
+/// Whether it becomes a rigid body as soon as it begins.
+bool is_near_another(const Model& model, const State& start, int body) {
+  return std::ranges::any_of(start.candidate_pairs, [&](const ElementPair& pair) {
+    const auto is_own = [&](int element) {
+      return model.members[model.elements[element].member].body == body;
+    };
+    return is_own(pair.a) || is_own(pair.b);
+  });
+}
+
+/// Empty: it begins as one.
+std::string why_no_block(const Setup& setup, const State& start, int body, bool asked) {
+  const LevelChoice base = base_level(setup.model, setup.parameters, body);
+  if (!asked && base.level != ModelLevel::rigid)
+    return "it is computed as \"" + std::string(traits(base.level).word) + "\" (" + name(base.reason) + ")";
+  const std::string_view why = why_not_planar(setup.model, setup.parameters, start, body, asked);
+  if (why.empty() && is_near_another(setup.model, start, body))
+    return "another body is within " + short_number(1e3 * start.candidate_margin) + " mm";
+  return std::string(why);
+}
+
+/// Of a body that begins as a planar block.
+void check_restitution(const Entry& entry, const Setup& setup, const State& start, int body, bool asked) {
+  const double given = setup.model.bodies[body].restitution;
+  const std::optional<BlockState> begins =
+      PlanarBody(setup.model, body).begin(setup.parameters, start, asked);
+  if (!(given > 1) || !begins) return;
+  const double most = planar::greatest_restitution(
+      planar::block_along(setup.model, setup.parameters, begins->along, body).block);
+  if (given > most)
+    entry.fail("restitution", short_number(given) + " lets \"" + setup.model.bodies[body].name +
+                                  "\" gain energy at an impact; at most " +
+                                  short_number(std::floor(most * 1e4) / 1e4));
 }
 
 }  // namespace
@@ -389,18 +426,21 @@ void read_bodies(const Entry& root, Setup& setup) {
 }
 
 void check_planar(const Entry& root, const Setup& setup) {
-  const State start = start_state(setup.model, setup.starts);
+  State start = start_state(setup.model, setup.starts);
+  NearSearch search(setup.model);
   int body = 0;
   for (const char* const kind : {"cabinet", "frame"})
     for (const Entry& entry : root.entries(kind)) {
       const bool asked = traits(entry.chosen("model", body_models())).kind == BodyModel::planar;
       const int end = body + static_cast<int>(std::max<std::size_t>(1, entry.vectors("copies").size()));
       for (; body < end; ++body) {
-        if (!asked) continue;
-        const std::string_view why = why_not_planar(setup.model, setup.parameters, start, body, true);
+        if (!asked && !entry.has("restitution")) continue;
+        update_candidates(setup.model, search, start, 0);
+        const std::string why = why_no_block(setup, start, body, asked);
         if (!why.empty())
-          entry.fail("model",
-                     "\"" + setup.model.bodies[body].name + "\" is no planar block: " + std::string(why));
+          entry.fail(asked ? "model" : "restitution",
+                     "\"" + setup.model.bodies[body].name + "\" is no planar block: " + why);
+        check_restitution(entry, setup, start, body, asked);
       }
     }
 }

@@ -29,6 +29,15 @@ void add_damping(Rows& rows) {
       .only_in({"dynamic"});
 }
 
+void add_restitution(Rows& rows) {
+  rows.number("restitution", 0, 2,
+              "of its base while it is a planar block: factor on the angular rate that an impact leaves by "
+              "Housner's condition; once it is a rigid body `contact.restitution` holds")
+      .absent(1)
+      .only("model", {"auto", "planar"})
+      .only_in({"dynamic"});
+}
+
 void add_copies(Rows& rows) {
   rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
       .absent_means("one, where it is");
@@ -75,6 +84,7 @@ void add_cabinet(std::vector<Key>& keys) {
       .only("bracing", {"panels"});
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
   add_damping(rows);
+  add_restitution(rows);
   add_copies(rows);
   add_model(rows, BodyModel::automatic);
 }
@@ -102,6 +112,7 @@ void add_frame(std::vector<Key>& keys) {
       .absent(frame.angular_velocity)
       .only_in({"dynamic"});
   add_damping(rows);
+  add_restitution(rows);
   add_model(rows, BodyModel::frame);
 }
 

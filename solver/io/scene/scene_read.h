@@ -30,7 +30,8 @@ void read_materials_and_sections(const Entry& root, Setup& setup);
 /// [[cabinet]] in the order of the file, then [[frame]], then floors and walls of members.
 void read_bodies(const Entry& root, Setup& setup);
 
-/// Refuses `model = "planar"` where a body is none; after bodies, shakes and anchors.
+/// Refuses `model = "planar"` and `restitution` of a body that does not begin as a planar block, and a
+/// restitution by which it would gain energy; after bodies, shakes and anchors.
 void check_planar(const Entry& root, const Setup& setup);
 
 /// contact.alpha where it is left out; after the bodies.

@@ -36,6 +36,32 @@ TEST(SceneErrors, static_friction_is_not_below_the_kinetic_and_damping_is_a_rati
             "s.toml:16:11: cabinet.free.damping: expected a plain number, found true");
 }
 
+TEST(SceneErrors, restitution_of_a_base_is_for_planar_blocks_and_loses_energy) {
+  const std::string motion = "[run]\nwant = [\"motion\"]\n[floor]\n", planar = "model = \"planar\"\n";
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n" + motion), "no error");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n" + planar + "[floor]\n"), "no error");
+  const std::string at = "s.toml:16:15: cabinet.free.restitution: ";
+  EXPECT_EQ(in_cabinet("restitution = 2.5\n" + motion), at + "2.5 is outside 0..2");
+  EXPECT_EQ(in_cabinet("restitution = 1.5\n" + motion), "");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\nmodel = \"rigid\"\n" + motion),
+            "s.toml:16:1: cabinet.free.restitution: belongs to model = auto or planar, but model is rigid");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n[floor]\n"),
+            at + "\"free\" is no planar block: it is computed as \"elastic\" (stresses are wanted)");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n[run]\nwant = [\"motion\"]\n"),
+            at + "\"free\" is no planar block: it stands on no level plane under straight gravity");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n" + motion + "[contact]\nrestitution = 0.5\n"),
+            at + "\"free\" is no planar block: its contacts bounce");
+  EXPECT_EQ(in_cabinet("restitution = 0.9\n" + motion + "[[wall]]\nat = [-0.5, 0]\nnormal = [1, 0, 0]\n"),
+            at + "\"free\" is no planar block: a wall or body is within its fall");
+}
+
+TEST(SceneErrors, a_block_that_begins_beside_another_body_is_none) {
+  const std::string two = "model = \"planar\"\ncopies = [[0, 0, 0], [GAP, 0, 0]]\n[floor]\n";
+  EXPECT_EQ(in_cabinet(replaced(two, "GAP", "1")), "no error");
+  EXPECT_EQ(in_cabinet(replaced(two, "GAP", "0.45")),
+            "s.toml:16:9: cabinet.free.model: \"free\" is no planar block: another body is within 50 mm");
+}
+
 TEST(SceneErrors, floors_of_beams_and_of_planes_have_their_own_keys) {
   EXPECT_EQ(after_beam("[floor]\nspacing = 1\n"),
             "s.toml:18:1: floor.spacing: belongs to type = beams, but type is plane");

@@ -107,6 +107,23 @@ planar::PlanarCase block_of(const topple::Setup& setup) {
   return *found;
 }
 
+// Its energy over that at rest goes as the square of the rate at the impact, and is kept between impacts.
+TEST(PlanarBody, impact_in_a_run_keeps_the_factor_times_housners_rate) {
+  for (const double factor : {0.5, 0.9, 1., 1.02}) {
+    topple::Setup setup = alone({.tilt = 0.1, .friction = 1.5});
+    setup.model.bodies[0].restitution = factor;
+    const planar::Block block = block_of(setup).block;
+    topple::Run run(setup);
+    const auto height = [&] { return planar::energy(block, run.state().blocks[0].motion); };
+    const double before = height();
+    const planar::Side side = run.state().blocks[0].motion.side;
+    while (!run.over() && run.state().blocks[0].motion.side == side) ASSERT_TRUE(run.advance().ok());
+    const double k2h2 = block.inertia_over_mass() + block.height * block.height,
+                 b2 = block.right * block.right;
+    EXPECT_NEAR(std::sqrt(height() / before), factor * (k2h2 - b2) / (k2h2 + b2), 1e-9) << factor;
+  }
+}
+
 // Both integrate the same motion to rounding, in other steps; impacts and slips carry differences of 1e-16
 // on, a rocking block's grow as exp(2.6 t).
 TEST(PlanarBody, run_is_that_of_the_block) {
@@ -325,6 +342,34 @@ TEST(PlanarBody, becomes_a_rigid_body_that_moves_like_one) {
     EXPECT_EQ(found.reason, row.reason) << row.what << ": " << name(found.reason);
     EXPECT_LT(found.apart, row.apart) << row.what;
   }
+}
+
+// One of many falls on another: whoever advances them.
+TEST(PlanarBody, threads_do_not_change_a_bit) {
+  const auto run_with = [](int workers) {
+    topple::Setup setup = falls_on_another();
+    for (int k = 1; k < 40; ++k) {  // more than one part
+      CabinetSpec spec = tall_cabinet();
+      spec.base = CabinetSpec::Base::corners;
+      spec.name = copy_name("far", static_cast<std::size_t>(k));
+      spec.at = Vec3(0, 4 * k, 0);
+      spec.tilt = 0.004 * k;
+      setup.starts.push_back(add_cabinet(setup.model, spec));
+    }
+    setup.parameters.models.assign(setup.model.bodies.size(), BodyModel::planar);
+    topple::Run run(setup);
+    if (workers > 1)
+      run.share({workers, [workers](int count, const std::function<void(int, int)>& f) {
+                   for (int task = count - 1; task >= 0; --task) f(task, task % workers);
+                 }});
+    for (int i = 0; i < 1000; ++i) EXPECT_TRUE(run.advance().ok());
+    EXPECT_EQ(level_of(run), ModelLevel::rigid);
+    EXPECT_EQ(level_of(run, 2), ModelLevel::planar);
+    return hash(run.state());
+  };
+  const auto alone = run_with(1);
+  EXPECT_EQ(alone, run_with(2));
+  EXPECT_EQ(alone, run_with(4));
 }
 
 TEST(PlanarBody, a_number_that_is_none_ends_the_run) {

@@ -54,6 +54,40 @@ TEST(PlanarRocking, impact_keeps_the_share_of_the_rate_that_housner_states) {
     }
 }
 
+// From either side, though the share of the rate differs.
+TEST(PlanarRocking, greatest_restitution_keeps_the_energy_of_an_impact) {
+  Block block = uniform_block(0.2, 0.9, 1.5);
+  block.left = 0.3, block.right = 0.12;
+  block.restitution = greatest_restitution(block);
+  EXPECT_GT(block.restitution, 1);
+  for (const int way : {1, -1}) {
+    const PlanarRun run = run_planar(block, floor_at_rest(), standing(way * 0.05), 20, {}, 1);
+    ASSERT_EQ(run.last, Event::impact);
+    const double before = energy(block, run.events[0].before);
+    EXPECT_NEAR(energy(block, run.state), before, 1e-12 * before);
+  }
+  EXPECT_EQ(greatest_restitution(uniform_block(1, 0.5, 1.5)), std::numeric_limits<double>::infinity());
+}
+
+// Whatever it falls from: with a factor above 1 no impact gains energy.
+TEST(PlanarRocking, no_landing_gains_energy_by_restitution) {
+  int landings = 0;
+  for (const double friction : {0., 0.3, 1.5})
+    for (const double rate : {-1., 0.2, 1., 3.})
+      for (const double speed : {-1., 0., 0.5, 1., 2.}) {
+        Block block = uniform_block(0.2, 0.9, friction);
+        block.restitution = greatest_restitution(block);
+        State state;
+        state.mode = Mode::flight;
+        state.z = block.height;
+        state.x_velocity = speed, state.z_velocity = -1e-3, state.rate = rate;
+        const State after = fallen_on_base({block, 0, block.gravity}, state, Side::right);
+        EXPECT_LE(energy(block, after), energy(block, state) * (1 + 1e-9)) << friction << rate << speed;
+        landings += after.rate != 0;
+      }
+  EXPECT_GT(landings, 10);
+}
+
 // About the new edge: k^2 + h^2 - l r over k^2 + h^2 + l^2 when the left one, at l, lands.
 TEST(PlanarRocking, edges_at_different_distances_have_ratios_of_their_own) {
   Block block = uniform_block(0.2, 0.9, 1.5);
