@@ -37,12 +37,17 @@ TEST(SceneErrors, static_friction_is_not_below_the_kinetic_and_damping_is_a_rati
 }
 
 TEST(SceneErrors, restitution_of_a_base_is_for_planar_blocks_and_loses_energy) {
-  const std::string motion = "[run]\nwant = [\"motion\"]\n[floor]\n", planar = "model = \"planar\"\n";
+  const std::string motion = "[run]\nwant = [\"motion\"]\n[floor]\n", planar = "model = \"planar\"\n",
+                    shake = "[[shake]]\nfrequency = 1\namplitude = 1\n";
   EXPECT_EQ(in_cabinet("restitution = 0.9\n" + motion), "no error");
   EXPECT_EQ(in_cabinet("restitution = 0.9\n" + planar + "[floor]\n"), "no error");
   const std::string at = "s.toml:16:15: cabinet.free.restitution: ";
   EXPECT_EQ(in_cabinet("restitution = 2.5\n" + motion), at + "2.5 is outside 0..2");
-  EXPECT_EQ(in_cabinet("restitution = 1.5\n" + motion), "");
+  // 1/(1 - 3/2 sin^2 a), a the critical angle of 380 mm by 1790 mm: 1.06916
+  EXPECT_EQ(in_cabinet("restitution = 1.08\ninertia = \"solid\"\nshelves = 3\n" + motion + shake),
+            at + "1.08 lets \"free\" gain energy at an impact; at most 1.0691");
+  EXPECT_EQ(in_cabinet("restitution = 1.0691\ninertia = \"solid\"\nshelves = 3\n" + motion + shake),
+            "no error");
   EXPECT_EQ(in_cabinet("restitution = 0.9\nmodel = \"rigid\"\n" + motion),
             "s.toml:16:1: cabinet.free.restitution: belongs to model = auto or planar, but model is rigid");
   EXPECT_EQ(in_cabinet("restitution = 0.9\n[floor]\n"),
