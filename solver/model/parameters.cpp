@@ -20,7 +20,8 @@ double sum_of(const Vec3& v) {
 }
 
 double sum_of(const ContactLaw& law) {
-  const auto& [kind, alpha, q, friction, friction_static, restitution, normal_speed, slip_speed, member_share] = law;
+  const auto& [kind, alpha, q, friction, friction_static, restitution, normal_speed, slip_speed,
+               member_share] = law;
   return sum(alpha, q, friction, friction_static, restitution, normal_speed, slip_speed, member_share);
 }
 

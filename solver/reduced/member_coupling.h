@@ -46,7 +46,8 @@ class MemberCoupling {
 
   /// pairs() start where the nodes are; their gaps there are known from here on.
   void start();
-  /// The same for copies of pairs that moved little since they started; gaps of some millimetres are lower bounds.
+  /// The same for copies of pairs that moved little since they started; gaps of some millimetres are lower
+  /// bounds.
   void go_on(std::span<MemberPair> pairs) const;
   /// Held nodes stand where they are in `state`.
   void place_held(const State& state);

@@ -16,6 +16,7 @@
 #include "solver/io/scene/scene_save.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
+#include "solver/planar/transition.h"
 #include "solver/study/common/low_discrepancy.h"
 
 namespace topple::study {
@@ -64,15 +65,8 @@ void grow(planar::PlanarCase& of, double value) {
   of.farthest -= 2 * std::max(0., R - R / value);
 }
 
-/// At most so that an impact takes no energy away.
 void restore(planar::PlanarCase& of, double value) {
-  planar::Block& block = of.block;
-  const double k2 = block.inertia_over_mass(), h = block.height;
-  double most = 0;  // share of the rate that is kept by Housner's condition
-  for (const double u : {block.left, block.right})
-    most = std::max(most, (k2 + h * h - block.left * block.right) / (k2 + h * h + u * u));
-  block.restitution *= value;
-  if (most > 0) block.restitution = std::min(block.restitution, 1 / most);
+  of.block.restitution = std::min(of.block.restitution * value, greatest_restitution(of.block));
 }
 
 constexpr FactorTraits k_factors[] = {

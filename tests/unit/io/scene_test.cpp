@@ -135,9 +135,9 @@ TEST(Scene, alpha_and_time_step_follow_the_bodies_when_alpha_is_left_out) {
   const ContactLaw law;
   EXPECT_EQ(chosen.parameters.contact.alpha,
             rigid_alpha(chosen.model, law, chosen.parameters.gravity).value());
-  EXPECT_EQ(chosen.parameters.contact.member_share,
-            member_alpha(chosen.model, law, chosen.parameters.gravity).value() /
-                chosen.parameters.contact.alpha);
+  EXPECT_EQ(
+      chosen.parameters.contact.member_share,
+      member_alpha(chosen.model, law, chosen.parameters.gravity).value() / chosen.parameters.contact.alpha);
   EXPECT_TRUE(chosen.parameters.adaptive);
   const topple::Setup named =
       parse_scene(k_cabinet_scene + floor + "[contact]\nalpha = \"50 kgf\"\n", "s.toml").setup;

@@ -249,8 +249,8 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
     const auto add = [&](const char* number, double ContactLaw::*of) {
       out[name + "." + number] = [law, of](Parameters& p) -> double& { return p.*law.*of; };
     };
-    [[maybe_unused]] const auto& [kind, alpha, q, friction, friction_static, restitution, normal, slip] =
-        all.*law;
+    [[maybe_unused]] const auto& [kind, alpha, q, friction, friction_static, restitution, normal, slip,
+                                  share] = all.*law;
     add("alpha", &ContactLaw::alpha);
     add("q", &ContactLaw::q);
     add("friction", &ContactLaw::friction);
@@ -258,6 +258,7 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
     add("restitution", &ContactLaw::restitution);
     add("normal_speed", &ContactLaw::normal_speed);
     add("slip_speed", &ContactLaw::slip_speed);
+    add("member_share", &ContactLaw::member_share);
   };
   add_law("contact", &Parameters::contact);
   add_law("contact_before", &Parameters::contact_before);
