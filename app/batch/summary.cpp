@@ -217,10 +217,12 @@ std::string dynamic_head(const ordered_json& s) {
                      s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
                      s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
-  const double share = s["contact"]["member_share"].get<double>();
+  const ordered_json& share = s["contact"]["member_share"];
   out += fmt::format("contact: alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}\n",
                      s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
-                     share == 1 ? "" : fmt::format(" ({:.3g} of it between members)", share),
+                     share.is_null() || share == 1
+                         ? ""
+                         : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
                      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>());
   return out + energy_in_words(s["energy"]) + "\n";
 }
@@ -275,7 +277,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
                     {"friction", number(p.contact.friction)},
                     {"restitution", number(p.contact.restitution)},
                     {"normal_speed_m_s", number(p.contact.normal_speed)},
-                    {"member_share", number(p.contact.member_share)}};
+                    {"member_share", run.setup().model.bodies.size() > 1 ? number(p.contact.member_share)
+                                                                         : ordered_json(nullptr)}};
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();

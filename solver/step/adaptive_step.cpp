@@ -10,17 +10,16 @@ namespace topple {
 namespace {
 
 constexpr double k_safety = 0.9;        // of the error that is aimed at
-constexpr double k_most_growth = 2;     // from step to step, of frames: others find their substeps
+constexpr double k_most_growth = 2;     // from step to step
 constexpr double k_most_shrinking = 5;  // of a step that is tried again
 constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
 
 // The size to try next after one of size h with this error and these iterations.
-double next_size(double h, double error, int iterations, bool frames) {
-  const double most = frames ? k_most_growth : k_longest_step / h;
-  double growth = error > 0 ? k_safety / std::sqrt(error) : most;
+double next_size(double h, double error, int iterations) {
+  double growth = error > 0 ? k_safety / std::sqrt(error) : k_most_growth;
   if (iterations > k_many_iterations) growth = std::min(growth, 1.);
-  return h * std::clamp(growth, 1 / k_most_shrinking, std::max(most, 1.));
+  return h * std::clamp(growth, 1 / k_most_shrinking, k_most_growth);
 }
 
 // At most h, so that what is left of the way takes no step much shorter than the others.
@@ -49,8 +48,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
         status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h, w.parts.with_frames()) : 0;
     if (status.ok() && error <= 1) {
       if (h == left) w.next.time = state.time + left;
-      const bool frames = std::ranges::any_of(w.parts.with_frames(), [](char with) { return with; });
-      const double wanted = std::min(next_size(h, error, w.most_iterations, frames), k_longest_step);
+      const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
       w.next.step_size = h;
       if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
       break;
@@ -68,7 +66,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
       break;
     }
     ++rejected;
-    h = std::max(status.ok() ? std::min(next_size(h, error, 0, true), h / 1.2) : h / 2, k_least_step);
+    h = std::max(status.ok() ? std::min(next_size(h, error, 0), h / 1.2) : h / 2, k_least_step);
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;

@@ -10,8 +10,8 @@ namespace {
 TEST(SceneErrors, unknown_keys_list_the_known_ones) {
   EXPECT_EQ(
       after_beam("[contact]\n  foo = 1\n"),
-      "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, friction_static, law, normal_speed, q, "
-      "restitution, slip_speed");
+      "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, friction_static, law, member_share, "
+      "normal_speed, q, restitution, slip_speed");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(error_of("tople = 1\n" + k_scene),
@@ -356,9 +356,7 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
             "--set cabinet.walled.mass=30: cabinet.walled: no such entry; known: free");
   EXPECT_EQ(error("contact.foo=30"),
             "--set contact.foo=30: contact.foo: unknown key; known: alpha, friction, friction_static, law, "
-            "normal_speed, q, "
-            "restitution, "
-            "slip_speed");
+            "member_share, normal_speed, q, restitution, slip_speed");
   EXPECT_EQ(error("shake.1.amplitude=3"),
             "--set shake.1.amplitude=3: shake: an override cannot add or replace a [[shake]]");
   EXPECT_EQ(error("cabinet=[]"),
