@@ -137,9 +137,10 @@ std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   return verdict;
 }
 
-/// x, y: as they are told.
-std::string cell_in_words(const OverturnFound& found, int i, int j, double x, double y) {
-  return say(k_map_cell, x, found.plan->x.unit, y, found.plan->y.unit, outcome_in_words(found, i, j));
+std::string cell_in_words(const OverturnFound& found, int i, int j) {
+  const Axis &x = found.plan->x, &y = found.plan->y;
+  return say(k_map_cell, x.values[static_cast<std::size_t>(i)], x.unit, y.values[static_cast<std::size_t>(j)],
+             y.unit, outcome_in_words(found, i, j));
 }
 
 /// The cell below the mouse: told, and loaded by a click.
@@ -156,10 +157,7 @@ void handle_mouse(Player& player, const LogChart& chart, const OverturnFound& fo
   if (i < 0 || j < 0) return;
   const float gap = 4 * ImGui::GetTextLineHeight();
   ImGui::SetNextWindowPos({chart.left - gap, at.y}, ImGuiCond_Always, {1, 0.5f});  // beside the cells
-  ImGui::SetTooltip("%s\n%s",
-                    cell_in_words(found, i, j, found.plan->x.values[static_cast<std::size_t>(i)],
-                                  found.plan->y.values[static_cast<std::size_t>(j)])
-                        .c_str(),
+  ImGui::SetTooltip("%s\n%s", cell_in_words(found, i, j).c_str(),
                     say(player.can_edit() ? k_map_click : k_map_no_click).c_str());
   if (ImGui::IsMouseClicked(0) && player.can_edit()) load(player, *found.plan, i, j, refused);
 }
@@ -273,8 +271,7 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
     ImGui::TextWrapped("%s", say(k_map_no_lines).c_str());
   const int i = place_on(plan.x, x), j = place_on(plan.y, y);
   ImGui::TextWrapped(
-      "%s",
-      (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j, x, y))).c_str());
+      "%s", (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j))).c_str());
   draw_steps(player, *found, refused);
   if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of))
     ImGui::TextWrapped("%s", say(k_map_stale).c_str());

@@ -61,7 +61,7 @@ inline constexpr Phrase k_map_all_fall{"; neighbours disagree, all {0} runs with
 inline constexpr Phrase k_map_all_stand{"; neighbours disagree, none of {0} runs within this cell overturns",
                                         "。周囲で結果が分かれるが、このマス内の {0} 件に転倒はない"};
 inline constexpr Phrase k_map_follows{"The map follows the sliders.", "マップはスライダーに追従します。"};
-inline constexpr Phrase k_map_here{"Now {0}.", "現在 {0}。"};
+inline constexpr Phrase k_map_here{"Cell of the present shake: {0}.", "現在の加振のマス：{0}。"};
 inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",
                                       "現在の加振はマップの範囲外です。"};
 inline constexpr Phrase k_map_click{"A click shakes like this from now on; R runs it from the start.",
