@@ -238,8 +238,8 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
   return loads_;
 }
 
-void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& contacts,
-                                std::span<const MemberPair> pairs, double velocity_factor,
+// Adds a tangent's blocks, of any bodies.
+void MemberCoupling::add_blocks(const PairTangent& tangent, const MemberPair& pair,
                                 const AddBlock& add) const {
   // Of a vector at the ends of element `side`, by the unknowns of a group of its body.
   const auto columns_at = [&](int node, int group) {
@@ -253,40 +253,41 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     }
     return j;
   };
-  const auto are_rigid = [&](const std::array<int, 2>& bodies) {
-    return std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; });
-  };
-  const auto add_all = [&](const PairTangent& tangent) {
-    const MemberPair& pair = pairs[tangent.pair];
-    const std::array<int, 2> bodies = bodies_of(pair);
-    std::array<std::array<Columns, k_most_groups>, 2> at_touch;
-    std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
-    for (int side = 0; side < 2; ++side) {
-      for (int i = 0; bodies[side] >= 0 && i < groups(modes_[bodies[side]]); ++i) {
-        const Columns first = columns_at(pair.node[2 * side], i),
-                      second = columns_at(pair.node[2 * side + 1], i);
-        at_touch[side][i] = tangent.share[2 * side] * first + tangent.share[2 * side + 1] * second;
-        for (int p = 0; p < tangent.product_count; ++p) {
-          const PairTangent::Product& product = tangent.products[p];
-          left[side][i][p] =
-              first.transpose() * product.left[2 * side] + second.transpose() * product.left[2 * side + 1];
-          right[side][i][p] =
-              first.transpose() * product.right[2 * side] + second.transpose() * product.right[2 * side + 1];
-        }
+  const std::array<int, 2> bodies = bodies_of(pair);
+  std::array<std::array<Columns, k_most_groups>, 2> at_touch;
+  std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
+  for (int side = 0; side < 2; ++side) {
+    for (int i = 0; bodies[side] >= 0 && i < groups(modes_[bodies[side]]); ++i) {
+      const Columns first = columns_at(pair.node[2 * side], i),
+                    second = columns_at(pair.node[2 * side + 1], i);
+      at_touch[side][i] = tangent.share[2 * side] * first + tangent.share[2 * side + 1] * second;
+      for (int p = 0; p < tangent.product_count; ++p) {
+        const PairTangent::Product& product = tangent.products[p];
+        left[side][i][p] =
+            first.transpose() * product.left[2 * side] + second.transpose() * product.left[2 * side + 1];
+        right[side][i][p] =
+            first.transpose() * product.right[2 * side] + second.transpose() * product.right[2 * side + 1];
       }
     }
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) {
-        if (bodies[a] < 0 || bodies[b] < 0) continue;
-        for (int i = 0; i < groups(modes_[bodies[a]]); ++i)
-          for (int j = 0; j < groups(modes_[bodies[b]]); ++j) {
-            Mat6 block = at_touch[a][i].transpose() * (tangent.local * at_touch[b][j]);
-            for (int p = 0; p < tangent.product_count; ++p)
-              block += left[a][i][p] * right[b][j][p].transpose();
-            const Mat6 of_stick = at_touch[a][i].transpose() * (tangent.stick * at_touch[b][j]);
-            add(bodies[a], i, bodies[b], j, block, of_stick);
-          }
-      }
+  }
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b) {
+      if (bodies[a] < 0 || bodies[b] < 0) continue;
+      for (int i = 0; i < groups(modes_[bodies[a]]); ++i)
+        for (int j = 0; j < groups(modes_[bodies[b]]); ++j) {
+          Mat6 block = at_touch[a][i].transpose() * (tangent.local * at_touch[b][j]);
+          for (int p = 0; p < tangent.product_count; ++p) block += left[a][i][p] * right[b][j][p].transpose();
+          const Mat6 of_stick = at_touch[a][i].transpose() * (tangent.stick * at_touch[b][j]);
+          add(bodies[a], i, bodies[b], j, block, of_stick);
+        }
+    }
+}
+
+void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& contacts,
+                                std::span<const MemberPair> pairs, double velocity_factor,
+                                const AddBlock& add) const {
+  const auto are_rigid = [&](const std::array<int, 2>& bodies) {
+    return std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; });
   };
   RigidPairSlopes rigid(law, position_, arm_, velocity_factor);
   std::array<int, 2> of_rigid{-1, -1};
@@ -312,7 +313,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     if (take_rigid(pair))
       add_rigid(pair);
     else
-      add_all(tangent());
+      add_blocks(tangent(), pair, add);
   };
   auto blend = contacts.blends.begin();
   const auto add_blends = [&](int before) {

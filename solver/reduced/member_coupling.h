@@ -81,6 +81,7 @@ class MemberCoupling {
     Vec3 place;      // m, from the centre of gravity, reference axes
   };
   int number_of(int node);
+  void add_blocks(const PairTangent& tangent, const MemberPair& pair, const AddBlock& add) const;
   Vec3 acceleration(int node) const;
   Vec3 shape(const Node& node, int mode) const;
 
