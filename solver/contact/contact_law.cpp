@@ -49,13 +49,6 @@ void add_drag(const ContactLaw& law, const ContactInput& in, double p, double dp
       law.friction * p / speed * (Mat3::Identity() - direction * direction.transpose());
 }
 
-// The stick spring and its damping, N/m and N s/m.
-struct Stick {
-  double k, c;
-  Stick(const ContactLaw& law, const ContactInput& in)
-      : k(k_stick_stiffness * law.alpha / in.L), c(2 * k_stick_damping * std::sqrt(k * in.mass)) {}
-};
-
 // What is left of the spring's travel when its force is capped.
 void take_stick(double k, const Vec3& stick, double limit, ContactOutput& out) {
   const double travel2 = stick.squaredNorm();
@@ -66,7 +59,7 @@ void take_stick(double k, const Vec3& stick, double limit, ContactOutput& out) {
 void coulomb(const ContactLaw& law, const ContactInput& in, double p, double dp, ContactOutput& out,
              ContactDerivatives derivatives) {
   const PackVector<double> n = packed(in.normal);
-  const auto [k, c] = Stick(law, in);
+  const auto [k, c] = StickSpring(law.alpha, in.L, in.mass);
   const double loss = normal_loss(law.restitution);
   const bool weakens = law.excess() > 0;
   const auto f = coulomb_force(law, loss, weakens, n, packed(in.velocity), packed(in.stick), true, p, k, c);
@@ -129,7 +122,7 @@ ContactOutput coulomb_at_new_velocity(const ContactLaw& law, ContactInput& in, d
   out.normal = std::max(impedance * (vn - free_n), 0.);  // rounding may be more than is left of it
 
   // sticking and slipping forces alike lie along k stick + c free
-  const auto [k, c] = Stick(law, in);
+  const auto [k, c] = StickSpring(law.alpha, in.L, in.mass);
   const Vec3 stick = in.stick - n.dot(in.stick) * n, free_t = free - free_n * n,
              pull = k * stick + c * free_t;
   const double size = pull.norm();

@@ -246,14 +246,13 @@ class TouchFinder {
     Four p = alpha * penalty_power(depth, law_.q);
     for (int k = 0; k < places.count; ++k)
       if (depth[k] > k_hardening_depth) p.set(k, alpha[k] / law_.alpha * penalty_force(law_, depth[k], true));
-    const Four k_stick = k_stick_stiffness * alpha / L,
-               c_stick = 2 * k_stick_damping *
-                         sqrt(k_stick * places.each([&](const Place&of) { return pairs_[of.pair].mass; }));
+    const StickSpring<Four> spring(alpha, L,
+                                   places.each([&](const Place& of) { return pairs_[of.pair].mass; }));
     const auto f =
-        coulomb_force(law_, loss_, law_.excess() > 0, normal, speed, stick, mask, p, k_stick, c_stick);
+        coulomb_force(law_, loss_, law_.excess() > 0, normal, speed, stick, mask, p, spring.k, spring.c);
     const Points tangential = -f.scale * f.trial, force = f.normal * normal + tangential;
-    const Four travel2 = dot(f.stick, f.stick), energy = stick_energy(k_stick, travel2, f.limit);
-    const Points held = held_share(k_stick, travel2, f.limit, mask) * f.stick;
+    const Four travel2 = dot(f.stick, f.stick), energy = stick_energy(spring.k, travel2, f.limit);
+    const Points held = held_share(spring.k, travel2, f.limit, mask) * f.stick;
     const auto forces = lanes(force), tangentials = lanes(tangential), helds = lanes(held);
     MemberTouch* touch = &found_.touches[first];
     for (int k = 0; k < places.count; ++k) {

@@ -115,18 +115,16 @@ RigidPairSlopes::Slopes RigidPairSlopes::slopes(const Points& normal, const Four
   for (int k = 0; k < count_; ++k)
     if (depth[k] > k_hardening_depth)
       stiffness.set(k, alpha[k] / law_.alpha * penalty_stiffness(law_, depth[k], L[k], true));
-  const Four spring = k_stick_stiffness * alpha / L,
-             damper = 2 * k_stick_damping *
-                      sqrt(spring * each([](const MemberTouch&of) { return of.input.mass; }));
+  const StickSpring<Four> stick(alpha, L, each([](const MemberTouch& of) { return of.input.mass; }));
   const bool weakens = with_velocity_ && law_.excess() > 0;
   const auto f = coulomb_force(law_, loss_, law_.excess() > 0, normal,
                                each_vector([](const MemberTouch& of) { return of.input.velocity; }),
                                each_vector([](const MemberTouch& of) { return of.input.stick; }), touching, p,
-                               spring, damper);
-  Four along = -gamma_dt_ * stiffness * f.factor, across = gamma_dt_ * spring;
+                               stick.k, stick.c);
+  Four along = -gamma_dt_ * stiffness * f.factor, across = gamma_dt_ * stick.k;
   if (with_velocity_) {
     along += normal_slope(law_, loss_, p, f.inverse);
-    across += damper;
+    across += stick.c;
   }
   across = choose(touching, across * f.scale, Four(0));
   const PackMatrix<Four> square = outer(normal, normal),

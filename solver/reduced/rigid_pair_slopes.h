@@ -15,6 +15,7 @@ struct PackBlock {
   PackMatrix<Four> part[2][2];
 };
 
+/// Sums over what touches between two rigid bodies: begin, add, end; then they are read.
 class RigidPairSlopes {
  public:
   /// `position` and `arm`, m, per node: arms from the centres of gravity. velocity_factor: see PairTangent.

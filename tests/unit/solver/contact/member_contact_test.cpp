@@ -105,6 +105,28 @@ TEST(MemberContact, force_and_moment_of_the_pair_vanish) {
     }
 }
 
+// At ends, at nearest points, and where the two are blended: to rounding.
+TEST(MemberContact, share_of_alpha_is_as_an_alpha_of_that_size) {
+  std::mt19937 rng(5);
+  ContactLaw shared, own;
+  shared.member_share = 0.25;
+  own.alpha *= 0.25;
+  int compared = 0;
+  for (double angle : {0., 0.03, 0.06, 0.5})
+    for (int trial = 0; trial < 10; ++trial) {
+      Pair pair = random_pair(rng, angle);
+      const MemberContacts a = pair.find(shared), b = pair.find(own);
+      std::vector<Vec3> of_a(4, Vec3::Zero()), of_b = of_a;
+      add_forces(a, pair.pairs, of_a);
+      add_forces(b, pair.pairs, of_b);
+      for (int k = 0; k < 4; ++k)
+        EXPECT_LT((of_a[k] - of_b[k]).norm(), 1e-12 * (1 + of_b[k].norm())) << angle;
+      EXPECT_NEAR(stored_energy(shared, a, pair.pairs), stored_energy(own, b, pair.pairs), 1e-12) << angle;
+      compared += static_cast<int>(b.touches.size());
+    }
+  EXPECT_GT(compared, 40);
+}
+
 /// -d(force)/d(position) - factor d(force)/d(velocity).
 Eigen::Matrix<double, 12, 12> tangent_of(const ContactLaw& law, const MemberContacts& found, const Pair& pair,
                                          double factor) {
