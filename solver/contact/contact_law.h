@@ -1,6 +1,7 @@
 // Penalty forces at one contact, after Eqs. 2 and 3 of the paper.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "solver/math/types.h"
@@ -15,6 +16,15 @@ namespace topple {
 inline constexpr double k_stick_stiffness = 10;
 /// Damping ratio of a sticking contact with its share of the body's mass (ContactInput::mass).
 inline constexpr double k_stick_damping = 0.2;
+/// The stick spring and its damping at one contact (P: double) or four (Four); mass: ContactInput::mass, kg.
+template <class P>
+struct StickSpring {
+  P k, c;  ///< N/m, N s/m
+  [[gnu::always_inline]] StickSpring(P alpha, P L, P mass) : k(k_stick_stiffness * alpha / L) {
+    using std::sqrt;
+    c = 2 * k_stick_damping * sqrt(k * mass);
+  }
+};
 
 /// The law at time t. During the ramp of an edit alpha (evenly in its logarithm), q, both frictions and
 /// restitution go from the old to the new values; the rest is new at once.

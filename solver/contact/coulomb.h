@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "solver/contact/contact_law.h"
 #include "solver/math/pack.h"
 #include "solver/math/upwards.h"
 #include "solver/model/parameters.h"
@@ -18,16 +17,6 @@ template <class T>
 T friction_coefficient(const ContactLaw& law, T speed2) {
   return law.friction + law.excess() / (1 + speed2 * (1 / (law.slip_speed * law.slip_speed)));
 }
-
-/// The stick spring and its damping at contacts with a share of the body's mass, kg.
-template <class P>
-struct StickSpring {
-  P k, c;  ///< N/m, N s/m
-  [[gnu::always_inline]] StickSpring(P alpha, P L, P mass) : k(k_stick_stiffness * alpha / L) {
-    using std::sqrt;
-    c = 2 * k_stick_damping * sqrt(k * mass);
-  }
-};
 
 template <class P>
 using MaskOf = decltype(P() <= P());

@@ -149,8 +149,7 @@ TEST_F(PresentPanels, a_map_of_planar_blocks_appears_by_itself_and_follows_the_s
   ASSERT_TRUE(until([&] { return ready(); }));
   viewer().show(Viewer::Tab::teach);
   const auto whole = [&] { return map().shown && !map().shown->shares.empty(); };
-  ASSERT_TRUE(until_computed(whole));
-  EXPECT_EQ(map().follows, MapState::Follows::yes);
+  ASSERT_TRUE(until_computed([&] { return whole() && map().follows == MapState::Follows::yes; }));
   EXPECT_EQ(map().shown->map.run, 576);
   EXPECT_EQ(map().shown->map.planar, 576);
   const auto near_an_edge =
