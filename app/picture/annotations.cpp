@@ -7,6 +7,7 @@
 
 #include "app/picture/body_colour.h"
 #include "app/picture/row.h"
+#include "solver/contact/proximity.h"
 
 namespace topple::app {
 namespace {
@@ -127,6 +128,13 @@ void add_contact_forces(const Model& model, const io::FrameRow& row, double newt
   for (std::size_t e = 0; 4 * e < row.member_contact.size(); ++e) {
     if (model.bodies[model.members[model.elements[e].member].body].ground) continue;
     add(element_curve(model, row, e).place(row.member_contact[4 * e + 3]), &row.member_contact[4 * e]);
+  }
+  for (std::size_t k = 0; 5 * k < row.panel_contact.size(); ++k) {
+    const float* const on = &row.panel_contact[5 * k];
+    Vec3 at = floor_shift(row);
+    const int part = static_cast<int>(model.elements.size() + k);
+    each_share(model, part, on[3], on[4], [&](int node, double share) { at += share * position(row, node); });
+    add(at, on);
   }
 }
 

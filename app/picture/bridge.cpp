@@ -71,6 +71,7 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.contact_depth, b.contact_depth, out.contact_depth);
   mix(a.contact_force, b.contact_force, out.contact_force);
   mix(a.member_contact, b.member_contact, out.member_contact);
+  mix(a.panel_contact, b.panel_contact, out.panel_contact);
   mix(a.energy, b.energy, out.energy);
   for (std::size_t i = 0; i < a.body.size(); ++i) {
     const auto x = std::bit_cast<io::BodyArray>(a.body[i]), y = std::bit_cast<io::BodyArray>(b.body[i]);
@@ -126,12 +127,11 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   add_anchors(model, drawn, shift, out);
   out.legend = legend(row, settings);
   if (settings.panels)
-    for (const Body& body : model.bodies)
-      for (const auto& corners : body.panels) {
-        render::Panel panel;
-        for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(drawn, corners[k]) + shift);
-        out.panels.push_back(panel);
-      }
+    for (const topple::Panel& sheet : model.panels) {
+      render::Panel panel;
+      for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(drawn, sheet.node[k]) + shift);
+      out.panels.push_back(panel);
+    }
   if (settings.contact_forces) {
     const double newtons = newtons_per_decimetre(extent_, settings.alone ? greatest_contact_force(row) : 0);
     add_contact_forces(model, drawn, newtons, out);

@@ -18,6 +18,7 @@ void expect_same_model(const Model& model, const io::FrameRow& row) {
       row.section_force.size() != 6 * elements || row.hinge.size() != elements ||
       row.contact_force.size() != 3 * model.contact_points.size() * model.planes.size() ||
       row.member_contact.size() != (model.bodies.size() > 1 ? 4 * elements : 0) ||
+      (!row.panel_contact.empty() && row.panel_contact.size() != 5 * model.panels.size()) ||
       row.body.size() != model.bodies.size() || row.anchor.size() != model.anchors.size())
     throw io::InputError(io::k_another_model);
 }
@@ -50,6 +51,7 @@ double greatest_contact_force(const io::FrameRow& row) {
   };
   add(row.contact_force, 3);
   add(row.member_contact, 4);
+  add(row.panel_contact, 5);
   return greatest;
 }
 

@@ -43,21 +43,22 @@ double member_limit(const BodySystem& system, const ContactLaw& law, const BodyM
   double limit = std::numeric_limits<double>::infinity();
   if (system.candidate_pairs.empty()) return limit;
   std::vector<double> stiffness(system.bodies.size(), 0.);
-  const auto add = [&](int element, double more) {
-    const auto own = std::ranges::find(system.bodies, model.members[model.elements[element].member].body);
+  const auto add = [&](int part, double more) {
+    const auto own = std::ranges::find(system.bodies, body_of(model, part));
     if (own != system.bodies.end()) stiffness[own - system.bodies.begin()] += more;
   };
   for (const MemberPair& pair : system.member_pairs()) {
-    const auto& n = pair.node;
-    const auto& x = motion.position;
-    const auto& v = motion.velocity;
-    const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
-    const double L = pair.L, l = at.between.norm();
-    const Vec3 relative = (1 - at.s) * v[n[0]] + at.s * v[n[1]] - (1 - at.t) * v[n[2]] - at.t * v[n[3]];
-    const ContactAhead ahead = contact_ahead(law, l - L, -relative.dot(at.between) / l, L, true);
-    add(pair.elements.a, ahead.stiffness);
-    add(pair.elements.b, ahead.stiffness);
-    limit = std::min(limit, ahead.limit);
+    const NearestShares near = nearest_shares(pair, gather(pair, motion.position));
+    for (int k = 0; k < near.count; ++k) {
+      const NearestShares::At& at = near.at[k];
+      Vec3 relative = Vec3::Zero();
+      for (int i = 0; i < pair.nodes(); ++i) relative += at.share[i] * motion.velocity[pair.node[i]];
+      const double speed = -relative.dot(at.between) / at.between.norm();
+      const ContactAhead ahead = contact_ahead(law, at.gap, speed, pair.L, true);
+      add(pair.elements.a, ahead.stiffness);
+      add(pair.elements.b, ahead.stiffness);
+      limit = std::min(limit, ahead.limit);
+    }
   }
   for (std::size_t b = 0; b < stiffness.size(); ++b)
     limit = std::min(limit, bounce_limit(model.bodies[system.bodies[b]].mass, stiffness[b]));

@@ -244,14 +244,13 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
   for (const MemberTouch& touch : now_.touches) {
     const MemberForce force = member_force(touch, coupling_.pairs()[touch.pair]);
     const auto [a, b] = coupling_.bodies_of(coupling_.pairs()[touch.pair]);
-    const auto push = [&](int body, int element, double place, const Vec3& by) {
+    const auto push = [&](int body, int part, double t, double u, const Vec3& by) {
       if (body < 0) return;
-      const int* const node = model_.elements[element].node;
-      bodies_[body].body->add_member_force(node[0], (1 - place) * by);
-      bodies_[body].body->add_member_force(node[1], place * by);
+      each_share(model_, part, t, u,
+                 [&](int node, double share) { bodies_[body].body->add_member_force(node, share * by); });
     };
-    push(a, force.elements.a, force.s, force.force);
-    push(b, force.elements.b, force.t, -force.force);
+    push(a, force.elements.a, force.s, 0, force.force);
+    push(b, force.elements.b, force.t, force.u, -force.force);
   }
 }
 

@@ -12,17 +12,16 @@ Islands::Islands(const Model& model)
 std::vector<Island> Islands::divide(const std::vector<ElementPair>& candidate_pairs) const {
   const int count = static_cast<int>(model_.bodies.size());
   DisjointSets sets(count);
-  const auto body_of = [&](int element) { return model_.members[model_.elements[element].member].body; };
   for (const ElementPair& pair : candidate_pairs) {
-    const int a = body_of(pair.a), b = body_of(pair.b);
+    const int a = body_of(model_, pair.a), b = body_of(model_, pair.b);
     if (!held_[a] && !held_[b]) sets.join(a, b);
   }
   std::vector<Island> islands(count);
   for (int b = 0; b < count; ++b)
     if (!held_[b]) islands[sets.first_of(b)].bodies.push_back(b);
   for (const ElementPair& pair : candidate_pairs) {
-    const int a = body_of(pair.a);
-    islands[sets.first_of(held_[a] ? body_of(pair.b) : a)].candidate_pairs.push_back(pair);
+    const int a = body_of(model_, pair.a);
+    islands[sets.first_of(held_[a] ? body_of(model_, pair.b) : a)].candidate_pairs.push_back(pair);
   }
   std::erase_if(islands, [](const Island& island) { return island.bodies.empty(); });
   return islands;

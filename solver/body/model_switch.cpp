@@ -182,10 +182,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   changed_[b] = true;
   std::erase_if(state.member_sticks,
                 [&](const MemberStick& stick) {  // between other parts of it from here on
-                  const auto is_own = [&](int element) {
-                    return model.members[model.elements[element].member].body == b;
-                  };
-                  return is_own(stick.elements.a) || is_own(stick.elements.b);
+                  return body_of(model, stick.elements.a) == b || body_of(model, stick.elements.b) == b;
                 });
   const double sunk = height - body_pose(model, state, b).centre.dot(on.parameters.gravity);
   state.energy.model_switch += model.bodies[b].mass * sunk;

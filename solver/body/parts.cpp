@@ -44,9 +44,8 @@ std::vector<Island> Parts::without_mixed(const Island& island) const {
   std::vector<ElementPair> kept;
   for (const ElementPair& pair : island.candidate_pairs) {
     std::vector<int> free;
-    for (const int element : {pair.a, pair.b})
-      if (const int body = model_.members[model_.elements[element].member].body;
-          std::ranges::binary_search(island.bodies, body))
+    for (const int part : {pair.a, pair.b})
+      if (const int body = body_of(model_, part); std::ranges::binary_search(island.bodies, body))
         free.push_back(body);
     if (is_elastic(free.front()) == is_elastic(free.back())) kept.push_back(pair);
   }

@@ -4,23 +4,18 @@
 #include <cmath>
 
 #include "solver/contact/coulomb.h"
+#include "solver/contact/panel_place.h"
 
 namespace topple {
 namespace {
 
-using Ends = PairVector;
-
-Ends gather(const MemberPair& pair, std::span<const Vec3> x) {
-  return {x[pair.node[0]], x[pair.node[1]], x[pair.node[2]], x[pair.node[3]]};
-}
-
 // How the moving of the nearest points changes the tangent: mixed derivatives of half the squared distance by
 // the nodes and the free ones of s, t, times `factor` and the inverse of the second derivatives by the
 // latter, times the same.
-void add_sliding(const MemberTouch& touch, const Ends& x, double factor, PairTangent& tangent) {
+void add_sliding(const MemberTouch& touch, const PairVector& x, double factor, PairTangent& tangent) {
   const Vec3 da = x[1] - x[0], db = x[3] - x[2], d = touch.l * touch.input.normal;
   PairVector by_s, by_t;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 6; ++k) {
     by_s[k] = touch.share[k] * da;
     by_t[k] = -touch.share[k] * db;
   }
@@ -34,10 +29,32 @@ void add_sliding(const MemberTouch& touch, const Ends& x, double factor, PairTan
   const auto add = [&](const PairVector& left, double of_s, double of_t) {
     PairTangent::Product& product = tangent.products[tangent.product_count++];
     product.left = left;
-    for (int k = 0; k < 4; ++k) product.right[k] = factor / determinant * (of_s * by_s[k] + of_t * by_t[k]);
+    for (int k = 0; k < 6; ++k) product.right[k] = factor / determinant * (of_s * by_s[k] + of_t * by_t[k]);
   };
   if (touch.s_free) add(by_s, tt, -st);
   if (touch.t_free) add(by_t, -st, ss);
+}
+
+// How the turning and bending of a panel under a tip change the tangent: by D and C, which say how the foot
+// moves and its normal n turns with the nodes,  sum_m (D_m C_m^T + C_m D_m^T),
+//   C_m = N'_m n,  D_m = sum_o H^-1_mo (share F_o + l/2 C_o).
+void add_turning_panel(const MemberTouch& touch, const PairVector& x, double force, PairTangent& tangent) {
+  const Vec3& n = touch.input.normal;
+  const PanelPlace at = panel_place(x[touch.place - 1], {x[2], x[3], x[4], x[5]});
+  const Eigen::Matrix2d inverse = at.inverse();
+  std::array<PairVector, 2> along, turn;
+  for (int m = 0; m < 2; ++m)
+    for (int k = 0; k < 6; ++k) {
+      turn[m][k] = k < 2 ? Vec3::Zero() : Vec3(at.change[k - 2][m] * n);
+      along[m][k] = touch.share[k] * at.along[m] + touch.l / 2 * turn[m][k];
+    }
+  for (int m = 0; m < 2; ++m) {
+    PairVector moved;
+    for (int k = 0; k < 6; ++k)
+      moved[k] = force * (inverse(m, 0) * along[0][k] + inverse(m, 1) * along[1][k]);
+    tangent.products[tangent.product_count++] = {moved, turn[m]};
+    tangent.products[tangent.product_count++] = {turn[m], moved};
+  }
 }
 
 bool slips(const ContactLaw& law, const MemberTouch& touch) {
@@ -50,18 +67,47 @@ bool slips(const ContactLaw& law, const MemberTouch& touch) {
 
 }  // namespace
 
+NearestShares nearest_shares(const MemberPair& pair, const PairVector& x) {
+  NearestShares found;
+  if (pair.panel == nullptr) {
+    const NearestPoints at = nearest_points(x[0], x[1], x[2], x[3]);
+    found.count = 1;
+    found.at[0] = {{1 - at.s, at.s, at.t - 1, -at.t}, at.between, at.between.norm() - pair.L};
+    return found;
+  }
+  found.count = 0;
+  for (int end = 0; end < 2; ++end) {
+    if (!pair.tip[end]) continue;
+    const NearestOnPanel on = nearest_on_panel(x[end], {x[2], x[3], x[4], x[5]});
+    NearestShares::At& at = found.at[found.count++];
+    at = {{}, on.between, on.between.norm() - pair.L};
+    at.share[end] = 1;
+    for (int k = 0; k < 4; ++k) at.share[2 + k] = -on.share[k];
+  }
+  return found;
+}
+
+double nearest_gap(const MemberPair& pair, const PairVector& x) {
+  const NearestShares near = nearest_shares(pair, x);
+  return near.count == 1 ? near.at[0].gap : std::min(near.at[0].gap, near.at[1].gap);
+}
+
 Vec3 relative(const MemberTouch& touch, const MemberPair& pair, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) sum += touch.share[k] * x[pair.node[k]];
+  for (int k = 0; k < pair.nodes(); ++k) sum += touch.share[k] * x[pair.node[k]];
   return sum;
 }
 
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force) {
-  for (const MemberTouch& touch : contacts.touches)
-    for (int k = 0; k < 4; ++k) force[pairs[touch.pair].node[k]] += touch.share[k] * touch.out.force;
-  for (const MemberBlend& blend : contacts.blends)
-    for (int k = 0; k < 4; ++k)
-      force[pairs[blend.pair].node[k]] -= blend.slope * blend.surplus * blend.by_sine[k];
+  for (const MemberTouch& touch : contacts.touches) {
+    const MemberPair& pair = pairs[touch.pair];
+    for (int k = 0; k < pair.nodes(); ++k) force[pair.node[k]] += touch.share[k] * touch.out.force;
+  }
+  for (const MemberBlend& blend : contacts.blends) {
+    const MemberPair& pair = pairs[blend.pair];
+    for (int k = 0; k < pair.nodes(); ++k)
+      force[pair.node[k]] -= blend.slope * blend.surplus * blend.by_sine[k];
+  }
 }
 
 PairTangent touch_tangent(const ContactLaw& law, const MemberTouch& touch, const MemberPair& pair,
@@ -77,7 +123,9 @@ PairTangent touch_tangent(const ContactLaw& law, const MemberTouch& touch, const
   const Mat3 across = Mat3::Identity() - n * n.transpose();
   tangent.stick.setZero();
   if (traits(law).sticks && !slips(law, touch)) tangent.stick = across * tangent.local * across;
-  if (touch.l > k_thin * pair.L) {
+  if (pair.panel != nullptr) {
+    add_turning_panel(touch, gather(pair, position), touch.out.normal, tangent);
+  } else if (touch.l > k_thin * pair.L) {
     tangent.local -= touch.out.normal / touch.l * across;
     add_sliding(touch, gather(pair, position), touch.out.normal / touch.l, tangent);
   }
@@ -91,7 +139,7 @@ PairTangent blend_tangent(const MemberBlend& blend) {
   tangent.local.setZero();
   tangent.stick.setZero();
   tangent.product_count = 2;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 6; ++k) {
     tangent.products[0].left[k] = blend.by_sine[k];
     tangent.products[0].right[k] =
         blend.curvature * blend.surplus * blend.by_sine[k] + blend.slope * blend.by_surplus[k];
@@ -106,8 +154,8 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
                  const std::function<void(int i, int j, const Mat3& block)>& add) {
   const auto add_all = [&](const PairTangent& tangent) {
     const MemberPair& pair = pairs[tangent.pair];
-    for (int k = 0; k < 4; ++k)
-      for (int m = 0; m < 4; ++m) {
+    for (int k = 0; k < pair.nodes(); ++k)
+      for (int m = 0; m < pair.nodes(); ++m) {
         Mat3 block = tangent.share[k] * tangent.share[m] * tangent.local;
         for (int p = 0; p < tangent.product_count; ++p)
           block += tangent.products[p].left[k] * tangent.products[p].right[m].transpose();
@@ -144,14 +192,21 @@ int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pair
     if (!(touch.l > 0)) return touch.pair;
   for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
     const MemberPair& pair = pairs[k];
-    const Ends x0 = gather(pair, start), x1 = gather(pair, end);
-    double travel = 0;
-    for (int i = 0; i < 2; ++i)
-      for (int j = 2; j < 4; ++j) travel = std::max(travel, (x1[i] - x0[i] - x1[j] + x0[j]).norm());
-    if (travel <= pair.L / 2) continue;
-    const double before = nearest_points(x0[0], x0[1], x0[2], x0[3]).between.norm(),
-                 after = nearest_points(x1[0], x1[1], x1[2], x1[3]).between.norm();
-    if (std::min(before, after) < pair.L + travel) return k;
+    const PairVector x0 = gather(pair, start), x1 = gather(pair, end);
+    const NearestShares before = nearest_shares(pair, x0), after = nearest_shares(pair, x1);
+    for (int i = 0; i < before.count; ++i) {
+      // between members no relative motion of two ends is greater, on a panel that of the place is meant
+      double travel = 0;
+      if (pair.panel != nullptr) {
+        Vec3 way = Vec3::Zero();
+        for (int n = 0; n < 6; ++n) way += before.at[i].share[n] * (x1[n] - x0[n]);
+        travel = way.norm();
+      } else {
+        for (int a = 0; a < 2; ++a)
+          for (int b = 2; b < 4; ++b) travel = std::max(travel, (x1[a] - x0[a] - x1[b] + x0[b]).norm());
+      }
+      if (travel > pair.L / 2 && std::min(before.at[i].gap, after.at[i].gap) < travel) return k;
+    }
   }
   return -1;
 }

@@ -1,4 +1,5 @@
-// Penalty contact between members of different bodies: Eqs. 2 and 3 with the normal read as geometric.
+// Penalty contact between members of different bodies, and of members' tips with panels: Eqs. 2 and 3 with
+// the normal read as geometric.
 //
 // Two elements a and b hold the energy
 //   E = kappa U(l) + (1 - kappa)/4 (sum of U at the two ends of a over b and of b over a),
@@ -6,6 +7,9 @@
 // are nearest, kappa = x^2 (3 - 2 x), with x = sin^2 of their angle over k_parallel, at most 1. So nearly
 // parallel elements touch at their ends and do not chatter about one moving point. Forces are derivatives of
 // E, kappa's included: only damping and friction take energy. They act on centre lines.
+//
+// A tip p over a panel holds the energy  E = w U(l),  l: distance from the panel's middle plane, w:
+// panel_share, with which the panel gives way to the members that lie in it.
 #pragma once
 
 #include <array>
@@ -22,8 +26,8 @@ namespace topple {
 inline constexpr double k_parallel = 1e-2;  ///< sin^2 of the angle below which kappa < 1
 inline constexpr double k_thin = 0.02;      ///< of L, see PairTangent
 
-/// A vector at each end of two elements: of a, then of b.
-using PairVector = std::array<Vec3, 4>;
+/// A vector at each node of a pair.
+using PairVector = std::array<Vec3, 6>;
 
 /// A stick spring between members: tangential travel since sticking began, m. Part of State.
 struct MemberStick {
@@ -32,28 +36,33 @@ struct MemberStick {
   Vec3 stick;
 };
 
-/// Two elements that may touch, within a system.
+/// Two parts that may touch, within a system.
 struct MemberPair {
   ElementPair elements;
-  std::array<int, 4> node;         ///< ends of a, then of b, numbered within the system
+  const Panel* panel = nullptr;    ///< that b is; null: b is an element
+  std::array<bool, 2> tip{};       ///< ends of a that touch the panel
+  std::array<int, 6> node{};       ///< ends of a, then of b or corners of the panel, numbered in the system
   std::array<int, 2> count{1, 1};  ///< elements of a and b, from the first on, that are taken as one
   double L;                        ///< m
   double mass;                     ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
-  std::array<Vec3, 4> start;       ///< m, positions of the nodes where the step began: they tell the side
+  PairVector start;                ///< m, positions of the nodes where the step began: they tell the side
   std::array<Vec3, 5> stick;       ///< m, per place, where the step began
   double gap = 0;                  ///< m, between the surfaces at `start`, where it is known; 0: not
+
+  int nodes() const { return panel != nullptr ? 6 : 4; }
 };
 
-/// Contact of two elements at one place.
+/// Contact of two parts at one place.
 struct MemberTouch {
   int pair;   ///< within the system
   int place;  ///< 0: where they are nearest; 1, 2: first and second end of a over b; 3, 4: of b over a
-  std::array<double, 4> share;  ///< of the ends' motion in that of a's point relative to b's: sum share x
-  double weight;                ///< of its U in E, kappa or (1 - kappa)/4, times member_share
-  double s, t;                  ///< where, see NearestPoints
-  bool s_free, t_free;          ///< likewise
-  double l;                     ///< m, along the normal; <= 0: they went through each other
-  ContactInput input;           ///< its normal, from b to a, keeps its side while l goes through zero
+  std::array<double, 6> share{};  ///< of the nodes' motion in that of a's point relative to b's: sum share x
+  double weight;                  ///< of its U in E, kappa or (1 - kappa)/4 or w, times member_share
+  double s, t;                    ///< where, see NearestPoints; of a panel t and u are PanelPlace::r
+  double u = 0;
+  bool s_free, t_free;  ///< see NearestPoints
+  double l;             ///< m, along the normal; <= 0: they went through each other
+  ContactInput input;   ///< its normal, from b to a, keeps its side while l goes through zero
   ContactOutput out;
 };
 
@@ -65,11 +74,12 @@ inline ContactLaw weighted(ContactLaw law, const MemberTouch& touch) {
 
 /// Part of the force of two nearly parallel elements by kappa' = d(kappa)/d(sin^2):
 ///   -kappa' (U - (sum of U at the ends)/4) d(sin^2)/dx
+/// Of a tip over a panel by w, without the derivatives of w's slope: -U dw/dx.
 struct MemberBlend {
   int pair;
-  double slope, curvature;         ///< kappa' and kappa''
-  double surplus;                  ///< J, the bracket
-  PairVector by_sine, by_surplus;  ///< derivatives of sin^2 and of the bracket by the nodes
+  double slope, curvature;         ///< kappa' and kappa''; of a panel 1 and 0
+  double surplus;                  ///< J, the bracket, U
+  PairVector by_sine, by_surplus;  ///< derivatives of sin^2 or w, and of the bracket or U, by the nodes
 };
 
 /// All that touches between members at some instant.
@@ -86,11 +96,30 @@ struct MemberContacts {
 /// Relative motion of a touch: sum share x over the nodes of its pair.
 Vec3 relative(const MemberTouch& touch, const MemberPair& pair, std::span<const Vec3> x);
 
+/// Where the parts of a pair with nodes at x are nearest; of a panel where each tip is nearest to it.
+struct NearestShares {
+  struct At {
+    std::array<double, 6> share;  ///< see MemberTouch
+    Vec3 between;                 ///< m, from b to a
+    double gap;                   ///< m, between the surfaces
+  };
+  std::array<At, 2> at;
+  int count;
+};
+NearestShares nearest_shares(const MemberPair& pair, const PairVector& x);
+/// The least of their gaps, m.
+double nearest_gap(const MemberPair& pair, const PairVector& x);
+
 /// What touches at `position` and `velocity` (per node of the system), with forces. `start`: positions at the
 /// instant of the stick springs of `pairs`.
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found);
+
+/// The part of it that touches panels, added to `found`.
+void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs,
+                        std::span<const Vec3> position, std::span<const Vec3> velocity,
+                        std::span<const Vec3> start, MemberContacts& found);
 
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);
@@ -103,10 +132,10 @@ struct PairTangent {
     PairVector left, right;
   };
   int pair;
-  std::array<double, 4> share;
+  std::array<double, 6> share;
   Mat3 local;
   Mat3 stick;  ///< part of `local` that is the stick spring with its damping; zero when it slips
-  std::array<Product, 2> products;
+  std::array<Product, 4> products;
   int product_count;
 };
 PairTangent touch_tangent(const ContactLaw& law, const MemberTouch& touch, const MemberPair& pair,
@@ -124,6 +153,13 @@ void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<Memb
 /// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
                      std::span<const MemberPair> pairs);
+
+/// Nodes of a pair.
+inline PairVector gather(const MemberPair& pair, std::span<const Vec3> x) {
+  PairVector out;
+  for (int k = 0; k < pair.nodes(); ++k) out[k] = x[pair.node[k]];
+  return out;
+}
 
 /// First pair that went through each other, or moved by more than L/2 relative to each other within reach:
 /// the step from `start` to `end` (positions) is too long to see what happened between. -1: none.

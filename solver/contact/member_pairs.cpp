@@ -1,5 +1,6 @@
 #include "solver/contact/member_pairs.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -25,26 +26,36 @@ Segment segment_of(const Model& model, int e, bool by_elements) {
 
 std::vector<MemberPair> member_pairs(const Model& model, std::span<const ElementPair> candidates,
                                      const PairRules& rules) {
-  const auto body_of = [&](int element) { return model.members[model.elements[element].member].body; };
+  const auto segments_of = [&](const ElementPair& pair) {
+    const int of_a = body_of(model, pair.a), of_b = body_of(model, pair.b);
+    const bool on_panel = panel_of(model, pair.b) != nullptr;
+    return std::array<Segment, 2>{
+        segment_of(model, pair.a, rules.by_elements(of_a, of_b)),
+        on_panel ? Segment{pair.b, 1, {}} : segment_of(model, pair.b, rules.by_elements(of_b, of_a))};
+  };
   std::map<ElementPair, std::array<Segment, 2>> segments;
-  for (const auto& [a, b] : candidates) {
-    const int of_a = body_of(a), of_b = body_of(b);
-    const std::array<Segment, 2> both{segment_of(model, a, rules.by_elements(of_a, of_b)),
-                                      segment_of(model, b, rules.by_elements(of_b, of_a))};
+  for (const ElementPair& candidate : candidates) {
+    const std::array<Segment, 2> both = segments_of(candidate);
     segments.emplace(ElementPair{both[0].element, both[1].element}, both);
   }
   std::vector<MemberPair> pairs;
   for (const auto& [elements, both] : segments) {
     MemberPair& pair = pairs.emplace_back();
     pair.elements = elements;
+    pair.panel = panel_of(model, elements.b);
     pair.L = contact_length(model, elements);
-    double inverse = 0;
-    for (int k = 0; k < 2; ++k) {
-      pair.count[k] = both[k].count;
-      for (int end = 0; end < 2; ++end) pair.node[2 * k + end] = rules.number(both[k].node[end]);
-      inverse += rules.inverse_mass(body_of(both[k].element));
+    for (int k = 0; k < 2; ++k) pair.count[k] = both[k].count;
+    for (int end = 0; end < 2; ++end) {
+      pair.node[end] = rules.number(both[0].node[end]);
+      const int last = end == 0 ? 0 : both[0].count - 1;
+      pair.tip[end] = pair.panel != nullptr && is_tip(model, elements.a + last, end);
     }
-    pair.mass = 1 / inverse;
+    if (pair.panel != nullptr)
+      std::ranges::transform(pair.panel->node, pair.node.begin() + 2, rules.number);
+    else
+      std::ranges::transform(both[1].node, pair.node.begin() + 2, rules.number);
+    pair.mass =
+        1 / (rules.inverse_mass(body_of(model, elements.a)) + rules.inverse_mass(body_of(model, elements.b)));
     pair.start.fill(Vec3::Zero());
     pair.stick.fill(Vec3::Zero());
   }

@@ -16,7 +16,7 @@ using Points = PackVector<Four>;
 using Nodes = std::array<std::array<int, 4>, 4>;  // per end, of four pairs
 
 // sin^2 of the angle of two lines by their ends.
-PairVector sine2_by_end(const PairVector& x) {
+std::array<Vec3, 4> sine2_by_end(const PairVector& x) {
   const Vec3 da = x[1] - x[0], db = x[3] - x[2];
   const double la = da.norm(), lb = db.norm();
   const Vec3 u = da / la, v = db / lb;
@@ -55,6 +55,7 @@ class TouchFinder {
   void find() {
     for (int i = 0; i < static_cast<int>(pairs_.size()); ++i) {
       const MemberPair& pair = pairs_[i];
+      if (pair.panel != nullptr) continue;
       const double approach2 = greatest_approach2(pair);
       if (pair.gap > 0 && approach2 < pair.gap * pair.gap) continue;
       pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2});
@@ -143,6 +144,8 @@ class TouchFinder {
     if (kappa == 0 || !stores_energy_) return;
     MemberBlend& blend = found_.blends.emplace_back();
     blend.pair = at.pair;
+    blend.by_sine.fill(Vec3::Zero());
+    blend.by_surplus.fill(Vec3::Zero());
     blend.slope = share * 6 * sine * (1 - sine) / k_parallel;
     blend.curvature = share * (6 - 12 * sine) / (k_parallel * k_parallel);
     blend.surplus = 0;
@@ -272,8 +275,7 @@ class TouchFinder {
     for (MemberBlend& blend : found_.blends) {
       const MemberPair& pair = pairs_[blend.pair];
       const auto at = [&](int k) { return position_[pair.node[k]]; };
-      blend.by_sine = sine2_by_end({at(0), at(1), at(2), at(3)});
-      blend.by_surplus.fill(Vec3::Zero());
+      std::ranges::copy(sine2_by_end({at(0), at(1), at(2), at(3)}), blend.by_sine.begin());
       while (touch != found_.touches.end() && touch->pair < blend.pair) ++touch;
       for (; touch != found_.touches.end() && touch->pair == blend.pair; ++touch) {
         const double part = touch->place == 0 ? 1 : -0.25;
@@ -300,6 +302,7 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
                           std::span<const Vec3> start, MemberContacts& found) {
   found.clear();
   TouchFinder(law, pairs, position, velocity, start, found).find();
+  find_panel_touches(law, pairs, position, velocity, start, found);
 }
 
 }  // namespace topple

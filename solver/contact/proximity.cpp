@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/contact/nearest_places.h"
+#include "solver/contact/panel_place.h"
 
 namespace topple {
 namespace {
@@ -34,9 +35,17 @@ NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, con
   return {s, t, s > 0 && s<1, t> 0 && t < 1, unpacked(r + s * u - t * v)};
 }
 
+bool is_tip(const Model& model, int element, int end) {
+  const Member& member = model.members[model.elements[element].member];
+  const int last = member.first_element + member.element_count - 1;
+  return member.tip[end] && element == (end == 0 ? member.first_element : last);
+}
+
 double contact_length(const Model& model, const ElementPair& pair) {
-  const auto width = [&](int e) {
-    return model.sections[model.members[model.elements[e].member].section].width;
+  const auto width = [&](int part) {
+    const Panel* const panel = panel_of(model, part);
+    return panel != nullptr ? panel->width
+                            : model.sections[model.members[model.elements[part].member].section].width;
   };
   return (width(pair.a) + width(pair.b)) / 2;
 }
@@ -98,6 +107,31 @@ void NearSearch::find_inside(int body, const Box& common, std::span<const Vec3> 
       elements.emplace_back(e, box);
 }
 
+// Pairs of tips, ends of these elements, with panels of `other`.
+void NearSearch::find_tips(const std::vector<std::pair<int, Box>>& elements, int other, const Box& common,
+                           std::span<const Vec3> position, double margin) {
+  const Body& b = model_.bodies[other];
+  for (int k = b.first_panel; k < b.first_panel + b.panel_count; ++k) {
+    const Panel& panel = model_.panels[k];
+    const int part = static_cast<int>(model_.elements.size()) + k;
+    std::array<Vec3, 4> corner;
+    Box box;
+    for (int i = 0; i < 4; ++i) box.extend(corner[i] = position[panel.node[i]]);
+    const Vec3 reach = Vec3::Constant((panel.width + margin) / 2);
+    box.min() -= reach;
+    box.max() += reach;
+    if (!box.intersects(common)) continue;
+    for (const auto& [e, element] : elements) {
+      if (!box.intersects(element)) continue;
+      for (int end = 0; end < 2; ++end)
+        if (is_tip(model_, e, end) &&
+            nearest_on_panel(position[model_.elements[e].node[end]], corner).between.norm() <=
+                contact_length(model_, {e, part}) + margin)
+          found_.push_back({e, part});
+    }
+  }
+}
+
 const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position, double margin) {
   boxes_.clear();
   for (const Body& body : model_.bodies) {
@@ -120,6 +154,9 @@ const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position,
             nearest_points(position[m[0]], position[m[1]], position[n[0]], position[n[1]]).between.norm();
         if (l <= contact_length(model_, {i, j}) + margin) found_.push_back({i, j});
       }
+    if (!model_.surfaces) continue;
+    find_tips(of_a_, b, common, position, margin);
+    find_tips(of_b_, a, common, position, margin);
   }
   std::sort(found_.begin(), found_.end());
   return found_;

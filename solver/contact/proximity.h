@@ -1,4 +1,4 @@
-// Candidate pairs: elements of different bodies that may touch soon. And where centre lines are nearest.
+// Candidate pairs: parts of different bodies that may touch soon. And where centre lines are nearest.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 
 namespace topple {
 
-/// Two elements of different bodies, a < b; indices into Model::elements.
+/// Two parts of different bodies, a < b: elements, by their index into Model::elements, or an element with a
+/// tip and a panel. Panels are numbered from the number of elements on.
 struct ElementPair {
   int a = 0, b = 0;
   auto operator<=>(const ElementPair&) const = default;
@@ -29,7 +30,41 @@ NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, con
 /// The same for a point p in place of a; s = 0, not free.
 NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1);
 
-/// L of Eq. 2 for two elements: the mean of their members' contact widths, m.
+/// The panel that a part is; null: an element.
+inline const Panel* panel_of(const Model& model, int part) {
+  const int panel = part - static_cast<int>(model.elements.size());
+  return panel < 0 ? nullptr : &model.panels[panel];
+}
+/// Of a part.
+inline int body_of(const Model& model, int part) {
+  const Panel* const panel = panel_of(model, part);
+  return panel != nullptr ? panel->body : model.members[model.elements[part].member].body;
+}
+/// Its nodes: two or four.
+inline std::span<const int> nodes_of(const Model& model, int part) {
+  const Panel* const panel = panel_of(model, part);
+  return panel != nullptr ? std::span<const int>(panel->node)
+                          : std::span<const int>(model.elements[part].node);
+}
+/// Whether an end of an element, 0 or 1, is a tip of its member.
+bool is_tip(const Model& model, int element, int end);
+
+/// Calls f(node, share) of a place on a part: of an element at t, 0..1, of a panel at (t, u), PanelPlace::r.
+template <class F>
+void each_share(const Model& model, int part, double t, double u, F f) {
+  const std::span<const int> node = nodes_of(model, part);
+  if (node.size() == 2) {
+    f(node[0], 1 - t);
+    f(node[1], t);
+    return;
+  }
+  f(node[0], (1 - t) * (1 - u));
+  f(node[1], t * (1 - u));
+  f(node[2], t * u);
+  f(node[3], (1 - t) * u);
+}
+
+/// L of Eq. 2 for two parts: the mean of their contact widths, m.
 double contact_length(const Model& model, const ElementPair& pair);
 
 /// Per body: true when supports hold every direction of all its nodes.
@@ -39,7 +74,7 @@ std::vector<bool> held_bodies(const Model& model);
 class NearSearch {
  public:
   explicit NearSearch(const Model& model);
-  /// Pairs of elements of two bodies, not both held, whose surfaces are within `margin` (m) of each other, in
+  /// Pairs of parts of two bodies, not both held, whose surfaces are within `margin` (m) of each other, in
   /// order; valid until the next call. Bodies are sorted into a grid with cells as wide as the largest of
   /// them that is not held, so that the time is nearly linear in their number.
   const std::vector<ElementPair>& find(std::span<const Vec3> position, double margin);
@@ -54,6 +89,8 @@ class NearSearch {
   void find_bodies();
   void find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,
                    std::vector<std::pair<int, Box>>& elements) const;
+  void find_tips(const std::vector<std::pair<int, Box>>& elements, int other, const Box& common,
+                 std::span<const Vec3> position, double margin);
 
   const Model& model_;
   const std::vector<bool> held_;

@@ -294,8 +294,7 @@ void BodySystem::load_memory(const State& state, const BodyMotion& motion) {
     elements[k] = state.elements[own_elements[k].element];
   for (OwnAnchor& own : anchors) own.state = state.anchors[own.index];
   load_sticks(state);
-  for (MemberPair& pair : member_pairs_)
-    for (int k = 0; k < 4; ++k) pair.start[k] = motion.position[pair.node[k]];
+  for (MemberPair& pair : member_pairs_) pair.start = gather(pair, motion.position);
 }
 
 void BodySystem::load_sticks(const State& state) {

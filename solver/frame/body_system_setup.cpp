@@ -34,7 +34,7 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
   std::vector<std::pair<int, int>> couplings;
   for (const OwnElement& own : own_elements) couplings.emplace_back(own.i, own.j);
   for (const MemberPair& pair : member_pairs_)
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < pair.nodes(); ++i)
       for (int j = 0; j < i; ++j)
         if (const int a = moves_with_[pair.node[i]], b = moves_with_[pair.node[j]]; a != b)
           couplings.emplace_back(a, b);
@@ -55,14 +55,14 @@ void BodySystem::add_nodes(const std::vector<int>& rigid_bodies) {
       size = std::max(size, (model.node_position[i] - body.centre_of_gravity).norm());
     }
   }
-  const auto add_held = [this](int e) {
-    for (const int i : model.elements[e].node)
+  const auto add_held = [this](int part) {
+    for (const int i : nodes_of(model, part))
       if (local(i) < 0) node.push_back(i);
   };
   for (const ElementPair& pair : candidate_pairs)
     for (const int e : {pair.a, pair.b}) {
       add_held(e);
-      if (rigid_bodies.empty()) continue;  // which touch whole members
+      if (rigid_bodies.empty() || panel_of(model, e) != nullptr) continue;  // which touch whole members
       const Member& member = model.members[model.elements[e].member];
       add_held(member.first_element);
       add_held(member.first_element + member.element_count - 1);

@@ -60,6 +60,11 @@ std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) 
     for (const int i : {own.i, own.j})
       sum[i] += law.member_share * law.alpha / L * (along + across) * Mat3::Identity();
   }
+  if (!s.model.surfaces) return sum;
+  for (const Panel& panel : s.model.panels)
+    for (const int node : panel.node)
+      if (const int i = s.local(node); i >= 0)
+        sum[i] += law.member_share * law.alpha / panel.width * (along + across) * Mat3::Identity();
   return sum;
 }
 
@@ -78,7 +83,7 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
       const ContactLaw own = weighted(law, touch);
       Vec3 rest = Vec3::Zero();
       double inverse = 0;
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < pair.nodes(); ++k) {
         const double c = compliance(pair.node[k]);
         rest += touch.share[k] * (half[pair.node[k]] + c * s.force[pair.node[k]]);
         inverse += c * touch.share[k] * touch.share[k];
@@ -94,7 +99,8 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
         v -= correction;
         if (!(correction.norm() > 1e-12 * (1 + v.norm()))) break;
       }
-      for (int k = 0; k < 4; ++k) s.force[pair.node[k]] += touch.share[k] * (touch.out.force - before);
+      for (int k = 0; k < pair.nodes(); ++k)
+        s.force[pair.node[k]] += touch.share[k] * (touch.out.force - before);
       greatest = std::max(greatest, touch.out.force.norm());
       change = std::max(change, (touch.out.force - before).norm());
     }

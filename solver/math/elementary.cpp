@@ -422,7 +422,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-3";
+  return "topple-4";
 }
 
 }  // namespace topple

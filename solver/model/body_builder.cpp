@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/math/rotation.h"
 
@@ -59,6 +60,7 @@ BodyBuilder::BodyBuilder(Model& model, const std::string& name)
   new_body.first_element = static_cast<int>(model.elements.size());
   new_body.first_member = static_cast<int>(model.members.size());
   new_body.first_contact_point = static_cast<int>(model.contact_points.size());
+  new_body.first_panel = static_cast<int>(model.panels.size());
   model.bodies.push_back(new_body);
 }
 
@@ -106,6 +108,8 @@ std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, co
     member.element_count = elements;
     member.section = section;
     member.material = material;
+    const int ends[2] = {nodes[m * elements], nodes[(m + 1) * elements]};
+    for (int k = 0; k < 2; ++k) member.tip[k] = tips_.insert(ends[k]).second;
     for (int e = 0; e < elements; ++e) {
       const int i = m * elements + e;
       element.node[0] = nodes[i];
@@ -145,6 +149,57 @@ void BodyBuilder::add_material_mass() {
 void BodyBuilder::add_contact_point(int node, double width) {
   model_.contact_points.push_back({node, width});
   ++body().contact_point_count;
+}
+
+void BodyBuilder::add_panel(const std::array<int, 4>& nodes) {
+  const auto x = [&](int k) -> const Vec3& { return model_.node_position[nodes[k % 4]]; };
+  const Vec3 along = x(1) - x(0), cross = (x(2) - x(0)).cross(x(3) - x(1));
+  const double size = std::max((x(2) - x(0)).norm(), (x(3) - x(1)).norm());
+  for (int k = 0; k < 4; ++k)
+    if (!((x(k + 1) - x(k)).cross(x(k + 2) - x(k + 1)).dot(cross) > 0))
+      throw BuildError("panels", "its corners are not those of a convex sheet, in order around it");
+  const Vec3 normal = cross.normalized(), e1 = (along - along.dot(normal) * normal).normalized(),
+             e2 = normal.cross(e1);
+  if (const double off = std::abs(along.dot(normal)); off > k_flat * size)
+    throw BuildError("panels", "it is not flat: its diagonals pass each other " +
+                                   std::to_string(std::lround(1e3 * off)) + " mm apart, more than " +
+                                   std::to_string(k_flat) + " of their length");
+  Panel panel{body_, nodes, std::numeric_limits<double>::infinity(), {}, {}};
+  const auto place = [&](const Vec3& p) { return Panel::Place(e1.dot(p - x(0)), e2.dot(p - x(0))); };
+  for (int k = 0; k < 4; ++k) panel.corner[k] = place(x(k));
+  const double near = k_flat * size;
+  std::array<double, 4> covered{};
+  for (int m = body().first_member; m < body().first_member + body().member_count; ++m) {
+    const Member& member = model_.members[m];
+    const int last = member.first_element + member.element_count - 1;
+    const Vec3 ends[2] = {model_.node_position[model_.elements[member.first_element].node[0]],
+                          model_.node_position[model_.elements[last].node[1]]};
+    const auto beyond = [&](const Panel::Place& p, int k) {
+      const Panel::Place side = panel.corner[(k + 1) % 4] - panel.corner[k], to = p - panel.corner[k];
+      return (side.y() * to.x() - side.x() * to.y()) / side.norm();
+    };
+    bool within = true;
+    std::array<bool, 4> on{true, true, true, true};
+    for (const Vec3& end : ends) {
+      within = within && std::abs(normal.dot(end - x(0))) <= near;
+      for (int k = 0; k < 4; ++k) {
+        const double out = beyond(place(end), k);
+        within = within && out <= near;
+        on[k] = on[k] && std::abs(out) <= near;
+      }
+    }
+    if (!within) continue;
+    panel.members.push_back({place(ends[0]), place(ends[1])});
+    panel.width = std::min(panel.width, model_.sections[member.section].width);
+    for (int k = 0; k < 4; ++k)
+      if (on[k]) covered[k] += (ends[1] - ends[0]).norm();
+  }
+  for (int k = 0; k < 4; ++k)
+    if (covered[k] < (1 - k_flat) * (x(k + 1) - x(k)).norm())
+      throw BuildError("panels", "no members lie all along its side between corners " + std::to_string(k) +
+                                     " and " + std::to_string((k + 1) % 4));
+  model_.panels.push_back(std::move(panel));
+  ++body().panel_count;
 }
 
 void BodyBuilder::close() {

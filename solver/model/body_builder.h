@@ -1,7 +1,9 @@
 // Builds a body from lines of members, for cabinets, frames and grids.
 #pragma once
 
+#include <array>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -25,6 +27,7 @@ struct BuildError : std::runtime_error {
 class BodyBuilder {
  public:
   static constexpr double k_same_place = 1e-7;  ///< m
+  static constexpr double k_flat = 1e-3;  ///< of a sheet's diagonals, by how much they may pass each other
 
   BodyBuilder(Model& model, const std::string& name);
 
@@ -39,6 +42,9 @@ class BodyBuilder {
   /// with Simpson weights 1/6 : 2/3 : 1/6 over each two elements.
   void add_material_mass();
   void add_contact_point(int node, double width);  ///< width: m
+  /// A sheet between four nodes in order around it, at which members end. Throws BuildError: it is not flat
+  /// (k_flat), or no members lie along a side. Members are added before it.
+  void add_panel(const std::array<int, 4>& nodes);
   /// Fills mass, centre of gravity, inertia, reach, base (the lowest contact points) and support polygon.
   void close();
 
@@ -48,6 +54,7 @@ class BodyBuilder {
   Model& model_;
   int body_;
   std::map<std::tuple<long long, long long, long long>, int> places_;  // node by position/k_same_place
+  std::set<int> tips_;                                                 // nodes at which members end
 };
 
 }  // namespace topple

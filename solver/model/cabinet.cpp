@@ -106,6 +106,7 @@ class CabinetBuilder {
   void build() {
     add_edges();
     if (spec_.bracing == CabinetSpec::Bracing::panels) add_bracing();
+    for (const std::array<int, 4>& sheet : sheets_) builder_.add_panel(sheet);
     add_contact_points();
     distribute_mass();
     builder_.close();
@@ -175,15 +176,17 @@ class CabinetBuilder {
     const std::vector<int> nodes = add_line(name + "-a", c[0], c[2], spec_.divisions, section, normal);
     add_line(name + "-b", c[1], c[3], spec_.divisions, section, normal);
     face_middle_ = nodes[nodes.size() / 2];
-    builder_.body().panels.push_back({builder_.node(place_(c[0])), builder_.node(place_(c[1])),
-                                      builder_.node(place_(c[2])), builder_.node(place_(c[3]))});
+    sheets_.push_back({builder_.node(place_(c[0])), builder_.node(place_(c[1])), builder_.node(place_(c[2])),
+                       builder_.node(place_(c[3]))});
   }
 
   void add_bracing() {
     const double h = spec_.size.z();
     static const char* const k_face[4] = {"right", "front", "left", "back"};
+    constexpr int k_front = 1;
     for (int i = 0; i < 4; ++i) {
       const int j = (i + 1) % 4;
+      if (i == k_front && spec_.front == CabinetSpec::Front::open) continue;
       const Vec3 normal = i % 2 == 0 ? Vec3::UnitY() : Vec3::UnitX();
       add_cross(std::string("brace-") + k_face[i], {corner(i, 0), corner(j, 0), corner(j, h), corner(i, h)},
                 normal);
@@ -331,6 +334,7 @@ class CabinetBuilder {
   BodyBuilder builder_;
   Placing place_;
   std::vector<int> corners_, edge_middles_, face_middles_;
+  std::vector<std::array<int, 4>> sheets_;
   int face_middle_ = -1;
 };
 

@@ -1,6 +1,7 @@
 // Cabinets, frames and grids: descriptions, and the bodies that are built from them.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct CabinetSpec {
   /// Where it touches planes: at its eight corners, as Housner's block does, or at the middles of edges and
   /// faces too, which take a part of each landing.
   enum class Base { corners, edges };
+  /// open: with Bracing::panels, no sheet and no diagonals on the side towards +x.
+  enum class Front { closed, open };
   std::string name;
   Vec3 size{0.38, 0.88, 1.79};  ///< m, depth (x), width (y), height (z)
   double mass = 40;             ///< kg
@@ -43,6 +46,7 @@ struct CabinetSpec {
   Base base = Base::corners;
   Bracing bracing = Bracing::panels;
   double panel_thickness = 0.6e-3;  ///< m, of the sheet that the diagonals replace
+  Front front = Front::closed;
   int divisions = 1;                ///< members per edge; posts: from one shelf to the next
 };
 
@@ -83,6 +87,7 @@ struct FrameSpec {
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<PointMass> masses;
+  std::vector<std::array<int, 4>> panels;  ///< corners, BodyBuilder::add_panel
   double mass = 0;           ///< kg, `masses` included; 0: from the densities
   std::vector<Vec3> copies;  ///< m, translations; empty: one at the origin
   double tilt = 0;  ///< rad, about the line along y through its lowest nodes, on the +x side of them;

@@ -35,6 +35,10 @@ void add_one(Model& model, const FrameSpec& spec, const std::string& name, const
   }
   for (int i = 0; i < count; ++i)
     if (width[i] == 0) throw BuildError("nodes", "node " + std::to_string(i) + " belongs to no member");
+  for (std::array<int, 4> corners : spec.panels) {
+    for (int& node : corners) node += first;
+    builder.add_panel(corners);
+  }
   builder.add_material_mass();
   if (spec.mass > 0) {
     double from_density = 0, added = 0;

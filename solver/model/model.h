@@ -36,6 +36,19 @@ struct Member {
   int element_count;
   int section;   ///< index into Model::sections
   int material;  ///< index into Model::materials
+  bool tip[2];   ///< whether its first and last node touch panels; of members that meet the first does
+};
+
+/// A flat sheet between four nodes of a body. It is drawn and may bear anchors; in a model with `surfaces`
+/// tips of members touch it from both sides.
+struct Panel {
+  using Place = Eigen::Vector2d;  ///< m, in its plane, reference pose
+  int body;
+  std::array<int, 4> node;  ///< in order around it
+  double width;             ///< m, contact width, half of it on either side of the middle plane
+  std::array<Place, 4> corner;
+  /// Members that lie in it, its sides among them: ends. There they are touched, not the sheet.
+  std::vector<std::array<Place, 2>> members;
 };
 
 /// Fixed directions of a node, world axes; bit k: translation along axis k, bit 3 + k: rotation about it.
@@ -67,6 +80,7 @@ struct Body {
   int first_element, element_count;
   int first_member, member_count;
   int first_contact_point, contact_point_count;
+  int first_panel, panel_count;
   double mass;                        ///< kg
   Vec3 centre_of_gravity;             ///< m, world, reference pose
   double reach = 0;                   ///< m, greatest distance of a node from the centre of gravity
@@ -75,14 +89,13 @@ struct Body {
                                       ///< from above, world, reference pose; empty when it has no base
   std::vector<int> base_points;       ///< contact points (global index) on the base
   Vec3 base_centre;  ///< mid-point of the base (no base: centre of gravity), world, reference pose
-  std::vector<std::array<int, 4>>
-      panels;  ///< corner nodes of flat sheets, which are drawn and may bear anchors
   std::shared_ptr<const ElasticBasis> elastic;  ///< null: the body is never on the level elastic
   /// rad/s, angular, of its first elastic mode (damping.h); 0: not known, it has no damping.
   double first_frequency = 0;
   /// Of its base while it is a planar block: factor on the rate that an impact leaves by Housner's condition.
   double restitution = 1;
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
+  bool solid = false;   ///< a block: its members are its edges, it is never elastic nor a frame
 };
 
 /// A plane floor or wall. Its centre line lies width/2 behind its face, so that l = L is surface touch.
@@ -145,7 +158,7 @@ struct Anchor {
 };
 
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,
-/// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements.
+/// before `tilt`; world axes, z up. Nodes of one body are consecutive, and so are its elements and panels.
 struct Model {
   Scheme scheme = Scheme::asi_gauss;  ///< set before members are added
   std::vector<Material> materials;
@@ -161,7 +174,9 @@ struct Model {
   std::vector<Load> loads;
   std::vector<ContactPoint> contact_points;
   std::vector<Plane> planes;
+  std::vector<Panel> panels;
   std::vector<Anchor> anchors;
+  bool surfaces = true;  ///< panels touch; false: members alone, as in the paper
 
   int node_total() const { return static_cast<int>(node_position.size()); }
   /// Bodies that are not ground: the first ones.

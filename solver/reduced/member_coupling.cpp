@@ -66,6 +66,10 @@ class GapFinder {
  public:
   ~GapFinder() { find(); }
   void add(MemberPair& pair) {
+    if (pair.panel != nullptr) {
+      pair.gap = nearest_gap(pair, pair.start);
+      return;
+    }
     pair_[count_++] = &pair;
     if (count_ == 4) find();
   }
@@ -94,7 +98,7 @@ void MemberCoupling::start() {
   GapFinder gaps;
   for (MemberPair& pair : pairs_) {
     bool known = pair.gap != 0;
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < pair.nodes(); ++k) {
       const Vec3& x = position_[pair.node[k]];
       known = known && x == pair.start[k];
       pair.start[k] = x;
@@ -106,13 +110,14 @@ void MemberCoupling::start() {
 void MemberCoupling::go_on(std::span<MemberPair> pairs) const {
   GapFinder gaps;
   for (MemberPair& pair : pairs) {
-    std::array<double, 4> way;
-    for (int k = 0; k < 4; ++k) {
+    std::array<double, 2> way2{};
+    for (int k = 0; k < pair.nodes(); ++k) {
       const Vec3& x = position_[pair.node[k]];
-      way[k] = (x - pair.start[k]).squaredNorm();
+      double& greatest = way2[k > 1];
+      greatest = std::max(greatest, (x - pair.start[k]).squaredNorm());
       pair.start[k] = x;
     }
-    pair.gap -= std::sqrt(std::max(way[0], way[1])) + std::sqrt(std::max(way[2], way[3]));
+    pair.gap -= std::sqrt(way2[0]) + std::sqrt(way2[1]);
     if (!(pair.gap > k_wide)) gaps.add(pair);
   }
 }
@@ -174,7 +179,6 @@ Vec3 MemberCoupling::acceleration(int k) const {
 
 double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double within) const {
   double soonest = within;
-  const auto& x = position_;
   for (const MemberPair& pair : pairs) {
     if (!(pair.gap > 0)) continue;
     double way = 0;
@@ -184,19 +188,20 @@ double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double with
       way += modes_[body] > 0 ? pair.gap : soonest * (of.speed + soonest / 2 * of.gain);
     }
     if (way < pair.gap) continue;
-    const auto& n = pair.node;
-    const NearestPoints at = nearest_points(x[n[0]], x[n[1]], x[n[2]], x[n[3]]);
-    const double l = at.between.norm(), gap = l - pair.L;
-    const auto closing = [&](const auto& of) {
-      return -at.between.dot((1 - at.s) * of(n[0]) + at.s * of(n[1]) - (1 - at.t) * of(n[2]) -
-                             at.t * of(n[3])) /
-             l;
-    };
-    // gap - v t - a t^2/2 = 0, the first t > 0
-    const double v = closing([&](int k) { return velocity_[k]; }),
-                 a = closing([&](int k) { return acceleration(k); });
-    const double root = v * v + 2 * a * gap, down = v + std::sqrt(std::max(root, 0.));
-    if (root >= 0 && down > 0) soonest = std::min(soonest, 2 * gap / down);
+    const NearestShares near = nearest_shares(pair, gather(pair, position_));
+    for (int k = 0; k < near.count; ++k) {
+      const auto& [share, between, gap] = near.at[k];
+      const auto closing = [&](const auto& of) {
+        Vec3 relative = Vec3::Zero();
+        for (int i = 0; i < pair.nodes(); ++i) relative += share[i] * of(pair.node[i]);
+        return -between.dot(relative) / between.norm();
+      };
+      // gap - v t - a t^2/2 = 0, the first t > 0
+      const double v = closing([&](int node) { return velocity_[node]; }),
+                   a = closing([&](int node) { return acceleration(node); });
+      const double root = v * v + 2 * a * gap, down = v + std::sqrt(std::max(root, 0.));
+      if (root >= 0 && down > 0) soonest = std::min(soonest, 2 * gap / down);
+    }
   }
   return soonest < within ? soonest : std::numeric_limits<double>::infinity();
 }
@@ -208,24 +213,26 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
     load.rate.setZero();
   }
   for (const MemberTouch& touch : contacts.touches) {
-    const auto& node = pairs[touch.pair].node;
+    const MemberPair& pair = pairs[touch.pair];
     const Vec3& force = touch.out.force;
     for (int side = 0; side < 2; ++side) {
-      const int first = node[2 * side], second = node[2 * side + 1], body = nodes_[first].body;
+      const int first = side == 0 ? 0 : 2, end = side == 0 ? 2 : pair.nodes();
+      const int body = nodes_[pair.node[first]].body;
       if (body < 0) continue;
-      const double* const share = &touch.share[2 * side];
       BodyVelocity& load = loads_[body];
       load.linear = side == 0 ? load.linear + packed(force) : load.linear - packed(force);
-      load.angular = load.angular +
-                     cross(share[0] * packed(arm_[first]) + share[1] * packed(arm_[second]), packed(force));
-      for (int mode = 0; mode < modes_[body]; ++mode)
-        load.rate[mode] +=
-            (share[0] * shape_[first * k_modes + mode] + share[1] * shape_[second * k_modes + mode])
-                .dot(force);
+      PackVector<double> arm = touch.share[first] * packed(arm_[pair.node[first]]);
+      for (int k = first + 1; k < end; ++k) arm = arm + touch.share[k] * packed(arm_[pair.node[k]]);
+      load.angular = load.angular + cross(arm, packed(force));
+      for (int mode = 0; mode < modes_[body]; ++mode) {
+        Vec3 shape = touch.share[first] * shape_[pair.node[first] * k_modes + mode];
+        for (int k = first + 1; k < end; ++k) shape += touch.share[k] * shape_[pair.node[k] * k_modes + mode];
+        load.rate[mode] += shape.dot(force);
+      }
     }
   }
   for (const MemberBlend& blend : contacts.blends)
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < pairs[blend.pair].nodes(); ++k) {
       const int node = pairs[blend.pair].node[k], body = nodes_[node].body;
       if (body < 0) continue;
       const Vec3 force = -blend.slope * blend.surplus * blend.by_sine[k];
@@ -255,18 +262,19 @@ void MemberCoupling::add_blocks(const PairTangent& tangent, const MemberPair& pa
   };
   const std::array<int, 2> bodies = bodies_of(pair);
   std::array<std::array<Columns, k_most_groups>, 2> at_touch;
-  std::array<std::array<std::array<Vec6, 2>, k_most_groups>, 2> left, right;
+  std::array<std::array<std::array<Vec6, 4>, k_most_groups>, 2> left, right;
   for (int side = 0; side < 2; ++side) {
+    const int first = side == 0 ? 0 : 2, end = side == 0 ? 2 : pair.nodes();
     for (int i = 0; bodies[side] >= 0 && i < groups(modes_[bodies[side]]); ++i) {
-      const Columns first = columns_at(pair.node[2 * side], i),
-                    second = columns_at(pair.node[2 * side + 1], i);
-      at_touch[side][i] = tangent.share[2 * side] * first + tangent.share[2 * side + 1] * second;
-      for (int p = 0; p < tangent.product_count; ++p) {
-        const PairTangent::Product& product = tangent.products[p];
-        left[side][i][p] =
-            first.transpose() * product.left[2 * side] + second.transpose() * product.left[2 * side + 1];
-        right[side][i][p] =
-            first.transpose() * product.right[2 * side] + second.transpose() * product.right[2 * side + 1];
+      at_touch[side][i].setZero();
+      for (int p = 0; p < tangent.product_count; ++p) left[side][i][p] = right[side][i][p] = Vec6::Zero();
+      for (int k = first; k < end; ++k) {
+        const Columns columns = columns_at(pair.node[k], i);
+        at_touch[side][i] += tangent.share[k] * columns;
+        for (int p = 0; p < tangent.product_count; ++p) {
+          left[side][i][p] += columns.transpose() * tangent.products[p].left[k];
+          right[side][i][p] += columns.transpose() * tangent.products[p].right[k];
+        }
       }
     }
   }
@@ -308,9 +316,9 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
     }
     return true;
   };
-  const auto add_one = [&](const auto& of, auto add_rigid, auto tangent) {
+  const auto add_one = [&](const auto& of, bool of_members, auto add_rigid, auto tangent) {
     const MemberPair& pair = pairs[of.pair];
-    if (take_rigid(pair))
+    if (of_members && take_rigid(pair))
       add_rigid(pair);
     else
       add_blocks(tangent(), pair, add);
@@ -319,13 +327,13 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
   const auto add_blends = [&](int before) {
     for (; blend != contacts.blends.end() && blend->pair < before; ++blend)
       add_one(
-          *blend, [&](const MemberPair& pair) { rigid.add_blend(blend_tangent(*blend), pair); },
+          *blend, true, [&](const MemberPair& pair) { rigid.add_blend(blend_tangent(*blend), pair); },
           [&] { return blend_tangent(*blend); });
   };
   for (const MemberTouch& touch : contacts.touches) {
     add_blends(touch.pair);
     add_one(
-        touch, [&](const MemberPair& pair) { rigid.add(touch, pair); },
+        touch, pairs[touch.pair].panel == nullptr, [&](const MemberPair& pair) { rigid.add(touch, pair); },
         [&] { return touch_tangent(law, touch, pairs[touch.pair], position_, velocity_factor); });
   }
   add_blends(std::numeric_limits<int>::max());

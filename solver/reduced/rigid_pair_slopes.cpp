@@ -198,7 +198,7 @@ void RigidPairSlopes::add_blend(const PairTangent& blend, const MemberPair& pair
     Motion out;
     for (int side = 0; side < 2; ++side) {
       Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
-      for (int k = 2 * side; k < 2 * side + 2; ++k) {
+      for (int k = side == 0 ? 0 : 2; k < (side == 0 ? 2 : pair.nodes()); ++k) {
         linear += at_ends[k];
         angular += arm_[pair.node[k]].cross(at_ends[k]);
       }

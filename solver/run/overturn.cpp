@@ -123,14 +123,13 @@ Outcome::Outcome(const Model& model)
   }
 }
 
-void Outcome::carry(const Model& model, int e, double place, const Vec3& force) {
-  const Element& element = model.elements[e];
-  const int b = model.members[element.member].body;
+void Outcome::carry(const Model& model, int part, double t, double u, const Vec3& force) {
+  const int b = body_of(model, part);
   const Body& body = model.bodies[b];
   if (body.support_polygon.empty() || !(force.z() > 0)) return;
-  const Vec3 &x0 = model.node_position[element.node[0]], &x1 = model.node_position[element.node[1]];
-  const double base = body.support_polygon.front().z(), slack = 1e-6 + 1e-6 * (x1 - x0).norm();
-  const Vec3 x = x0 + place * (x1 - x0);
+  const double base = body.support_polygon.front().z(), slack = 1e-6 + 1e-6 * body.reach;
+  Vec3 x = Vec3::Zero();
+  each_share(model, part, t, u, [&](int node, double share) { x += share * model.node_position[node]; });
   if (x.z() > base + slack) return;
   total_force_[b] += force.z();
   const std::size_t sides = body.support_polygon.size();
@@ -155,10 +154,10 @@ void Outcome::observe_forces(const Model& model, const std::vector<ContactForce>
       side_force_[b][side] += f.normal;
   }
   for (const MemberForce& f : between) {
-    carry(model, f.elements.a, f.s, f.force);
-    carry(model, f.elements.b, f.t, -f.force);
-    for (const int e : {f.elements.a, f.elements.b}) {
-      double& pinch = bodies_[model.members[model.elements[e].member].body].peak_pinch;
+    carry(model, f.elements.a, f.s, 0, f.force);
+    carry(model, f.elements.b, f.t, f.u, -f.force);
+    for (const int part : {f.elements.a, f.elements.b}) {
+      double& pinch = bodies_[body_of(model, part)].peak_pinch;
       pinch = std::max(pinch, f.depth);
     }
   }

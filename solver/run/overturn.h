@@ -115,8 +115,8 @@ class Outcome {
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
-  /// Adds a force, N, at `place` (0..1 along the element) to what the sides of the body's base carry.
-  void carry(const Model& model, int element, double place, const Vec3& force);
+  /// Adds a force, N, at a place on a part (each_share) to what the sides of its body's base carry.
+  void carry(const Model& model, int part, double t, double u, const Vec3& force);
   void observe_forces(const Model& model, const std::vector<ContactForce>& forces,
                       const std::vector<MemberForce>& between);
   /// Of body b.

@@ -27,7 +27,7 @@ StepStatus look_at_numbers(const Model& model, const Parameters& parameters, con
 }
 
 MemberForce member_force(const MemberTouch& touch, const MemberPair& pair) {
-  MemberForce force{pair.elements, touch.s, touch.t, touch.input.depth, touch.out.force};
+  MemberForce force{pair.elements, touch.s, touch.t, touch.input.depth, touch.out.force, touch.u};
   const auto find = [](int count, int& element, double& place) {
     const int which = std::min(static_cast<int>(place * count), count - 1);
     element += which;

@@ -54,15 +54,16 @@ struct ContactForce {
   Vec3 force;     ///< N, on the point, normal and tangential
 };
 
-/// Force between two members at a state, floor's frame.
+/// Force between two parts at a state, floor's frame.
 struct MemberForce {
   ElementPair elements;
   double s, t;   ///< 0..1, where on a and on b (NearestPoints)
   double depth;  ///< 1 - l/L, > 0
   Vec3 force;    ///< N, on a; b has its opposite
+  double u = 0;  ///< of a panel: it is touched at (t, u), PanelPlace::r
 };
 
-/// That of a touch, on the elements and at the places where it acts.
+/// That of a touch, on the parts and at the places where it acts.
 MemberForce member_force(const MemberTouch& touch, const MemberPair& pair);
 
 /// bad_parameter or not_finite, with the body, where is_finite refuses the parameters or the state (`nodes`:

@@ -55,8 +55,8 @@ std::span<const EnergyTraits> energy_columns(bool anchors) {
 bool is_finite(const FrameRow& row) {
   return std::isfinite(row.time) && all_finite(row.position) && all_finite(row.rotation) &&
          all_finite(row.section_force) && all_finite(row.s) && all_finite(row.contact_depth) &&
-         all_finite(row.contact_force) && all_finite(row.member_contact) && all_finite(row.energy) &&
-         all_finite<BodyArray>(row.body) && all_finite(row.floor_acceleration) &&
+         all_finite(row.contact_force) && all_finite(row.member_contact) && all_finite(row.panel_contact) &&
+         all_finite(row.energy) && all_finite<BodyArray>(row.body) && all_finite(row.floor_acceleration) &&
          all_finite(row.floor_displacement) && std::isfinite(row.load_factor) &&
          all_finite<AnchorArray>(row.anchor);
 }
@@ -66,6 +66,7 @@ RowShape row_shape(const Model& model) {
           .elements = model.elements.size(),
           .contacts = model.contact_points.size() * model.planes.size(),
           .touched = model.bodies.size() > 1 ? model.elements.size() : 0,
+          .panels = model.bodies.size() > 1 && model.surfaces ? model.panels.size() : 0,
           .bodies = model.bodies.size(),
           .anchors = model.anchors.size()};
 }
@@ -80,6 +81,7 @@ FrameRow blank_row(const RowShape& shape) {
   row.contact_depth.resize(shape.contacts);
   row.contact_force.resize(3 * shape.contacts);
   row.member_contact.resize(4 * shape.touched);
+  row.panel_contact.resize(5 * shape.panels);
   row.energy.resize(energy_columns(shape.anchors > 0).size());
   row.body.resize(shape.bodies);
   row.level.resize(shape.bodies);

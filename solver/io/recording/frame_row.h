@@ -73,8 +73,8 @@ struct EnergyTraits {
 std::span<const EnergyTraits> energy_columns(bool anchors);
 
 /// One recorded instant. Array shapes: n nodes, e elements, c contact points x planes (index: point times
-/// planes plus plane), b bodies, a anchors, t elements that other bodies' members can touch: e, or 0 of a
-/// single body.
+/// planes plus plane), b bodies, a anchors, t elements and p panels that other bodies can touch: all, or 0 of
+/// a single body, and of panels without Model::surfaces.
 struct FrameRow {
   std::int32_t branch = 0;
   std::int64_t step = 0;
@@ -89,9 +89,10 @@ struct FrameRow {
   std::vector<float> contact_force;   ///< c x 3, N, on the point, floor's frame
   std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,
                                       ///< N, and where it acts, 0..1 from the first node to the second
-  std::vector<double> energy;         ///< EnergyColumn
-  std::vector<BodyNumbers> body;      ///< b
-  std::vector<std::uint8_t> level;    ///< b: ModelLevel
+  std::vector<float> panel_contact;  ///< p x 5: the same of what touches a panel, N, and where, PanelPlace::r
+  std::vector<double> energy;        ///< EnergyColumn
+  std::vector<BodyNumbers> body;     ///< b
+  std::vector<std::uint8_t> level;   ///< b: ModelLevel
   double floor_acceleration[3] = {};  ///< m/s^2
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs
@@ -103,7 +104,7 @@ bool is_finite(const FrameRow& row);
 
 /// Sizes that all rows of one recording share.
 struct RowShape {
-  std::size_t nodes = 0, elements = 0, contacts = 0, touched = 0, bodies = 0, anchors = 0;
+  std::size_t nodes = 0, elements = 0, contacts = 0, touched = 0, panels = 0, bodies = 0, anchors = 0;
 };
 /// Of a model's rows.
 RowShape row_shape(const Model& model);

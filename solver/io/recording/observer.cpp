@@ -85,27 +85,33 @@ void fill_contacts(const Model& model, const Snapshot& at, FrameRow& row) {
   }
 }
 
-void fill_member_contacts(const Snapshot& at, FrameRow& row) {
+void fill_contacts_between(const Snapshot& at, FrameRow& row) {
   struct Resultant {
     Vec3 force = Vec3::Zero();
-    double size = 0, moment = 0;  // sums of |force| and of |force| times place
+    double size = 0, t = 0, u = 0;  // sums of |force|, and of |force| times place
   };
-  std::vector<Resultant> all(row.member_contact.size() / 4);
-  const auto add = [&](int element, const Vec3& force, double place) {
-    Resultant& on = all[static_cast<std::size_t>(element)];
+  const std::size_t elements = row.member_contact.size() / 4, panels = row.panel_contact.size() / 5;
+  std::vector<Resultant> all(elements + panels);
+  const auto add = [&](int part, const Vec3& force, double t, double u) {
+    Resultant& on = all[static_cast<std::size_t>(part)];
+    const double size = force.norm();
     on.force += force;
-    on.size += force.norm();
-    on.moment += force.norm() * place;
+    on.size += size;
+    on.t += size * t;
+    on.u += size * u;
   };
   for (const MemberForce& contact : at.between_members) {
-    add(contact.elements.a, contact.force, contact.s);
-    add(contact.elements.b, -contact.force, contact.t);
+    add(contact.elements.a, contact.force, contact.s, 0);
+    add(contact.elements.b, -contact.force, contact.t, contact.u);
   }
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    if (!(all[e].size > 0)) continue;
-    for (int k = 0; k < 3; ++k) row.member_contact[4 * e + k] = static_cast<float>(all[e].force[k]);
-    row.member_contact[4 * e + 3] = static_cast<float>(all[e].moment / all[e].size);
-  }
+  const auto fill = [](const Resultant& on, int places, float* to) {
+    if (!(on.size > 0)) return;
+    for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(on.force[k]);
+    to[3] = static_cast<float>(on.t / on.size);
+    if (places > 1) to[4] = static_cast<float>(on.u / on.size);
+  };
+  for (std::size_t e = 0; e < elements; ++e) fill(all[e], 1, &row.member_contact[4 * e]);
+  for (std::size_t k = 0; k < panels; ++k) fill(all[elements + k], 2, &row.panel_contact[5 * k]);
 }
 
 void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
@@ -162,7 +168,7 @@ FrameRow row_of(const Run& run, const Snapshot& at) {
   fill_nodes(state, row);
   fill_elements(model, at, row);
   fill_contacts(model, at, row);
-  fill_member_contacts(at, row);
+  fill_contacts_between(at, row);
   fill_bodies(run, at, row);
   for (const EnergyTraits& column : energy_columns(!model.anchors.empty()))
     row.energy[column.kind] = column.value(state.energy);

@@ -61,14 +61,23 @@ bool Format::has_field(std::string_view name) const {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
-      {1, 3, false, {"member_contact", "load_factor"}, {k_plastic, k_damping, k_model_switch}},
-      {2, 5, false, {"member_contact", "load_factor"}, {k_plastic, k_damping, k_model_switch}},
-      {3, 5, false, {"member_contact"}, {k_damping, k_model_switch}},
-      {4, 6, false, {"member_contact"}, {k_damping}},
-      {5, 6, false, {"member_contact"}, {k_damping}},
-      {6, 6, true, {"member_contact"}},
-      {7, 6, true, {}},
-      {8, 6, true, {}, {}, true},
+      {1,
+       3,
+       false,
+       {"member_contact", "panel_contact", "load_factor"},
+       {k_plastic, k_damping, k_model_switch}},
+      {2,
+       5,
+       false,
+       {"member_contact", "panel_contact", "load_factor"},
+       {k_plastic, k_damping, k_model_switch}},
+      {3, 5, false, {"member_contact", "panel_contact"}, {k_damping, k_model_switch}},
+      {4, 6, false, {"member_contact", "panel_contact"}, {k_damping}},
+      {5, 6, false, {"member_contact", "panel_contact"}, {k_damping}},
+      {6, 6, true, {"member_contact", "panel_contact"}},
+      {7, 6, true, {"panel_contact"}},
+      {8, 6, true, {"panel_contact"}, {}, true},
+      {9, 6, true, {"panel_contact"}, {}, true},
       {k_format_version, 6, true, {}, {}, true}};
   return all;
 }
@@ -158,7 +167,7 @@ Handle record_type<ResultRecord>() {
 
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
   const hsize_t n = shape.nodes, e = shape.elements, c = shape.contacts, t = shape.touched;
-  const hsize_t b = shape.bodies, a = shape.anchors;
+  const hsize_t p = shape.panels, b = shape.bodies, a = shape.anchors;
   static const EnergyColumns k_without(energy_columns(false)), k_with(energy_columns(true));
   const EnergyColumns& energies = a > 0 ? k_with : k_without;
   const hid_t f32 = H5T_IEEE_F32LE, f64 = H5T_IEEE_F64LE, u8 = H5T_STD_U8LE;
@@ -175,6 +184,7 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"contact_depth", f32, {c}, "1", ""},
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},
        {"member_contact", f32, {t, 4}, "N,N,N,1", "x,y,z,place"},
+       {"panel_contact", f32, {p, 5}, "N,N,N,1,1", "x,y,z,t,u"},
        {"energy", f64, {energy_columns(a > 0).size()}, energies.units.c_str(), energies.names.c_str()},
        {"body", f64, {b, 11}, "m,m,m,1,1,1,1,rad,m,J,rad", "x,y,z,qw,qx,qy,qz,tilt,slide,energy,critical"},
        {"rung", u8, {b}, "0 rigid, 1 elastic, 2 frame, 3 planar", ""},

@@ -29,7 +29,7 @@
 namespace topple::io {
 
 inline constexpr const char* k_format = "topple recording";
-inline constexpr std::int32_t k_format_version = 9;
+inline constexpr std::int32_t k_format_version = 10;
 inline constexpr std::int32_t k_not_written = -1;  ///< branch of a record that was never written
 
 /// How the recordings of one format differ from those of today.
@@ -131,7 +131,7 @@ struct FrameField {
   const char* units;
   const char* columns;  ///< names along the last dimension, comma-separated
 };
-inline constexpr std::size_t k_field_count = 15;
+inline constexpr std::size_t k_field_count = 16;
 std::array<FrameField, k_field_count> frame_fields(const RowShape& shape);
 std::size_t row_bytes(const FrameField& field);
 /// Of the data sets that there are: the last, `anchor`, when the model has anchors.
@@ -156,6 +156,7 @@ auto field_bytes(Row& row) {
                                           bytes(row.contact_depth),
                                           bytes(row.contact_force),
                                           bytes(row.member_contact),
+                                          bytes(row.panel_contact),
                                           bytes(row.energy),
                                           bytes(row.body),
                                           bytes(row.level),

@@ -248,6 +248,7 @@ struct Recording::Impl {
              .elements = first("section_force"),
              .contacts = first("contact_depth"),
              .touched = first("member_contact"),
+             .panels = first("panel_contact"),
              .bodies = first("body"),
              .anchors = first("anchor")};
     auto expected = frame_fields(shape);

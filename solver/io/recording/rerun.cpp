@@ -83,6 +83,7 @@ int element_of(const Model& model, std::string_view field, std::size_t item) {
   if (field == "position" || field == "rotation") return element_at(model, static_cast<int>(item));
   if (field == "section_force" || field == "s" || field == "hinge" || field == "member_contact")
     return static_cast<int>(item);
+  if (field == "panel_contact") return element_at(model, model.panels[item].node[0]);
   if (field == "contact_depth" || field == "contact_force")
     return element_at(model, model.contact_points[item / model.planes.size()].node);
   if (field == "body" || field == "rung") return model.bodies[item].first_element;

@@ -45,9 +45,10 @@ bool lies_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point, dou
 }
 
 /// A sheet of a cabinet carries what is screwed to it.
-bool lies_on_panel(const Body& body, const State& start, const Vec3& point, double margin) {
-  return std::any_of(body.panels.begin(), body.panels.end(), [&](const std::array<int, 4>& corners) {
-    const auto x = [&](int k) -> const Vec3& { return start.position[static_cast<std::size_t>(corners[k])]; };
+bool lies_on_panel(const Model& model, int body, const State& start, const Vec3& point, double margin) {
+  return std::ranges::any_of(model.panels, [&](const Panel& panel) {
+    if (panel.body != body) return false;
+    const auto x = [&](int k) -> const Vec3& { return start.position[panel.node[k]]; };
     return lies_on(x(0), x(1), x(2), point, margin) || lies_on(x(0), x(2), x(3), point, margin);
   });
 }
@@ -91,7 +92,8 @@ void read_anchors(const Entry& root, Setup& setup) {
 
     const auto [member, distance] = nearest_member(model, body, start, point);
     const double width = model.sections[model.members[member].section].width;
-    if (distance > std::max(k_nowhere * body.reach, width) && !lies_on_panel(body, start, point, width))
+    if (distance > std::max(k_nowhere * body.reach, width) &&
+        !lies_on_panel(model, anchor.body, start, point, width))
       entry.fail("point", "an anchor to nowhere: the nearest member of \"" + body.name + "\", \"" +
                               model.members[member].name + "\", is " + millimetres(distance) + " away");
     if (!(anchor.length > 1e-6)) entry.fail("to", "is where `point` is: the anchor has no length");

@@ -6,6 +6,7 @@
 #include "solver/body/candidates.h"
 #include "solver/body/model_level.h"
 #include "solver/body/planar_body.h"
+#include "solver/contact/panel_place.h"
 #include "solver/contact/proximity.h"
 #include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
@@ -17,6 +18,8 @@ namespace topple::io {
 namespace {
 
 // What two cores step in reasonable time is far below; this keeps a slip of the pen from filling the memory.
+using Box = Eigen::AlignedBox3d;
+
 constexpr std::size_t k_most_elements = 100000;
 // As BodyBuilder: an `up` nearer to the member's axis gives no local z.
 constexpr double k_parallel = 1e-6;
@@ -97,6 +100,7 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   spec.base = entry.chosen("base", k_bases);
   spec.bracing = entry.chosen("bracing", k_bracings);
   spec.panel_thickness = entry.number("panel_thickness");
+  spec.front = entry.chosen("front", k_fronts);
   spec.divisions = entry.integer("divisions");
   return spec;
 }
@@ -166,6 +170,11 @@ FrameSpec read_frame(const Entry& entry, const Library& library) {
     const int node = read_node(mass, "node", mass.integer("node"), spec);
     spec.masses.push_back({node, mass.number("mass"), mass.vector("inertia")});
   }
+  for (const Entry& panel : entry.entries("panels")) {
+    const std::vector<int> nodes = panel.integers("nodes");
+    std::array<int, 4>& corners = spec.panels.emplace_back();
+    for (int k = 0; k < 4; ++k) corners[k] = read_node(panel, "nodes", nodes[k], spec, k);
+  }
   if (entry.has("mass")) spec.mass = entry.number("mass");
   spec.copies = entry.vectors("copies");
   spec.tilt = entry.number("tilt");
@@ -220,8 +229,6 @@ void add_cabinets(const Entry& entry, const CabinetSpec& spec, Setup& setup) {
     check_size(entry, setup.model.elements.size());
   }
 }
-
-using Box = Eigen::AlignedBox3d;
 
 Box starting_box(const Setup& setup) {
   Box box;
@@ -291,24 +298,62 @@ void check_planes(const std::vector<Entry>& entries, const Setup& setup, const S
     }
 }
 
+// Whether a point is inside a body of panels all around, nodes at x.
+bool is_inside(const Model& model, const std::vector<Vec3>& x, const Vec3& point, int body) {
+  const Body& solid = model.bodies[body];
+  Vec3 middle = Vec3::Zero();
+  for (int i = 0; i < solid.node_count; ++i) middle += x[solid.first_node + i] / solid.node_count;
+  for (int k = solid.first_panel; k < solid.first_panel + solid.panel_count; ++k) {
+    const auto& node = model.panels[k].node;
+    const Vec3 normal = (x[node[2]] - x[node[0]]).cross(x[node[3]] - x[node[1]]);
+    if ((point - x[node[0]]).dot(normal) * (middle - x[node[0]]).dot(normal) < 0) return false;
+  }
+  return true;
+}
+
+/// Calls found(member, body) on a member that is within a member of another body, crosses a panel of it or
+/// is inside a solid one.
+template <class F>
+void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
+  NearSearch search(model);
+  for (const ElementPair& pair : search.find(x, 0)) {
+    if (panel_of(model, pair.b) != nullptr) continue;
+    const auto &a = model.elements[pair.a].node, &b = model.elements[pair.b].node;
+    if (nearest_points(x[a[0]], x[a[1]], x[b[0]], x[b[1]]).between.norm() <=
+        k_deep * contact_length(model, pair))
+      found(model.elements[pair.a].member, body_of(model, pair.b));
+  }
+  if (!model.surfaces) return;
+  std::vector<Box> boxes(model.bodies.size());
+  for (int i = 0; i < model.node_total(); ++i) boxes[model.node_body[i]].extend(x[i]);
+  for (const Panel& panel : model.panels) {
+    const std::array<Vec3, 4> corner{x[panel.node[0]], x[panel.node[1]], x[panel.node[2]], x[panel.node[3]]};
+    for (int b = 0; b < static_cast<int>(boxes.size()); ++b) {
+      if (b == panel.body || !boxes[b].intersects(boxes[panel.body])) continue;
+      const Body& body = model.bodies[b];
+      for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+        if (const auto& node = model.elements[e].node; crosses_panel(x[node[0]], x[node[1]], corner))
+          found(model.elements[e].member, panel.body);
+    }
+  }
+  for (int s = 0; s < static_cast<int>(boxes.size()); ++s)
+    for (int b = 0; b < static_cast<int>(boxes.size()); ++b)
+      if (b != s && model.bodies[s].solid && boxes[b].intersects(boxes[s]) &&
+          is_inside(model, x, x[model.bodies[b].first_node], s))
+        found(model.bodies[b].first_member, s);
+}
+
 /// Bodies that start within each other cannot be told apart by contact.
 void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const State& start) {
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
-  NearSearch search(model);
-  for (const ElementPair& pair : search.find(start.position, 0)) {
-    const Element &a = model.elements[pair.a], &b = model.elements[pair.b];
-    const auto& x = start.position;
-    const Vec3 between = nearest_points(x[a.node[0]], x[a.node[1]], x[b.node[0]], x[b.node[1]]).between;
-    if (between.norm() > k_deep * contact_length(model, pair)) continue;
-    const auto name = [&](const Element& e) {
-      const Member& member = model.members[e.member];
-      return "\"" + model.bodies[member.body].name + "\" (" + member.name + ")";
-    };
-    const auto [first, later] = std::minmax(model.members[a.member].body, model.members[b.member].body);
-    entries[later < static_cast<int>(entries.size()) ? later : first].fail("the bodies " + name(a) + " and " +
-                                                                           name(b) + " overlap at the start");
-  }
+  find_overlaps(model, start.position, [&](int member, int other) {
+    const Member& of = model.members[member];
+    const auto [first, later] = std::minmax(of.body, other);
+    entries[later < static_cast<int>(entries.size()) ? later : first].fail(
+        "the bodies \"" + model.bodies[of.body].name + "\" (" + of.name + ") and \"" +
+        model.bodies[other].name + "\" overlap at the start");
+  });
 }
 
 // What the last `count` bodies are computed as.
@@ -352,10 +397,7 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
 /// Whether it becomes a rigid body as soon as it begins.
 bool is_near_another(const Model& model, const State& start, int body) {
   return std::ranges::any_of(start.candidate_pairs, [&](const ElementPair& pair) {
-    const auto is_own = [&](int element) {
-      return model.members[model.elements[element].member].body == body;
-    };
-    return is_own(pair.a) || is_own(pair.b);
+    return body_of(model, pair.a) == body || body_of(model, pair.b) == body;
   });
 }
 

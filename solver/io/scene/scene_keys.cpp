@@ -235,6 +235,8 @@ void add_contact(std::vector<Key>& keys) {
       .absent_means(
           "1; where `alpha` is chosen, what lets bodies knock and lean on each other as rigid ones "
           "(contact_default.h)");
+  rows.plain("surfaces", T::boolean, "panels touch what meets them; false: members alone, as in the paper")
+      .absent(Model{}.surfaces);
 }
 
 // Of a floor or wall, a plane or made of members; `extent`: how far it goes by default, m.

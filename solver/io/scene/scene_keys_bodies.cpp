@@ -82,6 +82,8 @@ void add_cabinet(std::vector<Key>& keys) {
   rows.number("panel_thickness", D::length, "mm", 1e-5, 0.1, "of the sheets that the diagonals replace")
       .absent(cabinet.panel_thickness)
       .only("bracing", {"panels"});
+  rows.word("front", k_fronts, cabinet.front, "open: no sheet and no diagonals on its +x side")
+      .only("bracing", {"panels"});
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
   add_damping(rows);
   add_restitution(rows);
@@ -98,6 +100,7 @@ void add_frame(std::vector<Key>& keys) {
   rows.plain("supports", T::tables, "fixed directions").absent_means("free");
   rows.plain("loads", T::tables, "dead loads on nodes").absent_means("none");
   rows.plain("masses", T::tables, "masses on nodes").absent_means("none");
+  rows.plain("panels", T::tables, "flat sheets between members: tops and seats").absent_means("none");
   rows.number("mass", D::mass, "kg", 1e-6, 1e7, "mass; densities are adjusted to it")
       .absent_means("from the densities");
   add_copies(rows);
@@ -152,6 +155,12 @@ void add_frame_masses(std::vector<Key>& keys) {
       .absent(Vec3(Vec3::Zero()));
 }
 
+void add_frame_panels(std::vector<Key>& keys) {
+  Rows rows(keys, "frame.panels");
+  rows.integers("nodes", 4, 0, 1e6, "its corners, in order around it; members lie all along its sides")
+      .required();
+}
+
 }  // namespace
 
 void add_body_keys(std::vector<Key>& keys) {
@@ -161,6 +170,7 @@ void add_body_keys(std::vector<Key>& keys) {
   add_frame_supports(keys);
   add_frame_loads(keys);
   add_frame_masses(keys);
+  add_frame_panels(keys);
 }
 
 }  // namespace topple::io

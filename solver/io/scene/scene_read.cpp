@@ -175,6 +175,7 @@ void read_contact(const Entry& root, Setup& setup) {
   law.normal_speed = contact.number("normal_speed");
   law.slip_speed = contact.number("slip_speed");
   law.member_share = contact.number("member_share");
+  setup.model.surfaces = contact.flag("surfaces");
 }
 
 void choose_alpha(const Entry& root, Setup& setup) {

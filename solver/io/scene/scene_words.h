@@ -29,6 +29,8 @@ inline constexpr Word<CabinetSpec::Base> k_bases[] = {{CabinetSpec::Base::corner
                                                       {CabinetSpec::Base::edges, "edges"}};
 inline constexpr Word<CabinetSpec::Bracing> k_bracings[] = {{CabinetSpec::Bracing::panels, "panels"},
                                                             {CabinetSpec::Bracing::none, "none"}};
+inline constexpr Word<CabinetSpec::Front> k_fronts[] = {{CabinetSpec::Front::closed, "closed"},
+                                                        {CabinetSpec::Front::open, "open"}};
 /// `given` has no word: its numbers stand in its place.
 inline constexpr Word<CabinetSpec::Inertia> k_inertias[] = {{CabinetSpec::Inertia::panels, "panels"},
                                                             {CabinetSpec::Inertia::solid, "solid"}};

@@ -107,9 +107,13 @@ Setup alone(const Setup& scene, int index, bool walls) {
   to.contact_points = part(from.contact_points, body.first_contact_point, body.contact_point_count);
   for (ContactPoint& point : to.contact_points) point.node -= body.first_node;
   for (int& point : body.base_points) point -= body.first_contact_point;
-  for (auto& panel : body.panels)
-    for (int& node : panel) node -= body.first_node;
-  body.first_node = body.first_element = body.first_member = body.first_contact_point = 0;
+  to.surfaces = from.surfaces;
+  to.panels = part(from.panels, body.first_panel, body.panel_count);
+  for (Panel& panel : to.panels) {
+    panel.body = 0;
+    for (int& node : panel.node) node -= body.first_node;
+  }
+  body.first_node = body.first_element = body.first_member = body.first_contact_point = body.first_panel = 0;
   to.bodies = {std::move(body)};
   to.planes = walls ? from.planes : std::vector<Plane>{floor_of(from).value()};
   return setup;

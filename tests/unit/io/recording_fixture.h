@@ -108,6 +108,7 @@ inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) 
   fill(row.contact_depth);
   fill(row.contact_force);
   fill(row.member_contact);
+  fill(row.panel_contact);
   fill(row.energy);
   for (BodyNumbers& body : row.body) {
     BodyArray numbers;

@@ -24,6 +24,14 @@ namespace topple::test {
 inline constexpr double k_g = k_standard_gravity;
 inline constexpr double k_degrees = 180 / k_pi;
 
+/// Contacts that take no energy.
+inline ContactLaw elastic_law() {
+  ContactLaw law;
+  law.restitution = 1;
+  law.friction = 0;
+  return law;
+}
+
 inline Vec3 random_vector(std::mt19937& rng, double size = 1) {
   std::uniform_real_distribution<double> u(-size, size);
   const double x = u(rng), y = u(rng), z = u(rng);

@@ -10,13 +10,6 @@ namespace {
 
 constexpr double k_member_width = 0.03;
 
-ContactLaw elastic_law() {
-  ContactLaw law;
-  law.restitution = 1;
-  law.friction = 0;
-  return law;
-}
-
 /// Two elements on four nodes of their own.
 struct Pair {
   std::vector<MemberPair> pairs{1};
