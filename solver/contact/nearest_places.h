@@ -1,7 +1,8 @@
-// Where two segments are nearest, of one pair or of four at a time.
+// Where two segments are nearest, of one pair or of four at a time, and a point and a segment.
 #pragma once
 
 #include "solver/math/pack.h"
+#include "solver/math/types.h"
 
 namespace topple {
 
@@ -26,5 +27,16 @@ template <class P>
   t = within_segment((uv * s + vr) / vv);
   return {s, t};
 }
+
+/// Where two segments a0-a1 and b0-b1 are nearest: at a0 + s (a1 - a0) and b0 + t (b1 - b0), 0 <= s, t <= 1.
+struct NearestPoints {
+  double s, t;
+  bool s_free, t_free;  ///< strictly between the ends: it slides along as the lines move
+  Vec3 between;         ///< m, from the point on b to the point on a
+};
+NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
+
+/// The same for a point p in place of a; s = 0, not free.
+NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1);
 
 }  // namespace topple

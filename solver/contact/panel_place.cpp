@@ -5,16 +5,22 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/contact/proximity.h"
+#include "solver/contact/nearest_places.h"
 
 namespace topple {
 namespace {
 
-// Shares, slopes and distance at place.r.
-void look(const Vec3& p, const std::array<Vec3, 4>& corner, PanelPlace& place) {
+constexpr double k_straight = 1e-12;  // of the sides: twist of a parallelogram, and cosine of a right angle
+
+void set_shares(PanelPlace& place) {
   const double u = place.r[0], v = place.r[1];
   place.share = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
   place.change = {{{v - 1, u - 1}, {1 - v, -u}, {v, u}, {-v, 1 - u}}};
+}
+
+// Shares, slopes and distance at place.r.
+void look(const Vec3& p, const std::array<Vec3, 4>& corner, PanelPlace& place) {
+  set_shares(place);
   place.between = p;
   place.along.fill(Vec3::Zero());
   for (int k = 0; k < 4; ++k) {
@@ -26,10 +32,21 @@ void look(const Vec3& p, const std::array<Vec3, 4>& corner, PanelPlace& place) {
 }  // namespace
 
 PanelPlace panel_place(const Vec3& p, const std::array<Vec3, 4>& corner) {
-  constexpr int k_iterations = 8;    // of a parallelogram one is enough
+  constexpr int k_iterations = 8;
   constexpr double k_found = 1e-14;  // of r
   PanelPlace place;
-  place.twist = corner[0] - corner[1] + corner[2] - corner[3];
+  const Vec3 a = corner[1] - corner[0], b = corner[3] - corner[0];
+  place.twist = corner[2] - corner[1] - b;
+  const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
+  if (place.twist.squaredNorm() < k_straight * k_straight * (aa + bb)) {
+    const Vec3 from = p - corner[0];
+    const double pa = a.dot(from), pb = b.dot(from), inverse = 1 / (aa * bb - ab * ab);
+    place.r = {inverse * (bb * pa - ab * pb), inverse * (aa * pb - ab * pa)};
+    place.along = {a, b};
+    place.between = from - place.r[0] * a - place.r[1] * b;
+    set_shares(place);
+    return place;
+  }
   place.r = {0.5, 0.5};
   for (int i = 0; i < k_iterations; ++i) {
     look(p, corner, place);
@@ -51,7 +68,15 @@ Eigen::Matrix2d PanelPlace::inverse() const {
 }
 
 NearestOnPanel nearest_on_panel(const Vec3& p, const std::array<Vec3, 4>& corner) {
-  if (const PanelPlace place = panel_place(p, corner); place.within()) return {place.share, place.between};
+  PanelPlace place = panel_place(p, corner);
+  if (place.within()) return {place.share, place.between};
+  const double aa = place.along[0].squaredNorm(), bb = place.along[1].squaredNorm(),
+               ab = place.along[0].dot(place.along[1]);
+  if (place.twist.squaredNorm() < k_straight * k_straight * (aa + bb) && ab * ab < k_straight * aa * bb) {
+    for (double& r : place.r) r = std::clamp(r, 0., 1.);
+    look(p, corner, place);
+    return {place.share, place.between};
+  }
   NearestOnPanel nearest{{}, Vec3::Constant(std::numeric_limits<double>::infinity())};
   for (int k = 0; k < 4; ++k) {
     const int next = (k + 1) % 4;

@@ -1,4 +1,4 @@
-// Candidate pairs: parts of different bodies that may touch soon. And where centre lines are nearest.
+// Candidate pairs: parts of different bodies that may touch soon.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/contact/nearest_places.h"
 #include "solver/math/types.h"
 #include "solver/model/model.h"
 
@@ -18,17 +19,6 @@ struct ElementPair {
   int a = 0, b = 0;
   auto operator<=>(const ElementPair&) const = default;
 };
-
-/// Where two segments a0-a1 and b0-b1 are nearest: at a0 + s (a1 - a0) and b0 + t (b1 - b0), 0 <= s, t <= 1.
-struct NearestPoints {
-  double s, t;
-  bool s_free, t_free;  ///< strictly between the ends: it slides along as the lines move
-  Vec3 between;         ///< m, from the point on b to the point on a
-};
-NearestPoints nearest_points(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1);
-
-/// The same for a point p in place of a; s = 0, not free.
-NearestPoints nearest_points(const Vec3& p, const Vec3& b0, const Vec3& b1);
 
 /// The panel that a part is; null: an element.
 inline const Panel* panel_of(const Model& model, int part) {

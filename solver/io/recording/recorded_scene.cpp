@@ -12,10 +12,12 @@ namespace {
 /// The scene's text; of an older format in words that mean today what it meant then.
 std::string text_for_today(const Recording& recording) {
   const auto format = std::ranges::find(formats(), recording.format(), &Format::version);
-  if (format->on_corners) return recording.scene_text();
+  const bool has_surfaces = format->has_field("panel_contact");
+  if (format->on_corners && has_surfaces) return recording.scene_text();
   Node root = parse_toml(recording.scene_text(), recording.scene_name());
+  if (!has_surfaces) apply_override(root, "contact.surfaces=false");
   Item* const cabinets = root.find_item("cabinet");
-  if (!cabinets) return recording.scene_text();
+  if (!cabinets || format->on_corners) return write_toml(root);
   for (Item& cabinet : cabinets->value.items) {
     if (cabinet.value.find("base")) continue;
     Node edges;

@@ -42,6 +42,7 @@ class Sides {
     std::vector<std::pair<ElementPair, bool>> now;
     bool kept = true;
     for (const ElementPair& pair : state.candidate_pairs) {
+      if (panel_of(model, pair.b) != nullptr) continue;
       const int *m = model.elements[pair.a].node, *n = model.elements[pair.b].node;
       const Vec3 &a0 = state.position[m[0]], &b0 = state.position[n[0]];
       const Vec3 u = state.position[m[1]] - a0, v = state.position[n[1]] - b0, across = u.cross(v);

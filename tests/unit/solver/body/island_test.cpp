@@ -304,8 +304,7 @@ TEST(Island, stack_settles_on_what_is_below) {
     for (const ContactForce& force : sim.contacts()) floor += force.force.z();
     std::array<double, 3> on{};  // from below, N
     for (const MemberForce& force : member_forces(sim.workspace())) {
-      const int a = sim.model.members[sim.model.elements[force.elements.a].member].body,
-                b = sim.model.members[sim.model.elements[force.elements.b].member].body;
+      const int a = body_of(sim.model, force.elements.a), b = body_of(sim.model, force.elements.b);
       EXPECT_EQ(a + 1, b);
       on[b] -= force.force.z();
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/body/islands.h"
+#include "solver/contact/panel_place.h"
 #include "unit/solver/fixtures.h"
 
 namespace topple::test {
@@ -50,7 +51,21 @@ TEST(Proximity, grid_finds_the_pairs_that_comparing_all_finds) {
           contact_length(model, {a, b}) + margin)
         all.push_back({a, b});
     }
-  EXPECT_GT(all.size(), 100u);
+  const std::size_t of_elements = all.size();
+  for (int e = 0; e < count; ++e)
+    for (int end = 0; end < 2; ++end)
+      for (std::size_t k = 0; is_tip(model, e, end) && k < model.panels.size(); ++k) {
+        const ElementPair pair{e, count + static_cast<int>(k)};
+        const auto& x = model.node_position;
+        const auto& n = model.panels[k].node;
+        if (body_of(model, pair.a) != body_of(model, pair.b) &&
+            nearest_on_panel(x[model.elements[e].node[end]], {x[n[0]], x[n[1]], x[n[2]], x[n[3]]})
+                    .between.norm() <= contact_length(model, pair) + margin)
+          all.push_back(pair);
+      }
+  std::ranges::sort(all);
+  EXPECT_GT(of_elements, 100u);
+  EXPECT_GT(all.size(), of_elements + 20);
   EXPECT_EQ(NearSearch(model).find(model.node_position, margin), all);
 }
 
