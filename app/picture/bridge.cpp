@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -55,6 +56,25 @@ render::Profile profile(const Section& section) {
   return out;
 }
 
+// Corners of the base of a block, or of its top (block.h).
+const std::array<int, 4>& face(const Model& model, int block, bool top) {
+  return model
+      .panels[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(block)].first_panel + top)]
+      .node;
+}
+
+// Of a block, from above: its surface.
+render::Profile outline(const Model& model, int block) {
+  const std::array<int, 4>& base = face(model, block, false);
+  const auto side = [&](int from, int to) {
+    return static_cast<float>((model.node_position[base[to]] - model.node_position[base[from]]).norm() +
+                              model.panels[model.bodies[block].first_panel].width) /
+           2;
+  };
+  const float y = side(0, 1), z = side(0, 3);
+  return {.outline = {{-y, -z}, {y, -z}, {y, z}, {-y, z}}};
+}
+
 }  // namespace
 
 io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
@@ -95,6 +115,10 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
 Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene), extent_(extent) {
   const Model& model = scene.setup.model;
   for (const Section& section : model.sections) profiles_.push_back(profile(section));
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    of_block_.push_back(static_cast<std::uint32_t>(profiles_.size()));
+    if (model.bodies[b].solid) profiles_.push_back(outline(model, b));
+  }
   std::vector<int> members_at(model.node_position.size(), 0);
   for (const Member& member : model.members) {
     if (model.sections[member.section].shape == Section::Shape::custom) continue;
@@ -128,6 +152,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   out.legend = legend(row, settings);
   if (settings.panels)
     for (const topple::Panel& sheet : model.panels) {
+      if (model.bodies[sheet.body].solid) continue;
       render::Panel panel;
       for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(drawn, sheet.node[k]) + shift);
       out.panels.push_back(panel);
@@ -217,6 +242,10 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
   const Model& model = scene_.setup.model;
   for (std::size_t m = 0; m < model.members.size(); ++m) {
     const Member& member = model.members[m];
+    if (const Body& body = model.bodies[member.body]; body.solid) {
+      if (static_cast<int>(m) == body.first_member) add_block(row, member.body, stations, tubes);
+      continue;
+    }
     const Section& section = model.sections[member.section];
     const float tear = static_cast<float>(k_tear * std::min(section.size_y, section.size_z));
     render::Tube tube;
@@ -269,6 +298,32 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
     }
     end(closing(member, model.elements[last].node[1]), 0);
   }
+}
+
+/// One tube from its base to its top, in place of its edges.
+void Bridge::add_block(const io::FrameRow& row, int body, std::vector<render::Station>& stations,
+                       std::vector<render::Tube>& tubes) const {
+  const Model& model = scene_.setup.model;
+  const std::array<int, 4>&base = face(model, body, false), &top = face(model, body, true);
+  const auto middle = [&](const std::array<int, 4>& corners) -> Vec3 {
+    return (position(row, corners[0]) + position(row, corners[2])) / 2 + floor_shift(row);
+  };
+  const Vec3 from = middle(base), to = middle(top);
+  Mat3 axes;
+  axes.col(0) = (to - from).normalized();
+  axes.col(1) = (position(row, base[1]) - position(row, base[0])).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const float skin = static_cast<float>(model.panels[model.bodies[body].first_panel].width / 2);
+  render::Tube tube;
+  tube.first_station = static_cast<std::uint32_t>(stations.size());
+  tube.station_count = 2;
+  tube.profile = of_block_[body];
+  tube.member = static_cast<std::uint32_t>(model.bodies[body].first_member);
+  tube.body = static_cast<std::uint32_t>(body);
+  tube.lead = tube.trail = skin;
+  tube.colour = k_rigid_colour;
+  for (const Vec3& place : {from, to}) stations.push_back(station(place, Quat(axes)));
+  tubes.push_back(tube);
 }
 
 /// How far the section is drawn on at a node where several members meet, m.

@@ -33,6 +33,8 @@ class Bridge {
   ColourAt colours(const io::FrameRow& row, const RigidFit& fit, BeamQuantity quantity) const;
   void add_tubes(const io::FrameRow& row, const ColourAt& colour, std::vector<render::Station>& stations,
                  std::vector<render::Tube>& tubes) const;
+  void add_block(const io::FrameRow& row, int body, std::vector<render::Station>& stations,
+                 std::vector<render::Tube>& tubes) const;
   float closing(const Member& member, int node) const;
   render::Legend legend(const io::FrameRow& row, const PictureSettings& settings) const;
   void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
@@ -41,7 +43,8 @@ class Bridge {
 
   const io::Scene& scene_;
   const RunExtent& extent_;
-  std::vector<render::Profile> profiles_;  ///< one per section
+  std::vector<render::Profile> profiles_;  ///< one per section, then one per block
+  std::vector<std::uint32_t> of_block_;    ///< per body: index of its profile, if it is a block
   std::vector<bool> joint_;  ///< per node: ends of several members, whose sections are drawn through it
 };
 

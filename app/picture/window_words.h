@@ -170,7 +170,8 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::plane, "運動が鉛直面内でなくなった"},
     {LevelReason::held, "固定具が働く"},
     {LevelReason::contact, "接触条件の変更"},
-    {LevelReason::jammed, "すべりの停止が繰り返される"}};
+    {LevelReason::jammed, "すべりの停止が繰り返される"},
+    {LevelReason::solid, "一つの塊である"}};
 
 template <class Table, class Kind>
 Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {

@@ -23,6 +23,7 @@ LevelChoice asked(const Model&, const Parameters&, int) {
 }
 
 LevelChoice least_that_answers(const Model& model, const Parameters& parameters, int body) {
+  if (model.bodies[body].solid) return {ModelLevel::rigid, LevelReason::solid};
   if (parameters.want_stress) return {ModelLevel::elastic, LevelReason::stress};
   if (rigid_error(model, parameters, body) > parameters.accuracy)
     return {ModelLevel::elastic, LevelReason::bending};
@@ -35,6 +36,7 @@ constexpr BodyModelTraits k_models[] = {
      .bends = true,
      .takes_supports = false,
      .may_be_frame = true,
+     .of_solid = true,
      .lists_start = true,
      .choose = least_that_answers},
     {.kind = BodyModel::planar,
@@ -42,6 +44,7 @@ constexpr BodyModelTraits k_models[] = {
      .bends = false,
      .takes_supports = false,
      .may_be_frame = false,
+     .of_solid = true,
      .by_edit = false,
      .lists_start = true,
      .choose = asked<ModelLevel::planar>},
@@ -50,6 +53,7 @@ constexpr BodyModelTraits k_models[] = {
      .bends = false,
      .takes_supports = false,
      .may_be_frame = false,
+     .of_solid = true,
      .choose = asked<ModelLevel::rigid>},
     {.kind = BodyModel::elastic,
      .word = "elastic",
@@ -99,6 +103,8 @@ const char* name(LevelReason reason) {
       return "its contacts were edited";
     case LevelReason::jammed:
       return "it jams again and again";
+    case LevelReason::solid:
+      return "it is one solid piece";
   }
   return "";
 }
@@ -117,12 +123,14 @@ double elastic_error(const Body& body, const Parameters& parameters, double rota
 
 bool can_be(const Model& model, int body, BodyModel asked) {
   const BodyModelTraits& how = traits(asked);
+  if (model.bodies[body].solid) return how.of_solid;
   if (bears_on_nodes(model, body) && !how.takes_supports) return false;
   return !how.bends || model.bodies[body].elastic;
 }
 
 LevelChoice base_level(const Model& model, const Parameters& parameters, int body) {
-  const BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
+  BodyModel asked = parameters.models.empty() ? BodyModel::frame : parameters.models[body];
+  if (model.bodies[body].solid && !can_be(model, body, asked)) asked = BodyModel::rigid;
   if (model.bodies[body].ground || !can_be(model, body, asked))
     return {ModelLevel::frame, LevelReason::asked};
   return traits(asked).choose(model, parameters, body);

@@ -68,6 +68,7 @@ struct BodyModelTraits {
   bool bends;                ///< needs Body::elastic
   bool takes_supports;       ///< and loads on nodes
   bool may_be_frame;         ///< where the scene needs one
+  bool of_solid = false;     ///< a block (Body::solid) may have it
   bool by_edit = true;       ///< may be asked for while it runs
   bool lists_start = false;  ///< outcomes say what it begins as
   /// Of a body that bears neither supports nor loads and has, if it bends, Body::elastic.
@@ -79,11 +80,12 @@ inline const BodyModelTraits& traits(BodyModel model) {
 }
 
 /// Whether a body can be computed as `asked`: rigid and frame always, but for one that stands on supports or
-/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them.
+/// bears loads, which is a frame; elastic and automatic when its scene's `model` was one of them. A block:
+/// BodyModelTraits::of_solid.
 bool can_be(const Model& model, int body, BodyModel asked);
 
 /// The level that Parameters::models leads to (BodyModelTraits::choose); frame where can_be() forbids it and
-/// for floors and walls made of members.
+/// for floors and walls made of members. A block is then rigid.
 LevelChoice base_level(const Model& model, const Parameters& parameters, int body);
 
 /// Positions, rotations and velocities of the nodes of all bodies that are not frames, from State::bodies.

@@ -48,7 +48,8 @@ enum class LevelReason : std::uint8_t {
   plane = 11,     ///< something moves it out of its plane
   held = 12,      ///< an anchor
   contact = 13,   ///< an edit of its contacts
-  jammed = 14     ///< its events come without progress
+  jammed = 14,    ///< its events come without progress
+  solid = 15      ///< it is a block of one piece, which has neither stresses nor deformation
 };
 
 inline constexpr int k_modes = 12;  ///< most modes of a body on the level elastic

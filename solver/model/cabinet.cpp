@@ -7,7 +7,6 @@
 #include <map>
 
 #include "solver/math/elementary.h"
-#include "solver/math/rotation.h"
 #include "solver/model/body_builder.h"
 #include "solver/model/mass_fit.h"
 
@@ -79,29 +78,13 @@ std::vector<double> rotary_inertia(const Model& model, const Body& body, const s
   return rotation;
 }
 
-struct Placing {
-  Mat3 rotation;
-  Vec3 offset;
-  Vec3 operator()(const Vec3& x) const { return rotation * x + offset; }
-};
-
-Placing place(const CabinetSpec& spec, double width) {
-  Mat3 pose;
-  for (int k = 0; k < 3; ++k) pose.row(k) = Eigen::RowVector3d(row_of(k_poses, spec.pose).turn[k]);
-  const Vec3 half = spec.size / 2;
-  const Vec3 posed_half = (pose * half).cwiseAbs();
-  const Mat3 rotation = exp_quaternion(spec.yaw * Vec3::UnitZ()).toRotationMatrix() * pose;
-  // local z runs from 0 to the height: turn about the box's middle
-  return {rotation, spec.at + Vec3(0, 0, posed_half.z() + width / 2) - rotation * Vec3(0, 0, half.z())};
-}
-
 class CabinetBuilder {
  public:
   CabinetBuilder(Model& model, const CabinetSpec& spec)
       : model_(model),
         spec_(spec),
         builder_(model, spec.name),
-        place_(place(spec, model.sections[spec.section].width)) {}
+        place_(place(spec, spec.size, model.sections[spec.section].width)) {}
 
   void build() {
     add_edges();
@@ -300,7 +283,7 @@ class CabinetBuilder {
     throw BuildError("cg_height", number(spec_.cg_height) +
                                       " m cannot be reached with positive densities; inertia = \"" +
                                       (spec_.inertia == CabinetSpec::Inertia::panels ? "panels" : "solid") +
-                                      "\" allows " + number(least) + ".." + number(most) + " m");
+                                      "\" allows " + number(least) + ".." + number(most) + " m" + advice());
   }
 
   // Says how far the inertia can be scaled, else gives up on the centre of gravity.
@@ -320,10 +303,15 @@ class CabinetBuilder {
         number(inertia.x()) + ", " + number(inertia.y()) + ", " + number(inertia.z()) + " kg m^2";
     if (least == 0)
       throw BuildError("cg_height", "no positive densities on the members give " + number(spec_.cg_height) +
-                                        " m with the inertia " + asked);
+                                        " m with the inertia " + asked + advice());
     throw BuildError("inertia", "the members cannot hold " + asked + " with positive densities; they reach " +
-                                    number(least) + ".." + number(most) +
-                                    " times that (shelves carry mass inside)");
+                                    number(least) + ".." + number(most) + " times that" +
+                                    (advice().empty() ? " (shelves carry mass inside)" : advice()));
+  }
+
+  // A solid box has its mass inside, where members are few.
+  std::string advice() const {
+    return spec_.inertia == CabinetSpec::Inertia::solid ? "; add shelves, or use [[block]]" : "";
   }
 
   /// Least mass of a node over the mean: keeps the explicit step from collapsing.
@@ -341,24 +329,8 @@ class CabinetBuilder {
 }  // namespace
 
 BodyStart add_cabinet(Model& model, const CabinetSpec& spec) {
-  CabinetBuilder builder(model, spec);
-  builder.build();
-  const Body& body = model.bodies.back();
-  BodyStart start;
-  start.velocity = spec.velocity;
-  start.angular_velocity = spec.angular_velocity;
-  if (spec.tilt != 0) {
-    const Quat yaw = exp_quaternion(spec.yaw * Vec3::UnitZ());
-    double reach = 0, lowest = 1e300;
-    for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
-      const Vec3 x = yaw.conjugate() * (model.node_position[i] - Vec3(spec.at.x(), spec.at.y(), 0));
-      reach = std::max(reach, std::abs(x.x()));
-      lowest = std::min(lowest, x.z());
-    }
-    start.pivot = Vec3(spec.at.x(), spec.at.y(), lowest) + yaw * Vec3(std::copysign(reach, spec.tilt), 0, 0);
-    start.rotation = yaw * Vec3(0, spec.tilt, 0);
-  }
-  return start;
+  CabinetBuilder(model, spec).build();
+  return start_of(spec, model, model.bodies.back());
 }
 
 }  // namespace topple

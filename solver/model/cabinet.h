@@ -7,16 +7,16 @@
 
 #include "solver/model/body_builder.h"
 #include "solver/model/model.h"
+#include "solver/model/placement.h"
 
 namespace topple {
 
 /// A steel cabinet: twelve edges, shelves, and diagonals in place of its panels. Sizes are those between the
 /// centre lines of the edge members, about which it rocks.
-struct CabinetSpec {
+struct CabinetSpec : Placement {
   /// Inertia tensor of six thin sheets of equal thickness or of a solid box, of densities that vary linearly
   /// with height so that the centre of gravity is at cg_height; or inertia_given.
   enum class Inertia { panels, solid, given };
-  enum class Pose { upright, on_back, on_front, on_side };
   /// panels: an a x b sheet of thickness t becomes two diagonals of length d, each of area
   ///   A = G t d^3 / (2 E a b),
   /// which together have its shear stiffness G t a / b. Second moments, torsion constant and shear stiffness
@@ -24,9 +24,6 @@ struct CabinetSpec {
   /// c/sqrt(I/A) are the post's too, c = c0 sqrt(A0/A) and Z = Z0 sqrt(A/A0). The diagonals yield at
   /// sqrt(3)/(2 (1 + nu)) (a/b + b/a) times the shear force at which the sheet would.
   enum class Bracing { panels, none };
-  /// Where it touches planes: at its eight corners, as Housner's block does, or at the middles of edges and
-  /// faces too, which take a part of each landing.
-  enum class Base { corners, edges };
   /// open: with Bracing::panels, no sheet and no diagonals on the side towards +x.
   enum class Front { closed, open };
   std::string name;
@@ -35,33 +32,12 @@ struct CabinetSpec {
   double cg_height = 0.895;     ///< m above the bottom centre lines
   Inertia inertia = Inertia::panels;
   Vec3 inertia_given = Vec3::Zero();  ///< kg m^2 about the centre of gravity
-  Vec3 at = Vec3::Zero();             ///< m, point of the floor below the middle of the posed cabinet
-  double yaw = 0;                     ///< rad
-  Pose pose = Pose::upright;
-  double tilt = 0;               ///< rad, about the bottom edge on the +x side before yaw; negative: -x side
-  Vec3 velocity = Vec3::Zero();  ///< m/s, as in BodyStart
-  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, likewise
-  int section = 0, material = 0;         ///< indices into the model's lists
+  int section = 0, material = 0;      ///< indices into the model's lists
   int shelves = 0;
-  Base base = Base::corners;
   Bracing bracing = Bracing::panels;
   double panel_thickness = 0.6e-3;  ///< m, of the sheet that the diagonals replace
   Front front = Front::closed;
-  int divisions = 1;                ///< members per edge; posts: from one shelf to the next
-};
-
-/// How a cabinet stands or lies.
-struct PoseTraits {
-  CabinetSpec::Pose kind;
-  const char* word;   ///< in scenes
-  double turn[3][3];  ///< from upright, about the axes of the cabinet
-};
-/// A new one is a CabinetSpec::Pose and a row here.
-inline constexpr PoseTraits k_poses[] = {
-    {CabinetSpec::Pose::upright, "upright", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-    {CabinetSpec::Pose::on_back, "on-back", {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}},
-    {CabinetSpec::Pose::on_front, "on-front", {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}},
-    {CabinetSpec::Pose::on_side, "on-side", {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}},
+  int divisions = 1;  ///< members per edge; posts: from one shelf to the next
 };
 
 struct FrameMember {
@@ -88,8 +64,8 @@ struct FrameSpec {
   std::vector<Load> loads;
   std::vector<PointMass> masses;
   std::vector<std::array<int, 4>> panels;  ///< corners, BodyBuilder::add_panel
-  double mass = 0;           ///< kg, `masses` included; 0: from the densities
-  std::vector<Vec3> copies;  ///< m, translations; empty: one at the origin
+  double mass = 0;                         ///< kg, `masses` included; 0: from the densities
+  std::vector<Vec3> copies;                ///< m, translations; empty: one at the origin
   double tilt = 0;  ///< rad, about the line along y through its lowest nodes, on the +x side of them;
                     ///< negative: -x side
   Vec3 velocity = Vec3::Zero();          ///< m/s, as in BodyStart

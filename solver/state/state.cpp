@@ -31,7 +31,7 @@ constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},   {LevelRe
                                              {LevelReason::bending, 8}, {LevelReason::neighbour, 9},
                                              {LevelReason::fall, 10},   {LevelReason::plane, 11},
                                              {LevelReason::held, 12},   {LevelReason::contact, 13},
-                                             {LevelReason::jammed, 14}};
+                                             {LevelReason::jammed, 14}, {LevelReason::solid, 15}};
 constexpr Stored<planar::Mode> k_block_modes[] = {{planar::Mode::rest, 0},
                                                   {planar::Mode::slide, 1},
                                                   {planar::Mode::rock, 2},

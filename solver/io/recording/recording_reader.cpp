@@ -31,7 +31,7 @@ bool is_level_change(const EventRecord& event) {
   return std::ranges::any_of(
              k_model_levels,
              [&](const LevelTraits& row) { return static_cast<double>(row.kind) == event.value[0]; }) &&
-         event.value[1] >= 0 && event.value[1] <= static_cast<double>(LevelReason::jammed);
+         event.value[1] >= 0 && event.value[1] <= static_cast<double>(LevelReason::solid);
 }
 
 /// What the file's first bytes say, before HDF5 sees it.

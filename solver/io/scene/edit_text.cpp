@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/body/model_level.h"
+#include "solver/frame/integrator.h"
 #include "solver/io/common/errors.h"
 #include "solver/model/excitation.h"
 
@@ -75,9 +76,21 @@ void check_model(const Edit& edit, const Parameters&, const Model& model) {
   if (!traits(asked).by_edit)
     fail(edit,
          "a body is " + std::string(traits(asked).word) + " from the start of a run on; a scene says so");
+  if (model.bodies[edit.index].solid && !can_be(model, edit.index, asked))
+    fail(edit,
+         "\"" + model.bodies[edit.index].name + "\" cannot be " + traits(asked).word + "; a block is rigid");
   if (!can_be(model, edit.index, asked))
     fail(edit, "\"" + model.bodies[edit.index].name + "\" cannot be " + traits(asked).word +
                    "; supports and loads take a frame, elastic and auto a scene that says so");
+}
+
+void check_integrator(const Edit& edit, const Parameters&, const Model& model) {
+  if (edit.value.x() == k_automatic_integrator) return;
+  const IntegratorTraits& asked = traits(static_cast<Integrator>(static_cast<int>(edit.value.x())));
+  const auto block = std::ranges::find_if(model.bodies, &Body::solid);
+  if (asked.is_explicit && block != model.bodies.end())
+    fail(edit, "\"" + block->name + "\" is a block, which is rigid: \"" + asked.word +
+                   "\" makes a frame of each body that is near another");
 }
 
 void check_damping(const Edit& edit, const Parameters&, const Model& model) {
@@ -94,6 +107,7 @@ struct EditCheck {
 constexpr EditCheck k_checks[] = {{Edit::Key::type, check_type},
                                   {Edit::Key::frequency, check_frequency},
                                   {Edit::Key::model, check_model},
+                                  {Edit::Key::integrator, check_integrator},
                                   {Edit::Key::damping, check_damping}};
 
 }  // namespace

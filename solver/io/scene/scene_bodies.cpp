@@ -1,16 +1,16 @@
-// Cabinets and frames of a scene.
+// Cabinets, frames and blocks of a scene.
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
-#include "solver/body/candidates.h"
 #include "solver/body/model_level.h"
-#include "solver/body/planar_body.h"
 #include "solver/contact/panel_place.h"
 #include "solver/contact/proximity.h"
 #include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/model/block.h"
 #include "solver/model/cabinet.h"
 #include "solver/reduced/elastic_basis.h"
 
@@ -72,6 +72,17 @@ void check_tilt(const Entry& entry, const Setup& setup, double tilt) {
     entry.fail("tilt", "a body that starts tilted cannot settle: write settle = false in [run]");
 }
 
+void read_placement(const Entry& entry, Placement& spec) {
+  const std::vector<double> at = entry.numbers("at");
+  spec.at = Vec3(at[0], at[1], at.size() > 2 ? at[2] : 0);
+  spec.yaw = entry.number("yaw");
+  spec.pose = entry.chosen("pose", k_poses);
+  spec.tilt = entry.number("tilt");
+  spec.velocity = entry.vector("velocity");
+  spec.angular_velocity = entry.vector("angular_velocity");
+  spec.base = entry.chosen("base", k_bases);
+}
+
 CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   CabinetSpec spec;
   spec.name = entry.name();
@@ -87,21 +98,26 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
     spec.inertia = CabinetSpec::Inertia::given;
     spec.inertia_given = entry.vector("inertia");
   }
-  const std::vector<double> at = entry.numbers("at");
-  spec.at = Vec3(at[0], at[1], at.size() > 2 ? at[2] : 0);
-  spec.yaw = entry.number("yaw");
-  spec.pose = entry.chosen("pose", k_poses);
-  spec.tilt = entry.number("tilt");
-  spec.velocity = entry.vector("velocity");
-  spec.angular_velocity = entry.vector("angular_velocity");
+  read_placement(entry, spec);
   spec.section = library.section(entry);
   spec.material = library.material(entry);
   spec.shelves = entry.integer("shelves");
-  spec.base = entry.chosen("base", k_bases);
   spec.bracing = entry.chosen("bracing", k_bracings);
   spec.panel_thickness = entry.number("panel_thickness");
   spec.front = entry.chosen("front", k_fronts);
   spec.divisions = entry.integer("divisions");
+  return spec;
+}
+
+BlockSpec read_block(const Entry& entry) {
+  BlockSpec spec;
+  spec.name = entry.name();
+  spec.size = entry.vector("size");
+  spec.mass = entry.number("mass");
+  spec.cg = entry.has("cg") ? entry.vector("cg") : Vec3(0, 0, spec.size.z() / 2);
+  if (!entry.is_word("inertia")) spec.inertia = entry.vector("inertia");
+  read_placement(entry, spec);
+  if (entry.has("width")) spec.width = entry.number("width");
   return spec;
 }
 
@@ -218,14 +234,15 @@ void build(const Entry& entry, F&& builder) {
 }
 
 // One, or its copies.
-void add_cabinets(const Entry& entry, const CabinetSpec& spec, Setup& setup) {
+template <class Spec>
+void add_copies(const Entry& entry, const Spec& spec, BodyStart (*add)(Model&, const Spec&), Setup& setup) {
   std::vector<Vec3> copies = entry.vectors("copies");
   if (copies.empty()) copies.push_back(Vec3::Zero());
   for (std::size_t c = 0; c < copies.size(); ++c) {
-    CabinetSpec copy = spec;
+    Spec copy = spec;
     copy.name = copy_name(spec.name, c);
     copy.at += copies[c];
-    build(entry, [&] { setup.starts.push_back(add_cabinet(setup.model, copy)); });
+    build(entry, [&] { setup.starts.push_back(add(setup.model, copy)); });
     check_size(entry, setup.model.elements.size());
   }
 }
@@ -394,36 +411,17 @@ void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) 
   }
 }
 
-/// Whether it becomes a rigid body as soon as it begins.
-bool is_near_another(const Model& model, const State& start, int body) {
-  return std::ranges::any_of(start.candidate_pairs, [&](const ElementPair& pair) {
-    return body_of(model, pair.a) == body || body_of(model, pair.b) == body;
-  });
-}
-
-/// Empty: it begins as one.
-std::string why_no_block(const Setup& setup, const State& start, int body, bool asked) {
-  const LevelChoice base = base_level(setup.model, setup.parameters, body);
-  if (!asked && base.level != ModelLevel::rigid)
-    return "it is computed as \"" + std::string(traits(base.level).word) + "\" (" + name(base.reason) + ")";
-  const std::string_view why = why_not_planar(setup.model, setup.parameters, start, body, asked);
-  if (why.empty() && is_near_another(setup.model, start, body))
-    return "another body is within " + short_number(1e3 * start.candidate_margin) + " mm";
-  return std::string(why);
-}
-
-/// Of a body that begins as a planar block.
-void check_restitution(const Entry& entry, const Setup& setup, const State& start, int body, bool asked) {
-  const double given = setup.model.bodies[body].restitution;
-  const std::optional<BlockState> begins =
-      PlanarBody(setup.model, body).begin(setup.parameters, start, asked);
-  if (!(given > 1) || !begins) return;
-  const double most = planar::greatest_restitution(
-      planar::block_along(setup.model, setup.parameters, begins->along, body).block);
-  if (given > most)
-    entry.fail("restitution", short_number(given) + " lets \"" + setup.model.bodies[body].name +
-                                  "\" gain energy at an impact; at most " +
-                                  short_number(std::floor(most * 1e4) / 1e4));
+// Of blocks, as above.
+void read_block_model(const Entry& root, const Entry& entry, int count, Setup& setup) {
+  const std::string_view analysis = root.entry("run").word("analysis");
+  if (setup.run.analysis != Analysis::dynamic)
+    entry.fail("a block is rigid: analysis = \"" + std::string(analysis) + "\" is for frames");
+  if (traits(setup.parameters.integrator).is_explicit)
+    entry.fail("a block is rigid: integrator = \"" + root.entry("run").text("integrator") +
+               "\" makes a frame of each body that is near another");
+  setup.parameters.models.insert(setup.parameters.models.end(), count, entry.chosen("model", body_models()));
+  setup.parameters.damping.insert(setup.parameters.damping.end(), count, 0);
+  for (Body& body : std::span(setup.model.bodies).last(count)) body.restitution = entry.number("restitution");
 }
 
 }  // namespace
@@ -437,7 +435,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     check_start(entry, setup);
     check_tilt(entry, setup, spec.tilt);
     const std::size_t first = model.bodies.size();
-    add_cabinets(entry, spec, setup);
+    add_copies(entry, spec, add_cabinet, setup);
     check_copies(entry, model, first);
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
     of_body.resize(model.bodies.size(), entry);
@@ -456,8 +454,18 @@ void read_bodies(const Entry& root, Setup& setup) {
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
     of_body.resize(model.bodies.size(), entry);
   }
+  for (const Entry& entry : root.entries("block")) {
+    const BlockSpec spec = read_block(entry);
+    check_start(entry, setup);
+    check_tilt(entry, setup, spec.tilt);
+    const std::size_t first = model.bodies.size();
+    add_copies(entry, spec, add_block, setup);
+    check_copies(entry, model, first);
+    read_block_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    of_body.resize(model.bodies.size(), entry);
+  }
   if (model.bodies.empty()) {
-    root.fail("there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
+    root.fail("there are no bodies; a scene has at least one [[cabinet]], [[frame]] or [[block]]");
   }
   read_grids(root, library, setup);
   setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);
@@ -465,26 +473,6 @@ void read_bodies(const Entry& root, Setup& setup) {
   const State start = start_state(model, setup.starts);
   check_planes(of_body, setup, start);
   check_overlap(of_body, setup, start);
-}
-
-void check_planar(const Entry& root, const Setup& setup) {
-  State start = start_state(setup.model, setup.starts);
-  NearSearch search(setup.model);
-  int body = 0;
-  for (const char* const kind : {"cabinet", "frame"})
-    for (const Entry& entry : root.entries(kind)) {
-      const bool asked = traits(entry.chosen("model", body_models())).kind == BodyModel::planar;
-      const int end = body + static_cast<int>(std::max<std::size_t>(1, entry.vectors("copies").size()));
-      for (; body < end; ++body) {
-        if (!asked && !entry.has("restitution")) continue;
-        update_candidates(setup.model, search, start, 0);
-        const std::string why = why_no_block(setup, start, body, asked);
-        if (!why.empty())
-          entry.fail(asked ? "model" : "restitution",
-                     "\"" + setup.model.bodies[body].name + "\" is no planar block: " + why);
-        check_restitution(entry, setup, start, body, asked);
-      }
-    }
 }
 
 }  // namespace topple::io

@@ -351,7 +351,7 @@ void check_scene(const Node& root, const std::string& origin) {
               floor ? std::map<std::string, Place>{{"floor", floor->place}} : std::map<std::string, Place>{});
   check_names(root, origin, {"material"}, {});
   check_names(root, origin, {"section"}, {});
-  check_names(root, origin, {"cabinet", "frame"}, {});
+  check_names(root, origin, {"cabinet", "frame", "block"}, {});
   check_names(root, origin, {"anchor"}, {});
   check_names(root, origin, {"probe"}, {});
   check_names(root, origin, {"expect"}, {});

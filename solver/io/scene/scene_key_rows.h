@@ -115,7 +115,7 @@ class Rows {
   std::string_view table_;
 };
 
-/// [[cabinet]], [[frame]] and its parts.
+/// [[cabinet]], [[frame]] and its parts, [[block]].
 void add_body_keys(std::vector<Key>& keys);
 
 }  // namespace topple::io

@@ -50,6 +50,7 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("section", T::tables, "cross-section of members");
   rows.plain("cabinet", T::tables, "a steel cabinet, built from members");
   rows.plain("frame", T::tables, "anything made of straight members");
+  rows.plain("block", T::tables, "a rigid solid piece without members");
   rows.plain("anchor", T::tables, "ties a body to a wall or floor").only_in({"dynamic", "static"});
   rows.plain("probe", T::tables, "motion reported in the summary");
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");

@@ -43,6 +43,30 @@ void add_copies(Rows& rows) {
       .absent_means("one, where it is");
 }
 
+void add_placement(Rows& rows) {
+  const Placement of{};
+  rows.numbers("at", 3, D::length, "m", -k_far, k_far,
+               "centre of the footprint in its pose, and the height that it stands on")
+      .at_least(2)
+      .absent(std::vector{0., 0.});
+  rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical").absent(of.yaw);
+  rows.word("pose", k_poses, of.pose, "how it stands or lies");
+  rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
+              "about the bottom edge on the +x side before yaw; negative: on the -x side")
+      .absent(of.tilt);
+  rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
+      .absent(of.velocity)
+      .only_in({"dynamic"});
+  rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
+      .absent(of.angular_velocity)
+      .only_in({"dynamic"});
+}
+
+void add_base(Rows& rows) {
+  rows.word("base", k_bases, Placement{}.base,
+            "where it touches planes: its eight corners, or the middles of edges and faces too");
+}
+
 void add_cabinet(std::vector<Key>& keys) {
   Rows rows(keys, "cabinet");
   const CabinetSpec cabinet{};
@@ -57,27 +81,11 @@ void add_cabinet(std::vector<Key>& keys) {
                "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
       .or_word(words_of(k_inertias))
       .absent(place_of(k_inertias, cabinet.inertia));
-  rows.numbers("at", 3, D::length, "m", -k_far, k_far,
-               "centre of the footprint in its pose, and the height that it stands on")
-      .at_least(2)
-      .absent(std::vector{0., 0.});
-  rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical")
-      .absent(cabinet.yaw);
-  rows.word("pose", k_poses, cabinet.pose, "how it stands or lies");
-  rows.number("tilt", D::angle, "deg", -90 * k_degree, 90 * k_degree,
-              "about the bottom edge on the +x side before yaw; negative: on the -x side")
-      .absent(cabinet.tilt);
-  rows.numbers("velocity", 3, D::velocity, "m/s", -k_fast, k_fast, "of the centre of gravity, at the start")
-      .absent(cabinet.velocity)
-      .only_in({"dynamic"});
-  rows.numbers("angular_velocity", 3, D::angular_velocity, "rad/s", -k_fast, k_fast, "at the start")
-      .absent(cabinet.angular_velocity)
-      .only_in({"dynamic"});
+  add_placement(rows);
   rows.plain("section", T::text, "a [[section]]").required();
   rows.plain("material", T::text, "a [[material]]").required();
   rows.integer("shelves", 0, 20, "shelves").absent(cabinet.shelves);
-  rows.word("base", k_bases, cabinet.base,
-            "where it touches planes: its eight corners, or the middles of edges and faces too");
+  add_base(rows);
   rows.word("bracing", k_bracings, cabinet.bracing, "panels: diagonals as stiff as thin sheets");
   rows.number("panel_thickness", D::length, "mm", 1e-5, 0.1, "of the sheets that the diagonals replace")
       .absent(cabinet.panel_thickness)
@@ -89,6 +97,35 @@ void add_cabinet(std::vector<Key>& keys) {
   add_restitution(rows);
   add_copies(rows);
   add_model(rows, BodyModel::automatic);
+}
+
+void add_block(std::vector<Key>& keys) {
+  Rows rows(keys, "block");
+  rows.plain("name", T::text, "name of the body; copies add -2, -3, ...").absent_means("block-1, ...");
+  rows.numbers("size", 3, D::length, "mm", 1e-3, k_large,
+               "depth, width and height between the centre lines of its edges, about which it rocks; its "
+               "surface lies half of `width` outside")
+      .required();
+  rows.number("mass", D::mass, "kg", 1e-6, 1e6, "mass").required();
+  rows.numbers("cg", 3, D::length, "mm", -k_large, k_large,
+               "centre of gravity from the middle of the base along depth, width and height")
+      .absent_means("the middle of the block");
+  rows.numbers("inertia", 3, D::inertia, "kg m^2", 1e-15, 1e8,
+               "about the centre of gravity: of a uniform block of this size about its middle, or [Ixx, Iyy, "
+               "Izz]")
+      .or_word({"solid"})
+      .absent(0);
+  add_placement(rows);
+  rows.number("width", D::length, "mm", 1e-6, k_large,
+              "contact width of edges and faces, at most the smallest side")
+      .absent_means("a twentieth of the smallest side, at most 20 mm");
+  add_base(rows);
+  add_restitution(rows);
+  add_copies(rows);
+  rows.word("model", {"auto", "planar", "rigid"},
+            "what the block is computed as; auto: planar while it is a planar block, else rigid")
+      .absent(0)
+      .only_in({"dynamic"});
 }
 
 void add_frame(std::vector<Key>& keys) {
@@ -171,6 +208,7 @@ void add_body_keys(std::vector<Key>& keys) {
   add_frame_loads(keys);
   add_frame_masses(keys);
   add_frame_panels(keys);
+  add_block(keys);
 }
 
 }  // namespace topple::io

@@ -78,7 +78,9 @@ int find_node(const Entry& root, const Entry& entry, const Model& model, int bod
     first += copies;
   }
   const int node = entry.integer("node");
-  if (nodes == 0) entry.fail("node", std::string("the nodes of a cabinet have no numbers") + otherwise);
+  if (nodes == 0)
+    entry.fail("node", std::string("the nodes of a ") + (model.bodies[body].solid ? "block" : "cabinet") +
+                           " have no numbers" + otherwise);
   if (node >= nodes) {
     entry.fail("node", std::to_string(node) + " is not a node of \"" + model.bodies[body].name +
                            "\", which has 0.." + std::to_string(nodes - 1));

@@ -27,7 +27,7 @@ void read_planes(const Entry& root, Setup& setup);
 /// uses them.
 void read_materials_and_sections(const Entry& root, Setup& setup);
 
-/// [[cabinet]] in the order of the file, then [[frame]], then floors and walls of members.
+/// [[cabinet]] in the order of the file, then [[frame]], then [[block]], then floors and walls of members.
 void read_bodies(const Entry& root, Setup& setup);
 
 /// Refuses `model = "planar"` and `restitution` of a body that does not begin as a planar block, and a

@@ -31,7 +31,7 @@ struct BodyEntry {
 
 BodyEntry entry_of_body(const Node& root, std::size_t body) {
   std::size_t first = 0;
-  for (const char* const table : {"cabinet", "frame"}) {
+  for (const char* const table : {"cabinet", "frame", "block"}) {
     const Node* const list = root.find(table);
     for (std::size_t i = 0; list && i < list->items.size(); ++i) {
       const Node* const copies = list->items[i].value.find("copies");

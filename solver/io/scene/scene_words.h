@@ -25,8 +25,8 @@ inline constexpr Word<Shake::Start> k_shake_starts[] = {{Shake::Start::rest, "re
                                                         {Shake::Start::jump, "jump"}};
 inline constexpr Word<Anchor::Type> k_anchor_types[] = {
     {Anchor::Type::strap, "strap"}, {Anchor::Type::bracket, "bracket"}, {Anchor::Type::pole, "pole"}};
-inline constexpr Word<CabinetSpec::Base> k_bases[] = {{CabinetSpec::Base::corners, "corners"},
-                                                      {CabinetSpec::Base::edges, "edges"}};
+inline constexpr Word<Placement::Base> k_bases[] = {{Placement::Base::corners, "corners"},
+                                                    {Placement::Base::edges, "edges"}};
 inline constexpr Word<CabinetSpec::Bracing> k_bracings[] = {{CabinetSpec::Bracing::panels, "panels"},
                                                             {CabinetSpec::Bracing::none, "none"}};
 inline constexpr Word<CabinetSpec::Front> k_fronts[] = {{CabinetSpec::Front::closed, "closed"},

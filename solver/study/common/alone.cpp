@@ -119,6 +119,11 @@ Setup alone(const Setup& scene, int index, bool walls) {
   return setup;
 }
 
+std::string why_not_frames(const Model& model) {
+  const auto block = std::ranges::find_if(model.bodies, &Body::solid);
+  return block == model.bodies.end() ? "" : block->name + " is a block, which is never a frame";
+}
+
 bool alike(const Model& model, int index_a, int index_b) {
   const Body &a = model.bodies[index_a], &b = model.bodies[index_b];
   return a.node_count == b.node_count && a.element_count == b.element_count &&

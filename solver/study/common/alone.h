@@ -19,6 +19,9 @@ std::string why_not_standing(const Model& model, int body);
 /// `walls`: with all planes, else with the floor alone, which must exist.
 Setup alone(const Setup& scene, int body, bool walls);
 
+/// Why not all bodies of a scene can be frames: "box is a block, which is never a frame". Empty: they can.
+std::string why_not_frames(const Model& model);
+
 /// Whether two bodies differ by nothing but their name and a shift: what holds of one alone on a floor holds
 /// of the other.
 bool alike(const Model& model, int a, int b);

@@ -11,6 +11,7 @@
 #include "solver/io/scene/scene_keys.h"
 #include "solver/math/elementary.h"
 #include "solver/reduced/elastic_basis.h"
+#include "solver/study/common/alone.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/measure.h"
 
@@ -109,6 +110,8 @@ PrecisionPlan plan_precision(io::Scene scene) {
     throw InputError("study precision: " + scene.name + " is not dynamic; it has no time steps");
   if (scene.setup.model.furniture_total() == 0)
     throw InputError("study precision: " + scene.name + " has no body that moves");
+  if (const std::string why = why_not_frames(scene.setup.model); !why.empty())
+    throw InputError("study precision: " + scene.name + " cannot be stepped by all methods: " + why);
   PrecisionPlan plan{.scene = std::move(scene), .laws = {}, .settings = {}, .list = {}};
   Setup& setup = plan.scene.setup;
   Model& model = setup.model;

@@ -9,6 +9,7 @@
 
 #include "solver/body/model_level.h"
 #include "solver/io/scene/scene_file.h"
+#include "solver/study/common/alone.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/refinement.h"
 #include "solver/study/common/spread.h"
@@ -175,6 +176,8 @@ int StabilityPlan::references() const {
 StabilityPlan plan_stability(io::Scene scene, const std::string& x, const std::string& y) {
   if (scene.setup.run.analysis != Analysis::dynamic)
     throw InputError("study stability: " + scene.name + " is not dynamic; it has no time steps");
+  if (const std::string why = why_not_frames(scene.setup.model); !why.empty())
+    throw InputError("study stability: " + scene.name + " cannot be stepped by all methods: " + why);
   if (y.empty() && scene.setup.model.planes.empty())
     throw InputError("--y KEY=FROM..TO:N is required: " + scene.name +
                      " has no floor or wall that is a plane");

@@ -15,7 +15,7 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(error_of("tople = 1\n" + k_scene),
-            "s.toml:1:1: tople: unknown key; known: anchor, cabinet, contact, expect, floor, frame, "
+            "s.toml:1:1: tople: unknown key; known: anchor, block, cabinet, contact, expect, floor, frame, "
             "material, probe, run, "
             "section, shake, title, topple, wall");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
@@ -293,7 +293,8 @@ TEST(SceneErrors, settling_from_motion_or_without_gravity_is_refused) {
 
 TEST(SceneErrors, a_scene_without_bodies_is_refused) {
   EXPECT_EQ(error_of(k_head + k_library),
-            "s.toml:1:1: there are no bodies; a scene has at least one [[cabinet]] or [[frame]]");
+            "s.toml:1:1: there are no bodies; a scene has at least one [[cabinet]], [[frame]] or "
+            "[[block]]");
 }
 
 TEST(SceneErrors, bodies_that_cannot_be_built_blame_the_key) {
