@@ -38,6 +38,9 @@ TEST(PenaltyStudy, scenes_without_bodies_at_rest_on_a_plane_are_refused) {
   EXPECT_NE(why("tumble").find("no floor"), std::string::npos);
   EXPECT_NE(why("portal-pushover").find("not dynamic"), std::string::npos);
   EXPECT_NE(why("verify/restitution-printed").find("gravity"), std::string::npos);
+  const std::string block = "topple = 1\n[floor]\n[[block]]\nsize = [0.2, 0.3, 0.5]\nmass = 12\n";
+  EXPECT_EQ(why_not_studied(io::parse_scene(block, "s.toml").setup),
+            "has no cabinet or frame that stands freely on its floor");
 }
 
 TEST(PenaltyStudy, every_number_is_a_row_with_its_case) {

@@ -230,14 +230,20 @@ TEST(Precision, a_case_that_is_given_up_has_no_row) {
   EXPECT_EQ(run_case(tumbling(), 0, [] { return true; }), "");
 }
 
-TEST(Precision, scenes_without_steps_are_refused) {
-  try {
-    plan_precision(io::load_scene("portal-pushover"));
-    ADD_FAILURE();
-  } catch (const io::InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "study precision: portal-pushover is not dynamic; it has no time steps");
-  }
+TEST(Precision, scenes_that_its_methods_cannot_step_are_refused) {
+  const auto refusal = [](const io::Scene& scene) -> std::string {
+    try {
+      plan_precision(scene);
+    } catch (const io::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(io::load_scene("portal-pushover")),
+            "study precision: portal-pushover is not dynamic; it has no time steps");
+  const std::string block = "topple = 1\n[[block]]\nname = \"safe\"\nsize = [0.2, 0.3, 0.5]\nmass = 12\n";
+  EXPECT_EQ(refusal(io::parse_scene(block, "s.toml")),
+            "study precision: s cannot be stepped by all methods: safe is a block, which is never a frame");
 }
 
 }  // namespace
