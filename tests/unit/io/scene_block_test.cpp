@@ -1,6 +1,6 @@
 // [[block]]: what a scene makes of it, and one line for each thing that is wrong with it.
 #include "scene_samples.h"
-#include "solver/body/model_level.h"
+#include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene_save.h"
 
 namespace topple::io {
@@ -104,6 +104,29 @@ TEST(SceneBlock, overrides_and_edits_reach_it) {
   const std::string saved = edited_scene(read, now).text;
   EXPECT_NE(saved.find("model = \"rigid\""), std::string::npos) << saved;
   EXPECT_EQ(parse_scene(saved, "s.toml").setup.parameters.models[0], BodyModel::rigid);
+}
+
+TEST(SceneBlock, edits_that_make_frames_are_refused) {
+  const topple::Setup setup = parse_scene(scene(""), "s.toml").setup;
+  const auto refusal = [&](Edit::Key key, int value) -> std::string {
+    try {
+      check_edit({.key = key, .index = 0, .value = Vec3(value, 0, 0)}, setup.parameters, setup.model);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto model = [&](BodyModel of) { return refusal(Edit::Key::model, static_cast<int>(of)); };
+  EXPECT_EQ(model(BodyModel::rigid), "");
+  EXPECT_EQ(model(BodyModel::automatic), "");
+  EXPECT_EQ(model(BodyModel::frame), "body.1.model: \"box\" cannot be frame; a block is rigid");
+  EXPECT_EQ(model(BodyModel::elastic), "body.1.model: \"box\" cannot be elastic; a block is rigid");
+  const auto integrator = [&](Integrator of) { return refusal(Edit::Key::integrator, static_cast<int>(of)); };
+  EXPECT_EQ(integrator(Integrator::newmark), "");
+  EXPECT_EQ(
+      integrator(Integrator::central_difference),
+      "run.integrator: \"box\" is a block, which is rigid: \"central-difference\" makes a frame of each body "
+      "that is near another");
 }
 
 TEST(SceneBlock, begins_as_a_planar_block_where_it_is_one) {
