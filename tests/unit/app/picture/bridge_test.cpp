@@ -482,7 +482,7 @@ members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 2,
 
 TEST_F(BridgeTest, panels_are_left_out_when_they_are_switched_off) {
   const Bridge bridge(scene_, extent_);
-  EXPECT_EQ(bridge.frame(end_, scene_.setup.parameters).panels.size(), model().bodies[0].panels.size());
+  EXPECT_EQ(bridge.frame(end_, scene_.setup.parameters).panels.size(), model().panels.size());
   EXPECT_TRUE(bridge.frame(end_, scene_.setup.parameters, {.panels = false}).panels.empty());
 }
 
