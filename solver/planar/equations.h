@@ -61,12 +61,13 @@ template <class P>
   s.rate[i + 1] = reciprocal * acceleration;
 }
 
+/// `last`: the greatest of the lanes' last terms, `each`.
 template <class P>
-[[gnu::always_inline]] inline void end_turn(Solution<P>& s, int last) {
+[[gnu::always_inline]] inline void end_turn(Solution<P>& s, int last, P each) {
   turn_lever(s, last + 1);
   s.tilt[last + 2] = P(k_reciprocal[static_cast<std::size_t>(last + 2)]) * s.rate[last + 1];
-  s.tilt.degree = s.lever_x.degree = s.lever_z.degree = last + 2;
-  s.rate.degree = last + 1;
+  for (Series<P>* of : {&s.tilt, &s.lever_x, &s.lever_z}) of->end(last + 2, each + P(2));
+  s.rate.end(last + 1, each + P(1));
 }
 
 /// Term i of the second derivative.
@@ -77,45 +78,39 @@ template <class P>
 
 /// Position and velocity from the acceleration, whose terms are called one by one.
 template <class P, class Acceleration>
-void integrate(Series<P>& position, Series<P>& velocity, int last, const Acceleration& acceleration) {
+void integrate(Series<P>& position, Series<P>& velocity, int last, P each, const Acceleration& acceleration) {
   for (int i = 0; i <= last; ++i) {
     velocity[i + 1] = P(k_reciprocal[static_cast<std::size_t>(i + 1)]) * acceleration(i);
     position[i + 1] = P(k_reciprocal[static_cast<std::size_t>(i + 1)]) * velocity[i];
   }
   position[last + 2] = P(k_reciprocal[static_cast<std::size_t>(last + 2)]) * velocity[last + 1];
-  position.degree = last + 2, velocity.degree = last + 1;
+  position.end(last + 2, each + P(2)), velocity.end(last + 1, each + P(1));
 }
-
-template <class P>
-[[gnu::always_inline]] inline P magnitude(P a) {
-  return with_sign_of(a, P(1));
-}
-
-// A Truncation says after which term the series end: ends(i, size of term i of the accelerations).
 
 /// Leaves the terms of the floor's motion that count; returns the last.
-template <class P, class Truncation>
-int cut_floor(Solution<P>& s, Truncation& truncation) {
+template <class P>
+int cut_floor(Solution<P>& s, Truncation<P>& truncation) {
   int i = 0;
   while (!truncation.ends(i, magnitude(s.horizontal.or_zero(i)) + magnitude(s.vertical.or_zero(i)))) ++i;
-  s.horizontal.degree = std::min(s.horizontal.degree, i);
-  s.vertical.degree = std::min(s.vertical.degree, i);
+  for (Series<P>* of : {&s.horizontal, &s.vertical})
+    of->end(std::min(of->degree, i), lesser(truncation.last(), of->last()));
   return i;
 }
 
-template <class P, class Truncation>
-void resting(const Coefficients<P>&, Solution<P>& s, Truncation& truncation) {
+template <class P>
+void resting(const Coefficients<P>&, Solution<P>& s, Truncation<P>& truncation) {
   cut_floor(s, truncation);
 }
 
-template <class P, class Truncation>
-void sliding(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
-  integrate(s.x, s.x_velocity, cut_floor(s, truncation),
+template <class P>
+void sliding(const Coefficients<P>& c, Solution<P>& s, Truncation<P>& truncation) {
+  const int last = cut_floor(s, truncation);
+  integrate(s.x, s.x_velocity, last, truncation.last(),
             [&](int i) { return -(s.horizontal.or_zero(i) + c.friction * s.vertical.or_zero(i)); });
 }
 
-template <class P, class Truncation>
-void rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
+template <class P>
+void rocking(const Coefficients<P>& c, Solution<P>& s, Truncation<P>& truncation) {
   const P inverse = P(1) / (c.inertia + s.lever_x[0] * s.lever_x[0] + s.lever_z[0] * s.lever_z[0]);
   int i = 0;
   for (;; ++i) {
@@ -125,16 +120,16 @@ void rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
     turn_lever(s, i);
     if (truncation.ends(i, magnitude(c.size * acceleration))) break;
   }
-  end_turn(s, i);
+  end_turn(s, i, truncation.last());
   for (int j = 0; j <= i; ++j) {
     s.tangential[j] = s.horizontal.or_zero(j) - second_derivative(s.lever_x, j);
     s.normal[j] = s.vertical.or_zero(j) - second_derivative(s.lever_z, j);
   }
-  s.tangential.degree = s.normal.degree = i;
+  for (Series<P>* of : {&s.tangential, &s.normal}) of->end(i, truncation.last());
 }
 
-template <class P, class Truncation>
-void slide_rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
+template <class P>
+void slide_rocking(const Coefficients<P>& c, Solution<P>& s, Truncation<P>& truncation) {
   const P inverse = P(1) / c.inertia;
   P over_first(0);
   int i = 0;
@@ -152,15 +147,15 @@ void slide_rocking(const Coefficients<P>& c, Solution<P>& s, Truncation& truncat
                                magnitude(s.horizontal.or_zero(i))))
       break;
   }
-  end_turn(s, i);
-  s.normal.degree = s.denominator.degree = i;
-  integrate(s.x, s.x_velocity, i, [&](int j) {
+  end_turn(s, i, truncation.last());
+  for (Series<P>* of : {&s.normal, &s.denominator}) of->end(i, truncation.last());
+  integrate(s.x, s.x_velocity, i, truncation.last(), [&](int j) {
     return second_derivative(s.lever_x, j) - s.horizontal.or_zero(j) - c.friction * s.normal[j];
   });
 }
 
-template <class P, class Truncation>
-void flying(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
+template <class P>
+void flying(const Coefficients<P>& c, Solution<P>& s, Truncation<P>& truncation) {
   int i = 0;
   for (;; ++i) {
     turn(s, i, P(0));
@@ -172,11 +167,11 @@ void flying(const Coefficients<P>& c, Solution<P>& s, Truncation& truncation) {
                                magnitude(s.horizontal.or_zero(i)) + magnitude(s.vertical.or_zero(i))))
       break;
   }
-  s.tilt.degree = 1, s.rate.degree = 0;
+  s.tilt.end(1, P(1)), s.rate.end(0, P(0));
   s.lever_x[i + 2] = s.lever_z[i + 2] = P(0);
-  s.lever_x.degree = s.lever_z.degree = i + 1;
-  integrate(s.x, s.x_velocity, i, [&](int j) { return -s.horizontal.or_zero(j); });
-  integrate(s.z, s.z_velocity, i, [&](int j) { return -s.vertical.or_zero(j); });
+  for (Series<P>* of : {&s.lever_x, &s.lever_z}) of->end(i + 1, truncation.last() + P(1));
+  integrate(s.x, s.x_velocity, i, truncation.last(), [&](int j) { return -s.horizontal.or_zero(j); });
+  integrate(s.z, s.z_velocity, i, truncation.last(), [&](int j) { return -s.vertical.or_zero(j); });
 }
 
 }  // namespace topple::planar

@@ -10,38 +10,74 @@ constexpr int k_most_without_progress = 100;
 constexpr double k_together = 1e-12;  // s, within which events count as simultaneous
 constexpr double k_margin = 1e-9;     // m/s^2, within which the guards of a block at rest decide
 
-/// First terms of the motion.
-void set_motion(const Block& block, const State& state, Solution<double>& s) {
-  s.tilt = state.tilt, s.rate = state.rate;
-  s.x = state.x, s.x_velocity = state.x_velocity;
-  s.z = state.z, s.z_velocity = state.z_velocity;
-  const bool flies = state.mode == Mode::flight;
-  const Lever r = flies ? lever(-state.tilt, 1, 0) : lever(block, state.side, state.tilt);
-  s.lever_x = r.x, s.lever_z = r.z;
+template <class P>
+void set_series(const PerLane<P, Leg*>& legs, Series<double> Leg::*of, Series<P>& to) {
+  if constexpr (k_lanes<P> == 1) {
+    to = legs->*of;
+  } else {
+    int degree = 0;
+    for (const Leg* leg : legs) degree = std::max(degree, (leg->*of).degree);
+    for (int i = 0; i <= degree; ++i)
+      to[i] = pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).or_zero(i); });
+    to.end(degree, pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).last(); }));
+  }
 }
 
-Coefficients<double> coefficients(const Block& block, const State& state) {
-  const double widest = std::max(std::abs(block.left), std::abs(block.right));
-  return {block.inertia_over_mass(), block.kinetic_friction * state.slip,
-          std::sqrt(widest * widest + block.height * block.height)};
+/// First terms of the motion.
+template <class P>
+void set_motion(const PerLane<P, Leg*>& legs, Solution<P>& s) {
+  set_series(legs, &Leg::horizontal, s.horizontal);
+  set_series(legs, &Leg::vertical, s.vertical);
+  const auto of_states = [&](double State::*of) {
+    return pack_of<P>([&](int k) { return of_lane(legs, k)->start.*of; });
+  };
+  s.tilt = of_states(&State::tilt), s.rate = of_states(&State::rate);
+  s.x = of_states(&State::x), s.x_velocity = of_states(&State::x_velocity);
+  s.z = of_states(&State::z), s.z_velocity = of_states(&State::z_velocity);
+  const auto levers = per_lane<P>([&](int k) {
+    const Leg& leg = *of_lane(legs, k);
+    const bool flies = leg.start.mode == Mode::flight;
+    return flies ? lever(-leg.start.tilt, 1, 0) : lever(*leg.block, leg.start.side, leg.start.tilt);
+  });
+  s.lever_x = pack_of<P>([&](int k) { return of_lane(levers, k).x; });
+  s.lever_z = pack_of<P>([&](int k) { return of_lane(levers, k).z; });
+}
+
+template <class P>
+Coefficients<P> coefficients(const PerLane<P, Leg*>& legs) {
+  const auto of_blocks = [&](const auto& value) {
+    return pack_of<P>([&](int k) { return value(*of_lane(legs, k)->block, of_lane(legs, k)->start); });
+  };
+  return {of_blocks([](const Block& block, const State&) { return block.inertia_over_mass(); }),
+          of_blocks([](const Block& block, const State& state) { return block.kinetic_friction * state.slip; }),
+          of_blocks([](const Block& block, const State&) {
+            const double widest = std::max(std::abs(block.left), std::abs(block.right));
+            return std::sqrt(widest * widest + block.height * block.height);
+          })};
 }
 
 /// Time in which the rocking after an impact surely comes to an end were the accelerations constant, s: small
 /// rises need few terms.
-double rise(const Situation& now, const State& state) {
-  if (state.tilt != 0 || state.rate == 0) return k_never;
-  const double turn = edge_forces(now, state, state.slip).acceleration;
-  return turn * state.rate < 0 ? -4 * state.rate / turn : k_never;
+double rise(const Leg& leg) {
+  if (leg.start.tilt != 0 || leg.start.rate == 0) return k_never;
+  const double turn =
+      edge_forces({*leg.block, leg.horizontal[0], leg.vertical[0]}, leg.start, leg.start.slip).acceleration;
+  return turn * leg.start.rate < 0 ? -4 * leg.start.rate / turn : k_never;
 }
 
-State state_after(const Step& step, double since) {
-  const Solution<double>& s = step.solution;
-  State state = step.start;
-  state.time += since;
-  state.tilt = s.tilt.at(since), state.rate = s.rate.at(since);
-  state.x = s.x.at(since), state.x_velocity = s.x_velocity.at(since);
-  state.z = s.z.at(since), state.z_velocity = s.z_velocity.at(since);
-  return state;
+template <class P>
+PerLane<P, State> states_after(const PackStep<P>& step, P since) {
+  const Solution<P>& s = step.solution;
+  const P tilt = s.tilt.at(since), rate = s.rate.at(since), x = s.x.at(since),
+          x_velocity = s.x_velocity.at(since), z = s.z.at(since), z_velocity = s.z_velocity.at(since);
+  return per_lane<P>([&](int k) {
+    State state = of_lane(step.start, k);
+    state.time += of_lane(since, k);
+    state.tilt = of_lane(tilt, k), state.rate = of_lane(rate, k);
+    state.x = of_lane(x, k), state.x_velocity = of_lane(x_velocity, k);
+    state.z = of_lane(z, k), state.z_velocity = of_lane(z_velocity, k);
+    return state;
+  });
 }
 
 /// A kink of the floor up to which nothing wakes a block that rests, s; that of the series where none is
@@ -57,74 +93,118 @@ double rest_end(const Block& block, const Floor& floor, const State& state, doub
   return std::max(floor_end, floor.quiet(floor.floor, state.time, until, signs));
 }
 
-const Guard* first_guard(Step& step, int highest) {
-  const Guard* first = nullptr;
-  double when = step.length;
-  const Falls falls(when, highest);
+/// Index of the first guard that falls, after which the step ends; -1: none.
+template <class P>
+P first_guard(PackStep<P>& step, int highest) {
+  P first(-1), when = step.length;
+  const Falls<P> falls(when, highest);
   for (int i = 0; i < step.guards.count; ++i) {
-    const Guard& guard = step.guards.guard[static_cast<std::size_t>(i)];
-    const double fall = falls.first(*guard.of, guard.sign, guard.offset);
-    if (fall <= when - (first ? k_together : 0)) first = &guard, when = fall;
+    const Guard<P>& guard = step.guards.guard[static_cast<std::size_t>(i)];
+    const P fall = falls.first(*guard.of, guard.sign, guard.offset);
+    const auto sooner = fall <= when - choose(first < P(0), P(0), P(k_together));
+    first = choose(sooner, P(i), first), when = choose(sooner, fall, when);
   }
   step.length = when;
   return first;
 }
 
-Event event_of(const Guard& guard, const State& before, const State& after) {
+Event event_of(Event event, const State& before, const State& after) {
   const bool slips_on = after.slip != 0 && after.mode == before.mode;
-  if (guard.event == Event::stick && slips_on) return Event::reversal;
-  if (guard.event == Event::impact && (after.mode == Mode::rest || after.mode == Mode::slide))
+  if (event == Event::stick && slips_on) return Event::reversal;
+  if (event == Event::impact && (after.mode == Mode::rest || after.mode == Mode::slide))
     return Event::settled;
-  return guard.event;
+  return event;
 }
 
 }  // namespace
 
-Event advance(const Block& block, const Floor& floor, const Controls& controls, double until, State& state,
-              Step& step) {
-  Solution<double>& s = step.solution;
-  step.floor_end = floor.series(floor.floor, state.time, s.horizontal, s.vertical);
-  s.vertical[0] += block.gravity;
-  const Situation start{block, s.horizontal[0], s.vertical[0]};
-  if (state.undecided) state = decided(start, state);
-  step.start = state;
-  set_motion(block, state, s);
-  if (state.mode == Mode::rest) {
-    if (const double calm = rest_end(block, floor, state, until, step.floor_end); calm > step.floor_end) {
-      step.floor_end = calm, step.length = calm - state.time, step.guards.count = 0,
-      step.without_progress = 0;
-      state.time = calm, state.undecided = true;
-      return Event::none;
-    }
-  }
+bool begin(const Block& block, const Floor& floor, const Controls& controls, double until, const State& state,
+           Leg& leg) {
+  leg.block = &block, leg.controls = &controls;
+  leg.floor_end = floor.series(floor.floor, state.time, leg.horizontal, leg.vertical);
+  leg.vertical[0] += block.gravity;
+  leg.start = state.undecided ? decided({block, leg.horizontal[0], leg.vertical[0]}, state) : state;
+  leg.end = std::min(until, leg.floor_end);
+  if (leg.start.mode != Mode::rest) return true;
+  const double calm = rest_end(block, floor, leg.start, until, leg.floor_end);
+  if (calm <= leg.floor_end) return true;
+  leg.end = leg.floor_end = calm, leg.without_progress = 0;
+  return false;
+}
 
-  const double end = std::min(until, step.floor_end);
-  Truncation truncation(std::min(end - state.time, controls.longest), controls.tolerance * block.gravity,
-                        controls.order);
-  if (state.mode == Mode::rock || state.mode == Mode::slide_rock) truncation.limit(rise(start, state));
-  const ModeTraits& mode = traits(state.mode);
-  mode.solve(coefficients(block, state), s, truncation);
+State rested(const Leg& leg) {
+  State state = leg.start;
+  state.time = leg.end, state.undecided = true;
+  return state;
+}
+
+template <class P>
+PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& step,
+                         PerLane<P, State>& after) {
+  Solution<P>& s = step.solution;
+  const auto of_legs = [&](const auto& value) {
+    return pack_of<P>([&](int k) { return value(*of_lane(legs, k)); });
+  };
+  set_motion(legs, s);
+  step.start = per_lane<P>([&](int k) { return of_lane(legs, k)->start; });
+  Truncation<P> truncation(
+      of_legs([](const Leg& leg) { return std::min(leg.end - leg.start.time, leg.controls->longest); }),
+      of_legs([](const Leg& leg) { return leg.controls->tolerance * leg.block->gravity; }),
+      of_legs([](const Leg& leg) { return leg.controls->order; }));
+  const Mode mode = of_lane(legs, 0)->start.mode;
+  if (mode == Mode::rock || mode == Mode::slide_rock) truncation.limit(of_legs(rise));
+  traits<P>(mode).solve(coefficients<P>(legs), s, truncation);
   step.length = truncation.length();
 
   step.guards.count = 0;
-  mode.guard({block, state, s, controls.last_tilt}, step.guards);
-  const Guard* guard = first_guard(step, truncation.last() + 2);
-  if (!std::isfinite(step.length)) return Event::stalled;
-  const bool at_end = !guard && state.time + step.length >= end;
-  state = state_after(step, step.length);
-  if (at_end) state.time = end, state.undecided = end == step.floor_end;
-  if (!guard) return step.without_progress = 0, Event::none;
+  const PerLane<P, const Block*> blocks =
+      per_lane<P>([&](int k) -> const Block* { return of_lane(legs, k)->block; });
+  traits<P>(mode).guard(
+      {blocks, step.start, s, of_legs([](const Leg& leg) { return leg.controls->last_tilt; })}, step.guards);
+  const P first = first_guard(step, truncation.greatest() + 2);
+  after = states_after(step, step.length);
+  const P horizontal = s.horizontal.at(step.length), vertical = s.vertical.at(step.length);
 
-  step.without_progress = step.length > k_together ? 0 : step.without_progress + 1;
-  if (step.without_progress > k_most_without_progress) return Event::stalled;
-  const Situation now{block, s.horizontal.at(step.length), s.vertical.at(step.length)};
-  const State before = state;
-  state = guard->next(now, before, guard->side);
-  return event_of(*guard, before, state);
+  const auto end = [&](int k) {
+    Leg& leg = *of_lane(legs, k);
+    State& state = of_lane(after, k);
+    const double length = of_lane(step.length, k);
+    if (!std::isfinite(length)) return state = leg.start, Event::stalled;
+    const int fallen = static_cast<int>(of_lane(first, k));
+    if (fallen < 0) {
+      leg.without_progress = 0;
+      if (leg.start.time + length >= leg.end)
+        state.time = leg.end, state.undecided = leg.end == leg.floor_end;
+      return Event::none;
+    }
+    leg.without_progress = length > k_together ? 0 : leg.without_progress + 1;
+    if (leg.without_progress > k_most_without_progress) return Event::stalled;
+    const Guard<P>& guard = step.guards.guard[static_cast<std::size_t>(fallen)];
+    const State before = state;
+    state = guard.next({*leg.block, of_lane(horizontal, k), of_lane(vertical, k)}, before,
+                       of_lane(guard.side, k));
+    return event_of(guard.event, before, state);
+  };
+  PerLane<P, Event> events{};
+  for (int k = 0; k < count; ++k) of_lane(events, k) = end(k);
+  return events;
+}
+template Event finish(Leg* const&, int, PackStep<double>&, State&);
+template std::array<Event, 4> finish(const std::array<Leg*, 4>&, int, PackStep<Four>&,
+                                     std::array<State, 4>&);
+
+Event advance(const Block& block, const Floor& floor, const Controls& controls, double until, State& state,
+              Step& step) {
+  Leg* const leg = &step.leg;
+  if (begin(block, floor, controls, until, state, *leg)) return finish<double>(leg, 1, step, state);
+  set_motion<double>(leg, step.solution);
+  step.start = leg->start, step.length = leg->end - leg->start.time, step.guards.count = 0;
+  state = rested(*leg);
+  return Event::none;
 }
 
 State state_within(const Step& step, double time) {
-  State state = state_after(step, time - step.start.time);
+  State state = states_after<double>(step, time - step.start.time);
   state.time = time;
   return state;
 }

@@ -16,15 +16,40 @@ struct Controls {
       1.5707;  ///< rad, at which the block has overturned; up to where its walls meet the floor
 };
 
-/// The newest step. A block at rest passes as many lines of a record at once as cannot wake it; the
-/// solution's `horizontal` and `vertical` are then those of the first.
-struct Step {
-  State start;
-  double length = 0;  ///< s
-  Solution<double> solution;
-  double floor_end = 0;  ///< s, of the series of the floor
-  Guards guards;
-  int without_progress = 0;  ///< events in a row that came at once
+/// What a step begins with.
+struct Leg {
+  const Block* block;
+  const Controls* controls;
+  State start;                            ///< its mode decided
+  double end, floor_end;                  ///< s, of the step at most, and of the series of the floor
+  Series<double> horizontal, vertical;    ///< of the floor, m/s^2; the latter with gravity
+  int without_progress = 0;               ///< events in a row that came at once
+};
+/// To `until`. False: `start` rests until `end`, several lines of a record that cannot wake it at once.
+/// Block and controls must outlive the leg.
+bool begin(const Block& block, const Floor& floor, const Controls& controls, double until, const State& state,
+           Leg& leg);
+/// At the end of a leg in which nothing wakes it.
+State rested(const Leg& leg);
+
+/// A step of the blocks in the lanes of a pack, all in the same mode, each with its own clock and length.
+template <class P>
+struct PackStep {
+  PerLane<P, State> start;
+  P length{0};  ///< s
+  Solution<P> solution;
+  Guards<P> guards;
+};
+/// Ends the first `count` legs; the other lanes repeat one of them. `after` and the events returned: as of
+/// advance(). The bits of a lane do not depend on the others. P: double or Four.
+template <class P>
+PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& step,
+                         PerLane<P, State>& after);
+
+/// The newest step of one block. In one at rest that passed several lines of a record at once the
+/// solution's `horizontal` and `vertical` are those of the first.
+struct Step : PackStep<double> {
+  Leg leg;
 };
 
 /// One step: to `until`, an event, a kink of the floor or the end of what the series hold. `state` is the

@@ -10,39 +10,44 @@
 namespace topple::planar {
 
 /// sign * of + offset: the mode ends where it falls below zero.
+template <class P>
 struct Guard {
-  const Series<double>* of;
-  double sign, offset;
+  const Series<P>* of;
+  P sign, offset;
   Event event;
-  Side side;
+  PerLane<P, Side> side;
   State (*next)(const Situation&, const State&, Side);
 };
 
 /// Of one step. Of guards that fall together the first counts.
+template <class P>
 struct Guards {
   static constexpr int k_most = 5;
-  std::array<Guard, k_most> guard;
+  std::array<Guard<P>, k_most> guard;
   int count = 0;
-  std::array<Series<double>, 4> combined;  ///< series that guards point to
+  std::array<Series<P>, 4> combined;  ///< series that guards point to
 
-  void add(const Guard& one) { guard[static_cast<std::size_t>(count++)] = one; }
+  void add(const Guard<P>& one) { guard[static_cast<std::size_t>(count++)] = one; }
 };
 
+/// Of blocks in the same mode.
+template <class P>
 struct GuardedMotion {
-  const Block& block;
-  const State& start;
-  const Solution<double>& solution;
-  double last_tilt;  ///< rad
+  const PerLane<P, const Block*>& block;
+  const PerLane<P, State>& start;
+  const Solution<P>& solution;
+  P last_tilt;  ///< rad
 };
 
 /// A mode is an enumerator and a row of the table in mode.cpp.
+template <class P>
 struct ModeTraits {
   Mode kind;
-  const char* word;
-  void (*solve)(const Coefficients<double>&, Solution<double>&, Truncation&);
-  void (*guard)(const GuardedMotion&, Guards&);
+  void (*solve)(const Coefficients<P>&, Solution<P>&, Truncation<P>&);
+  void (*guard)(const GuardedMotion<P>&, Guards<P>&);
 };
-std::span<const ModeTraits> modes();
-const ModeTraits& traits(Mode mode);
+/// P: double or Four.
+template <class P>
+const ModeTraits<P>& traits(Mode mode);
 
 }  // namespace topple::planar

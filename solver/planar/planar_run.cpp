@@ -25,7 +25,7 @@ PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double dur
       critical_{of.critical(Side::left), of.critical(Side::right)},
       state_(jumped(of, shakes_, of.start)),
       middle_at_start_(middle()) {
-  observe();
+  observe(step_, 0);
 }
 
 double PlanarRun::next_jump() const {
@@ -37,13 +37,30 @@ double PlanarRun::next_jump() const {
 }
 
 Event PlanarRun::advance() {
-  const double jump = next_jump();
-  last_ = topple::planar::advance(case_.block, shaken(plane_), case_.controls, std::min(duration_, jump),
-                                  state_, step_);
-  observe();
-  if (state_.time == jump) state_ = jumped(case_, shakes_, state_);
-  return last_;
+  jump_ = next_jump();
+  const Event event = topple::planar::advance(case_.block, shaken(plane_), case_.controls,
+                                              std::min(duration_, jump_), state_, step_);
+  end(step_, 0, state_, event);
+  return event;
 }
+
+bool PlanarRun::begin() {
+  jump_ = next_jump();
+  if (topple::planar::begin(case_.block, shaken(plane_), case_.controls, std::min(duration_, jump_), state_,
+                            step_.leg))
+    return true;
+  end(step_, 0, rested(step_.leg), Event::none);
+  return false;
+}
+
+template <class P>
+void PlanarRun::end(const PackStep<P>& step, int lane, const State& after, Event event) {
+  state_ = after, last_ = event;
+  observe(step, lane);
+  if (state_.time == jump_) state_ = jumped(case_, shakes_, state_);
+}
+template void PlanarRun::end(const PackStep<double>&, int, const State&, Event);
+template void PlanarRun::end(const PackStep<Four>&, int, const State&, Event);
 
 bool PlanarRun::over() const {
   return state_.time >= duration_ || last_ == Event::overturn || last_ == Event::stalled || left_;
@@ -56,7 +73,8 @@ double PlanarRun::middle() const {
          lever(state_.tilt, (block.right - block.left) / 2, -block.height).x;
 }
 
-void PlanarRun::observe() {
+template <class P>
+void PlanarRun::observe(const PackStep<P>& step, int lane) {
   if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
   left_ = std::abs(centre_of_gravity(case_.block, state_).x) > case_.farthest;
   const double sign = state_.tilt < 0 ? -1 : 1;
@@ -65,10 +83,11 @@ void PlanarRun::observe() {
     beyond_since_.reset();
     peak_slide_ = std::max(peak_slide_, std::abs(middle() - middle_at_start_));
   } else if (!beyond_since_) {
-    const Series<double>& tilt = step_.solution.tilt;
+    const double length = of_lane(step.length, lane);
+    const Series<double> tilt = step.solution.tilt.alone(lane);
     const double fall =
-        step_.length > 0 ? Falls(step_.length, tilt.degree).first(tilt, -sign, critical) : k_never;
-    beyond_since_ = fall < k_never ? step_.start.time + fall : state_.time;
+        length > 0 ? Falls<double>(length, tilt.degree).first(tilt, -sign, critical) : k_never;
+    beyond_since_ = fall < k_never ? of_lane(step.start, lane).time + fall : state_.time;
   }
 }
 

@@ -22,11 +22,19 @@ class PlanarRun {
   Event advance();
   /// Time is up, the block has overturned or got stuck, or something else may be within reach.
   bool over() const;
+
+  /// advance() in two: begin() is false where the step has ended at once, else leg() is to be finished (alone
+  /// or in a lane) and handed to end().
+  bool begin();
+  Leg& leg() { return step_.leg; }
+  template <class P>
+  void end(const PackStep<P>& step, int lane, const State& after, Event event);
+
   bool stuck() const { return last_ == Event::stalled; }
   bool left() const { return left_; }  ///< came within reach of something else: not known what it does
 
   const State& state() const { return state_; }
-  const Step& step() const { return step_; }                ///< the newest
+  const Step& step() const { return step_; }                ///< the newest of those taken alone
   std::optional<double> lifted() const { return lifted_; }  ///< s, first uplift
   /// m, greatest travel of the middle of the base at ends of steps, up to the critical angle (as
   /// BodyOutcome::peak_slide).
@@ -36,7 +44,8 @@ class PlanarRun {
 
  private:
   double next_jump() const;
-  void observe();
+  template <class P>
+  void observe(const PackStep<P>& step, int lane);
   double middle() const;
 
   const PlanarCase& case_;
@@ -46,6 +55,7 @@ class PlanarRun {
   std::array<double, 2> critical_;  ///< rad, towards the left and the right
   State state_;
   Step step_;
+  double jump_ = k_never;  ///< s, the next of the floor's velocity
   Event last_ = Event::none;
   bool left_ = false;
   double middle_at_start_ = 0, peak_slide_ = 0;
