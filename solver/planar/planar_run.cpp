@@ -24,7 +24,7 @@ PlanarRun::PlanarRun(const PlanarCase& of, std::vector<Shake> shakes, double dur
       duration_(duration),
       critical_{of.critical(Side::left), of.critical(Side::right)},
       state_(jumped(of, shakes_, of.start)),
-      middle_at_start_(middle()) {
+      middle_at_start_(middle(centre_of_gravity(of.block, state_).x)) {
   observe(step_, 0);
 }
 
@@ -66,22 +66,22 @@ bool PlanarRun::over() const {
   return state_.time >= duration_ || last_ == Event::overturn || last_ == Event::stalled || left_;
 }
 
-/// m, x of the middle of the base.
-double PlanarRun::middle() const {
+/// m, x of the middle of the base, given that of the centre of gravity.
+double PlanarRun::middle(double centre) const {
   const Block& block = case_.block;
-  return centre_of_gravity(block, state_).x +
-         lever(state_.tilt, (block.right - block.left) / 2, -block.height).x;
+  return centre + lever(state_.tilt, (block.right - block.left) / 2, -block.height).x;
 }
 
 template <class P>
 void PlanarRun::observe(const PackStep<P>& step, int lane) {
   if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
-  left_ = std::abs(centre_of_gravity(case_.block, state_).x) > case_.farthest;
+  const double centre = centre_of_gravity(case_.block, state_).x;
+  left_ = std::abs(centre) > case_.farthest;
   const double sign = state_.tilt < 0 ? -1 : 1;
   const double critical = critical_[state_.tilt < 0 ? 0 : 1];
   if (sign * state_.tilt <= critical) {
     beyond_since_.reset();
-    peak_slide_ = std::max(peak_slide_, std::abs(middle() - middle_at_start_));
+    peak_slide_ = std::max(peak_slide_, std::abs(middle(centre) - middle_at_start_));
   } else if (!beyond_since_) {
     const double length = of_lane(step.length, lane);
     const Series<double> tilt = step.solution.tilt.alone(lane);

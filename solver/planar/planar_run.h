@@ -46,7 +46,7 @@ class PlanarRun {
   double next_jump() const;
   template <class P>
   void observe(const PackStep<P>& step, int lane);
-  double middle() const;
+  double middle(double centre) const;
 
   const PlanarCase& case_;
   std::vector<Shake> shakes_;

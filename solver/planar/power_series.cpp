@@ -1,6 +1,8 @@
 #include "solver/planar/power_series.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace topple::planar {
@@ -69,10 +71,18 @@ struct Bernstein {
   Bernstein() = default;
   explicit Bernstein(const Polynomial<P>& p) : degree(p.degree), last(p.last) {
     const auto n = static_cast<std::size_t>(std::max(degree, 0));
-    const PerLane<P, const Terms*> share =
-        per_lane<P>([&](int k) { return &k_one_over_binomial[static_cast<std::size_t>(std::max(0., double(of_lane(last, k))))]; });
-    for (std::size_t i = 0; i <= n; ++i)
-      b[i] = p.a[i] * pack_of<P>([&](int k) { return (*of_lane(share, k))[i]; });
+    const auto share_of = [](double of) -> const Terms& {
+      return k_one_over_binomial[static_cast<std::size_t>(std::max(0., of))];
+    };
+    const double all = of_lane(last, 0);
+    if (bits(complement(last == P(all))) == 0) {
+      const Terms& share = share_of(all);
+      for (std::size_t i = 0; i <= n; ++i) b[i] = p.a[i] * P(share[i]);
+    } else {
+      const auto shares = per_lane<P>([&](int k) { return &share_of(of_lane(last, k)); });
+      for (std::size_t i = 0; i <= n; ++i)
+        b[i] = p.a[i] * pack_of<P>([&](int k) { return (*of_lane(shares, k))[i]; });
+    }
     for (std::size_t k = 0; k < n; ++k) {
       P before = b[k];
       for (std::size_t i = k + 1; i <= n; ++i) before = std::exchange(b[i], b[i] + before);
@@ -153,12 +163,17 @@ P falls(const Polynomial<P>& p, MaskOf<P> open) {
   return fall;
 }
 
+/// 2^n, -1022 <= n <= 1023
+double power_of_2(int n) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+}
+
 /// x^(1/n) within a hundredth, x > 0.
 double rough_root(double x, int n) {
   int exponent;
   const double m = std::frexp(x, &exponent), log2 = (exponent + 2 * m - 2) / n, whole = std::floor(log2);
   const double f = log2 - whole;
-  return std::ldexp(1 + f * (0.6565 + 0.3435 * f), static_cast<int>(whole));
+  return (1 + f * (0.6565 + 0.3435 * f)) * power_of_2(std::clamp(static_cast<int>(whole), -1022, 1023));
 }
 
 }  // namespace

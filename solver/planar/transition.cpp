@@ -164,17 +164,19 @@ State after_impact(const Block& block, const State& state, Side side, const Afte
 State settled(const Situation& now, const State& state) {
   const double radius2 = now.block.inertia_over_mass() + now.block.height * now.block.height +
                          now.block.edge(state.side) * now.block.edge(state.side);
-  const auto is_small = [&](const State& of, double back) {
-    return of.rate * of.rate < 2 * k_settled * back &&
-           (of.slip != 0 || state.x_velocity * state.x_velocity < 2 * k_settled * back * radius2);
+  const auto is_small = [&](int slip) {
+    const double back = -towards(state.side) * edge_forces(now, state, slip).acceleration;
+    return state.rate * state.rate < 2 * k_settled * back &&
+           (slip != 0 || state.x_velocity * state.x_velocity < 2 * k_settled * back * radius2);
   };
   for (const int slip : {0, state.slip}) {
-    State of = referred(now.block, state, Mode::flight, state.side);
-    of.slip = slip;
-    if (!is_small(of, -towards(state.side) * edge_forces(now, state, slip).acceleration)) continue;
-    of.rate = 0;
-    const State base = decided_on_base(now, flat(now.block, of, slip));
-    if (base.mode == Mode::rest || base.mode == Mode::slide) return base;
+    if (is_small(slip)) {
+      State of = referred(now.block, state, Mode::flight, state.side);
+      of.slip = slip, of.rate = 0;
+      const State base = decided_on_base(now, flat(now.block, of, slip));
+      if (base.mode == Mode::rest || base.mode == Mode::slide) return base;
+    }
+    if (state.slip == 0) break;
   }
   return state;
 }
