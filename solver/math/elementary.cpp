@@ -6,20 +6,26 @@
 #include <cstdint>
 #include <limits>
 
+#include "solver/math/lanes.h"
+
 namespace topple::elementary {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of twice the digits: high + low, |low| at most half an ulp of high (Dekker 1971).
-struct Sum {
-  double high, low = 0;
+/// A number of twice the digits: high + low, |low| at most half an ulp of high (Dekker 1971). P: double, or a
+/// pack of them (pack.h).
+template <class P>
+struct SumOf {
+  P high, low{0};
 };
+using Sum = SumOf<double>;
 
 /// a + b, exact, |a| >= |b| or a = 0.
-Sum quick_sum(double a, double b) {
-  const double high = a + b;
+template <class P>
+SumOf<P> quick_sum(P a, P b) {
+  const P high = a + b;
   return {high, b - (high - a)};
 }
 
@@ -30,14 +36,15 @@ Sum exact_sum(double a, double b) {
 }
 
 /// a b, exact; neither of them above 2^990 nor the product below 2^-960.
-Sum exact_product(double a, double b) {
-  const double high = a * b;
+template <class P>
+SumOf<P> exact_product(P a, P b) {
+  const P high = a * b;
 #if defined(__FMA__) || defined(__aarch64__)
-  return {high, std::fma(a, b, -high)};
+  return {high, mul_add(a, b, -high)};
 #else  // of halves of 26 digits (Veltkamp, Dekker): the same bits
-  constexpr double splitter = 0x1p27 + 1;
-  const double a_high = splitter * a - (splitter * a - a), a_low = a - a_high;
-  const double b_high = splitter * b - (splitter * b - b), b_low = b - b_high;
+  const P splitter(0x1p27 + 1);
+  const P a_high = splitter * a - (splitter * a - a), a_low = a - a_high;
+  const P b_high = splitter * b - (splitter * b - b), b_low = b - b_high;
   return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
 #endif
 }
@@ -74,18 +81,19 @@ Sum root(Sum a) {
   const Sum back = exact_product(high, high);
   return quick_sum(high, ((a.high - back.high) - back.low + a.low) / (2 * high));
 }
-double rounded(Sum a) {
+template <class P>
+P rounded(const SumOf<P>& a) {
   return a.high + a.low;
 }
 
 /// c0 + c1 x + ...: neighbours in pairs, pairs in pairs, so that a processor works on several at once.
-template <std::size_t n>
-double polynomial(double x, const std::array<double, n>& c) {
+template <class P, class C, std::size_t n>
+P polynomial(P x, const std::array<C, n>& c) {
   if constexpr (n == 1) {
     return c[0];
   } else {
-    std::array<double, (n + 1) / 2> pairs;
-    for (std::size_t k = 0; k < n / 2; ++k) pairs[k] = c[2 * k] + c[2 * k + 1] * x;
+    std::array<P, (n + 1) / 2> pairs;
+    for (std::size_t k = 0; k < n / 2; ++k) pairs[k] = P(c[2 * k]) + P(c[2 * k + 1]) * x;
     if constexpr (n % 2 == 1) pairs.back() = c[n - 1];
     return polynomial(x * x, pairs);
   }
@@ -164,21 +172,23 @@ Quadrant quadrant(double x) {
   return {static_cast<unsigned>(static_cast<int>(n)) & 3, rest};
 }
 
-Sum sine_near_0(Sum x) {  // |x| <= pi/4, as all below
-  const double z = x.high * x.high;
+template <class P>
+SumOf<P> sine_near_0(const SumOf<P>& x) {  // |x| <= pi/4, as all below
+  const P z = x.high * x.high;
   static constexpr std::array<double, 8> series{
       -1. / 6,        1. / 120,         -1. / 5040,           1. / 362880,
       -1. / 39916800, 1. / 6227020800., -1. / 1307674368000., 1. / 355687428096000.};
-  return quick_sum(x.high, x.high * z * polynomial(z, series) + x.low * (1 - z / 2));
+  return quick_sum(x.high, x.high * z * polynomial(z, series) + x.low * (P(1) - z / P(2)));
 }
 
-Sum cosine_near_0(Sum x) {
-  const Sum z = exact_product(x.high, x.high), flat = quick_sum(1, -z.high / 2);
+template <class P>
+SumOf<P> cosine_near_0(const SumOf<P>& x) {
+  const SumOf<P> z = exact_product(x.high, x.high), flat = quick_sum(P(1), -z.high / P(2));
   static constexpr std::array<double, 8> series{
       1. / 24,        -1. / 720,          1. / 40320,           -1. / 3628800,
       1. / 479001600, -1. / 87178291200., 1. / 20922789888000., -1. / 6402373705728000.};
   return quick_sum(flat.high,
-                   flat.low + (z.high * z.high * polynomial(z.high, series) - x.high * x.low - z.low / 2));
+                   flat.low + (z.high * z.high * polynomial(z.high, series) - x.high * x.low - z.low / P(2)));
 }
 
 /// Of the angle, `further` quadrants on.
@@ -263,7 +273,7 @@ Power power_of_e(Sum x) {
 }
 
 double times_power_of_2(const Power& e) {
-  const Sum whole = quick_sum(1, e.less_one.high);
+  const Sum whole = quick_sum(1., e.less_one.high);
   return std::ldexp(whole.high + (whole.low + e.less_one.low), e.exponent);
 }
 
@@ -294,6 +304,24 @@ SinCos sin_cos(double x) {
   if (std::abs(x) < k_below_half_ulp) return {x, 1};
   const Quadrant q = quadrant(x);
   return {sine_of_quadrant(q, 0), sine_of_quadrant(q, 1)};
+}
+
+template <>
+SinCos sin_cos_of_lanes(const double& x) {
+  return sin_cos(x);
+}
+
+template <>
+SinCosOf<Four> sin_cos_of_lanes(const Four& x) {
+  const Four size = magnitude(x);
+  if (any_above(size, k_half_pi.high / 2)) {
+    const auto of = per_lane<Four>([&](int k) { return sin_cos(x[k]); });
+    return {pack_of<Four>([&](int k) { return of_lane(of, k).sine; }),
+            pack_of<Four>([&](int k) { return of_lane(of, k).cosine; })};
+  }
+  const SumOf<Four> angle{x};
+  const auto tiny = size < Four(k_below_half_ulp);
+  return {choose(tiny, x, rounded(sine_near_0(angle))), choose(tiny, Four(1), rounded(cosine_near_0(angle)))};
 }
 
 double sin(double x) {

@@ -5,11 +5,16 @@
 
 namespace topple::elementary {
 
-struct SinCos {
-  double sine, cosine;
+template <class P>
+struct SinCosOf {
+  P sine, cosine;
 };
+using SinCos = SinCosOf<double>;
 
 SinCos sin_cos(double x);  ///< x in rad, any
+/// In each lane the bits of sin_cos(); quick where no lane is beyond pi/4. P: double, or Four (pack.h).
+template <class P>
+SinCosOf<P> sin_cos_of_lanes(const P& x);
 double sin(double x);
 double cos(double x);
 double tan(double x);

@@ -11,10 +11,12 @@ namespace topple {
 template <class P>
 inline constexpr int k_lanes = static_cast<int>(sizeof(P) / sizeof(double));
 template <class P>
+inline constexpr bool k_is_pack = k_lanes<P> != 1;
+template <class P>
 using MaskOf = decltype(P(0) < P(0));
 /// One T per lane.
 template <class P, class T>
-using PerLane = std::conditional_t<k_lanes<P> == 1, T, std::array<T, k_lanes<P>>>;
+using PerLane = std::conditional_t<!k_is_pack<P>, T, std::array<T, k_lanes<P>>>;
 
 template <class T>
 T& of_lane(T& of, int) {
@@ -43,7 +45,7 @@ const T& of_lane(const std::array<T, n>& of, int k) {
 /// What there is one of per lane: value(0), value(1), ...
 template <class P, class Value>
 [[gnu::always_inline]] inline auto per_lane(const Value& value) {
-  if constexpr (k_lanes<P> == 1)
+  if constexpr (!k_is_pack<P>)
     return value(0);
   else
     return std::array{value(0), value(1), value(2), value(3)};
@@ -51,7 +53,7 @@ template <class P, class Value>
 /// The pack of value(0), value(1), ...
 template <class P, class Value>
 [[gnu::always_inline]] inline P pack_of(const Value& value) {
-  if constexpr (k_lanes<P> == 1)
+  if constexpr (!k_is_pack<P>)
     return value(0);
   else
     return Four::Vector{double(value(0)), double(value(1)), double(value(2)), double(value(3))};
@@ -85,4 +87,5 @@ template <class Mask, class Work>
 [[gnu::always_inline]] inline void for_lanes(Mask mask, const Work& work) {
   for (unsigned left = bits(mask); left != 0; left &= left - 1) work(__builtin_ctz(left));
 }
+
 }  // namespace topple

@@ -8,9 +8,10 @@ bool on_edge(Mode mode) {
 }
 
 /// The reference of a mode, from the centre of gravity.
-Lever reference(const Block& block, Mode mode, Side side, double tilt) {
+Lever reference(const Block& block, Mode mode, Side side, double tilt, const Turned& known = {}) {
   if (mode == Mode::flight) return {0, 0};
-  return on_edge(mode) ? lever(block, side, tilt) : lever(tilt, 0, -block.height);
+  const elementary::SinCos of = known.at(tilt);
+  return on_edge(mode) ? lever(block, side, of) : lever(of, 0, -block.height);
 }
 
 bool same_reference(const State& state, Mode mode, Side side) {
@@ -20,8 +21,8 @@ bool same_reference(const State& state, Mode mode, Side side) {
 
 }  // namespace
 
-Motion centre_of_gravity(const Block& block, const State& state) {
-  const Lever r = reference(block, state.mode, state.side, state.tilt);
+Motion centre_of_gravity(const Block& block, const State& state, const Turned& known) {
+  const Lever r = reference(block, state.mode, state.side, state.tilt, known);
   return {state.x - r.x, state.z - r.z, state.x_velocity - r.z * state.rate,
           state.z_velocity + r.x * state.rate};
 }

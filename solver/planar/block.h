@@ -46,21 +46,33 @@ struct State {
 struct Lever {
   double x, z;
 };
+/// Sine and cosine of a tilt, kept with it: several laws at one instant ask for them.
+struct Turned {
+  double tilt = 0;
+  elementary::SinCos of{0, 1};
+
+  elementary::SinCos at(double other) const { return other == tilt ? of : elementary::sin_cos(other); }
+};
 /// u: along the base, w: up, both from the centre of gravity, m.
+inline Lever lever(const elementary::SinCos& of_tilt, double u, double w) {
+  return {u * of_tilt.cosine + w * of_tilt.sine, w * of_tilt.cosine - u * of_tilt.sine};
+}
 inline Lever lever(double tilt, double u, double w) {
-  const elementary::SinCos of = elementary::sin_cos(tilt);
-  return {u * of.cosine + w * of.sine, w * of.cosine - u * of.sine};
+  return lever(elementary::sin_cos(tilt), u, w);
 }
 /// To the edge of this side.
+inline Lever lever(const Block& block, Side side, const elementary::SinCos& of_tilt) {
+  return lever(of_tilt, block.edge(side), -block.height);
+}
 inline Lever lever(const Block& block, Side side, double tilt) {
-  return lever(tilt, block.edge(side), -block.height);
+  return lever(block, side, elementary::sin_cos(tilt));
 }
 
 struct Motion {
   double x, z, x_velocity, z_velocity;  ///< m, m/s
 };
 /// Of the centre of gravity.
-Motion centre_of_gravity(const Block& block, const State& state);
+Motion centre_of_gravity(const Block& block, const State& state, const Turned& known = {});
 
 /// The same motion with the reference of another mode.
 State referred(const Block& block, const State& state, Mode mode, Side side);

@@ -1,5 +1,6 @@
 #include "solver/planar/floor.h"
 
+#include <array>
 #include <cmath>
 
 #include "solver/math/elementary.h"
@@ -61,7 +62,6 @@ struct Wave {
 
 /// A part of one shake, with the end of its validity.
 struct Part {
-  Line value{0};
   double end = k_never;
 
   void ends_at(double when, double t) {
@@ -173,6 +173,7 @@ double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizont
   part.ends_at(shake_end(shake), t);
   if (t >= shake.start && t < shake_end(shake)) {
     const Line share_now = share(shake.ramp, t, part);
+    const bool whole = share_now.degree == 0 && share_now[0] == 1;  // no ramp, or it is over
     const auto ramped = [&](double before, double now) {
       Line of(before);
       add(of, now - before, share_now);
@@ -185,15 +186,21 @@ double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizont
     if (const auto shape = row_of(k_kinds, shake.kind).shape) {
       const Line of = shape(shake, t, part);
       const Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
-      if (share_now.degree == 0 && share_now[0] == 1)
+      if (whole)
         add_along(now, of);
       else
         for (const Vec3& axis : {along, Vec3(Vec3::UnitZ())})
           add_along(axis, product(of, ramped(shake.amplitude_before.dot(axis), now.dot(axis))));
     } else {
-      const Line scale = ramped(shake.scale_before, shake.on ? shake.scale : 0);
-      for (const AccelerogramComponent& component : shake.record->components)
-        add_along(component.direction, product(scale, recorded(component, shake.start, t, part)));
+      const double before = shake.scale_before, now = shake.on ? shake.scale : 0;
+      for (const AccelerogramComponent& component : shake.record->components) {
+        Line of = recorded(component, shake.start, t, part);
+        if (whole)
+          for (int i = 0; i <= of.degree; ++i) of[i] *= before + (now - before);
+        else
+          of = product(ramped(before, now), of);
+        add_along(component.direction, of);
+      }
     }
   }
   return part.end;
@@ -213,13 +220,22 @@ double quiet(const ShakenPlane& plane, double t, double until, std::span<const F
   const std::vector<AccelerogramComponent>& components = shake.record->components;
   const double interval = components.front().interval;
   const std::size_t count = components.front().samples.size();
-  for (const AccelerogramComponent& one : components)
+  struct Sampled {
+    double along, up;
+    const double* samples;
+  };
+  std::array<Sampled, 3> sampled;
+  if (components.size() > sampled.size()) return t;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    const AccelerogramComponent& one = components[c];
     if (one.interval != interval || one.samples.size() != count) return t;
+    sampled[c] = {one.direction.dot(plane.along), one.direction.z(), one.samples.data()};
+  }
   const auto all_positive = [&](std::size_t i) {
     double along = 0, up = 0;
-    for (const AccelerogramComponent& one : components) {
-      along += one.direction.dot(plane.along) * one.samples[i];
-      up += one.direction.z() * one.samples[i];
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      along += sampled[c].along * sampled[c].samples[i];
+      up += sampled[c].up * sampled[c].samples[i];
     }
     along *= shake.scale, up *= shake.scale;
     return std::ranges::all_of(

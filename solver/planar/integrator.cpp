@@ -12,7 +12,7 @@ constexpr double k_margin = 1e-9;     // m/s^2, within which the guards of a blo
 
 template <class P>
 void set_series(const PerLane<P, Leg*>& legs, Series<double> Leg::*of, Series<P>& to) {
-  if constexpr (k_lanes<P> == 1) {
+  if constexpr (!k_is_pack<P>) {
     to = legs->*of;
   } else {
     int degree = 0;
@@ -36,8 +36,8 @@ void set_motion(const PerLane<P, Leg*>& legs, Solution<P>& s) {
   s.z = of_states(&State::z), s.z_velocity = of_states(&State::z_velocity);
   const auto levers = per_lane<P>([&](int k) {
     const Leg& leg = *of_lane(legs, k);
-    const bool flies = leg.start.mode == Mode::flight;
-    return flies ? lever(-leg.start.tilt, 1, 0) : lever(*leg.block, leg.start.side, leg.start.tilt);
+    const elementary::SinCos of = leg.known.of;
+    return leg.start.mode == Mode::flight ? Lever{of.cosine, of.sine} : lever(*leg.block, leg.start.side, of);
   });
   s.lever_x = pack_of<P>([&](int k) { return of_lane(levers, k).x; });
   s.lever_z = pack_of<P>([&](int k) { return of_lane(levers, k).z; });
@@ -48,20 +48,20 @@ Coefficients<P> coefficients(const PerLane<P, Leg*>& legs) {
   const auto of_blocks = [&](const auto& value) {
     return pack_of<P>([&](int k) { return value(*of_lane(legs, k)->block, of_lane(legs, k)->start); });
   };
-  return {of_blocks([](const Block& block, const State&) { return block.inertia_over_mass(); }),
-          of_blocks([](const Block& block, const State& state) { return block.kinetic_friction * state.slip; }),
-          of_blocks([](const Block& block, const State&) {
-            const double widest = std::max(std::abs(block.left), std::abs(block.right));
-            return std::sqrt(widest * widest + block.height * block.height);
-          })};
+  return {
+      of_blocks([](const Block& block, const State&) { return block.inertia_over_mass(); }),
+      of_blocks([](const Block& block, const State& state) { return block.kinetic_friction * state.slip; }),
+      of_blocks([](const Block& block, const State&) {
+        const double widest = std::max(std::abs(block.left), std::abs(block.right));
+        return std::sqrt(widest * widest + block.height * block.height);
+      })};
 }
 
 /// Time in which the rocking after an impact surely comes to an end were the accelerations constant, s: small
 /// rises need few terms.
 double rise(const Leg& leg) {
   if (leg.start.tilt != 0 || leg.start.rate == 0) return k_never;
-  const double turn =
-      edge_forces({*leg.block, leg.horizontal[0], leg.vertical[0]}, leg.start, leg.start.slip).acceleration;
+  const double turn = edge_forces(leg.situation(), leg.start, leg.start.slip).acceleration;
   return turn * leg.start.rate < 0 ? -4 * leg.start.rate / turn : k_never;
 }
 
@@ -123,7 +123,8 @@ bool begin(const Block& block, const Floor& floor, const Controls& controls, dou
   leg.block = &block, leg.controls = &controls;
   leg.floor_end = floor.series(floor.floor, state.time, leg.horizontal, leg.vertical);
   leg.vertical[0] += block.gravity;
-  leg.start = state.undecided ? decided({block, leg.horizontal[0], leg.vertical[0]}, state) : state;
+  leg.known = {state.tilt, leg.known.at(state.tilt)};
+  leg.start = state.undecided ? decided(leg.situation(), state) : state;
   leg.end = std::min(until, leg.floor_end);
   if (leg.start.mode != Mode::rest) return true;
   const double calm = rest_end(block, floor, leg.start, until, leg.floor_end);
@@ -164,12 +165,15 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
   const P first = first_guard(step, truncation.greatest() + 2);
   after = states_after(step, step.length);
   const P horizontal = s.horizontal.at(step.length), vertical = s.vertical.at(step.length);
+  const elementary::SinCosOf<P> turned =
+      elementary::sin_cos_of_lanes(pack_of<P>([&](int k) { return of_lane(after, k).tilt; }));
 
   const auto end = [&](int k) {
     Leg& leg = *of_lane(legs, k);
     State& state = of_lane(after, k);
     const double length = of_lane(step.length, k);
     if (!std::isfinite(length)) return state = leg.start, Event::stalled;
+    leg.known = {state.tilt, {of_lane(turned.sine, k), of_lane(turned.cosine, k)}};
     const int fallen = static_cast<int>(of_lane(first, k));
     if (fallen < 0) {
       leg.without_progress = 0;
@@ -181,7 +185,7 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
     if (leg.without_progress > k_most_without_progress) return Event::stalled;
     const Guard<P>& guard = step.guards.guard[static_cast<std::size_t>(fallen)];
     const State before = state;
-    state = guard.next({*leg.block, of_lane(horizontal, k), of_lane(vertical, k)}, before,
+    state = guard.next({*leg.block, of_lane(horizontal, k), of_lane(vertical, k), leg.known}, before,
                        of_lane(guard.side, k));
     return event_of(guard.event, before, state);
   };
@@ -190,8 +194,7 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
   return events;
 }
 template Event finish(Leg* const&, int, PackStep<double>&, State&);
-template std::array<Event, 4> finish(const std::array<Leg*, 4>&, int, PackStep<Four>&,
-                                     std::array<State, 4>&);
+template std::array<Event, 4> finish(const std::array<Leg*, 4>&, int, PackStep<Four>&, std::array<State, 4>&);
 
 Event advance(const Block& block, const Floor& floor, const Controls& controls, double until, State& state,
               Step& step) {

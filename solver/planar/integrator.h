@@ -20,10 +20,13 @@ struct Controls {
 struct Leg {
   const Block* block;
   const Controls* controls;
-  State start;                            ///< its mode decided
-  double end, floor_end;                  ///< s, of the step at most, and of the series of the floor
-  Series<double> horizontal, vertical;    ///< of the floor, m/s^2; the latter with gravity
-  int without_progress = 0;               ///< events in a row that came at once
+  State start;                          ///< its mode decided
+  double end, floor_end;                ///< s, of the step at most, and of the series of the floor
+  Series<double> horizontal, vertical;  ///< of the floor, m/s^2; the latter with gravity
+  int without_progress = 0;             ///< events in a row that came at once
+  Turned known;                         ///< of the start's tilt; from finish() on of the end's
+
+  Situation situation() const { return {*block, horizontal[0], vertical[0], known}; }  ///< at the start
 };
 /// To `until`. False: `start` rests until `end`, several lines of a record that cannot wake it at once.
 /// Block and controls must outlive the leg.

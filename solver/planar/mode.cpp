@@ -36,10 +36,10 @@ PerLane<P, Side> sides(const GuardedMotion<P>& of) {
 
 template <class P>
 void guard_rest(const GuardedMotion<P>& of, Guards<P>& guards) {
-  const P height = of_blocks(of, [](const Block& block) { return block.height; }),
-          left = of_blocks(of, [](const Block& block) { return block.left; }),
-          right = of_blocks(of, [](const Block& block) { return block.right; }),
-          friction = of_blocks(of, [](const Block& block) { return block.static_friction; });
+  const P height = of_blocks(of, [](const Block&block) { return block.height; }),
+          left = of_blocks(of, [](const Block&block) { return block.left; }),
+          right = of_blocks(of, [](const Block&block) { return block.right; }),
+          friction = of_blocks(of, [](const Block&block) { return block.static_friction; });
   const Series<P>&a = of.solution.horizontal, &g = of.solution.vertical;
   const P one(1), zero(0);
   guards.add({&g, one, zero, Event::take_off, everywhere<P>(Side::right), taken_off});
@@ -59,8 +59,7 @@ P slips(const GuardedMotion<P>& of) {
 
 template <class P>
 void guard_slide(const GuardedMotion<P>& of, Guards<P>& guards) {
-  guards.add(
-      {&of.solution.vertical, P(1), P(0), Event::take_off, everywhere<P>(Side::right), taken_off});
+  guards.add({&of.solution.vertical, P(1), P(0), Event::take_off, everywhere<P>(Side::right), taken_off});
   guards.add(
       {&of.solution.x_velocity, slips(of), P(0), Event::stick, everywhere<P>(Side::right), stopped_base});
 }
@@ -78,9 +77,9 @@ void guard_rock(const GuardedMotion<P>& of, Guards<P>& guards) {
   guard_tilt(of, guards);
   const P friction = of_blocks(of, [](const Block& block) { return block.static_friction; });
   for (const int way : {0, 1})
-    guards.add({combination(guards, way, P(way == 0 ? 1 : -1), of.solution.tangential, friction,
-                            of.solution.normal),
-                P(1), P(0), Event::slip, sides(of), slipping_edge});
+    guards.add(
+        {combination(guards, way, P(way == 0 ? 1 : -1), of.solution.tangential, friction, of.solution.normal),
+         P(1), P(0), Event::slip, sides(of), slipping_edge});
 }
 
 template <class P>
@@ -112,10 +111,8 @@ void guard_flight(const GuardedMotion<P>& of, Guards<P>& guards) {
 
 template <class P>
 constexpr ModeTraits<P> k_modes[] = {
-    {Mode::rest, resting, guard_rest},
-    {Mode::slide, sliding, guard_slide},
-    {Mode::rock, rocking, guard_rock},
-    {Mode::slide_rock, slide_rocking, guard_slide_rock},
+    {Mode::rest, resting, guard_rest},    {Mode::slide, sliding, guard_slide},
+    {Mode::rock, rocking, guard_rock},    {Mode::slide_rock, slide_rocking, guard_slide_rock},
     {Mode::flight, flying, guard_flight},
 };
 

@@ -69,13 +69,13 @@ bool PlanarRun::over() const {
 /// m, x of the middle of the base, given that of the centre of gravity.
 double PlanarRun::middle(double centre) const {
   const Block& block = case_.block;
-  return centre + lever(state_.tilt, (block.right - block.left) / 2, -block.height).x;
+  return centre + lever(step_.leg.known.at(state_.tilt), (block.right - block.left) / 2, -block.height).x;
 }
 
 template <class P>
 void PlanarRun::observe(const PackStep<P>& step, int lane) {
   if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
-  const double centre = centre_of_gravity(case_.block, state_).x;
+  const double centre = centre_of_gravity(case_.block, state_, step_.leg.known).x;
   left_ = std::abs(centre) > case_.farthest;
   const double sign = state_.tilt < 0 ? -1 : 1;
   const double critical = critical_[state_.tilt < 0 ? 0 : 1];

@@ -40,7 +40,7 @@ struct Polynomial {
       for (std::size_t i = 0; i < static_cast<std::size_t>(degree); ++i) a[i] = choose(zero, a[i + 1], a[i]);
       a[static_cast<std::size_t>(degree)] = choose(zero, P(0), a[static_cast<std::size_t>(degree)]);
       last = choose(zero, last - P(1), last);
-      if constexpr (k_lanes<P> == 1) --degree;
+      if constexpr (!k_is_pack<P>) --degree;
     }
   }
   /// Falls within low..high, in which it changes its sign once, in the lanes that are open; by Newton's
@@ -87,7 +87,7 @@ struct Bernstein {
       P before = b[k];
       for (std::size_t i = k + 1; i <= n; ++i) before = std::exchange(b[i], b[i] + before);
     }
-    if constexpr (k_lanes<P> > 1)
+    if constexpr (k_is_pack<P>)
       for (std::size_t i = 0; i <= n; ++i) b[i] = choose(P(double(i)) <= last, b[i], P(0));
   }
   /// Changes of sign and the first sign.
@@ -112,8 +112,7 @@ struct Bernstein {
     for (std::size_t i = 1; i <= static_cast<std::size_t>(degree) && bits(open) != 0; ++i) {
       const auto here = open & (b[i] <= P(0));
       open = open & complement(here);
-      if (bits(here) != 0)
-        at = choose(here, (P(double(i) - 1) + b[i - 1] / (b[i - 1] - b[i])) / last, at);
+      if (bits(here) != 0) at = choose(here, (P(double(i) - 1) + b[i - 1] / (b[i - 1] - b[i])) / last, at);
     }
     return at;
   }

@@ -18,12 +18,13 @@ inline constexpr auto k_reciprocal = [] {    ///< 1/i
   return of;
 }();
 
-/// term[0] + term[1] t + ... + term[degree] t^degree; what lies above is undefined. In a pack `degree` is the
-/// not below any lane's own one (`last()`), beyond which the lane is zero.
+/// term[0] + term[1] t + ... + term[degree] t^degree; what lies above is undefined. Of a pack no lane's
+/// own degree, `last()`, is above `degree`; from there on the lane is zero.
 template <class P>
 struct Series {
   std::array<P, k_terms> term;
   int degree = 0;
+
   Series() = default;
   Series(P constant) { *this = constant; }
   Series& operator=(P constant) {
@@ -31,17 +32,16 @@ struct Series {
     end(0, P(0));
     return *this;
   }
-  /// Ends at these degrees, of which `greatest` is the greatest.
+  /// Lanes end at `each`, none above `greatest`.
   void end(int greatest, P each) {
     degree = greatest;
-    if constexpr (k_lanes<P> > 1) {
+    if constexpr (k_is_pack<P>) {
       each_ = each;
-      for (int i = greatest; bits(each < P(i)) != 0; --i)
-        (*this)[i] = choose(each < P(i), P(0), (*this)[i]);
+      for (int i = greatest; bits(each < P(i)) != 0; --i) (*this)[i] = choose(each < P(i), P(0), (*this)[i]);
     }
   }
   P last() const {
-    if constexpr (k_lanes<P> > 1)
+    if constexpr (k_is_pack<P>)
       return each_;
     else
       return P(degree);
@@ -71,7 +71,7 @@ struct Series {
 
  private:
   struct None {};
-  [[no_unique_address]] std::conditional_t<(k_lanes<P> > 1), P, None> each_{};
+  [[no_unique_address]] std::conditional_t<k_is_pack<P>, P, None> each_{};
 };
 
 /// Term i of the product a b, b known to its degree and a to term i - first_of_b.
@@ -145,8 +145,8 @@ class Truncation {
   }
   /// Time within which the last two terms stay below the tolerance, s, at most the span.
   P length() const;
-  P last() const { return last_; }                          ///< order of the last term
-  int greatest() const { return greatest_; }                ///< of the lanes' last ones
+  P last() const { return last_; }                     ///< order of the last term
+  int greatest() const { return greatest_; }           ///< of the lanes' last ones
   void limit(P span) { span_ = lesser(span, span_); }  ///< before the first term
 
  private:

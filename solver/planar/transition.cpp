@@ -39,7 +39,7 @@ double slipping_denominator(const Block& block, const Lever& r, int slip) {
 }
 
 State slip_on_edge(const Situation& now, const State& state, Side side, int slip) {
-  const Lever r = lever(now.block, side, state.tilt);
+  const Lever r = now.lever(side, state.tilt);
   State to = touching(now.block, state, Mode::slide_rock, side, slip);
   if (slipping_denominator(now.block, r, slip) <= k_jam) return jammed(now, to, side);
   if (now.vertical + r.z * state.rate * state.rate <= 0) return taken_off(now, to, side);
@@ -199,7 +199,7 @@ double greatest_restitution(const Block& block) {
 }
 
 EdgeForces edge_forces(const Situation& now, const State& state, int slip) {
-  const Lever r = lever(now.block, state.side, state.tilt);
+  const Lever r = now.lever(state.side, state.tilt);
   const double k2 = now.block.inertia_over_mass(), spin = state.rate * state.rate;
   if (slip != 0) {
     const double friction = now.block.kinetic_friction * slip;
@@ -239,7 +239,7 @@ State stopped_base(const Situation& now, const State& state, Side) {
 
 State slipping_edge(const Situation& now, const State& state, Side side) {
   const EdgeForces stay = edge_forces(now, state, 0);
-  const Lever r = lever(now.block, side, state.tilt);
+  const Lever r = now.lever(side, state.tilt);
   const double spin = state.rate * state.rate;
   if (now.vertical + r.z * spin <= 0) return taken_off(now, state, side);
   const int slip = stay.normal > 0 ? -sign(stay.tangential) : -sign(now.horizontal + r.x * spin);

@@ -46,6 +46,9 @@ struct Situation {
   const Block& block;
   double horizontal;  ///< acceleration of the floor, m/s^2
   double vertical;    ///< gravity plus acceleration of the floor, m/s^2
+  Turned known = {};  ///< of the state's tilt, where that has been asked for before
+
+  Lever lever(Side side, double tilt) const { return planar::lever(block, side, known.at(tilt)); }
 };
 
 /// Forces of the floor on an edge per mass, and the angular acceleration, rad/s^2.

@@ -265,11 +265,11 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
         const std::size_t bodies = static_cast<std::size_t>(at.scene.setup.model.furniture_total());
         hits.assign(bodies + 1, {});
         const int last = std::min(plan_->runs, (chunk + 1) * plan_->chunk);
-        for (int member = chunk * plan_->chunk; member < last && !gave_up; ++member) {
-          const RunEnd end =
-              run_varied(start, plan_->factors,
-                         plan_->factors.draw(stream, static_cast<std::uint32_t>(member)), give_up);
-          gave_up = end.gave_up;
+        std::vector<std::vector<double>> members;
+        for (int member = chunk * plan_->chunk; member < last; ++member)
+          members.push_back(plan_->factors.draw(stream, static_cast<std::uint32_t>(member)));
+        for (const RunEnd& end : run_varied(start, plan_->factors, members, give_up)) {
+          gave_up |= end.gave_up;
           if (end.of_bodies.empty()) {
             if (failed++ == 0) status = end.status;
             continue;

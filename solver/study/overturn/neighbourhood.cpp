@@ -37,15 +37,18 @@ CellRuns::CellRuns(const OverturnPlan& plan)
 std::optional<CellShare> CellRuns::run(int point, int runs, const std::function<bool()>& give_up) const {
   if (planar_.empty()) return std::nullopt;
   const int nx = plan_->x.count();
-  CellShare share;
+  std::vector<PlanarMember> members;
   for (int n = 0; n < runs; ++n) {
     const auto part = [&](int dimension) {
       return shifted_sobol(static_cast<std::uint64_t>(point), static_cast<std::uint32_t>(n), dimension);
     };
-    const std::optional<std::vector<Shake>> shakes = edited_shakes(
+    std::optional<std::vector<Shake>> shakes = edited_shakes(
         *plan_, own_, within_cell(plan_->x, point % nx, part(0)), within_cell(plan_->y, point / nx, part(1)));
     if (!shakes) return std::nullopt;
-    const auto of_bodies = run_planar(planar_, *shakes, own_.run.duration, give_up);
+    members.push_back({planar_, *std::move(shakes)});
+  }
+  CellShare share;
+  for (const auto& of_bodies : run_planar(members, own_.run.duration, give_up)) {
     if (!of_bodies) return std::nullopt;
     ++share.runs;
     share.overturned +=

@@ -208,7 +208,8 @@ std::string OverturnRunner::run(int k, const std::function<bool()>& give_up) {
         const auto stream = static_cast<std::uint64_t>(point) * static_cast<std::uint64_t>(records) +
                             static_cast<std::uint64_t>(record);
         end = run_varied({place.planar, place.shakes, place.duration, scene}, plan_->factors,
-                         plan_->factors.draw(stream, static_cast<std::uint32_t>(member / records)), give_up);
+                         {plan_->factors.draw(stream, static_cast<std::uint32_t>(member / records))}, give_up)
+                  .front();
       },
       0);
   return end.gave_up ? "" : row_text(end, cpu);

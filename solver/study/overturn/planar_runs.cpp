@@ -1,8 +1,9 @@
 #include "solver/study/overturn/planar_runs.h"
 
+#include <algorithm>
+
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
-#include "solver/planar/planar_run.h"
 
 namespace topple::study {
 namespace {
@@ -50,19 +51,36 @@ std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* wh
   return cases;
 }
 
-std::optional<std::vector<BodyEnd>> run_planar(const std::vector<planar::PlanarCase>& cases,
-                                               const std::vector<Shake>& shakes, double duration,
-                                               const std::function<bool()>& give_up) {
-  std::vector<BodyEnd> out;
-  for (const planar::PlanarCase& one : cases) {
-    planar::PlanarRun run(one, shakes, duration);
-    while (!run.over()) {
-      run.advance();
-      if (give_up()) return std::nullopt;
-    }
-    if (run.left() || run.stuck()) return std::nullopt;
-    out.push_back({run.beyond_since(), run.lifted().has_value(), run.peak_slide()});
+std::vector<std::optional<std::vector<BodyEnd>>> run_planar(const std::vector<PlanarMember>& members,
+                                                            double duration,
+                                                            const std::function<bool()>& give_up,
+                                                            planar::LaneUse* use) {
+  struct Place {
+    std::size_t member, block;
+  };
+  std::vector<Place> places;
+  std::vector<std::optional<std::vector<BodyEnd>>> out;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    for (std::size_t b = 0; b < members[m].blocks.size(); ++b) places.push_back({m, b});
+    out.emplace_back(members[m].blocks.size());
   }
+  std::size_t ended = 0;
+  const planar::LaneUse used = planar::run_in_lanes(
+      static_cast<int>(places.size()),
+      [&](int i) -> std::unique_ptr<planar::PlanarRun> {
+        const auto [m, b] = places[static_cast<std::size_t>(i)];
+        if (!out[m]) return ++ended, nullptr;
+        return std::make_unique<planar::PlanarRun>(members[m].blocks[b], members[m].shakes, duration);
+      },
+      [&](int i, const planar::PlanarRun& run) {
+        const auto [m, b] = places[static_cast<std::size_t>(i)];
+        ++ended;
+        if (run.left() || run.stuck()) out[m].reset();
+        if (out[m]) (*out[m])[b] = {run.beyond_since(), run.lifted().has_value(), run.peak_slide()};
+      },
+      give_up);
+  if (ended < places.size()) std::ranges::fill(out, std::nullopt);
+  if (use) use->busy += used.busy, use->lanes += used.lanes;
   return out;
 }
 

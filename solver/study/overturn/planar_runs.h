@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/planar/planar_case.h"
+#include "solver/planar/planar_lanes.h"
 #include "solver/run/run.h"
 
 namespace topple::study {
@@ -23,11 +23,19 @@ struct BodyEnd {
 /// none. Empty: it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 
-/// Runs them, one fate each. None: give_up() came true, which is asked after each step, or it is not known
-/// what they do: one came within reach of something else, or a slip jammed again and again. duration: s.
-std::optional<std::vector<BodyEnd>> run_planar(const std::vector<planar::PlanarCase>& cases,
-                                               const std::vector<Shake>& shakes, double duration,
-                                               const std::function<bool()>& give_up);
+/// A run of an ensemble.
+struct PlanarMember {
+  std::vector<planar::PlanarCase> blocks;
+  std::vector<Shake> shakes;
+};
+
+/// Runs them in lanes (planar_lanes.h), one fate per block. None: give_up() came true, which is asked as they
+/// go on, or it is not known what they do: one came within reach of something else, or a slip jammed again
+/// and again. duration: s. `use`, if asked for: how full the lanes were, added.
+std::vector<std::optional<std::vector<BodyEnd>>> run_planar(const std::vector<PlanarMember>& members,
+                                                            double duration,
+                                                            const std::function<bool()>& give_up,
+                                                            planar::LaneUse* use = nullptr);
 
 /// What becomes of those runs, behind how many were planar.
 inline constexpr const char* k_climbed =

@@ -7,6 +7,13 @@
 namespace topple::study {
 namespace {
 
+std::vector<Shake> varied_shakes(const RunStart& start, const FactorPlan& plan,
+                                 std::span<const double> values) {
+  std::vector<Shake> shakes = start.shakes;
+  vary(plan, values, shakes);
+  return shakes;
+}
+
 RunEnd run_rigid(const Setup& setup, const std::function<bool()>& give_up) {
   RunEnd end;
   const int bodies = setup.model.furniture_total();
@@ -36,30 +43,43 @@ RunEnd run_rigid(const Setup& setup, const std::function<bool()>& give_up) {
   return end;
 }
 
-}  // namespace
-
-RunEnd run_varied(const RunStart& start, const FactorPlan& plan, std::span<const double> values,
-                  const std::function<bool()>& give_up) {
-  std::vector<Shake> shakes = start.shakes;
-  vary(plan, values, shakes);
-  if (!start.planar.empty()) {
-    bool gave_up = false;
-    std::vector<planar::PlanarCase> blocks = start.planar;
-    for (planar::PlanarCase& block : blocks) vary(plan, values, block);
-    std::optional<std::vector<BodyEnd>> of_bodies =
-        run_planar(blocks, shakes, start.duration, [&] { return gave_up = give_up(); });
-    if (of_bodies || gave_up)
-      return {.of_bodies = of_bodies ? *std::move(of_bodies) : std::vector<BodyEnd>(),
-              .planar = true,
-              .gave_up = gave_up};
-  }
+RunEnd run_rigid(const RunStart& start, const FactorPlan& plan, std::span<const double> values,
+                 const std::function<bool()>& give_up) {
   try {
     Setup setup = varied_setup(plan, values, start.scene());
-    setup.parameters.shakes = std::move(shakes);
+    setup.parameters.shakes = varied_shakes(start, plan, values);
     return run_rigid(setup, give_up);
   } catch (const io::InputError& error) {
     return {.status = error.what()};
   }
+}
+
+}  // namespace
+
+std::vector<RunEnd> run_varied(const RunStart& start, const FactorPlan& plan,
+                               const std::vector<std::vector<double>>& members,
+                               const std::function<bool()>& give_up) {
+  bool gave_up = false;
+  std::vector<std::optional<std::vector<BodyEnd>>> planar(members.size());
+  if (!start.planar.empty()) {
+    std::vector<PlanarMember> of;
+    for (const std::vector<double>& values : members) {
+      of.push_back({start.planar, varied_shakes(start, plan, values)});
+      for (planar::PlanarCase& block : of.back().blocks) vary(plan, values, block);
+    }
+    planar = run_planar(of, start.duration, [&] { return gave_up = give_up(); });
+  }
+  std::vector<RunEnd> ends;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (gave_up)
+      ends.push_back({.gave_up = true});
+    else if (planar[m])
+      ends.push_back({.of_bodies = *std::move(planar[m]), .planar = true});
+    else
+      ends.push_back(run_rigid(start, plan, members[m], give_up));
+    gave_up = ends.back().gave_up;
+  }
+  return ends;
 }
 
 std::vector<std::string> overturn_settings(const io::Scene& scene) {

@@ -28,10 +28,12 @@ struct RunStart {
       scene;  ///< for the rigid model; throws io::InputError where there is none
 };
 
-/// As planar blocks where there are some, else, or where it is not known what they do, as `topple run` does.
-/// `values`: as drawn; give_up is asked after each step.
-RunEnd run_varied(const RunStart& start, const FactorPlan& plan, std::span<const double> values,
-                  const std::function<bool()>& give_up);
+/// As planar blocks where there are some (in lanes), else, or where it is not known what they do, as `topple
+/// run` does. `members`: of each run the values as drawn; give_up is asked as they go on, once it is true no
+/// run comes to its end.
+std::vector<RunEnd> run_varied(const RunStart& start, const FactorPlan& plan,
+                               const std::vector<std::vector<double>>& members,
+                               const std::function<bool()>& give_up);
 
 /// What studies of overturning leave to no scene: [run] has these where the scene says nothing.
 std::vector<std::string> overturn_settings(const io::Scene& scene);
