@@ -101,7 +101,8 @@ TEST(FragilityStudy, runs_that_climb_are_counted_and_do_not_disturb_others) {
     for (std::uint32_t member = 0; member < 24; ++member) {
       const RunEnd end =
           run_varied({blocks, shakes, whole.setup.run.duration, [&]() -> const io::Scene& { return whole; }},
-                     plan.factors, plan.factors.draw(static_cast<std::uint64_t>(level), member), never);
+                     plan.factors, {plan.factors.draw(static_cast<std::uint64_t>(level), member)}, never)
+              .front();
       for (std::size_t s = 0; s < k_states; ++s)
         hits[s] += damage_states()[s].is_there(end.of_bodies.front(), plan.slide);
     }
