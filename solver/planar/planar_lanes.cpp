@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -14,12 +15,43 @@ using Pack = Four;
 using Pack = double;  // compilers make more instructions of a Four than of its four numbers one by one
 #endif
 
-constexpr std::size_t k_on_their_way = 16;  // enough that four are in the same mode
-constexpr std::size_t k_mode_count = 5;
+constexpr std::size_t k_on_their_way = 24;  // enough that four are in the same mode
+constexpr std::size_t k_modes = 5;
 
 struct Moving {
   int index;
   std::unique_ptr<PlanarRun> run;
+};
+
+/// Of a mode, by how long the next step may be: short ones have fewer terms, and a pack computes as many as
+/// its lanes need at most.
+struct Queues {
+  std::array<std::vector<Moving>, 3> of;
+
+  std::size_t size() const { return of[0].size() + of[1].size() + of[2].size(); }
+  void push(Moving moving) {
+    constexpr double k_short = 0.02, k_medium = 0.2;  // s
+    constexpr double k_per_rate = 3;  // s/(rad/s): about how long a cabinet stays up after an impact
+    const Leg& leg = moving.run->leg();
+    const bool lands_again = leg.start.tilt == 0 && leg.start.rate != 0;
+    const double held = leg.end - leg.start.time,
+                 span = lands_again ? std::min(held, k_per_rate * std::abs(leg.start.rate)) : held;
+    of[span < k_short ? 2 : span < k_medium ? 1 : 0].push_back(std::move(moving));
+  }
+  /// As many as there is room for, the longest queue and in it the first come first; returns how many.
+  std::size_t take(std::span<Moving> to) {
+    std::size_t n = 0;
+    while (n < to.size() && size() > 0) {
+      std::vector<Moving>& from =
+          *std::ranges::max_element(of, {}, [](const std::vector<Moving>& queue) { return queue.size(); });
+      const std::size_t here = std::min(from.size(), to.size() - n);
+      const auto last = from.begin() + static_cast<std::ptrdiff_t>(here);
+      std::move(from.begin(), last, to.begin() + static_cast<std::ptrdiff_t>(n));
+      from.erase(from.begin(), last);
+      n += here;
+    }
+    return n;
+  }
 };
 
 /// Runs on their way, by the mode of the step that they are about to take.
@@ -30,18 +62,14 @@ class Lanes {
   }
 
   bool over() const {
-    return std::ranges::all_of(by_mode_, [](const std::vector<Moving>& of) { return of.empty(); });
+    return std::ranges::all_of(by_mode_, [](const Queues& of) { return of.size() == 0; });
   }
 
-  /// A step of those in the most frequent mode, the first come first.
+  /// A step of those in the most frequent mode.
   void step() {
-    std::vector<Moving>& from =
-        *std::ranges::max_element(by_mode_, {}, [](const std::vector<Moving>& of) { return of.size(); });
+    Queues& from = *std::ranges::max_element(by_mode_, {}, [](const Queues& of) { return of.size(); });
     std::array<Moving, k_lanes<Pack>> taken;
-    const std::size_t n = std::min(from.size(), taken.size());
-    const auto last = from.begin() + static_cast<std::ptrdiff_t>(n);
-    std::move(from.begin(), last, taken.begin());
-    from.erase(from.begin(), last);
+    const std::size_t n = from.take(taken);
     use_.busy += static_cast<long>(n), use_.lanes += k_lanes<Pack>;
     n == 1 ? step(std::span(taken).first(n), one_) : step(std::span(taken).first(n), pack_);
   }
@@ -68,7 +96,7 @@ class Lanes {
   void go_on(Moving moving) {
     while (!moving.run->over())
       if (moving.run->begin()) {
-        by_mode_[static_cast<std::size_t>(moving.run->leg().start.mode)].push_back(std::move(moving));
+        by_mode_[static_cast<std::size_t>(moving.run->leg().start.mode)].push(std::move(moving));
         return;
       }
     ended_(moving.index, *moving.run);
@@ -84,7 +112,7 @@ class Lanes {
   int count_, next_ = 0;
   const MakeRun& make_;
   const RunEnded& ended_;
-  std::array<std::vector<Moving>, k_mode_count> by_mode_;
+  std::array<Queues, k_modes> by_mode_;
   PackStep<Pack> pack_;
   PackStep<double> one_;
   LaneUse use_;

@@ -105,7 +105,7 @@ std::vector<std::uint64_t> outcome(const PlanarRun& run) {
 class PlanarLanes : public testing::Test {
  protected:
   PlanarLanes() {
-    for (unsigned seed = 0; seed < 1500; ++seed) members_.push_back(random_member(seed));
+    for (unsigned seed = 0; seed < 800; ++seed) members_.push_back(random_member(seed));
   }
   int count() const { return static_cast<int>(members_.size()); }
   const Member& at(int i) const { return members_[static_cast<std::size_t>(i)]; }
@@ -134,9 +134,9 @@ TEST_F(PlanarLanes, runs_have_the_bits_that_they_have_alone_and_those_that_fail_
       },
       k_never_give_up);
   EXPECT_EQ(ended, count());
-  EXPECT_GT(left, 50);
-  EXPECT_GT(stuck, 50);
-  EXPECT_GT(fell, 200);
+  EXPECT_GT(left, 20);
+  EXPECT_GT(stuck, 20);
+  EXPECT_GT(fell, 100);
   for (const int steps : modes) EXPECT_GT(steps, 1000);
 }
 
@@ -154,7 +154,7 @@ TEST_F(PlanarLanes, runs_do_not_depend_on_which_others_there_are) {
         back[static_cast<std::size_t>(count() - 1 - i)] = outcome(run);
       },
       k_never_give_up);
-  EXPECT_EQ(ended, count() - count() / 3);
+  EXPECT_EQ(ended, count() - (count() + 2) / 3);
   for (std::size_t i = 0; i < back.size(); ++i)
     if (!back[i].empty()) {
       EXPECT_EQ(back[i], forth[i]) << i;
@@ -165,7 +165,7 @@ TEST_F(PlanarLanes, runs_do_not_depend_on_which_others_there_are) {
 TEST_F(PlanarLanes, lanes_are_busy) {
   const LaneUse use = run_in_lanes(
       count(), [&](int i) { return run_of(at(i)); }, [](int, const PlanarRun&) {}, k_never_give_up);
-  EXPECT_GT(use.share(), 0.9);
+  EXPECT_GT(use.share(), 0.7);
   EXPECT_LE(use.share(), 1);
 }
 
