@@ -10,9 +10,9 @@ namespace topple::planar {
 namespace {
 
 #ifdef __AVX2__
-using Pack = Four;
+constexpr bool k_has_lanes = true;
 #else
-using Pack = double;  // compilers make more instructions of a Four than of its four numbers one by one
+constexpr bool k_has_lanes = false;  // a Four takes more instructions than its four numbers one by one
 #endif
 
 constexpr std::size_t k_on_their_way = 24;  // enough that four are in the same mode
@@ -68,9 +68,9 @@ class Lanes {
   /// A step of those in the most frequent mode.
   void step() {
     Queues& from = *std::ranges::max_element(by_mode_, {}, [](const Queues& of) { return of.size(); });
-    std::array<Moving, k_lanes<Pack>> taken;
+    std::array<Moving, k_lanes<Four>> taken;
     const std::size_t n = from.take(taken);
-    use_.busy += static_cast<long>(n), use_.lanes += k_lanes<Pack>;
+    use_.busy += static_cast<long>(n), use_.lanes += k_lanes<Four>;
     n == 1 ? step(std::span(taken).first(n), one_) : step(std::span(taken).first(n), pack_);
   }
 
@@ -113,15 +113,32 @@ class Lanes {
   const MakeRun& make_;
   const RunEnded& ended_;
   std::array<Queues, k_modes> by_mode_;
-  PackStep<Pack> pack_;
+  PackStep<Four> pack_;
   PackStep<double> one_;
   LaneUse use_;
 };
+
+LaneUse run_one_by_one(int count, const MakeRun& make, const RunEnded& ended,
+                       const std::function<bool()>& give_up) {
+  LaneUse use;
+  for (int i = 0; i < count; ++i) {
+    const std::unique_ptr<PlanarRun> run = make(i);
+    if (!run) continue;
+    while (!run->over()) {
+      run->advance();
+      ++use.busy, ++use.lanes;
+      if (give_up()) return use;
+    }
+    ended(i, *run);
+  }
+  return use;
+}
 
 }  // namespace
 
 LaneUse run_in_lanes(int count, const MakeRun& make, const RunEnded& ended,
                      const std::function<bool()>& give_up) {
+  if (!k_has_lanes || count == 1) return run_one_by_one(count, make, ended, give_up);
   Lanes lanes(count, make, ended);
   while (!lanes.over()) {
     lanes.step();

@@ -76,6 +76,36 @@ TEST(FragilityStudy, parts_are_the_same_in_any_order) {
   EXPECT_EQ(gather(plan, rows).runs, 450);
 }
 
+// The runs of a part end after very different numbers of steps: those of a strong level overturn early, those
+// of a weak one never lift.
+TEST(FragilityStudy, lanes_of_parts_are_busy) {
+  const FragilityPlan plan = plan_fragility(
+      io::load_scene("near-fault"), "pga=80 gal..1500 gal:8",
+      {.runs = 400, .vary = {"amplitude=lognormal:0.25", "size=normal:10%", "friction=normal:20%"}}, 0.05);
+  const io::Scene scene =
+      io::parse_scene(plan.scene.text, plan.scene.name, plan.set, io::kept_files(plan.scene));
+  const std::vector<planar::PlanarCase> blocks = planar_cases(scene.setup);
+  ASSERT_FALSE(blocks.empty());
+  planar::LaneUse use;
+  for (int level = 0; level < plan.levels.count(); ++level) {
+    const double factor = amplitude_factor(*plan.measure, plan.own.front(), plan.levels.in_si(level));
+    for (int first = 0; first < plan.runs; first += plan.chunk) {
+      std::vector<PlanarMember> members;
+      for (int member = first; member < std::min(plan.runs, first + plan.chunk); ++member) {
+        const std::vector<double> values =
+            plan.factors.draw(static_cast<std::uint64_t>(level), static_cast<std::uint32_t>(member));
+        members.push_back({blocks, shaken_by(scene.setup.parameters.shakes, factor)});
+        PlanarMember& one = members.back();
+        vary(plan.factors, values, one.shakes);
+        for (planar::PlanarCase& block : one.blocks) vary(plan.factors, values, block);
+      }
+      run_planar(members, scene.setup.run.duration, never, &use);
+    }
+  }
+  RecordProperty("share", std::to_string(use.share()));
+  EXPECT_GT(use.share(), 0.7);
+}
+
 // What slides to within reach of a wall is run again with the rigid model. Such runs stand between planar
 // ones of a part; each of these ends as it does alone.
 TEST(FragilityStudy, runs_that_climb_are_counted_and_do_not_disturb_others) {
