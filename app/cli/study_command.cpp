@@ -66,7 +66,7 @@ int carry_out_sweep(const Study& study, const StudyOptions& options) {
   const auto start = Clock::now();
   const std::string prepared = whole.prepare ? whole.prepare() : "";
   SweepPlan plan = whole.cases();
-  plan.kind = study.name;
+  plan.label = std::string("study ") + study.name;
   plan.stem = stem;
   plan.start = start;
   if (whole.receive) plan.broadcast.push_back(prepared);

@@ -33,7 +33,7 @@ struct Findings {
 
 /// The cases of a study, as they are worked off one by one, resumed, and shared among ranks.
 struct Sweep {
-  std::function<SweepPlan()> cases;  ///< but for kind, stem and start
+  std::function<SweepPlan()> cases;  ///< but for label, stem and start
   std::function<Findings(const std::vector<std::string>& rows)> gather;
   /// What rank 0 finds out before the cases, and how the others receive it. Absent: nothing.
   std::function<std::string()> prepare = {};

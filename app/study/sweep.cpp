@@ -115,7 +115,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
     std::vector<CaseWork> works;
     works.reserve(static_cast<std::size_t>(workers));
     for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
-    Progress progress("study " + plan.kind, "runs", static_cast<double>(left.size()), options.quiet);
+    Progress progress(plan.label, "runs", static_cast<double>(left.size()), options.quiet);
     std::mutex keeping;
     std::exception_ptr trouble;
     study::for_each_case(

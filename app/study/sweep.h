@@ -63,7 +63,7 @@ class Crew {
 };
 
 struct SweepPlan {
-  std::string kind = {};               ///< of study
+  std::string label = {};              ///< of the progress
   std::string stem = {};               ///< of its results; rows are kept in STEM.rows while it goes on
   nlohmann::ordered_json settings;     ///< that rows depend on, besides the version
   std::vector<int> order;              ///< of all cases, as they are begun

@@ -66,7 +66,8 @@ const std::map<std::string, Rooms> k_parts = {
       {"solver/study/penalty", {"common"}},
       {"solver/study/precision", {"common"}},
       {"solver/study/stability", {"common"}},
-      {"solver/study/overturn", {"common"}}}},
+      {"solver/study/overturn", {"common"}},
+      {"solver/study/validate", {"overturn", "common"}}}},
     {"render",
      {{"render/gl", {}},  //
       {"render/scene", {"gl"}},
@@ -78,9 +79,10 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/report", {"support"}},
       {"app/live", {"batch", "picture", "support"}},
       {"app/study", {"batch", "support"}},
+      {"app/validate", {"report", "study", "support"}},
       {"app/panels", {"live", "study", "picture", "support"}},
       {"app/window", {"panels", "live", "study", "picture", "support"}},
-      {"app/cli", {"window", "panels", "report", "live", "study", "batch", "picture", "support"}},
+      {"app/cli", {"window", "validate", "panels", "report", "live", "study", "batch", "picture", "support"}},
       {"app", {"cli"}}}},  // main.cpp
 };
 

@@ -1,0 +1,237 @@
+#include "solver/study/validate/granite_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "solver/planar/integrator.h"
+#include "solver/study/common/axis.h"
+#include "solver/study/common/low_discrepancy.h"
+#include "solver/study/validate/scores.h"
+
+namespace topple::study {
+namespace {
+
+constexpr double k_least_edge = 0.012, k_most_edge = 0.06;  // m, range of the design
+constexpr double k_least_restitution = 0.6;
+constexpr double k_step_edge = 0.1, k_step_restitution = 0.04;  // of the lattice of medians; in ln
+constexpr std::array<double, 4> k_edge_scatters{0.1, 0.15, 0.2, 0.3};
+constexpr std::array<double, 3> k_restitution_scatters{0.03, 0.06, 0.12};
+constexpr double k_fewest = 10;                 // rocks, in effect, that a share is of
+constexpr double k_far = 4;                     // standard deviations, beyond which a rock has no weight
+constexpr double k_rough = 10;                  // friction: what is as rough as that does not slip
+constexpr double k_fallen = 1;                  // rad; any from 0.25 on gives the same verdicts
+constexpr std::uint64_t k_stream = 0x6772616e;  // of the design
+
+double between(double low, double high, double part) {
+  return low + (high - low) * part;
+}
+
+Rock rock_at(double left, double right, double restitution) {
+  const double low = std::log(k_least_edge), high = std::log(k_most_edge);
+  return {std::exp(between(low, high, left)), std::exp(between(low, high, right)),
+          between(k_least_restitution, 1, restitution)};
+}
+
+/// Quantile of a normal distribution that is cut at both ends.
+double cut_quantile(double u, double middle, double deviation, double low, double high) {
+  const double from = normal_probability((low - middle) / deviation),
+               to = normal_probability((high - middle) / deviation);
+  const double part = std::clamp(between(from, to, u), 1e-12, 1 - 1e-12);
+  return std::clamp(middle + deviation * normal_quantile(part), low, high);
+}
+
+double weight_of(const Rock& rock, const RockDistribution& of) {
+  const std::array<double, 3> away{std::log(rock.left / of.median.left) / of.edge_scatter,
+                                   std::log(rock.right / of.median.right) / of.edge_scatter,
+                                   (rock.restitution - of.median.restitution) / of.restitution_scatter};
+  const double square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+  return square > k_far * k_far ? 0 : std::exp(-square / 2);
+}
+
+std::vector<RockDistribution> lattice() {
+  std::vector<RockDistribution> all;
+  for (const double edges : k_edge_scatters)
+    for (const double landing : k_restitution_scatters)
+      for (double left = k_least_edge; left <= k_most_edge; left *= std::exp(k_step_edge))
+        for (double right = k_least_edge; right <= k_most_edge; right *= std::exp(k_step_edge))
+          for (double restitution = 1; restitution > k_least_restitution - 1e-9;
+               restitution -= k_step_restitution)
+            all.push_back({{left, right, restitution}, edges, landing});
+  return all;
+}
+
+Interval middle_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  const auto at = [&](double part) {
+    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1) + 0.5)];
+  };
+  return {at(0.025), at(0.975)};
+}
+
+/// Calls f with every number of a distribution.
+template <class Distribution, class F>
+void each_number(Distribution& low, Distribution& high, F f) {
+  f(low.median.left, high.median.left, [](const RockDistribution& d) { return d.median.left; });
+  f(low.median.right, high.median.right, [](const RockDistribution& d) { return d.median.right; });
+  f(low.median.restitution, high.median.restitution,
+    [](const RockDistribution& d) { return d.median.restitution; });
+  f(low.edge_scatter, high.edge_scatter, [](const RockDistribution& d) { return d.edge_scatter; });
+  f(low.restitution_scatter, high.restitution_scatter,
+    [](const RockDistribution& d) { return d.restitution_scatter; });
+}
+
+/// Bootstrap: B. Efron, Annals of Statistics 7, 1979, 1-26.
+void draw_anew(const RockFit& fit, const std::vector<bool>& fell, RockFindings& found) {
+  std::vector<RockDistribution> fits;
+  for (std::uint64_t n = 0; n < k_draws; ++n) {
+    std::vector<double> weight(fell.size());
+    for (std::uint64_t i = 0; i < fell.size(); ++i)
+      ++weight[static_cast<std::size_t>(scattered(n, i) * static_cast<double>(fell.size()))];
+    fits.push_back(fit.candidate(fit.best(fell, weight)));
+  }
+  each_number(found.low, found.high, [&](double& low, double& high, const auto& of) {
+    std::vector<double> values;
+    for (const RockDistribution& one : fits) values.push_back(of(one));
+    const Interval interval = middle_of(std::move(values));
+    low = interval.low, high = interval.high;
+  });
+}
+
+}  // namespace
+
+bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, double factor) {
+  planar::Block block;
+  block.inertia = traits.inertia_over_mass;
+  block.left = rock.left, block.right = rock.right, block.height = traits.height;
+  block.static_friction = block.kinetic_friction = k_rough;
+  block.restitution = rock.restitution;
+  Shake shake;
+  shake.kind = Shake::Kind::record;
+  shake.record = test.motion;
+  shake.scale = factor;
+  const planar::ShakenPlane plane{{&shake, 1}, Vec3::UnitX()};
+  const planar::Floor floor = planar::shaken(plane);
+  const planar::Controls controls{.last_tilt = k_fallen};
+  const double duration = test.motion->duration + k_after_record;
+  planar::State state = planar::standing();
+  planar::Step step;
+  while (state.time < duration) {
+    const planar::Event event = planar::advance(block, floor, controls, duration, state, step);
+    if (event == planar::Event::overturn) return true;
+    if (event == planar::Event::stalled) return false;
+  }
+  return false;
+}
+
+Rock designed(int k) {
+  const auto at = [k](int dimension) {
+    return shifted_sobol(k_stream, static_cast<std::uint32_t>(k), dimension);
+  };
+  return rock_at(at(0), at(1), at(2));
+}
+
+Rock drawn(const RockDistribution& from, int k) {
+  const auto at = [k](int dimension) {
+    return shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), dimension);
+  };
+  const auto edge = [&](double u, double median) {
+    return std::exp(
+        cut_quantile(u, std::log(median), from.edge_scatter, std::log(k_least_edge), std::log(k_most_edge)));
+  };
+  return {edge(at(0), from.median.left), edge(at(1), from.median.right),
+          cut_quantile(at(2), from.median.restitution, from.restitution_scatter, k_least_restitution, 1)};
+}
+
+Rock plain(int k) {
+  constexpr double k_last = k_plain_edges - 1;
+  return rock_at(k % k_plain_edges / k_last, k / k_plain_edges / k_last, 1);
+}
+
+RockFit::RockFit(const RunTable& runs) : tests_(runs.front().size()) {
+  std::vector<Rock> rocks;
+  for (int k = 0; k < static_cast<int>(runs.size()); ++k) rocks.push_back(designed(k));
+  std::vector<double> sum(tests_);
+  for (const RockDistribution& one : lattice()) {
+    double total = 0, squares = 0;
+    std::ranges::fill(sum, 0.);
+    for (std::size_t k = 0; k < rocks.size(); ++k) {
+      const double weight = weight_of(rocks[k], one);
+      if (weight == 0) continue;
+      total += weight, squares += weight * weight;
+      for (std::size_t i = 0; i < tests_; ++i) sum[i] += runs[k][i] == '1' ? weight : 0;
+    }
+    if (!(total * total >= k_fewest * squares)) continue;
+    candidate_.push_back(one);
+    for (const double hits : sum) {
+      const double q = between(k_unknown, 1 - k_unknown, hits / total);
+      share_.push_back(static_cast<float>(hits / total));
+      log_yes_.push_back(static_cast<float>(std::log(q)));
+      log_no_.push_back(static_cast<float>(std::log(1 - q)));
+    }
+  }
+}
+
+std::size_t RockFit::best(const std::vector<bool>& fell, const std::vector<double>& weight) const {
+  std::size_t best = 0;
+  double most = -planar::k_never;
+  for (std::size_t c = 0; c < candidates(); ++c) {
+    double sum = 0;
+    for (std::size_t i = 0; i < tests_; ++i)
+      if (weight[i] > 0)
+        sum += weight[i] * static_cast<double>((fell[i] ? log_yes_ : log_no_)[c * tests_ + i]);
+    if (sum > most) most = sum, best = c;
+  }
+  return best;
+}
+
+int best_plain(const RunTable& runs, const std::vector<bool>& fell, const std::vector<bool>& used) {
+  int best = 0, most = -1;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    int right = 0;
+    for (std::size_t i = 0; i < fell.size(); ++i) right += used[i] && (runs[k][i] == '1') == fell[i];
+    if (right > most) most = right, best = static_cast<int>(k);
+  }
+  return best;
+}
+
+RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, const RunTable& designed_runs,
+                      const RunTable& plain_runs) {
+  std::vector<bool> fell;
+  std::vector<double> velocity;
+  for (const GraniteTest& test : tests)
+    fell.push_back(test.fell[rock]), velocity.push_back(test.peak_velocity);
+  const std::size_t count = tests.size();
+  const RockFit fit(designed_runs);
+  RockFindings found;
+  found.probability.resize(count), found.by_threshold.resize(count), found.by_plain.resize(count);
+  std::vector<double> edges[2];
+  for (std::size_t fold = 0; fold < k_folds; ++fold) {
+    std::vector<double> weight(count, 1);
+    std::vector<bool> used(count, true);
+    for (std::size_t i = fold; i < count; i += k_folds) weight[i] = 0, used[i] = false;
+    const std::size_t best = fit.best(fell, weight);
+    const int block = best_plain(plain_runs, fell, used);
+    const double threshold = best_threshold(velocity, fell, used);
+    for (std::size_t i = fold; i < count; i += k_folds) {
+      found.probability[i] = fit.probability(best, i);
+      found.by_threshold[i] = velocity[i] > threshold;
+      found.by_plain[i] = plain_runs[static_cast<std::size_t>(block)][i] == '1';
+    }
+    edges[0].push_back(fit.candidate(best).median.left), edges[1].push_back(fit.candidate(best).median.right);
+  }
+  for (const auto& side : edges) {
+    const auto [least, most] = std::ranges::minmax(side);
+    found.spread_of_folds = std::max(found.spread_of_folds, most / least);
+  }
+  const std::vector<bool> all(count, true);
+  found.fitted = fit.candidate(fit.best(fell, std::vector<double>(count, 1)));
+  found.threshold = best_threshold(velocity, fell, all);
+  found.plain = plain(best_plain(plain_runs, fell, all));
+  found.usually = 2 * std::ranges::count(fell, true) > static_cast<std::ptrdiff_t>(count);
+  draw_anew(fit, fell, found);
+  return found;
+}
+
+}  // namespace topple::study

@@ -1,0 +1,94 @@
+// What is fitted to shake-table tests of a rock, and by which rule.
+//
+// A rock is a planar block without slip, its height and inertia those of its mesh. Unknown are the distances
+// of its two edges and the factor on the rate that Housner's impact leaves. It is put back by hand between
+// tests, so they scatter: the logarithms of both distances with one standard deviation, the factor with
+// another, cut where the design ends. The probability p of falling in a test is the share among rocks so
+// scattered. The fit is the distribution of greatest likelihood of the outcomes,
+//   sum over tests of ln(fell ? q : 1 - q),  q = e + (1 - 2 e) p,  e = k_unknown,
+// over a lattice of medians and scatters. Shares are weighted means over the runs of one design of rocks that
+// fills the range evenly and depends on no outcome: leaving tests out, or drawing them anew, needs no runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/study/validate/granite_data.h"
+
+namespace topple::study {
+
+/// What a rock stands on and how it lands.
+struct Rock {
+  double left = 0, right = 0;  ///< m, edges towards -x and +x
+  double restitution = 1;      ///< factor on Housner's rate
+};
+
+struct RockDistribution {
+  Rock median;
+  double edge_scatter = 0;         ///< standard deviation of the logarithms of the edges
+  double restitution_scatter = 0;  ///< standard deviation
+};
+
+/// s, that a run goes on behind the record.
+inline constexpr double k_after_record = 1;
+
+/// Whether the rock falls in this test, all accelerations times `factor`.
+bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, double factor = 1);
+
+/// The rocks whose runs a fit is made of; of equal weight.
+inline constexpr int k_design = 1024;
+Rock designed(int k);
+/// Rock `k` of a distribution, of points that fill it evenly.
+Rock drawn(const RockDistribution& from, int k);
+
+/// Edges of the plain block of the baseline, which lands by Housner: a lattice.
+inline constexpr int k_plain_edges = 10;
+inline constexpr int k_plain = k_plain_edges * k_plain_edges;
+Rock plain(int k);
+
+/// A share of tests that end as nothing in the model says.
+inline constexpr double k_unknown = 0.02;
+
+/// Runs of one rock: [k][test], '1' where it fell.
+using RunTable = std::vector<std::string>;
+
+class RockFit {
+ public:
+  /// Of the runs of all designed rocks. Candidates that too few of them lie near are left out.
+  explicit RockFit(const RunTable& runs);
+
+  std::size_t candidates() const { return candidate_.size(); }
+  const RockDistribution& candidate(std::size_t c) const { return candidate_[c]; }
+  double probability(std::size_t c, std::size_t test) const { return share_[c * tests_ + test]; }
+  /// Of greatest likelihood. `fell`, `weight`: per test; one of weight 0 is not looked at.
+  std::size_t best(const std::vector<bool>& fell, const std::vector<double>& weight) const;
+
+ private:
+  std::size_t tests_;
+  std::vector<RockDistribution> candidate_;
+  std::vector<float> share_, log_yes_, log_no_;  ///< [candidate][test]
+};
+
+/// The plain block that is right most often in the used tests; of equals the first of its lattice.
+int best_plain(const RunTable& runs, const std::vector<bool>& fell, const std::vector<bool>& used);
+
+/// Folds of the cross-validation: test i of the list is in fold i % k_folds.
+inline constexpr std::size_t k_folds = 10;
+
+/// What is found in tests about one rock.
+struct RockFindings {
+  RockDistribution fitted;
+  RockDistribution low, high;  ///< each number for itself, 95 % by drawing tests anew k_draws times
+  double threshold = 0;        ///< m/s, of the baseline
+  Rock plain;                  ///< of the baseline
+  bool usually = false;        ///< what most tests end with
+  // Of each test, by what was fitted on the other folds.
+  std::vector<double> probability;
+  std::vector<bool> by_threshold, by_plain;
+  double spread_of_folds = 0;  ///< greatest ratio of an edge among the fits of the folds
+};
+inline constexpr std::uint64_t k_draws = 200;
+RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, const RunTable& designed_runs,
+                      const RunTable& plain_runs);
+
+}  // namespace topple::study

@@ -1,0 +1,220 @@
+#include "solver/study/validate/granite_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "solver/io/common/errors.h"
+
+namespace topple::study {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+constexpr int k_members = 256;
+constexpr int k_factors = 9;
+constexpr double k_change = 0.05;  // of the input
+constexpr int k_fit_of_rock = k_design + k_plain;
+constexpr int k_runs_of_rock = k_members + k_factors + 1;  // of all tests; then the rigid ones, test by test
+
+/// One rock in all tests; empty: gave up.
+template <class Falls>
+std::string row_of_tests(std::size_t first, std::size_t last, const std::function<bool()>& give_up,
+                         const Falls& falls_in) {
+  std::string fell;
+  for (std::size_t i = first; i < last; ++i) {
+    if (give_up()) return "";
+    fell += falls_in(i) ? '1' : '0';
+  }
+  return ordered_json{{"fell", fell}}.dump();
+}
+
+std::string fell_in(const std::string& row) {
+  return ordered_json::parse(row).at("fell").get<std::string>();
+}
+
+int runs_of_rock(std::size_t tests) {
+  return k_runs_of_rock + static_cast<int>(tests);
+}
+
+Verdicts verdicts_of(std::vector<bool> falls, const std::vector<GraniteTest>& tests, std::size_t rock) {
+  std::vector<Forecast> forecasts;
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    forecasts.push_back({falls[i] ? 1. : 0., tests[i].fell[rock]});
+  return {std::move(falls), scored(forecasts)};
+}
+
+std::vector<bool> as_bools(const std::string& fell) {
+  std::vector<bool> out;
+  for (const char c : fell) out.push_back(c == '1');
+  return out;
+}
+
+/// A test counts `k_parts` times, so that probabilities are counts.
+Fragility curve_of(const std::vector<GraniteTest>& tests, const std::vector<double>& probability) {
+  constexpr int k_parts = 100;
+  std::vector<Level> levels;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (!(tests[i].peak_velocity > 0)) continue;
+    levels.push_back(
+        {tests[i].peak_velocity, k_parts, static_cast<int>(std::lround(k_parts * probability[i]))});
+  }
+  return fit_fragility(levels, "falls");
+}
+
+Scores scored_if(const std::vector<Forecast>& forecasts, const std::vector<bool>& wanted, bool which) {
+  std::vector<Forecast> some;
+  for (std::size_t i = 0; i < forecasts.size(); ++i)
+    if (wanted[i] == which) some.push_back(forecasts[i]);
+  return some.empty() ? Scores{} : scored(some);
+}
+
+struct RockRuns {
+  std::vector<double> share;  ///< of members that fell, per test
+  std::vector<bool> sure, plain, rigid;
+};
+
+RockRuns runs_of(const std::vector<GraniteTest>& tests, std::size_t rock,
+                 const std::vector<std::string>& rows) {
+  const std::size_t begin = rock * static_cast<std::size_t>(runs_of_rock(tests.size()));
+  const auto row = [&](int k) { return fell_in(rows[begin + static_cast<std::size_t>(k)]); };
+  RockRuns out;
+  out.share.resize(tests.size()), out.sure.assign(tests.size(), true);
+  for (int k = 0; k < k_members; ++k) {
+    const std::string fell = row(k);
+    for (std::size_t i = 0; i < tests.size(); ++i) out.share[i] += (fell[i] == '1') / double{k_members};
+  }
+  const std::string first = row(k_members);
+  for (int k = 1; k < k_factors; ++k) {
+    const std::string fell = row(k_members + k);
+    for (std::size_t i = 0; i < tests.size(); ++i) out.sure[i] = out.sure[i] && fell[i] == first[i];
+  }
+  out.plain = as_bools(row(k_members + k_factors));
+  for (int i = 0; i < static_cast<int>(tests.size()); ++i)
+    out.rigid.push_back(row(k_runs_of_rock + i) == "1");
+  return out;
+}
+
+std::vector<bool> above(const std::vector<GraniteTest>& tests, double threshold) {
+  std::vector<bool> out;
+  for (const GraniteTest& test : tests) out.push_back(test.peak_velocity > threshold);
+  return out;
+}
+
+RockResults results_of(const std::vector<GraniteTest>& tests, std::size_t rock, const RockFindings& found,
+                       bool fitted_here, const std::vector<std::string>& rows) {
+  const RockRuns runs = runs_of(tests, rock, rows);
+  RockResults out;
+  std::vector<double> measured, computed;
+  std::vector<Forecast> all;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const double share = fitted_here ? found.probability[i] : runs.share[i];
+    out.forecasts.push_back({share, tests[i].fell[rock]});
+    all.push_back({runs.share[i], tests[i].fell[rock]});
+    out.expected_missed += std::min(share, 1 - share);
+    measured.push_back(tests[i].fell[rock]), computed.push_back(share);
+  }
+  out.scores = scored(out.forecasts), out.in_sample = scored(all);
+  out.sure = runs.sure;
+  out.of_sure = scored_if(out.forecasts, out.sure, true);
+  out.of_open = scored_if(out.forecasts, out.sure, false);
+  out.never = verdicts_of(std::vector<bool>(tests.size(), false), tests, rock);
+  out.threshold = verdicts_of(fitted_here ? found.by_threshold : above(tests, found.threshold), tests, rock);
+  out.plain = verdicts_of(fitted_here ? found.by_plain : runs.plain, tests, rock);
+  out.rigid = verdicts_of(runs.rigid, tests, rock);
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    out.agreement += (runs.rigid[i] == runs.plain[i]) / static_cast<double>(tests.size());
+  out.measured = curve_of(tests, measured), out.computed = curve_of(tests, computed);
+  return out;
+}
+
+}  // namespace
+
+void expect_enough(const std::vector<GraniteTest>& tests) {
+  if (tests.size() < k_fewest_tests)
+    throw io::InputError(
+        fmt::format("validate granite: {} tests are too few to fit, {} at least; --fit FILE takes "
+                    "what was fitted elsewhere",
+                    tests.size(), k_fewest_tests));
+}
+
+int fit_cases() {
+  return static_cast<int>(k_rocks) * k_fit_of_rock;
+}
+
+std::string run_fit_case(const std::vector<GraniteTest>& tests, int k, const std::function<bool()>& give_up) {
+  const RockTraits& traits = rocks()[static_cast<std::size_t>(k / k_fit_of_rock)];
+  const int of = k % k_fit_of_rock;
+  const Rock rock = of < k_design ? designed(of) : plain(of - k_design);
+  return row_of_tests(0, tests.size(), give_up, [&](std::size_t i) { return falls(traits, rock, tests[i]); });
+}
+
+GraniteFit fit_granite(const std::vector<GraniteTest>& tests, const std::vector<std::string>& rows) {
+  GraniteFit fit;
+  fit.tests = static_cast<int>(tests.size());
+  for (std::size_t rock = 0; rock < k_rocks; ++rock) {
+    const auto first = rows.begin() + static_cast<std::ptrdiff_t>(rock) * k_fit_of_rock;
+    RunTable runs;
+    std::transform(first, first + k_fit_of_rock, std::back_inserter(runs), fell_in);
+    const auto middle = runs.begin() + k_design;
+    fit.rocks[rock] = fit_rock(tests, rock, RunTable(runs.begin(), middle), RunTable(middle, runs.end()));
+  }
+  return fit;
+}
+
+int prediction_cases(const std::vector<GraniteTest>& tests) {
+  return static_cast<int>(k_rocks) * runs_of_rock(tests.size());
+}
+
+std::string run_prediction_case(const std::vector<GraniteTest>& tests, const GraniteFit& fit, int k,
+                                const std::function<bool()>& give_up) {
+  const auto index = static_cast<std::size_t>(k / runs_of_rock(tests.size()));
+  const RockTraits& traits = rocks()[index];
+  const RockFindings& found = fit.rocks[index];
+  const int of = k % runs_of_rock(tests.size());
+  if (of >= k_runs_of_rock) {
+    const auto test = static_cast<std::size_t>(of - k_runs_of_rock);
+    const bool fell = rigid_falls(traits, found.plain, tests[test], give_up);
+    return give_up() ? "" : ordered_json{{"fell", fell ? "1" : "0"}}.dump();
+  }
+  const bool member = of < k_members, changed = !member && of < k_members + k_factors;
+  const Rock rock = member ? drawn(found.fitted, of) : changed ? found.fitted.median : found.plain;
+  const double factor =
+      changed ? even_factors(k_factors, k_change)[static_cast<std::size_t>(of - k_members)] : 1;
+  return row_of_tests(0, tests.size(), give_up,
+                      [&](std::size_t i) { return falls(traits, rock, tests[i], factor); });
+}
+
+GraniteResults gather_granite(const std::vector<GraniteTest>& tests, const GraniteFit& fit, bool fitted_here,
+                              const std::vector<std::string>& rows) {
+  GraniteResults out;
+  out.fitted_here = fitted_here;
+  for (std::size_t rock = 0; rock < k_rocks; ++rock)
+    out.rocks[rock] = results_of(tests, rock, fit.rocks[rock], fitted_here, rows);
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    out.both_missed +=
+        std::ranges::none_of(out.rocks, [&](const RockResults& r) { return r.forecasts[i].right(); });
+  return out;
+}
+
+std::string fingerprint(const std::vector<GraniteTest>& tests) {
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  const auto add = [&](double value) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
+  };
+  for (const GraniteTest& test : tests) {
+    add(test.number), add(test.peak_velocity);
+    for (const bool fell : test.fell) add(fell);
+    for (const AccelerogramComponent& one : test.motion->components) {
+      add(one.interval);
+      for (const double sample : one.samples) add(sample);
+    }
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace topple::study
