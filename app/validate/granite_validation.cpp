@@ -134,7 +134,7 @@ std::string page_of(const Granite& of) {
                         "stands, fell", "stands, stood"},
                        score_rows(of));
   std::string fitted = html_paragraph(
-      "A planar block without slip, height and inertia of the mesh. Fitted by greatest likelihood: the "
+      "A planar block without slip, height and inertia of the mesh. Fitted by likelihood: the "
       "distances of "
       "both edges, a factor on the rate that Housner's impact leaves, and how far both scatter from test to "
       "test. "

@@ -60,13 +60,12 @@ class GraniteChart {
     const double top = sheet_.height;
     std::string out =
         sheet_.label(bold(rocks()[k].name, 1.2), left, top - 170) +
-        sheet_.lines(
-            {fmt::format("edges {:.0f} and {:.0f} mm (± {:.0f} %), factor on Housner's rate {:.2f} ± {:.2f}",
-                         1e3 * at.median.left, 1e3 * at.median.right, 100 * at.edge_scatter,
-                         at.median.restitution, at.restitution_scatter),
-             fmt::format("Brier score {:.3f}, of {} missed {:.1f} were to be expected", rock.scores.brier,
-                         rock.scores.count - rock.scores.right, rock.expected_missed)},
-            left, top - 198, 22, k_grey_as_is);
+        sheet_.lines({fmt::format("edges {:.0f} and {:.0f} mm ± {:.0f} %, factor on impacts {:.2f} ± {:.2f}",
+                                  1e3 * at.median.left, 1e3 * at.median.right, 100 * at.edge_scatter,
+                                  at.median.restitution, at.restitution_scatter),
+                      fmt::format("Brier score {:.3f}; {} missed, {:.0f} to be expected", rock.scores.brier,
+                                  rock.scores.count - rock.scores.right, rock.expected_missed)},
+                     left, top - 198, 22, k_grey_as_is);
     out += shares(rock, {left + 120, right, top - 430, top - 262});
     out += fragility(k, {left, right, top - 930, top - 530});
     out += reliability(rock, {left, right, top - 1420, top - 1040});
@@ -130,8 +129,7 @@ class GraniteChart {
   std::string fragility(std::size_t k, const Box& box) const {
     const RockResults& rock = results_.rocks[k];
     std::string out =
-        sheet_.label(bold("Share that fell over the greatest velocity of the table", 1), box.left,
-                     box.top + 24) +
+        sheet_.label(bold("Share that fell over the table's greatest velocity", 1), box.left, box.top + 24) +
         sheet_.place(box.left, box.right, box.bottom, box.top) +
         "set logscale x\nset xrange [0.02:1]\nset yrange [-0.02:1.02]\nset xtics (0.02,0.05,0.1,0.2,0.5,1) "
         "nomirror "
@@ -163,14 +161,13 @@ class GraniteChart {
                     "velocity, 95 %'",
                     k_measured));
     plot.add("computed", computed,
-             fmt::format("with points pt 7 ps 1.2 lc rgb '{}' title 'computed, the same tests'", k_computed));
+             fmt::format("with points pt 7 ps 1.2 lc rgb '{}' title 'the same, computed'", k_computed));
     return out + plot.data + plot.command() + "unset label\nunset logscale\n";
   }
 
   std::string reliability(const RockResults& rock, const Box& box) const {
     std::string out =
-        sheet_.label(bold("Reliability: how often it fell where a probability was told", 1), box.left,
-                     box.top + 24) +
+        sheet_.label(bold("Reliability: share that fell at a probability", 1), box.left, box.top + 24) +
         sheet_.place(box.left, box.right, box.bottom, box.top) +
         "set xrange [0:1]\nset yrange [-0.02:1.02]\nset xtics 0.2 nomirror format '%.1f'\nset ytics 0.2 "
         "nomirror\n"

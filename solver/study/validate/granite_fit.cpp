@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "solver/planar/integrator.h"
 #include "solver/study/common/axis.h"
@@ -16,9 +17,10 @@ namespace {
 constexpr double k_least_edge = 0.012, k_most_edge = 0.06;  // m, range of the design
 constexpr double k_least_restitution = 0.6;
 constexpr double k_step_edge = 0.1, k_step_restitution = 0.04;  // of the lattice of medians; in ln
-constexpr std::array<double, 4> k_edge_scatters{0.1, 0.15, 0.2, 0.3};
-constexpr std::array<double, 3> k_restitution_scatters{0.03, 0.06, 0.12};
+constexpr std::array<double, 3> k_edge_scatters{0.15, 0.2, 0.3};
+constexpr std::array<double, 2> k_restitution_scatters{0.06, 0.12};
 constexpr double k_fewest = 10;                 // rocks, in effect, that a share is of
+constexpr double k_unlikely = 12;               // ln of a likelihood over the greatest, that counts as none
 constexpr double k_far = 4;                     // standard deviations, beyond which a rock has no weight
 constexpr double k_rough = 10;                  // friction: what is as rough as that does not slip
 constexpr double k_fallen = 1;                  // rad; any from 0.25 on gives the same verdicts
@@ -31,7 +33,7 @@ double between(double low, double high, double part) {
 Rock rock_at(double left, double right, double restitution) {
   const double low = std::log(k_least_edge), high = std::log(k_most_edge);
   return {std::exp(between(low, high, left)), std::exp(between(low, high, right)),
-          between(k_least_restitution, 1, restitution)};
+          between(k_least_restitution, 1, restitution), k_slow_inertia};
 }
 
 /// Quantile of a normal distribution that is cut at both ends.
@@ -58,8 +60,22 @@ std::vector<RockDistribution> lattice() {
         for (double right = k_least_edge; right <= k_most_edge; right *= std::exp(k_step_edge))
           for (double restitution = 1; restitution > k_least_restitution - 1e-9;
                restitution -= k_step_restitution)
-            all.push_back({{left, right, restitution}, edges, landing});
+            all.push_back({{left, right, restitution, k_slow_inertia}, edges, landing});
   return all;
+}
+
+/// Rock `k` of a distribution, of points that fill it evenly.
+Rock drawn_from(const RockDistribution& from, int k) {
+  const auto at = [k](int dimension) {
+    return shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), dimension);
+  };
+  const auto edge = [&](double u, double median) {
+    return std::exp(
+        cut_quantile(u, std::log(median), from.edge_scatter, std::log(k_least_edge), std::log(k_most_edge)));
+  };
+  return {edge(at(0), from.median.left), edge(at(1), from.median.right),
+          cut_quantile(at(2), from.median.restitution, from.restitution_scatter, k_least_restitution, 1),
+          k_slow_inertia};
 }
 
 Interval middle_of(std::vector<double> values) {
@@ -89,7 +105,7 @@ void draw_anew(const RockFit& fit, const std::vector<bool>& fell, RockFindings& 
     std::vector<double> weight(fell.size());
     for (std::uint64_t i = 0; i < fell.size(); ++i)
       ++weight[static_cast<std::size_t>(scattered(n, i) * static_cast<double>(fell.size()))];
-    fits.push_back(fit.candidate(fit.best(fell, weight)));
+    fits.push_back(fit.mean(fit.belief(fell, weight)));
   }
   each_number(found.low, found.high, [&](double& low, double& high, const auto& of) {
     std::vector<double> values;
@@ -103,7 +119,7 @@ void draw_anew(const RockFit& fit, const std::vector<bool>& fell, RockFindings& 
 
 bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, double factor) {
   planar::Block block;
-  block.inertia = traits.inertia_over_mass;
+  block.inertia = traits.inertia_over_mass * rock.inertia;
   block.left = rock.left, block.right = rock.right, block.height = traits.height;
   block.static_friction = block.kinetic_friction = k_rough;
   block.restitution = rock.restitution;
@@ -132,21 +148,11 @@ Rock designed(int k) {
   return rock_at(at(0), at(1), at(2));
 }
 
-Rock drawn(const RockDistribution& from, int k) {
-  const auto at = [k](int dimension) {
-    return shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), dimension);
-  };
-  const auto edge = [&](double u, double median) {
-    return std::exp(
-        cut_quantile(u, std::log(median), from.edge_scatter, std::log(k_least_edge), std::log(k_most_edge)));
-  };
-  return {edge(at(0), from.median.left), edge(at(1), from.median.right),
-          cut_quantile(at(2), from.median.restitution, from.restitution_scatter, k_least_restitution, 1)};
-}
-
 Rock plain(int k) {
   constexpr double k_last = k_plain_edges - 1;
-  return rock_at(k % k_plain_edges / k_last, k / k_plain_edges / k_last, 1);
+  Rock rock = rock_at(k % k_plain_edges / k_last, k / k_plain_edges / k_last, 1);
+  rock.inertia = 1;
+  return rock;
 }
 
 RockFit::RockFit(const RunTable& runs) : tests_(runs.front().size()) {
@@ -166,24 +172,57 @@ RockFit::RockFit(const RunTable& runs) : tests_(runs.front().size()) {
     candidate_.push_back(one);
     for (const double hits : sum) {
       const double q = between(k_unknown, 1 - k_unknown, hits / total);
-      share_.push_back(static_cast<float>(hits / total));
-      log_yes_.push_back(static_cast<float>(std::log(q)));
-      log_no_.push_back(static_cast<float>(std::log(1 - q)));
+      share_.push_back(hits / total);
+      log_yes_.push_back(std::log(q));
+      log_no_.push_back(std::log(1 - q));
     }
   }
 }
 
-std::size_t RockFit::best(const std::vector<bool>& fell, const std::vector<double>& weight) const {
-  std::size_t best = 0;
-  double most = -planar::k_never;
-  for (std::size_t c = 0; c < candidates(); ++c) {
-    double sum = 0;
+std::vector<double> RockFit::belief(const std::vector<bool>& fell, const std::vector<double>& weight) const {
+  std::vector<double> belief(candidates());
+  for (std::size_t c = 0; c < candidates(); ++c)
     for (std::size_t i = 0; i < tests_; ++i)
-      if (weight[i] > 0)
-        sum += weight[i] * static_cast<double>((fell[i] ? log_yes_ : log_no_)[c * tests_ + i]);
-    if (sum > most) most = sum, best = c;
+      if (weight[i] > 0) belief[c] += weight[i] * (fell[i] ? log_yes_ : log_no_)[c * tests_ + i];
+  const double most = *std::ranges::max_element(belief);
+  double sum = 0;
+  for (double& one : belief) sum += one = one > most - k_unlikely ? std::exp(one - most) : 0;
+  for (double& one : belief) one /= sum;
+  return belief;
+}
+
+double RockFit::probability(const std::vector<double>& belief, std::size_t test) const {
+  double sum = 0;
+  for (std::size_t c = 0; c < candidates(); ++c) sum += belief[c] * share_[c * tests_ + test];
+  return sum;
+}
+
+RockDistribution RockFit::mean(const std::vector<double>& belief) const {
+  const auto over = [&](const auto& of) {
+    double sum = 0;
+    for (std::size_t c = 0; c < candidates(); ++c)
+      if (belief[c] > 0) sum += belief[c] * of(candidate_[c]);
+    return sum;
+  };
+  using D = RockDistribution;
+  return {{std::exp(over([](const D& d) { return std::log(d.median.left); })),
+           std::exp(over([](const D& d) { return std::log(d.median.right); })),
+           over([](const D& d) { return d.median.restitution; }), k_slow_inertia},
+          std::exp(over([](const D& d) { return std::log(d.edge_scatter); })),
+          std::exp(over([](const D& d) { return std::log(d.restitution_scatter); }))};
+}
+
+std::vector<Rock> RockFit::drawn(const std::vector<double>& belief) const {
+  std::vector<double> up_to(belief.size());
+  std::partial_sum(belief.begin(), belief.end(), up_to.begin());
+  std::vector<Rock> members;
+  for (int k = 0; k < k_members; ++k) {
+    const double u = shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), 3) * up_to.back();
+    const auto at = std::ranges::upper_bound(up_to, u);
+    const auto c = std::min(static_cast<std::size_t>(at - up_to.begin()), candidates() - 1);
+    members.push_back(drawn_from(candidate_[c], k));
   }
-  return best;
+  return members;
 }
 
 int best_plain(const RunTable& runs, const std::vector<bool>& fell, const std::vector<bool>& used) {
@@ -211,22 +250,25 @@ RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, c
     std::vector<double> weight(count, 1);
     std::vector<bool> used(count, true);
     for (std::size_t i = fold; i < count; i += k_folds) weight[i] = 0, used[i] = false;
-    const std::size_t best = fit.best(fell, weight);
+    const std::vector<double> belief = fit.belief(fell, weight);
     const int block = best_plain(plain_runs, fell, used);
     const double threshold = best_threshold(velocity, fell, used);
     for (std::size_t i = fold; i < count; i += k_folds) {
-      found.probability[i] = fit.probability(best, i);
+      found.probability[i] = fit.probability(belief, i);
       found.by_threshold[i] = velocity[i] > threshold;
       found.by_plain[i] = plain_runs[static_cast<std::size_t>(block)][i] == '1';
     }
-    edges[0].push_back(fit.candidate(best).median.left), edges[1].push_back(fit.candidate(best).median.right);
+    const Rock mean = fit.mean(belief).median;
+    edges[0].push_back(mean.left), edges[1].push_back(mean.right);
   }
   for (const auto& side : edges) {
     const auto [least, most] = std::ranges::minmax(side);
     found.spread_of_folds = std::max(found.spread_of_folds, most / least);
   }
   const std::vector<bool> all(count, true);
-  found.fitted = fit.candidate(fit.best(fell, std::vector<double>(count, 1)));
+  const std::vector<double> belief = fit.belief(fell, std::vector<double>(count, 1));
+  found.fitted = fit.mean(belief);
+  found.members = fit.drawn(belief);
   found.threshold = best_threshold(velocity, fell, all);
   found.plain = plain(best_plain(plain_runs, fell, all));
   found.usually = 2 * std::ranges::count(fell, true) > static_cast<std::ptrdiff_t>(count);

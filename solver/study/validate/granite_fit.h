@@ -1,12 +1,13 @@
 // What is fitted to shake-table tests of a rock, and by which rule.
 //
-// A rock is a planar block without slip, its height and inertia those of its mesh. Unknown are the distances
-// of its two edges and the factor on the rate that Housner's impact leaves. It is put back by hand between
-// tests, so they scatter: the logarithms of both distances with one standard deviation, the factor with
-// another, cut where the design ends. The probability p of falling in a test is the share among rocks so
-// scattered. The fit is the distribution of greatest likelihood of the outcomes,
-//   sum over tests of ln(fell ? q : 1 - q),  q = e + (1 - 2 e) p,  e = k_unknown,
-// over a lattice of medians and scatters. Shares are weighted means over the runs of one design of rocks that
+// A rock is a planar block without slip, its height and inertia those of its mesh, the inertia times
+// k_slow_inertia. Unknown are the distances of its two edges and the factor on the rate that Housner's impact
+// leaves. It is put back by hand between tests, so they scatter: the logarithms of both distances with one
+// standard deviation, the factor with another, cut where the design ends. The probability p of falling in a
+// test is the share among rocks so scattered, and the likelihood of a distribution
+//   ln L = sum over tests of ln(fell ? q : 1 - q),  q = e + (1 - 2 e) p,  e = k_unknown.
+// What is fitted is the distribution over a lattice of medians and scatters that is proportional to L; a test
+// is predicted by the mean of p over it. Shares are weighted means over the runs of one design of rocks that
 // fills the range evenly and depends on no outcome: leaving tests out, or drawing them anew, needs no runs.
 #pragma once
 
@@ -21,8 +22,14 @@ namespace topple::study {
 struct Rock {
   double left = 0, right = 0;  ///< m, edges towards -x and +x
   double restitution = 1;      ///< factor on Housner's rate
+  double inertia = 1;          ///< factor on that about the centre of gravity
 };
 
+/// The underside is round: what rolls on a radius of 55 mm falls as slowly as with so much more inertia. Of
+/// 1, 1.25, 1.6 and 2 that under which the 238 tests of odd numbers are likeliest, both rocks together.
+inline constexpr double k_slow_inertia = 1.6;
+
+/// Rocks that scatter about a median.
 struct RockDistribution {
   Rock median;
   double edge_scatter = 0;         ///< standard deviation of the logarithms of the edges
@@ -38,11 +45,12 @@ bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, 
 /// The rocks whose runs a fit is made of; of equal weight.
 inline constexpr int k_design = 1024;
 Rock designed(int k);
-/// Rock `k` of a distribution, of points that fill it evenly.
-Rock drawn(const RockDistribution& from, int k);
+
+/// Rocks by which tests are predicted.
+inline constexpr int k_members = 256;
 
 /// Edges of the plain block of the baseline, which lands by Housner: a lattice.
-inline constexpr int k_plain_edges = 10;
+inline constexpr int k_plain_edges = 12;
 inline constexpr int k_plain = k_plain_edges * k_plain_edges;
 Rock plain(int k);
 
@@ -59,14 +67,19 @@ class RockFit {
 
   std::size_t candidates() const { return candidate_.size(); }
   const RockDistribution& candidate(std::size_t c) const { return candidate_[c]; }
-  double probability(std::size_t c, std::size_t test) const { return share_[c * tests_ + test]; }
-  /// Of greatest likelihood. `fell`, `weight`: per test; one of weight 0 is not looked at.
-  std::size_t best(const std::vector<bool>& fell, const std::vector<double>& weight) const;
+  /// Of each candidate, together 1. `fell`, `weight`: per test; one of weight 0 is not looked at.
+  std::vector<double> belief(const std::vector<bool>& fell, const std::vector<double>& weight) const;
+  /// That the rock falls in a test.
+  double probability(const std::vector<double>& belief, std::size_t test) const;
+  /// Means over the candidates, of edges and scatters of their logarithms.
+  RockDistribution mean(const std::vector<double>& belief) const;
+  /// Rocks of the whole distribution, from points that fill it evenly.
+  std::vector<Rock> drawn(const std::vector<double>& belief) const;
 
  private:
   std::size_t tests_;
   std::vector<RockDistribution> candidate_;
-  std::vector<float> share_, log_yes_, log_no_;  ///< [candidate][test]
+  std::vector<double> share_, log_yes_, log_no_;  ///< [candidate][test]
 };
 
 /// The plain block that is right most often in the used tests; of equals the first of its lattice.
@@ -77,7 +90,8 @@ inline constexpr std::size_t k_folds = 10;
 
 /// What is found in tests about one rock.
 struct RockFindings {
-  RockDistribution fitted;
+  RockDistribution fitted;     ///< mean
+  std::vector<Rock> members;   ///< k_members rocks of what is fitted, of equal weight
   RockDistribution low, high;  ///< each number for itself, 95 % by drawing tests anew k_draws times
   double threshold = 0;        ///< m/s, of the baseline
   Rock plain;                  ///< of the baseline

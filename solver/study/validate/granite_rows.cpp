@@ -111,8 +111,9 @@ ordered_json rock_json(const std::vector<GraniteTest>& tests, std::size_t k, con
           {"fitted", fitted}};
 }
 
-double number_of(const ordered_json& json, const char* key, double least, double most) {
-  const double value = json.at(key).get<double>();
+template <class Key>
+double number_of(const ordered_json& json, Key key, double least, double most) {
+  const double value = json.at(key).template get<double>();
   if (!(value >= least && value <= most))
     throw io::InputError(fmt::format("{}: {:g} is outside {:g}..{:g}", key, value, least, most));
   return value;
@@ -122,6 +123,13 @@ RockFindings rock_from(const ordered_json& json) {
   RockFindings found;
   for (const Number& number : k_numbers)
     number.of(found.fitted) = number_of(json, number.key, number.least, number.most);
+  const ordered_json& members = json.at("members");
+  if (members.size() != std::size_t{k_members})
+    throw io::InputError(fmt::format("members: there are {}, not {}", members.size(), k_members));
+  for (const ordered_json& member : members)
+    found.members.push_back({number_of(member, 0, 1e-3, 1), number_of(member, 1, 1e-3, 1),
+                             number_of(member, 2, 0, 1), k_slow_inertia});
+  found.fitted.median.inertia = k_slow_inertia;
   const ordered_json& baselines = json.at("baselines");
   found.threshold = number_of(baselines, "pgv_m_s", 0, 100);
   found.plain.left = number_of(baselines, "housner_left_m", 1e-3, 1);
@@ -165,9 +173,8 @@ ordered_json granite_json(const std::vector<GraniteTest>& tests, const GraniteFi
 ordered_json fit_as_json(const GraniteFit& fit) {
   ordered_json out{
       {"kind", "granite"},
-      {"rule", fmt::format("greatest likelihood of the outcomes over a lattice of medians and "
-                           "scatters, {} % of tests ending anyhow; runs of {} rocks that fill the "
-                           "range evenly",
+      {"rule", fmt::format("medians and scatters in proportion to the likelihood of the outcomes, {} % "
+                           "of tests ending anyhow; runs of {} rocks that fill the range evenly",
                            100 * k_unknown, k_design)},
       {"tests", fit.tests},
       {"rocks", ordered_json::array()}};
@@ -179,6 +186,8 @@ ordered_json fit_as_json(const GraniteFit& fit) {
       rock[number.key] = rounded(number.of(middle));
       rock[std::string(number.key) + "_95"] = as_json({number.of(low), number.of(high)});
     }
+    for (const Rock& member : found.members)
+      rock["members"].push_back({rounded(member.left), rounded(member.right), rounded(member.restitution)});
     rock["baselines"] = {{"pgv_m_s", rounded(found.threshold)},
                          {"housner_left_m", rounded(found.plain.left)},
                          {"housner_right_m", rounded(found.plain.right)}};

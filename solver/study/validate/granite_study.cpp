@@ -15,7 +15,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr int k_members = 256;
 constexpr int k_factors = 9;
 constexpr double k_change = 0.05;  // of the input
 constexpr int k_fit_of_rock = k_design + k_plain;
@@ -182,7 +181,9 @@ std::string run_prediction_case(const std::vector<GraniteTest>& tests, const Gra
     return give_up() ? "" : ordered_json{{"fell", fell ? "1" : "0"}}.dump();
   }
   const bool member = of < k_members, changed = !member && of < k_members + k_factors;
-  const Rock rock = member ? drawn(found.fitted, of) : changed ? found.fitted.median : found.plain;
+  const Rock rock = member    ? found.members[static_cast<std::size_t>(of)]
+                    : changed ? found.fitted.median
+                              : found.plain;
   const double factor =
       changed ? even_factors(k_factors, k_change)[static_cast<std::size_t>(of - k_members)] : 1;
   return row_of_tests(0, tests.size(), give_up,
