@@ -162,7 +162,7 @@ std::string page_of(const Granite& of) {
                             "said of sliding, nor of a cabinet."));
 }
 
-std::optional<Comparison> compare(const ValidationOptions& options, const std::string& stem) {
+std::optional<Comparison> compare_granite(const ValidationOptions& options, const std::string& stem) {
   const auto all = std::make_shared<Granite>();
   all->data = study::read_granite(options.data, options.keep_going);
   const std::vector<study::GraniteTest>& tests = all->data.tests;
@@ -214,6 +214,6 @@ const Validation k_granite_validation = {
         "data/Shake_Table_Response (GPL-3.0)",
     .needs_data = true,
     .takes_fit = true,
-    .compare = compare};
+    .compare = compare_granite};
 
 }  // namespace topple::app

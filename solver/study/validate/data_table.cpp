@@ -134,6 +134,25 @@ void DataTable::expect_rising(std::size_t column) const {
       fail(row, column, fmt::format("{:g} does not come after {:g}", at(row, column), at(row - 1, column)));
 }
 
+std::vector<std::string> text_column(std::string_view text, std::string_view column) {
+  std::vector<std::string> out;
+  std::optional<std::size_t> place;
+  for (std::size_t begin = 0, line = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view row = stripped(text.substr(begin, end - begin));
+    begin = end + 1;
+    const std::vector<std::string_view> fields = fields_of(row);
+    if (line == 0) {
+      const auto found = std::ranges::find(fields, column);
+      if (found == fields.end()) return {};
+      place = static_cast<std::size_t>(found - fields.begin());
+    } else if (!row.empty() && *place < fields.size()) {
+      out.emplace_back(fields[*place]);
+    }
+  }
+  return out;
+}
+
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> files;

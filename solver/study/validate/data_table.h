@@ -39,6 +39,9 @@ class DataTable {
   std::vector<int> lines_;
 };
 
+/// The column of a table of that form as texts; empty where there is none.
+std::vector<std::string> text_column(std::string_view text, std::string_view column);
+
 /// A file that is left out of many, and why: one line.
 using Skipped = std::vector<std::string>;
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <numeric>
 
-#include "solver/planar/integrator.h"
 #include "solver/study/common/axis.h"
 #include "solver/study/common/low_discrepancy.h"
+#include "solver/study/validate/block_run.h"
 #include "solver/study/validate/scores.h"
 
 namespace topple::study {
@@ -22,8 +22,6 @@ constexpr std::array<double, 2> k_restitution_scatters{0.06, 0.12};
 constexpr double k_fewest = 10;                 // rocks, in effect, that a share is of
 constexpr double k_unlikely = 12;               // ln of a likelihood over the greatest, that counts as none
 constexpr double k_far = 4;                     // standard deviations, beyond which a rock has no weight
-constexpr double k_rough = 10;                  // friction: what is as rough as that does not slip
-constexpr double k_fallen = 1;                  // rad; any from 0.25 on gives the same verdicts
 constexpr std::uint64_t k_stream = 0x6772616e;  // of the design
 
 double between(double low, double high, double part) {
@@ -123,22 +121,7 @@ bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, 
   block.left = rock.left, block.right = rock.right, block.height = traits.height;
   block.static_friction = block.kinetic_friction = k_rough;
   block.restitution = rock.restitution;
-  Shake shake;
-  shake.kind = Shake::Kind::record;
-  shake.record = test.motion;
-  shake.scale = factor;
-  const planar::ShakenPlane plane{{&shake, 1}, Vec3::UnitX()};
-  const planar::Floor floor = planar::shaken(plane);
-  const planar::Controls controls{.last_tilt = k_fallen};
-  const double duration = test.motion->duration + k_after_record;
-  planar::State state = planar::standing();
-  planar::Step step;
-  while (state.time < duration) {
-    const planar::Event event = planar::advance(block, floor, controls, duration, state, step);
-    if (event == planar::Event::overturn) return true;
-    if (event == planar::Event::stalled) return false;
-  }
-  return false;
+  return overturns(block, test.motion, factor, k_after_record);
 }
 
 Rock designed(int k) {
