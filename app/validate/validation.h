@@ -47,10 +47,11 @@ struct Validation {
 };
 
 // In NAME_validation.cpp.
-extern const Validation k_granite_validation, k_furniture_validation;
+extern const Validation k_granite_validation, k_tosses_validation, k_furniture_validation;
 
 /// In the order of --help.
-inline constexpr const Validation* k_validations[] = {&k_granite_validation, &k_furniture_validation};
+inline constexpr const Validation* k_validations[] = {&k_granite_validation, &k_tosses_validation,
+                                                      &k_furniture_validation};
 
 /// Runs cases as of a sweep, rows kept in STEM.rows. None: interrupted. `label`: of the progress bar.
 std::optional<std::vector<std::string>> run_cases(const ValidationOptions& options, const std::string& label,

@@ -90,7 +90,7 @@ std::string furniture_chart(const std::vector<FurnitureValue>& values,
   add_points(friction, values, curves, [](const FurnitureValue& value, const FurniturePoint& point) {
     return point.friction == k_rough ? 0 : point.friction / value.slenderness();
   });
-  out += sheet.label("slides before it lifts", k_left + k_column + 8, plot_top - 14, k_grey);
+  out += sheet.label("it slides: none", k_left + k_column + 8, plot_top - 14, k_grey);
   out += friction.data + friction.command() + "unset label\nunset logscale\n";
   return sheet.script(format, out);
 }
