@@ -58,15 +58,17 @@ std::string toss_chart(const TossFit& fit, const TossResults& results, const std
   std::string out =
       sheet.label(bold("A tossed cube: computed from its first row against measured", 1.5), k_left,
                   top - 34) +
-      sheet.lines({fmt::format("{} tosses; fitted: friction {:g}, restitution {:g}{}; as published: {:g}, "
-                               "{:g}; offset of the "
-                               "data {:.1f} mm",
-                               results.of_fitted.tosses, fit.contact.friction, fit.contact.restitution,
-                               results.fitted_here ? " (each on the other nine tenths)"
-                                                   : fmt::format(" on {} others", fit.tosses),
-                               k_published.friction, k_published.restitution, 1e3 * fit.offset),
-                   "Data: Pfrommer, Halm, Posa, ContactNets, CoRL 2020 (BSD-3-Clause)", origin},
-                  k_left, top - 74, 24, k_grey_as_is);
+      sheet.lines(
+          {fmt::format(
+               "{} tosses; friction and restitution fitted{}: {:g}, {:g}; as published: {:g}, {:g}",
+               results.of_fitted.tosses,
+               results.fitted_here ? ", each toss by nine tenths" : fmt::format(" on {} others", fit.tosses),
+               fit.contact.friction, fit.contact.restitution, k_published.friction, k_published.restitution),
+           fmt::format("Data: Pfrommer, Halm, Posa, ContactNets, CoRL 2020 (BSD-3-Clause); their offset of "
+                       "{:.1f} mm is taken out",
+                       1e3 * fit.offset),
+           origin},
+          k_left, top - 74, 24, k_grey_as_is);
   out += panel(0, "Position", "time since the first row, s", "error, mm");
   out += "set xrange [0:1.05]\nset yrange [0:*]\nset key left top Left reverse samplen 2 spacing 1.1\n";
   Plot position;

@@ -113,6 +113,9 @@ TossErrors errors_of(const Toss& toss, const std::vector<CubePose>& computed) {
       ++next;
     }
   }
+  const CubePose &last = measured.back(), &end = computed.back();
+  out.position_at.resize(k_instants.size(), (end.place - last.place).norm());
+  out.angle_at.resize(k_instants.size(), angle_between(end.rotation, last.rotation));
   return out;
 }
 

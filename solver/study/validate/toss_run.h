@@ -33,7 +33,7 @@ struct TossErrors {
   double yaw = 0;                  ///< rad, about the vertical at the end; of those with the right face
   double rest = 0;                 ///< s, of the time to rest
   double position = 0, angle = 0;  ///< m and rad, means over time
-  std::vector<double> position_at, angle_at;  ///< at k_instants up to the last row
+  std::vector<double> position_at, angle_at;  ///< at k_instants; behind the last row: of that
 };
 /// `computed` has a pose for each row.
 TossErrors errors_of(const Toss& toss, const std::vector<CubePose>& computed);

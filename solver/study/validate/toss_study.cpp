@@ -31,7 +31,8 @@ ordered_json list_of(const std::vector<double>& values) {
 }
 
 double cost_of(const std::optional<TossErrors>& errors) {
-  return errors ? errors->position / (2 * TossedCube::half_edge) + errors->angle : k_failed;
+  return errors ? std::min(errors->position / (2 * TossedCube::half_edge) + errors->angle, k_astray)
+                : k_astray;
 }
 
 ordered_json quantile_json(const TossScores& scores, double Quantiles::*which) {
@@ -231,16 +232,19 @@ ordered_json toss_rows(const std::vector<Toss>& tosses, const TossResults& resul
 }
 
 ordered_json fit_as_json(const TossFit& fit) {
-  return {{"kind", "tosses"},
-          {"rule",
-           "least mean over the tosses of position over the edge plus angle in rad, both means over time, "
-           "over a grid; the offset is the median of the last heights over half an edge"},
-          {"tosses", fit.tosses},
-          {"friction", fit.contact.friction},
-          {"friction_95", {fit.low.friction, fit.high.friction}},
-          {"restitution", fit.contact.restitution},
-          {"restitution_95", {fit.low.restitution, fit.high.restitution}},
-          {"offset_m", six_digits(fit.offset)}};
+  return {
+      {"kind", "tosses"},
+      {"rule",
+       fmt::format(
+           "least mean over the tosses of position over the edge plus angle in rad, both means over time, {} "
+           "at most, over a grid; the offset is the median of the last heights over half an edge",
+           k_astray)},
+      {"tosses", fit.tosses},
+      {"friction", fit.contact.friction},
+      {"friction_95", {fit.low.friction, fit.high.friction}},
+      {"restitution", fit.contact.restitution},
+      {"restitution_95", {fit.low.restitution, fit.high.restitution}},
+      {"offset_m", six_digits(fit.offset)}};
 }
 
 TossFit toss_fit_from_json(const std::string& text, const std::string& name) {

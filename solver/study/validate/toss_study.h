@@ -13,9 +13,10 @@
 namespace topple::study {
 
 /// The settings among which friction and restitution are fitted: that of the least mean over the tosses of
-/// position over the edge plus angle (rad), both means over time. A toss that failed counts as k_failed.
+///   min(position over the edge + angle in rad, k_astray),
+/// both means over time. One that went another way, or failed, counts as k_astray, wherever it ended.
 const std::vector<CubeContact>& contact_grid();
-inline constexpr double k_failed = 10;
+inline constexpr double k_astray = 0.5;
 
 struct TossFit {
   CubeContact contact, low, high;  ///< low, high: 95 % each for itself, by drawing tosses anew

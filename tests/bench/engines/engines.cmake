@@ -10,6 +10,7 @@ add_executable(engines_bench EXCLUDE_FROM_ALL
   ${CMAKE_CURRENT_LIST_DIR}/rooms.cpp
   ${CMAKE_CURRENT_LIST_DIR}/topple.cpp
   ${CMAKE_CURRENT_LIST_DIR}/topple_rooms.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/tosses.cpp
   ${CMAKE_CURRENT_LIST_DIR}/trial.cpp)
 # Engines have Options and World each
 set_target_properties(engines_bench PROPERTIES UNITY_BUILD OFF)
@@ -22,14 +23,15 @@ find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
 find_library(MUJOCO_LIBRARY mujoco)
 if(MUJOCO_INCLUDE_DIR AND MUJOCO_LIBRARY)
   target_sources(engines_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/mujoco.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/mujoco_model.cpp ${CMAKE_CURRENT_LIST_DIR}/mujoco_rooms.cpp)
+    ${CMAKE_CURRENT_LIST_DIR}/mujoco_model.cpp ${CMAKE_CURRENT_LIST_DIR}/mujoco_rooms.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/mujoco_tosses.cpp)
   target_include_directories(engines_bench SYSTEM PRIVATE ${MUJOCO_INCLUDE_DIR})
   target_link_libraries(engines_bench PRIVATE ${MUJOCO_LIBRARY})
   target_compile_definitions(engines_bench PRIVATE WITH_MUJOCO)
 endif()
 pkg_check_modules(BULLET QUIET IMPORTED_TARGET bullet-float64)
 if(BULLET_FOUND)
-  target_sources(engines_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/bullet.cpp)
+  target_sources(engines_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/bullet.cpp ${CMAKE_CURRENT_LIST_DIR}/bullet_tosses.cpp)
   target_link_libraries(engines_bench PRIVATE PkgConfig::BULLET)
   target_compile_definitions(engines_bench PRIVATE WITH_BULLET)
 endif()

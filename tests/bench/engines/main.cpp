@@ -1,6 +1,7 @@
-// engines_bench DIR [rooms [ROOM]]: the same rocking block in every engine that was found when this was
-// built, then rooms of many boxes in topple and MuJoCo; or only the rooms, or one of them. Writes
-// DIR/engines.csv, .svg and .png and DIR/rooms.csv and prints the tables.
+// engines_bench DIR [rooms [ROOM] | tosses DATA]: the same rocking block in every engine that was found when
+// this was built, then rooms of many boxes in topple and MuJoCo; or only the rooms, or one of them, or the
+// measured tosses in a folder of data (topple validate tosses). Writes DIR/engines.csv, .svg and .png and
+// DIR/rooms.csv, or DIR/tosses.csv, and prints the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "bench/engines/files.h"
 #include "bench/engines/results.h"
 #include "bench/engines/rooms.h"
+#include "bench/engines/tosses.h"
 #include "solver/study/common/gnuplot.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/rows.h"
@@ -76,13 +78,18 @@ void run_block(const std::filesystem::path& folder) {
 
 int main(int count, char** arguments) {
   const bool only_rooms = count > 2 && std::string(arguments[2]) == "rooms";
-  if (count < 2 || count > 4 || (count > 2 && !only_rooms)) {
-    fmt::print(stderr, "usage: engines_bench DIR [rooms [ROOM]]\n");
+  const bool only_tosses = count == 4 && std::string(arguments[2]) == "tosses";
+  if (count < 2 || count > 4 || (count > 2 && !only_rooms && !only_tosses)) {
+    fmt::print(stderr, "usage: engines_bench DIR [rooms [ROOM] | tosses DATA]\n");
     return 2;
   }
   try {
     const std::filesystem::path folder = arguments[1];
     std::filesystem::create_directories(folder);
+    if (only_tosses) {
+      run_tosses(folder, arguments[3]);
+      return 0;
+    }
     if (!only_rooms) run_block(folder);
     run_rooms(folder, count > 3 ? arguments[3] : "");
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/factors_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fragility_study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fragility_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/furniture_study_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/general_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/granite_fit_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/intensity_test.cpp
@@ -22,6 +23,7 @@ add_executable(study_test
   ${CMAKE_CURRENT_LIST_DIR}/standing_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/team_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/theory_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/toss_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/validate_test.cpp)
 target_link_libraries(study_test PRIVATE topple_study ZLIB::ZLIB GTest::gtest_main)
 target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
