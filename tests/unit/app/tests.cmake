@@ -40,6 +40,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/study/present_studies_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study/stability_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study/study_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/study/validate_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/progress_test.cpp
