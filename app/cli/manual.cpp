@@ -114,6 +114,7 @@ std::string explained_words(const std::string& description) {
 std::string bash_positional(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "RECORDING") return "_filedir h5; ";
+  if (name == "DATA") return "_filedir -d; ";
   return std::string("_topple_words \"$scenes\"; _filedir ") +
          (name.starts_with("SCENE") ? "toml; " : "'@(toml|h5)'; ");
 }

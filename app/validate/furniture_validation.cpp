@@ -118,8 +118,7 @@ std::optional<Comparison> compare_furniture(const ValidationOptions& options, co
 const Validation k_furniture_validation = {
     .name = "furniture",
     .about =
-        "accelerations that the Japanese evaluation method has furniture overturn at; without DATA the five "
-        "that are quoted",
+        "accelerations at which the Japanese evaluation method has furniture overturn (DATA may be left out)",
     .source =
         "National Institute for Land and Infrastructure Management (NILIM), evaluation of overturning "
         "furniture; "

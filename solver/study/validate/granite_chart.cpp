@@ -66,7 +66,7 @@ class GraniteChart {
                       fmt::format("Brier score {:.3f}; {} missed, {:.0f} to be expected", rock.scores.brier,
                                   rock.scores.count - rock.scores.right, rock.expected_missed)},
                      left, top - 198, 22, k_grey_as_is);
-    out += shares(rock, {left + 120, right, top - 430, top - 262});
+    out += shares(rock, {left + 120, right - 50, top - 430, top - 262});
     out += fragility(k, {left, right, top - 930, top - 530});
     out += reliability(rock, {left, right, top - 1420, top - 1040});
     return out;
@@ -107,9 +107,7 @@ class GraniteChart {
           fmt::format("${} using 1:2:3:4 with xerrorbars pt 0 lw 2 lc rgb '#1c1f23' notitle", block));
       const double height = box.bottom + (y + 0.6) / 4.2 * (box.top - box.bottom);
       out += sheet_.label(bar.name, box.left - 8, height, "right");
-      out += sheet_.label(
-          fmt::format("{:.1f} %", 100 * bar.of.share()), box.left + 8, height,
-          "left front textcolor rgb '" + std::string(bar.colour == k_computed ? "#ffffff" : "#1c1f23") + "'");
+      out += sheet_.label(fmt::format("{:.1f} %", 100 * bar.of.share()), box.right + 8, height, "left");
       y -= 1;
     }
     return out + plot.data + plot.command() + "unset label\n";
@@ -156,10 +154,8 @@ class GraniteChart {
       computed += point_row(at * 1.03, sum / count);
     }
     plot.data += data_block("measured", measured, 4);
-    plot.layers.push_back(
-        fmt::format("$measured with yerrorbars pt 5 ps 1 lw 1.6 lc rgb '{}' title 'measured, tests of like "
-                    "velocity, 95 %'",
-                    k_measured));
+    plot.layers.push_back(fmt::format(
+        "$measured with yerrorbars pt 5 ps 1 lw 1.6 lc rgb '{}' title 'like velocities, 95 %'", k_measured));
     plot.add("computed", computed,
              fmt::format("with points pt 7 ps 1.2 lc rgb '{}' title 'the same, computed'", k_computed));
     return out + plot.data + plot.command() + "unset label\nunset logscale\n";

@@ -117,6 +117,8 @@ TEST_F(ManualTest, bash_offers_scenes_after_the_kind_of_a_study) {
   EXPECT_EQ(offers("topple study sta"), (Words{"stability"}));
   EXPECT_EQ(offers("topple study stability sta"), (Words{"stack", "files toml"}));
   EXPECT_EQ(offers("topple study --quick stability -o out sta"), (Words{"stack", "files toml"}));
+  EXPECT_EQ(offers("topple validate ''"), (Words{"granite", "tosses", "furniture"}));
+  EXPECT_EQ(offers("topple validate granite ''"), (Words{"files -d"}));
 }
 
 TEST_F(ManualTest, bash_offers_folders_and_the_files_that_a_command_reads) {

@@ -22,8 +22,8 @@ class UsageTest : public ProgramTest {
 TEST_F(UsageTest, help_and_version_go_to_standard_output) {
   EXPECT_EQ(topple({"--version"}).out,
             std::string("topple " TOPPLE_VERSION "\nsolver for ") + instruction_set() + "\n");
-  for (const char* command : {"", "run", "render", "export", "verify", "study", "compare", "report", "check",
-                              "info", "recover", "scenes"}) {
+  for (const char* command : {"", "run", "render", "export", "verify", "study", "compare", "report",
+                              "validate", "check", "info", "recover", "scenes"}) {
     SCOPED_TRACE(command);
     const Ended ended =
         topple(*command ? std::vector<std::string>{command, "--help"} : std::vector<std::string>{"--help"});

@@ -57,7 +57,7 @@ TEST_F(StudyTest, quick_gives_up_runs_that_are_under_way_when_its_time_is_over) 
     return std::string();
   };
   Crew crew(2);
-  const SweepPlan plan{.kind = "test",
+  const SweepPlan plan{.label = "test",
                        .stem = "test",
                        .settings = {{"of", "a test"}},
                        .order = {0, 1, 2},
