@@ -12,15 +12,11 @@ constexpr double k_margin = 1e-9;     // m/s^2, within which the guards of a blo
 
 template <class P>
 void set_series(const PerLane<P, Leg*>& legs, Series<double> Leg::*of, Series<P>& to) {
-  if constexpr (!k_is_pack<P>) {
-    to = legs->*of;
-  } else {
-    int degree = 0;
-    for (const Leg* leg : legs) degree = std::max(degree, (leg->*of).degree);
-    for (int i = 0; i <= degree; ++i)
-      to[i] = pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).or_zero(i); });
-    to.end(degree, pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).last(); }));
-  }
+  int degree = 0;
+  for (int k = 0; k < k_lanes<P>; ++k) degree = std::max(degree, (of_lane(legs, k)->*of).degree);
+  for (int i = 0; i <= degree; ++i)
+    to[i] = pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).or_zero(i); });
+  to.end(degree, pack_of<P>([&](int k) { return (of_lane(legs, k)->*of).last(); }));
 }
 
 /// First terms of the motion.
@@ -164,7 +160,9 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
       {blocks, step.start, s, of_legs([](const Leg& leg) { return leg.controls->last_tilt; })}, step.guards);
   const P first = first_guard(step, truncation.greatest() + 2);
   after = states_after(step, step.length);
-  const P horizontal = s.horizontal.at(step.length), vertical = s.vertical.at(step.length);
+  P horizontal(0), vertical(0);
+  if (bits(P(0) <= first) != 0)
+    horizontal = s.horizontal.at(step.length), vertical = s.vertical.at(step.length);
   const elementary::SinCosOf<P> turned =
       elementary::sin_cos_of_lanes(pack_of<P>([&](int k) { return of_lane(after, k).tilt; }));
 

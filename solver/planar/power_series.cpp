@@ -46,19 +46,23 @@ struct Polynomial {
   /// Falls within low..high, in which it changes its sign once, in the lanes that are open; by Newton's
   /// method, bisection where that leaves.
   P root(P low, P high, P t, MaskOf<P> open) const {
-    for (int round = 0; round < 100 && bits(open) != 0; ++round) {
+    P root = t;
+    for (int round = 0; round < 100; ++round) {
       P value = (*this)[degree], slope(0);
       for (int i = degree; i-- > 0;) slope = value + t * slope, value = (*this)[i] + t * value;
       const auto above = P(0) < value;
       low = choose(above, t, low), high = choose(above, high, t);
       const P next = t - value / slope;
-      const auto found = open & (magnitude(next - t) <= P(k_last_step) * t);
-      const auto within = (low < next) & (next < high);
-      const P other = choose(within, next, (low + high) / P(2));
-      t = choose(open, choose(found, clamp(next, low, high), other), t);
-      open = open & complement(found);
+      if (const auto found = open & (magnitude(next - t) <= P(k_last_step) * t); bits(found) != 0) {
+        root = choose(found, clamp(next, low, high), root);
+        open = open & complement(found);
+        if (bits(open) == 0) return root;
+      }
+      const auto outside = open & complement((low < next) & (next < high));
+      t = next;
+      if (bits(outside) != 0) t = choose(outside, (low + high) / P(2), next);
     }
-    return t;
+    return choose(open, t, root);
   }
 };
 
