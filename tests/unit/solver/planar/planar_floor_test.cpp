@@ -85,7 +85,7 @@ TEST(PlanarFloor, first_fall_is_that_of_many_samples) {
     constexpr int k_samples = 3000;
     for (int i = 1; i <= k_samples && sampled == k_never; ++i)
       if (p.at(span * i / k_samples) < 0) sampled = span * i / k_samples;
-    const double fall = Falls(span, p.degree).first(p, 1, 0);
+    const double fall = Falls<double>(span, p.degree).first(p, 1, 0);
     double size = 0;
     for (int i = p.degree; i >= 0; --i) size = std::abs(p[i]) + span * size;
     SCOPED_TRACE(trial);
@@ -104,69 +104,15 @@ TEST(PlanarFloor, two_roots_however_near_count_and_a_touch_does_not) {
   for (const double depth : {1e-4, 1e-8, 1e-12}) {
     Series<double> p(0.25 - depth);  // (t - 1/2)^2 - depth
     p[1] = -1, p[2] = 1, p.degree = 2;
-    EXPECT_NEAR(Falls(1, 2).first(p, 1, 0), 0.5 - std::sqrt(depth), 1e-9);
-    EXPECT_EQ(Falls(1, 2).first(p, 1, 1.5 * depth), k_never);
+    EXPECT_NEAR(Falls<double>(1, 2).first(p, 1, 0), 0.5 - std::sqrt(depth), 1e-9);
+    EXPECT_EQ(Falls<double>(1, 2).first(p, 1, 1.5 * depth), k_never);
   }
   Series<double> rising(0);  // t, from a rounding error below zero
   rising[1] = 1, rising.degree = 1;
-  EXPECT_EQ(Falls(1, 1).first(rising, 1, -1e-16), k_never);
-  EXPECT_EQ(Falls(1, 1).first(rising, 1, -1e-3), 0);
-  EXPECT_EQ(Falls(1, 1).first(rising, -1, 0), 0);
-  EXPECT_EQ(Falls(1, 1).first(rising, 0, 0), k_never);
-}
-
-// So many terms whatever their size.
-struct Fixed {
-  int last;
-  template <class P>
-  bool ends(int i, P) const {
-    return i == last;
-  }
-};
-
-template <class P>
-std::array<Series<P> Solution<P>::*, 10> series_of_solution() {
-  using S = Solution<P>;
-  return {&S::horizontal, &S::vertical,   &S::tilt,    &S::rate,    &S::x,
-          &S::x_velocity, &S::z_velocity, &S::lever_x, &S::lever_z, &S::z};
-}
-
-double random_term(int lane, std::size_t series, int i) {
-  return 0.1 + 0.8 * std::abs(std::sin(1.7 * lane + 2.9 * static_cast<double>(series) + i));
-}
-
-// What ensembles in lanes rest on.
-TEST(PlanarFloor, series_of_four_blocks_in_a_pack_are_those_of_each_alone) {
-  const auto compare = [&](const auto& solve) {
-    Solution<Four> pack;
-    std::array<Solution<double>, 4> alone;
-    Coefficients<Four> c{Four(0.3), Four(0.1), Four(1)};
-    for (int lane = 0; lane < 4; ++lane) {
-      c.friction.set(lane, 0.1 * lane);
-      for (std::size_t k = 0; k < 10; ++k) {
-        auto& of_pack = pack.*series_of_solution<Four>()[k];
-        auto& of_one = alone[static_cast<std::size_t>(lane)].*series_of_solution<double>()[k];
-        of_pack.degree = of_one.degree = k < 2 ? k_order : 0;
-        for (int i = 0; i <= of_one.degree; ++i) of_pack[i].set(lane, of_one[i] = random_term(lane, k, i));
-      }
-    }
-    Fixed fixed{k_order};
-    solve(c, pack, fixed);
-    for (int lane = 0; lane < 4; ++lane) {
-      Solution<double>& one = alone[static_cast<std::size_t>(lane)];
-      solve(Coefficients<double>{0.3, 0.1 * lane, 1}, one, fixed);
-      for (std::size_t k = 2; k < 10; ++k) {
-        const auto& of_pack = pack.*series_of_solution<Four>()[k];
-        const auto& of_one = one.*series_of_solution<double>()[k];
-        ASSERT_EQ(of_pack.degree, of_one.degree);
-        for (int i = 0; i <= of_one.degree; ++i) EXPECT_EQ(of_pack[i][lane], of_one[i]) << lane << ' ' << k;
-      }
-    }
-  };
-  compare([](const auto& c, auto& s, Fixed& fixed) { sliding(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { rocking(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { slide_rocking(c, s, fixed); });
-  compare([](const auto& c, auto& s, Fixed& fixed) { flying(c, s, fixed); });
+  EXPECT_EQ(Falls<double>(1, 1).first(rising, 1, -1e-16), k_never);
+  EXPECT_EQ(Falls<double>(1, 1).first(rising, 1, -1e-3), 0);
+  EXPECT_EQ(Falls<double>(1, 1).first(rising, -1, 0), 0);
+  EXPECT_EQ(Falls<double>(1, 1).first(rising, 0, 0), k_never);
 }
 
 }  // namespace
