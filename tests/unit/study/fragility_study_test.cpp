@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "solver/io/scene/scene_file.h"
 #include "solver/study/common/standing.h"
 #include "study_cases.h"
 
