@@ -57,9 +57,6 @@ struct Turned {
 inline Lever lever(const elementary::SinCos& of_tilt, double u, double w) {
   return {u * of_tilt.cosine + w * of_tilt.sine, w * of_tilt.cosine - u * of_tilt.sine};
 }
-inline Lever lever(double tilt, double u, double w) {
-  return lever(elementary::sin_cos(tilt), u, w);
-}
 /// To the edge of this side.
 inline Lever lever(const Block& block, Side side, const elementary::SinCos& of_tilt) {
   return lever(of_tilt, block.edge(side), -block.height);
