@@ -29,10 +29,16 @@ ordered_json shape(const Body& body, const Mode& mode) {
   return nodes;
 }
 
+// A block has none: it is rigid.
+std::vector<Mode> modes_of(const Model& model, int body, int count) {
+  if (model.bodies[body].solid) return {};
+  return natural_modes(model, body, count);
+}
+
 ordered_json describe(const Model& model, int body, int count) {
   const Body& b = model.bodies[body];
   ordered_json modes = ordered_json::array();
-  for (const Mode& mode : natural_modes(model, body, count))
+  for (const Mode& mode : modes_of(model, body, count))
     modes.push_back({{"mode", modes.size() + 1},
                      {"frequency_Hz", mode.frequency},
                      {"rigid", mode.rigid},
