@@ -35,14 +35,14 @@ TEST_F(RecordingTest, files_that_are_no_recordings_are_told_apart) {
 }
 
 TEST_F(RecordingTest, an_unknown_version_is_named) {
-  for (const int version : {0, 10}) {
+  for (const int version : {0, 11}) {
     {
       const Handle file(H5Fcreate(path("a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
       write_attribute(file, "format", k_format);
       write_attribute(file, "version", version);
     }
     EXPECT_EQ(read_error(path("a.h5")), path("a.h5") + ": recording format " + std::to_string(version) +
-                                            " is not supported by this version, which reads formats 1 to 9");
+                                            " is not supported by this version, which reads formats 1 to 10");
   }
 }
 

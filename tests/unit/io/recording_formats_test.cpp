@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Kept{"format-7", 7, k_system_arithmetic},
                       Kept{"format-7-topple-1", 7, "topple-1", true},
                       Kept{"format-7-topple-2", 7, "topple-2", true}, Kept{"format-8", 8, "topple-2", true},
-                      Kept{"format-9", 9, "topple-3", true}),
+                      Kept{"format-9", 9, "topple-3", true}, Kept{"format-10", 10, "topple-4", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');
@@ -157,7 +157,7 @@ TEST_F(RecordingTest, a_cabinet_of_before_format_8_touches_with_edges_and_faces_
   write_recovered(kept, sound_rows(kept), path("copy.h5"));
   const Recording copy(path("copy.h5"));
   EXPECT_EQ(kept.format(), 7);
-  EXPECT_EQ(copy.format(), 9);
+  EXPECT_EQ(copy.format(), 10);
   for (const Recording* recording : {&kept, &copy}) {
     EXPECT_EQ(recorded_scene(*recording).setup.model.contact_points.size(), 26u);
     const Rerun again = rerun(*recording, [](std::int64_t) {});

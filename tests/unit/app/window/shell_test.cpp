@@ -136,7 +136,7 @@ TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goe
   {
     const hid_t file = H5Fopen(other.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
-    const int later = 10;
+    const int later = 11;
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &later), 0);
     H5Aclose(version);
     H5Fclose(file);
@@ -145,7 +145,7 @@ TEST_F(ShellTest, a_recording_of_another_format_is_refused_and_what_was_open_goe
   shell_->drop({other});
   ASSERT_TRUE(until([&] { return shell_->message().has_value(); }));
   EXPECT_EQ(shell_->message()->text,
-            other + ": recording format 10 is not supported by this version, which reads formats 1 to 9");
+            other + ": recording format 11 is not supported by this version, which reads formats 1 to 10");
   press(render::key::escape);
   EXPECT_EQ(shell_->title(), "topple: rocking");
   run_to(0.1);
