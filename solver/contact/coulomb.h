@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "solver/math/lanes.h"
 #include "solver/math/pack.h"
 #include "solver/math/upwards.h"
 #include "solver/model/parameters.h"
@@ -17,9 +18,6 @@ template <class T>
 T friction_coefficient(const ContactLaw& law, T speed2) {
   return law.friction + law.excess() / (1 + speed2 * (1 / (law.slip_speed * law.slip_speed)));
 }
-
-template <class P>
-using MaskOf = decltype(P() <= P());
 
 /// Tangential: type of vectors along the plane.
 template <class P, class Tangential>

@@ -12,7 +12,7 @@ constexpr double k_speed = 2;  // m/s
 
 /// A box flies, one corner first, at the closed side of a cabinet towards -x, away from its members.
 Setup corner_first(BodyModel of_cabinet, BodyModel of_box) {
-  Setup setup;
+  topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec cabinet = tall_cabinet();
   setup.starts.push_back(add_cabinet(setup.model, cabinet));
@@ -50,7 +50,7 @@ Vec3 velocity_at(const Simulation& sim, int body, const Vec3& place) {
 // met: exactly but for the turning during the contact of some milliseconds, which is 1 % of the speed.
 TEST(PanelCollision, a_corner_parts_from_a_panel_as_its_restitution_asks) {
   for (const double e : {0., 0.3, 0.7, 1.}) {
-    Setup setup = corner_first(BodyModel::rigid, BodyModel::rigid);
+    topple::Setup setup = corner_first(BodyModel::rigid, BodyModel::rigid);
     setup.parameters.contact.restitution = e;
     Simulation sim = simulate(setup);
     bool touched = false;
@@ -84,7 +84,7 @@ TEST(PanelCollision, momentum_is_kept_and_nobody_passes_on_every_level) {
   using enum BodyModel;
   for (const auto& [of_cabinet, of_box] :
        {std::pair(rigid, rigid), {elastic, elastic}, {rigid, elastic}, {frame, rigid}, {frame, frame}}) {
-    const Setup setup = corner_first(of_cabinet, of_box);
+    const topple::Setup setup = corner_first(of_cabinet, of_box);
     Simulation sim = simulate(setup);
     const Vec3 linear = linear_momentum(sim.model, placed(sim)),
                angular = angular_momentum(sim.model, placed(sim));
@@ -108,7 +108,7 @@ TEST(PanelCollision, momentum_is_kept_and_nobody_passes_on_every_level) {
 TEST(PanelCollision, panels_change_nothing_where_edges_meet) {
   std::array<double, 2> force{}, tilt{};
   for (const bool surfaces : {false, true}) {
-    Setup setup;
+    topple::Setup setup;
     setup.model = steel_model();
     setup.model.surfaces = surfaces;
     for (int k = 0; k < 2; ++k) {
