@@ -228,7 +228,6 @@ RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, c
   const RockFit fit(designed_runs);
   RockFindings found;
   found.probability.resize(count), found.by_threshold.resize(count), found.by_plain.resize(count);
-  std::vector<double> edges[2];
   for (std::size_t fold = 0; fold < k_folds; ++fold) {
     std::vector<double> weight(count, 1);
     std::vector<bool> used(count, true);
@@ -241,12 +240,6 @@ RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, c
       found.by_threshold[i] = velocity[i] > threshold;
       found.by_plain[i] = plain_runs[static_cast<std::size_t>(block)][i] == '1';
     }
-    const Rock mean = fit.mean(belief).median;
-    edges[0].push_back(mean.left), edges[1].push_back(mean.right);
-  }
-  for (const auto& side : edges) {
-    const auto [least, most] = std::ranges::minmax(side);
-    found.spread_of_folds = std::max(found.spread_of_folds, most / least);
   }
   const std::vector<bool> all(count, true);
   const std::vector<double> belief = fit.belief(fell, std::vector<double>(count, 1));
@@ -254,7 +247,6 @@ RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, c
   found.members = fit.drawn(belief);
   found.threshold = best_threshold(velocity, fell, all);
   found.plain = plain(best_plain(plain_runs, fell, all));
-  found.usually = 2 * std::ranges::count(fell, true) > static_cast<std::ptrdiff_t>(count);
   draw_anew(fit, fell, found);
   return found;
 }

@@ -95,11 +95,9 @@ struct RockFindings {
   RockDistribution low, high;  ///< each number for itself, 95 % by drawing tests anew k_draws times
   double threshold = 0;        ///< m/s, of the baseline
   Rock plain;                  ///< of the baseline
-  bool usually = false;        ///< what most tests end with
   // Of each test, by what was fitted on the other folds.
   std::vector<double> probability;
   std::vector<bool> by_threshold, by_plain;
-  double spread_of_folds = 0;  ///< greatest ratio of an edge among the fits of the folds
 };
 inline constexpr std::uint64_t k_draws = 200;
 RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, const RunTable& designed_runs,
