@@ -180,18 +180,21 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
     if (!fits) next = numbers.size() + 1;
     return fits ? static_cast<std::size_t>(count) : 0;
   };
-  const auto is_element = [&](int e) { return e >= 0 && e < static_cast<int>(model.elements.size()); };
+  const int elements = static_cast<int>(model.elements.size()),
+            parts = elements + static_cast<int>(model.panels.size());
+  const auto is_pair = [&](const ElementPair& pair) {
+    return pair.a >= 0 && pair.a < elements && pair.b >= 0 && pair.b < parts;
+  };
   s.candidate_pairs.resize(read_count(1));
   for (ElementPair& pair : s.candidate_pairs) {
     pair = as_pair(read());
-    if (!is_element(pair.a) || !is_element(pair.b)) return false;
+    if (!is_pair(pair)) return false;
   }
   s.member_sticks.resize(read_count(5));
   for (MemberStick& stick : s.member_sticks) {
     stick.elements = as_pair(read());
     const auto place = std::bit_cast<std::int64_t>(read());
-    if (!is_element(stick.elements.a) || !is_element(stick.elements.b) || place < 0 || place > 4)
-      return false;
+    if (!is_pair(stick.elements) || place < 0 || place > 4) return false;
     stick.place = static_cast<int>(place);
     for (int k = 0; k < 3; ++k) stick.stick[k] = read();
   }

@@ -328,8 +328,8 @@ bool is_inside(const Model& model, const std::vector<Vec3>& x, const Vec3& point
   return true;
 }
 
-/// Calls found(member, body) on a member that is within a member of another body, crosses a panel of it or
-/// is inside a solid one.
+/// Calls found(member, other member, body) on a member that is within one of another body, or, with -1, that
+/// crosses a panel of it or is inside a solid one.
 template <class F>
 void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
   NearSearch search(model);
@@ -338,7 +338,7 @@ void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
     const auto &a = model.elements[pair.a].node, &b = model.elements[pair.b].node;
     if (nearest_points(x[a[0]], x[a[1]], x[b[0]], x[b[1]]).between.norm() <=
         k_deep * contact_length(model, pair))
-      found(model.elements[pair.a].member, body_of(model, pair.b));
+      found(model.elements[pair.a].member, model.elements[pair.b].member, body_of(model, pair.b));
   }
   if (!model.surfaces) return;
   std::vector<Box> boxes(model.bodies.size());
@@ -350,26 +350,27 @@ void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
       const Body& body = model.bodies[b];
       for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
         if (const auto& node = model.elements[e].node; crosses_panel(x[node[0]], x[node[1]], corner))
-          found(model.elements[e].member, panel.body);
+          found(model.elements[e].member, -1, panel.body);
     }
   }
   for (int s = 0; s < static_cast<int>(boxes.size()); ++s)
     for (int b = 0; b < static_cast<int>(boxes.size()); ++b)
       if (b != s && model.bodies[s].solid && boxes[b].intersects(boxes[s]) &&
           is_inside(model, x, x[model.bodies[b].first_node], s))
-        found(model.bodies[b].first_member, s);
+        found(model.bodies[b].first_member, -1, s);
 }
 
 /// Bodies that start within each other cannot be told apart by contact.
 void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const State& start) {
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
-  find_overlaps(model, start.position, [&](int member, int other) {
+  find_overlaps(model, start.position, [&](int member, int other_member, int other) {
     const Member& of = model.members[member];
     const auto [first, later] = std::minmax(of.body, other);
     entries[later < static_cast<int>(entries.size()) ? later : first].fail(
         "the bodies \"" + model.bodies[of.body].name + "\" (" + of.name + ") and \"" +
-        model.bodies[other].name + "\" overlap at the start");
+        model.bodies[other].name + "\"" +
+        (other_member < 0 ? "" : " (" + model.members[other_member].name + ")") + " overlap at the start");
   });
 }
 

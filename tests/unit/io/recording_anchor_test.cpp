@@ -99,8 +99,8 @@ TEST_F(AnchorRecordingTest, an_export_has_a_row_for_each_anchor) {
 
 TEST_F(AnchorRecordingTest, a_recording_without_anchors_has_no_columns_for_them) {
   const RowShape shape{.nodes = 3, .elements = 2, .contacts = 4, .touched = 2, .bodies = 2};
-  EXPECT_EQ(field_count(shape), 14u);
-  EXPECT_EQ(frame_fields(shape)[8].dims, (std::vector<hsize_t>{12}));
+  EXPECT_EQ(field_count(shape), 15u);
+  EXPECT_EQ(frame_fields(shape)[9].dims, (std::vector<hsize_t>{12}));
   {
     Recorder recorder(path("plain.h5"), "plain", k_text, small_model());
     recorder.write({.frames = {fake_row(shape, 0, 0)}, .checkpoint = {}, .events = {fake_event(0, 0)}});

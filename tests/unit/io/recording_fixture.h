@@ -73,7 +73,7 @@ inline Model small_model() {
   model.node_body = {0, 0, 1};
   const Element element{{0, 1}, 0, 1, 0.5, Mat3::Identity(), Vec3::Ones(), Vec3::Ones()};
   model.elements = {element, element};
-  model.members = {{"post-1", 0, 0, 2, 0, 0}};
+  model.members = {{"post-1", 0, 0, 2, 0, 0, {true, true}}};
   Body body{};
   body.name = "shelf, \"blue\"";
   body.node_count = 2;

@@ -11,7 +11,7 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
   EXPECT_EQ(
       after_beam("[contact]\n  foo = 1\n"),
       "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, friction_static, law, member_share, "
-      "normal_speed, q, restitution, slip_speed");
+      "normal_speed, q, restitution, slip_speed, surfaces");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(error_of("tople = 1\n" + k_scene),
@@ -357,7 +357,7 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
             "--set cabinet.walled.mass=30: cabinet.walled: no such entry; known: free");
   EXPECT_EQ(error("contact.foo=30"),
             "--set contact.foo=30: contact.foo: unknown key; known: alpha, friction, friction_static, law, "
-            "member_share, normal_speed, q, restitution, slip_speed");
+            "member_share, normal_speed, q, restitution, slip_speed, surfaces");
   EXPECT_EQ(error("shake.1.amplitude=3"),
             "--set shake.1.amplitude=3: shake: an override cannot add or replace a [[shake]]");
   EXPECT_EQ(error("cabinet=[]"),
@@ -427,11 +427,12 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
     load_scene("no-such-scene");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, bookshelf, "
-                 "breaking, cabinet, cantilever, chair, classroom, collide, desk, dominoes, "
-                 "floor-long-period, free-rocking, near-fault, office, paper-a, paper-b, portal-pushover, "
-                 "refrigerator, stack, tumble, wardrobe, wedged, yielding");
+    EXPECT_STREQ(
+        error.what(),
+        "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, bookshelf, "
+        "breaking, cabinet, cantilever, chair, classroom, collide, desk, dominoes, "
+        "floor-long-period, free-rocking, moving-in, near-fault, office, paper-a, paper-b, portal-pushover, "
+        "refrigerator, stack, tumble, wardrobe, wedged, yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

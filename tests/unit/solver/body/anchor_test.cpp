@@ -8,7 +8,7 @@
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
 #include "solver/reduced/elastic_basis.h"
-#include "unit/solver/fixtures.h"
+#include "unit/solver/body_models.h"
 
 namespace topple::test {
 namespace {
@@ -60,10 +60,6 @@ topple::Setup tied_bar(const Way& way, Anchor::Type type, double speed = k_speed
   setup.run.settle = false;
   setup.run.duration = 10;
   return setup;
-}
-
-Simulation simulate(const topple::Setup& setup) {
-  return {setup.model, setup.starts, setup.parameters, setup.run.settle};
 }
 
 int steps_to(double time, const Way& way) {

@@ -65,7 +65,7 @@ TEST(Proximity, grid_finds_the_pairs_that_comparing_all_finds) {
       }
   std::ranges::sort(all);
   EXPECT_GT(of_elements, 100u);
-  EXPECT_GT(all.size(), of_elements + 20);
+  EXPECT_GT(all.size(), of_elements + 10);
   EXPECT_EQ(NearSearch(model).find(model.node_position, margin), all);
 }
 
