@@ -60,7 +60,7 @@ class GraniteChart {
     const double top = sheet_.height;
     std::string out =
         sheet_.label(bold(rocks()[k].name, 1.2), left, top - 170) +
-        sheet_.lines({fmt::format("edges {:.0f} and {:.0f} mm ± {:.0f} %, factor on impacts {:.2f} ± {:.2f}",
+        sheet_.lines({fmt::format("edges {:.0f}, {:.0f} mm ± {:.0f} %, factor of impacts {:.2f} ± {:.2f}",
                                   1e3 * at.median.left, 1e3 * at.median.right, 100 * at.edge_scatter,
                                   at.median.restitution, at.restitution_scatter),
                       fmt::format("Brier score {:.3f}; {} missed, {:.0f} to be expected", rock.scores.brier,
@@ -134,7 +134,7 @@ class GraniteChart {
         "format '%g'\nset ytics 0.2 nomirror\nset xlabel 'greatest velocity of the table, m/s' offset 0,0.3\n"
         "set ylabel 'share that fell' offset 1.2,0\nset border 3 lc rgb '#444444' lw 1\nset grid ytics lc "
         "rgb "
-        "'#dddddd' lw 0.8\nset key left top Left reverse samplen 2 spacing 1.2\n";
+        "'#dddddd' lw 0.8\nset key right bottom Right noreverse samplen 2 spacing 1.2\n";
     Plot plot;
     add_curve(plot, "measured_curve", rock.measured, k_measured, "measured", "1");
     add_curve(plot, "computed_curve", rock.computed, k_computed, "computed", "(12,6)");

@@ -23,10 +23,9 @@ void add_errors(Plot& plot, const TossScores& scores, const Look& look, const ch
     ninety += point_row(at.time, (at.*which).ninetieth * unit);
   }
   plot.add(std::string(block) + "m", middle,
-           fmt::format("with linespoints pt 7 lw 3 lc rgb '{}' title '{}, median'", look.colour, look.name));
+           fmt::format("with linespoints pt 7 lw 3 lc rgb '{}' notitle", look.colour));
   plot.add(std::string(block) + "n", ninety,
-           fmt::format("with linespoints pt 6 lw 1.6 dt (8,5) lc rgb '{}' title '{}, 90 %'", look.colour,
-                       look.name));
+           fmt::format("with linespoints pt 6 lw 1.6 dt (8,5) lc rgb '{}' notitle", look.colour));
 }
 
 void add_ends(Plot& plot, const TossOutcomes& outcomes, const Look& look, const char* block) {
@@ -69,13 +68,14 @@ std::string toss_chart(const TossFit& fit, const TossResults& results, const std
                        1e3 * fit.offset),
            origin},
           k_left, top - 74, 24, k_grey_as_is);
-  out += panel(0, "Position", "time since the first row, s", "error, mm");
-  out += "set xrange [0:1.05]\nset yrange [0:*]\nset key left top Left reverse samplen 2 spacing 1.1\n";
+  out += panel(0, "Position: median, dashed 90 %", "time since the first row, s", "error, mm");
+  out += "set xrange [0:1.05]\nset yrange [0:*]\nunset key\n";
   Plot position;
   add_errors(position, results.of_fitted, k_fitted, "pf", &TossScores::Instant::position, 1e3);
   add_errors(position, results.of_published, k_as_published, "pp", &TossScores::Instant::position, 1e3);
   out += position.data + position.command() + "unset label\n";
-  out += panel(1, "Angle", "time since the first row, s", "error, deg") + "set yrange [0:*]\nunset key\n";
+  out += panel(1, "Angle: median, dashed 90 %", "time since the first row, s", "error, deg") +
+         "set yrange [0:*]\n";
   Plot angle;
   add_errors(angle, results.of_fitted, k_fitted, "af", &TossScores::Instant::angle, 1);
   add_errors(angle, results.of_published, k_as_published, "ap", &TossScores::Instant::angle, 1);

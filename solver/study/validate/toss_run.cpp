@@ -19,25 +19,14 @@ constexpr double k_far = 0.02;                                         // m, lea
 
 std::string scene_text(const Toss& toss, const CubeContact& contact, double offset) {
   const Vec3& at = toss.rows.front().place;
-  const double half = TossedCube::half_edge - k_width / 2;
-  std::string nodes, members;
-  for (int corner = 0; corner < 8; ++corner) {
-    nodes += fmt::format("[{:.9f},{:.9f},{:.9f}],", at.x() + (corner & 1 ? half : -half),
-                         at.y() + (corner & 2 ? half : -half), at.z() - offset + (corner & 4 ? half : -half));
-    members += fmt::format("{{nodes=[{},8],section=\"post\",material=\"rigid\"}},", corner);
-  }
-  nodes += fmt::format("[{:.9f},{:.9f},{:.9f}]", at.x(), at.y(), at.z() - offset);
-  const double inertia = TossedCube::inertia;
+  const double size = 2 * TossedCube::half_edge - k_width, inertia = TossedCube::inertia;
   return fmt::format(
       "topple = 1\n[run]\nduration = {:.6f}\nwant = [\"motion\"]\nsettle = false\ntime_step = \"auto\"\n"
       "[contact]\nfriction = {:.6f}\nrestitution = {:.6f}\n[floor]\ntype = \"plane\"\n"
-      "[[material]]\nname = \"rigid\"\nyoung = 1e13\npoisson = 0.3\ndensity = 0.001\n"
-      "[[section]]\nname = \"post\"\nshape = \"custom\"\narea = 0.0001\niy = 0.01\niz = 0.01\nj = 0.01\nky = "
-      "1\n"
-      "kz = 1\nwidth = {}\n[[frame]]\nname = \"cube\"\nmodel = \"rigid\"\nnodes = [{}]\nmembers = [{}]\n"
-      "masses = [{{node=8,mass={},inertia=[{},{},{}]}}]\n",
-      toss.rows.back().time + 1e-3, contact.friction, contact.restitution, k_width, nodes, members,
-      TossedCube::mass, inertia, inertia, inertia);
+      "[[block]]\nname = \"cube\"\nmodel = \"rigid\"\nsize = [{},{},{}]\nwidth = {}\nmass = {}\n"
+      "inertia = [{},{},{}]\nat = [{:.9f},{:.9f},{:.9f}]\n",
+      toss.rows.back().time + 1e-3, contact.friction, contact.restitution, size, size, size, k_width,
+      TossedCube::mass, inertia, inertia, inertia, at.x(), at.y(), at.z() - offset - TossedCube::half_edge);
 }
 
 double angle_between(const Quat& a, const Quat& b) {
