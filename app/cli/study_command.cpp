@@ -78,8 +78,8 @@ int carry_out_sweep(const Study& study, const StudyOptions& options) {
                  {{"jobs", crew.jobs()}, {"ranks", crew.ranks()}, {"quick", options.quick}}, wall_s, found);
   if (end->complete()) std::filesystem::remove(end->file);
   fmt::print("{}{} in {:.1f} s{}{}{}\n{}.csv, .json, .svg, .png\n", found.text,
-             end->runs_in_words(study.runs + found.each), wall_s,
-             study.timed ? "" : fmt::format(", {:.3g} {}/s", (end->run - end->kept) / wall_s, study.runs),
+             end->runs_in_words(found.each), wall_s,
+             study.timed ? "" : fmt::format(", {:.3g} {}/s", (end->run - end->kept) / wall_s, end->unit),
              found.pace, end->left_in_words(options.quick, study.left_out), stem);
   return k_done;
 }

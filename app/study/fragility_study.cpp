@@ -100,7 +100,6 @@ const Study k_fragility_study = {
     .takes_ensemble = true,
     .takes_slide = true,
     .usual_runs = 400,
-    .runs = "parts",
     .sweep = [](io::Scene scene, const StudyOptions& options) {
       const auto plan = std::make_shared<study::FragilityPlan>(
           study::plan_fragility(std::move(scene), options.x, ensemble_of(k_fragility_study, options),
@@ -110,7 +109,7 @@ const Study k_fragility_study = {
           return runner.run(k, give_up);
         };
       };
-      return sweep_of(plan, make, findings);
+      return sweep_of(plan, make, findings, "parts");
     }};
 
 }  // namespace topple::app

@@ -95,6 +95,7 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
       .chart = [&plan, &map](const std::string& origin,
                              study::ChartFormat format) { return overturn_chart(plan, map, origin, format); },
       .text = picture(plan, map) + fit_in_words(plan, map) + models_in_words(plan, map),
+      .each = plan.chunk > 1 ? fmt::format(" of {} runs", plan.chunk) : "",
       .pace = fmt::format(", {:.3g} ms CPU time a run", 1e3 * cpu / std::max(1, map.run))};
 }
 
@@ -118,7 +119,7 @@ const Study k_overturn_study = {
     .sweep = [](io::Scene scene, const StudyOptions& options) {
       const auto plan = std::make_shared<study::OverturnPlan>(study::plan_overturn(
           std::move(scene), options.x, options.y, ensemble_of(k_overturn_study, options)));
-      return sweep_of(plan, work_on(*plan), overturn_findings);
+      return sweep_of(plan, work_on(*plan), overturn_findings, plan->chunk > 1 ? "parts" : "runs");
     }};
 
 }  // namespace topple::app

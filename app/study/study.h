@@ -47,9 +47,9 @@ struct Study {
   const char *name, *about;
   const char *x = nullptr, *y = nullptr;  ///< its usual axes, in words; null: it has none
   bool takes_scene = true, takes_ensemble = false, takes_slide = false;
-  int usual_runs = 1;  ///< of an ensemble without --ensemble
-  bool timed = false;  ///< CPU times count: one run at a time unless more are asked for
-  const char* runs = "runs";
+  int usual_runs = 1;                   ///< of an ensemble without --ensemble
+  bool timed = false;                   ///< CPU times count: one run at a time unless more are asked for
+  const char* runs = "runs";            ///< what is counted of a study that is no sweep
   const char* left_out = "the finest";  ///< by --quick
   // One of the two. They throw io::InputError or BadInput on what cannot be studied.
   Sweep (*sweep)(io::Scene scene, const StudyOptions& options) = nullptr;
@@ -66,13 +66,15 @@ study::Ensemble ensemble_of(const Study& study, const StudyOptions& options);
 inline constexpr const Study* k_studies[] = {&k_overturn_study,  &k_fragility_study, &k_stability_study,
                                              &k_precision_study, &k_elements_study,  &k_penalty_study};
 
-/// The sweep of a plan with settings_of(), case_order() and gather(), of which `find` makes findings.
+/// The sweep of a plan with settings_of(), case_order() and gather(), of which `find` makes findings; `unit`:
+/// what its cases are.
 template <class Plan, class Results>
 Sweep sweep_of(const std::shared_ptr<Plan>& plan, const MakeWork& make,
-               Findings (*find)(const Plan& plan, const Results& results)) {
+               Findings (*find)(const Plan& plan, const Results& results), const char* unit = "runs") {
   return {.cases =
-              [plan, make] {
-                return SweepPlan{.settings = settings_of(*plan),
+              [plan, make, unit] {
+                return SweepPlan{.unit = unit,
+                                 .settings = settings_of(*plan),
                                  .order = case_order(*plan),
                                  .broadcast = broadcast_parts(plan->scene),
                                  .make = make};

@@ -101,6 +101,7 @@ CaseWork Crew::work_of(int worker, const MakeWork& make) {
 std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOptions& options) {
   const auto give_up = time_is_over(options.quick, plan.start);
   SweepEnd end;
+  end.unit = plan.unit;
   end.file = plan.stem + ".rows";
   if (!options.resume) host::expect_replaceable({end.file, options.force}, host::FileKind::json);
   ordered_json settings = plan.settings;
@@ -115,7 +116,7 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
     std::vector<CaseWork> works;
     works.reserve(static_cast<std::size_t>(workers));
     for (int worker = 0; worker < workers; ++worker) works.push_back(crew.work_of(worker, plan.make));
-    Progress progress(plan.label, "runs", static_cast<double>(left.size()), options.quiet);
+    Progress progress(plan.label, plan.unit, static_cast<double>(left.size()), options.quiet);
     std::mutex keeping;
     std::exception_ptr trouble;
     study::for_each_case(
@@ -141,13 +142,13 @@ std::optional<SweepEnd> sweep(Crew& crew, const SweepPlan& plan, const StudyOpti
   end.rows = kept.rows();
   end.run = kept.count();
   if (!interrupted()) return end;
-  log_message(fmt::format("interrupted; {} of {} runs are kept in {}, --resume goes on from there", end.run,
-                          end.rows.size(), end.file));
+  log_message(fmt::format("interrupted; {} of {} {} are kept in {}, --resume goes on from there", end.run,
+                          end.rows.size(), end.unit, end.file));
   return std::nullopt;
 }
 
-std::string SweepEnd::runs_in_words(const std::string& what) const {
-  return fmt::format("{} of {} {}{}", run, rows.size(), what,
+std::string SweepEnd::runs_in_words(const std::string& each) const {
+  return fmt::format("{} of {} {}{}{}", run, rows.size(), unit, each,
                      kept > 0 ? fmt::format(" ({} from before)", kept) : "");
 }
 

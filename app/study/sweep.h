@@ -64,6 +64,7 @@ class Crew {
 
 struct SweepPlan {
   std::string label = {};              ///< of the progress
+  std::string unit = "runs";           ///< what is counted
   std::string stem = {};               ///< of its results; rows are kept in STEM.rows while it goes on
   nlohmann::ordered_json settings;     ///< that rows depend on, besides the version
   std::vector<int> order;              ///< of all cases, as they are begun
@@ -75,10 +76,11 @@ struct SweepPlan {
 struct SweepEnd {
   std::vector<std::string> rows;  ///< per case; empty: it was not run
   int run = 0, kept = 0;          ///< cases that have a row, those of them from before included
+  std::string unit;               ///< of the plan
   std::string file;               ///< where rows are kept; gone once all are there and written
   bool complete() const { return run == static_cast<int>(rows.size()); }
-  /// "12 of 40 runs", and how many of them are from before; `what`: "runs", "runs of 0.3 s".
-  std::string runs_in_words(const std::string& what) const;
+  /// "12 of 40 runs of 0.3 s", and how many of them are from before; `each`: " of 0.3 s".
+  std::string runs_in_words(const std::string& each) const;
   /// What --quick did to it; `what` it leaves out first.
   std::string left_in_words(bool quick, const char* what) const;
 };

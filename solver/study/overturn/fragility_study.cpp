@@ -25,7 +25,7 @@ constexpr std::array<StateTraits, k_states> k_damage_states{{
      [](const BodyEnd& fate, double) { return fate.fell.has_value(); }},
 }};
 
-constexpr int k_planar_chunk = 64, k_rigid_chunk = 4;
+constexpr int k_rigid_chunk = 4;
 constexpr double k_most_runs = 1e8;
 constexpr int k_draws = 400;  // of records anew
 
@@ -265,10 +265,10 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
         const std::size_t bodies = static_cast<std::size_t>(at.scene.setup.model.furniture_total());
         hits.assign(bodies + 1, {});
         const int last = std::min(plan_->runs, (chunk + 1) * plan_->chunk);
-        std::vector<std::vector<double>> members;
+        std::vector<VariedMember> members;
         for (int member = chunk * plan_->chunk; member < last; ++member)
-          members.push_back(plan_->factors.draw(stream, static_cast<std::uint32_t>(member)));
-        for (const RunEnd& end : run_varied(start, plan_->factors, members, give_up)) {
+          members.push_back({&start, plan_->factors.draw(stream, static_cast<std::uint32_t>(member))});
+        for (const RunEnd& end : run_varied(members, plan_->factors, give_up)) {
           gave_up |= end.gave_up;
           if (end.of_bodies.empty()) {
             if (failed++ == 0) status = end.status;

@@ -45,10 +45,10 @@ std::optional<CellShare> CellRuns::run(int point, int runs, const std::function<
     std::optional<std::vector<Shake>> shakes = edited_shakes(
         *plan_, own_, within_cell(plan_->x, point % nx, part(0)), within_cell(plan_->y, point / nx, part(1)));
     if (!shakes) return std::nullopt;
-    members.push_back({planar_, *std::move(shakes)});
+    members.push_back({planar_, *std::move(shakes), own_.run.duration});
   }
   CellShare share;
-  for (const auto& of_bodies : run_planar(members, own_.run.duration, give_up)) {
+  for (const auto& of_bodies : run_planar(members, give_up)) {
     if (!of_bodies) return std::nullopt;
     ++share.runs;
     share.overturned +=

@@ -77,16 +77,18 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
   plan.y = axis_named("--y", y, &UsualAxes::y, plan.scene);
   check_axes(plan.scene, plan.x, plan.y);
   plan.set = overturn_settings(plan.scene);
-  constexpr double k_most_cases = 1e7;  // rows are kept in memory
-  if (static_cast<double>(plan.points()) * plan.ensemble > k_most_cases)
+  constexpr double k_most_runs = 1e7;  // rows are kept in memory
+  if (static_cast<double>(plan.points()) * plan.ensemble > k_most_runs)
     throw InputError(fmt::format("--ensemble: {} points of {} runs are more than {:g} runs", plan.points(),
-                                 plan.ensemble, k_most_cases));
+                                 plan.ensemble, k_most_runs));
+  if (plan.ensemble > 1 && why_not_planar(plan).empty()) plan.chunk = std::min(plan.ensemble, k_planar_chunk);
   return plan;
 }
 
 ordered_json settings_of(const OverturnPlan& plan) {
   ordered_json settings = settings_of("overturn", plan.scene, plan.x, plan.y);
   settings["ensemble"] = plan.ensemble;
+  settings["chunk"] = plan.chunk;
   settings.update(settings_of(plan.factors));
   return settings;
 }
@@ -94,16 +96,16 @@ ordered_json settings_of(const OverturnPlan& plan) {
 std::vector<int> case_order(const OverturnPlan& plan) {
   const std::vector<int> points = coarse_to_fine(plan.x.count(), plan.y.count());
   std::vector<int> order;
-  for (int from = 0, to = 1; from < plan.ensemble; from = to, to *= 4)
+  for (int from = 0, to = 1; from < plan.chunks(); from = to, to *= 4)
     for (const int point : points)
-      for (int member = from; member < std::min(to, plan.ensemble); ++member)
-        order.push_back(point * plan.ensemble + member);
+      for (int chunk = from; chunk < std::min(to, plan.chunks()); ++chunk)
+        order.push_back(point * plan.chunks() + chunk);
   return order;
 }
 
 namespace {
 
-std::string row_text(const RunEnd& end, double cpu) {
+std::string run_text(const RunEnd& end) {
   std::string fell;
   bool lifted = false;
   for (const BodyEnd& fate : end.of_bodies) {
@@ -112,13 +114,15 @@ std::string row_text(const RunEnd& end, double cpu) {
   }
   const std::string status =
       ordered_json(end.status).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  return fmt::format("{{\"status\":{},\"fell\":[{}],\"lifted\":{},\"cpu_s\":{}{}}}", status, fell, lifted,
-                     cpu, end.planar ? ",\"planar\":true" : "");
+  return fmt::format("{{\"status\":{},\"fell\":[{}],\"lifted\":{}{}}}", status, fell, lifted,
+                     end.planar ? ",\"planar\":true" : "");
 }
 
-}  // namespace
-
-namespace {
+std::string row_text(const std::vector<RunEnd>& ends, double cpu) {
+  std::string runs;
+  for (const RunEnd& end : ends) runs += (runs.empty() ? "" : ",") + run_text(end);
+  return fmt::format("{{\"cpu_s\":{},\"runs\":[{}]}}", cpu, runs);
+}
 
 io::Scene read_scene(const OverturnPlan& plan, const io::Scene& scene, std::vector<std::string> changes) {
   changes.insert(changes.begin(), plan.set.begin(), plan.set.end());
@@ -192,27 +196,38 @@ void OverturnRunner::begin(Place& place, int point) const {
   place.planar = planar_cases(place.scene->setup);
 }
 
+const io::Scene& OverturnRunner::scene_at(Place& place) const {
+  if (!place.scene && place.trouble.empty()) read(place);
+  if (!place.scene) throw InputError(place.trouble);
+  return *place.scene;
+}
+
 std::string OverturnRunner::run(int k, const std::function<bool()>& give_up) {
-  const int point = k / plan_->ensemble, member = k % plan_->ensemble;
-  const int records = static_cast<int>(places_.size()), record = member % records;
-  Place& place = places_[static_cast<std::size_t>(record)];
-  RunEnd end;
+  const int point = k / plan_->chunks(), begin_at = k % plan_->chunks() * plan_->chunk,
+            end_at = std::min(plan_->ensemble, begin_at + plan_->chunk);
+  const int records = static_cast<int>(places_.size());
+  std::vector<RunEnd> ends;
   const double cpu = cpu_time_of(
       [&] {
-        if (point != place.point) begin(place, point);
-        const auto scene = [&]() -> const io::Scene& {
-          if (!place.scene && place.trouble.empty()) read(place);
-          if (!place.scene) throw InputError(place.trouble);
-          return *place.scene;
-        };
-        const auto stream = static_cast<std::uint64_t>(point) * static_cast<std::uint64_t>(records) +
-                            static_cast<std::uint64_t>(record);
-        end = run_varied({place.planar, place.shakes, place.duration, scene}, plan_->factors,
-                         {plan_->factors.draw(stream, static_cast<std::uint32_t>(member / records))}, give_up)
-                  .front();
+        for (int member = begin_at; member < end_at; ++member)
+          if (Place& place = places_[static_cast<std::size_t>(member % records)]; place.point != point)
+            begin(place, point);
+        std::vector<RunStart> starts;
+        for (Place& place : places_)
+          starts.push_back({place.planar, place.shakes, place.duration,
+                            [&]() -> const io::Scene& { return scene_at(place); }});
+        std::vector<VariedMember> members;
+        for (int member = begin_at; member < end_at; ++member) {
+          const int record = member % records;
+          const auto stream = static_cast<std::uint64_t>(point) * static_cast<std::uint64_t>(records) +
+                              static_cast<std::uint64_t>(record);
+          members.push_back({&starts[static_cast<std::size_t>(record)],
+                             plan_->factors.draw(stream, static_cast<std::uint32_t>(member / records))});
+        }
+        ends = run_varied(members, plan_->factors, give_up);
       },
       0);
-  return end.gave_up ? "" : row_text(end, cpu);
+  return ends.back().gave_up ? "" : row_text(ends, cpu);
 }
 
 const char* name(Verdict verdict) {
@@ -269,7 +284,6 @@ int own_place(const Axis& axis) {
 
 /// Adds one run; counts[verdict].
 void add_run(OverturnPoint& point, const ordered_json& row, int counts[]) {
-  point.cpu += row["cpu_s"].get<double>();
   const std::string status = row["status"].get<std::string>();
   if (status != "completed") {
     if (point.failed++ == 0) point.status = status;
@@ -339,18 +353,21 @@ OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& row
   OverturnMap map;
   const Model& model = plan.scene.setup.model;
   for (int b = 0; b < model.furniture_total(); ++b) map.bodies.push_back(model.bodies[b].name);
-  map.of = plan.cases();
+  map.of = plan.runs();
   for (int p = 0; p < plan.points(); ++p) {
     OverturnPoint point;
     point.fell.resize(map.bodies.size());
     int counts[static_cast<int>(Verdict::stands) + 1] = {};
-    for (int member = 0; member < plan.ensemble; ++member) {
-      const std::string& row = rows[static_cast<std::size_t>(p * plan.ensemble + member)];
+    for (int chunk = 0; chunk < plan.chunks(); ++chunk) {
+      const std::string& row = rows[static_cast<std::size_t>(p * plan.chunks() + chunk)];
       if (row.empty()) continue;
-      ++map.run;
       const ordered_json read = ordered_json::parse(row);
-      map.planar += read.value("planar", false);
-      add_run(point, read, counts);
+      point.cpu += read["cpu_s"].get<double>();
+      for (const ordered_json& run : read["runs"]) {
+        ++map.run;
+        map.planar += run.value("planar", false);
+        add_run(point, run, counts);
+      }
     }
     std::ranges::sort(point.times);
     if (point.runs > 0)

@@ -37,9 +37,12 @@ struct OverturnPlan {
   std::vector<io::Scene> scenes = {};     ///< one per record, which members have in turn
   std::vector<std::string> set = {};      ///< overturn_settings()
   std::optional<Criteria> criteria = {};  ///< for gather(), which finds them where there are none
+  int chunk = 1;                          ///< runs of a case, of the same point
 
   int points() const { return x.count() * y.count(); }
-  int cases() const { return points() * ensemble; }  ///< point ensemble + member
+  int chunks() const { return (ensemble + chunk - 1) / chunk; }
+  int cases() const { return points() * chunks(); }  ///< point chunks() + chunk
+  int runs() const { return points() * ensemble; }
 };
 
 /// Axes of --x and --y for a kind of shake that has usual ones.
@@ -59,8 +62,8 @@ OverturnPlan plan_overturn(io::Scene scene, const std::string& x, const std::str
 /// What rows depend on, for KeptRows.
 nlohmann::ordered_json settings_of(const OverturnPlan& plan);
 
-/// The order in which cases are begun: one run at each point, coarse points first (coarse_to_fine), then
-/// rounds over all points that come to 4, 16, 64 ... runs.
+/// The order in which cases are begun: one at each point, coarse points first (coarse_to_fine), then rounds
+/// over all points that come to 4, 16, 64 ... cases.
 std::vector<int> case_order(const OverturnPlan& plan);
 
 /// Runs cases one after another: as planar blocks where planar_cases() finds them, else as `topple run` does.
@@ -69,9 +72,9 @@ std::vector<int> case_order(const OverturnPlan& plan);
 class OverturnRunner {
  public:
   explicit OverturnRunner(const OverturnPlan& plan);
-  /// A row of JSON in one line: "status" ("completed", or why it failed), "fell" (s, per piece of furniture,
-  /// null: it stands), "lifted" (a side of any lifted), "cpu_s", of planar blocks "planar" (true). Empty:
-  /// give_up() came true, it is asked after each step.
+  /// A row of JSON in one line: "cpu_s" and "runs", each with "status" ("completed", or why it failed),
+  /// "fell" (s, per piece of furniture, null: it stands), "lifted" (a side of any lifted), of planar blocks
+  /// "planar" (true). Empty: give_up() came true, it is asked after each step.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
@@ -88,6 +91,7 @@ class OverturnRunner {
   };
   void begin(Place& place, int point) const;
   void read(Place& place) const;
+  const io::Scene& scene_at(Place& place) const;
 
   const OverturnPlan* plan_;
   std::vector<Place> places_;
@@ -129,7 +133,7 @@ struct OverturnPoint {
 struct OverturnMap {
   std::vector<std::string> bodies;  ///< furniture
   std::vector<OverturnPoint> points;
-  int run = 0, of = 0;  ///< cases
+  int run = 0, of = 0;  ///< runs
   int planar = 0;       ///< runs that were planar blocks
   Criteria criteria;
   /// Along the axis that is an amplitude or scale of a shake, at each value of the other.

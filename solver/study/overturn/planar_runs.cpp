@@ -52,7 +52,6 @@ std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* wh
 }
 
 std::vector<std::optional<std::vector<BodyEnd>>> run_planar(const std::vector<PlanarMember>& members,
-                                                            double duration,
                                                             const std::function<bool()>& give_up,
                                                             planar::LaneUse* use) {
   struct Place {
@@ -70,7 +69,8 @@ std::vector<std::optional<std::vector<BodyEnd>>> run_planar(const std::vector<Pl
       [&](int i) -> std::unique_ptr<planar::PlanarRun> {
         const auto [m, b] = places[static_cast<std::size_t>(i)];
         if (!out[m]) return ++ended, nullptr;
-        return std::make_unique<planar::PlanarRun>(members[m].blocks[b], members[m].shakes, duration);
+        return std::make_unique<planar::PlanarRun>(members[m].blocks[b], members[m].shakes,
+                                                   members[m].duration);
       },
       [&](int i, const planar::PlanarRun& run) {
         const auto [m, b] = places[static_cast<std::size_t>(i)];

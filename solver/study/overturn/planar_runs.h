@@ -23,17 +23,20 @@ struct BodyEnd {
 /// none. Empty: it is not; `why`, if asked for: "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 
+/// Runs of an ensemble that are handed out at once, in lanes.
+inline constexpr int k_planar_chunk = 64;
+
 /// A run of an ensemble.
 struct PlanarMember {
   std::vector<planar::PlanarCase> blocks;
   std::vector<Shake> shakes;
+  double duration;  ///< s
 };
 
 /// Runs them in lanes (planar_lanes.h), one fate per block. None: give_up() came true, which is asked as they
 /// go on, or it is not known what they do: one came within reach of something else, or a slip jammed again
-/// and again. duration: s. `use`, if asked for: how full the lanes were, added.
+/// and again. `use`, if asked for: how full the lanes were, added.
 std::vector<std::optional<std::vector<BodyEnd>>> run_planar(const std::vector<PlanarMember>& members,
-                                                            double duration,
                                                             const std::function<bool()>& give_up,
                                                             planar::LaneUse* use = nullptr);
 

@@ -56,19 +56,21 @@ RunEnd run_rigid(const RunStart& start, const FactorPlan& plan, std::span<const 
 
 }  // namespace
 
-std::vector<RunEnd> run_varied(const RunStart& start, const FactorPlan& plan,
-                               const std::vector<std::vector<double>>& members,
+std::vector<RunEnd> run_varied(const std::vector<VariedMember>& members, const FactorPlan& plan,
                                const std::function<bool()>& give_up) {
   bool gave_up = false;
-  std::vector<std::optional<std::vector<BodyEnd>>> planar(members.size());
-  if (!start.planar.empty()) {
-    std::vector<PlanarMember> of;
-    for (const std::vector<double>& values : members) {
-      of.push_back({start.planar, varied_shakes(start, plan, values)});
-      for (planar::PlanarCase& block : of.back().blocks) vary(plan, values, block);
-    }
-    planar = run_planar(of, start.duration, [&] { return gave_up = give_up(); });
+  std::vector<PlanarMember> blocks;
+  std::vector<std::size_t> of;  // members
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const auto& [start, values] = members[m];
+    if (start->planar.empty()) continue;
+    of.push_back(m);
+    blocks.push_back({start->planar, varied_shakes(*start, plan, values), start->duration});
+    for (planar::PlanarCase& block : blocks.back().blocks) vary(plan, values, block);
   }
+  std::vector<std::optional<std::vector<BodyEnd>>> planar(members.size());
+  const auto ends_of_blocks = run_planar(blocks, [&] { return gave_up = give_up(); });
+  for (std::size_t n = 0; n < of.size(); ++n) planar[of[n]] = ends_of_blocks[n];
   std::vector<RunEnd> ends;
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (gave_up)
@@ -76,7 +78,7 @@ std::vector<RunEnd> run_varied(const RunStart& start, const FactorPlan& plan,
     else if (planar[m])
       ends.push_back({.of_bodies = *std::move(planar[m]), .planar = true});
     else
-      ends.push_back(run_rigid(start, plan, members[m], give_up));
+      ends.push_back(run_rigid(*members[m].start, plan, members[m].values, give_up));
     gave_up = ends.back().gave_up;
   }
   return ends;

@@ -28,11 +28,15 @@ struct RunStart {
       scene;  ///< for the rigid model; throws io::InputError where there is none
 };
 
+/// A run that is to be done.
+struct VariedMember {
+  const RunStart* start;
+  std::vector<double> values;  ///< of the factors, as drawn
+};
+
 /// As planar blocks where there are some (in lanes), else, or where it is not known what they do, as `topple
-/// run` does. `members`: of each run the values as drawn; give_up is asked as they go on, once it is true no
-/// run comes to its end.
-std::vector<RunEnd> run_varied(const RunStart& start, const FactorPlan& plan,
-                               const std::vector<std::vector<double>>& members,
+/// run` does. give_up is asked as they go on, once it is true no run comes to its end.
+std::vector<RunEnd> run_varied(const std::vector<VariedMember>& members, const FactorPlan& plan,
                                const std::function<bool()>& give_up);
 
 /// What studies of overturning leave to no scene: [run] has these where the scene says nothing.

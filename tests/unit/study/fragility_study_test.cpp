@@ -95,12 +95,13 @@ TEST(FragilityStudy, lanes_of_parts_are_busy) {
       for (int member = first; member < std::min(plan.runs, first + plan.chunk); ++member) {
         const std::vector<double> values =
             plan.factors.draw(static_cast<std::uint64_t>(level), static_cast<std::uint32_t>(member));
-        members.push_back({blocks, shaken_by(scene.setup.parameters.shakes, factor)});
+        members.push_back(
+            {blocks, shaken_by(scene.setup.parameters.shakes, factor), scene.setup.run.duration});
         PlanarMember& one = members.back();
         vary(plan.factors, values, one.shakes);
         for (planar::PlanarCase& block : one.blocks) vary(plan.factors, values, block);
       }
-      run_planar(members, scene.setup.run.duration, never, &use);
+      run_planar(members, never, &use);
     }
   }
   RecordProperty("share", std::to_string(use.share()));
@@ -128,12 +129,13 @@ TEST(FragilityStudy, runs_that_climb_are_counted_and_do_not_disturb_others) {
     const std::vector<Shake> shakes =
         shaken_by(whole.setup.parameters.shakes,
                   amplitude_factor(*plan.measure, plan.own.front(), plan.levels.in_si(level)));
+    const RunStart start{blocks, shakes, whole.setup.run.duration,
+                         [&]() -> const io::Scene& { return whole; }};
     std::array<int, k_states> hits{};
     for (std::uint32_t member = 0; member < 24; ++member) {
-      const RunEnd end =
-          run_varied({blocks, shakes, whole.setup.run.duration, [&]() -> const io::Scene& { return whole; }},
-                     plan.factors, {plan.factors.draw(static_cast<std::uint64_t>(level), member)}, never)
-              .front();
+      const RunEnd end = run_varied({{&start, plan.factors.draw(static_cast<std::uint64_t>(level), member)}},
+                                    plan.factors, never)
+                             .front();
       for (std::size_t s = 0; s < k_states; ++s)
         hits[s] += damage_states()[s].is_there(end.of_bodies.front(), plan.slide);
     }

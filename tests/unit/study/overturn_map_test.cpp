@@ -189,6 +189,28 @@ TEST(OverturnMap, planar_blocks_have_the_verdicts_of_rigid_bodies_on_hard_contac
   EXPECT_LT(fallen, 12);
 }
 
+// In parts of up to 64 runs; alone each has the same bits.
+TEST(OverturnMap, runs_in_lanes_are_those_that_go_alone) {
+  OverturnPlan plan = plan_overturn(io::load_scene("cabinet"), "shake.1.frequency=0.4..0.6:2",
+                                    "shake.1.amplitude=150 gal..300 gal:2",
+                                    {.runs = 70, .vary = {"amplitude=uniform:0.6..1.4", "size=normal:5%"}});
+  EXPECT_EQ(plan.cases(), 8);
+  const std::vector<std::string> rows = run_all(plan);
+  EXPECT_EQ(gather(plan, rows).planar, 280);
+  plan.chunk = 1;
+  OverturnRunner alone(plan);
+  std::set<std::string> different;
+  for (int k = 0; k < plan.cases(); ++k) {
+    const int point = k / 70, member = k % 70;
+    const auto part = static_cast<std::size_t>(2 * point + member / 64),
+               at = static_cast<std::size_t>(member % 64);
+    const ordered_json run = ordered_json::parse(alone.run(k, never))["runs"][0];
+    EXPECT_EQ(run, ordered_json::parse(rows[part])["runs"][at]) << k;
+    different.insert(run.dump());
+  }
+  EXPECT_GT(different.size(), 40u);  // members differ in their times where they fall
+}
+
 // By an edit of the shake, and by reading the scene where an axis changes something else.
 TEST(OverturnMap, planar_blocks_do_not_depend_on_how_their_shake_was_set) {
   const OverturnPlan edited = steel_cabinet({});

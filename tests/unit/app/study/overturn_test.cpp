@@ -89,6 +89,33 @@ TEST_F(OverturnTest, rows_are_the_same_on_one_thread_on_two_and_on_two_ranks) {
   EXPECT_EQ(json_of(bytes_of("ranks/overturn.json"))["settings"]["ranks"], 2);
 }
 
+TEST_F(OverturnTest, parts_in_lanes_are_the_same_on_two_threads_and_on_two_ranks) {
+  const auto parts = [](const std::string& folder, const std::string& jobs) {
+    return std::vector<std::string>{"study",
+                                    "overturn",
+                                    "cabinet",
+                                    "-o",
+                                    folder,
+                                    "--x",
+                                    "shake.1.frequency=0.4..0.6:2",
+                                    "--y",
+                                    "shake.1.amplitude=150 gal..300 gal:2",
+                                    "--ensemble",
+                                    "70",
+                                    "--jobs",
+                                    jobs,
+                                    "--quiet"};
+  };
+  const Ended one = topple(parts("one", "1"));
+  ASSERT_EQ(one.code, 0) << one.err;
+  for (const char* part : {"280 runs as planar blocks", "8 of 8 parts of 64 runs"})
+    EXPECT_NE(one.out.find(part), std::string::npos) << part << "\n" << one.out;
+  ASSERT_EQ(topple(parts("two", "2")).code, 0);
+  EXPECT_EQ(rows("one"), rows("two"));
+  if (!run_on_two_ranks(parts("ranks", "1"))) return;
+  EXPECT_EQ(rows("one"), rows("ranks"));
+}
+
 TEST_F(OverturnTest, under_an_mpirun_that_it_cannot_join_it_does_not_run_as_if_alone) {
   for (const char* size : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     expect_one_line(call("out"), 2, "mpirun: this build of topple ", {.set = {{size, "2"}}});
