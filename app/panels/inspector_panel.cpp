@@ -220,7 +220,7 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
     ImGui::PushStyleColor(
         ImGuiCol_Text,
         ImGui::GetColorU32(std::exchange(first, false) ? ImGuiCol_TextDisabled : ImGuiCol_Text));
-    ImGui::TextUnformatted(line.c_str());
+    ImGui::TextWrapped("%s", line.c_str());
     ImGui::PopStyleColor();
   }
   return pressed;

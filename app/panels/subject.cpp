@@ -9,6 +9,7 @@
 #include "app/picture/anchor_picture.h"
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
+#include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
@@ -153,8 +154,13 @@ std::vector<std::string> about_member(const FrameContext& now, std::size_t index
 
 std::vector<std::string> about_body(const FrameContext& now, std::size_t index) {
   const Body& body = now.model.bodies[index];
-  return {say(window_words::k_body_line, body.mass, body.member_count,
-              say(window_words::phrase_of(static_cast<ModelLevel>(now.row.level[index]))))};
+  std::vector<std::string> lines{
+      say(window_words::k_body_line, body.mass, body.member_count,
+          say(window_words::phrase_of(static_cast<ModelLevel>(now.row.level[index]))))};
+  for (const BodyTouch& touch : touches(now.model, now.row, index))
+    lines.push_back(say(window_words::k_touched_by, touch.by, value_text(touch.force.norm()),
+                        value_text(touch.force.z()), touch.place.z()));
+  return lines;
 }
 
 std::vector<std::string> about_anchor(const FrameContext& now, std::size_t index) {

@@ -363,6 +363,8 @@ inline constexpr Phrase k_pin_about{"Keep it here while another one is looked at
                                     "別の対象を見る間も表示を残す"};
 inline constexpr Phrase k_member_line{"{0}, {1}, {2:.0f} mm long", "{0}、{1}、長さ {2:.0f} mm"};
 inline constexpr Phrase k_body_line{"{0:.4g} kg, {1} members, {2}", "{0:.4g} kg、部材 {1}、モデル {2}"};
+inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at {3:.2f} m",
+                                     "{0} から {1} N（上向き {2} N）、高さ {3:.2f} m"};
 inline constexpr Phrase k_anchor_line{"{0} of {1}, {2:.4g} kN/m, {3:.0f} mm long",
                                       "{1} の{0}、{2:.4g} kN/m、長さ {3:.0f} mm"};
 inline constexpr Phrase k_approximate{"A contact presses on its middle node: its own bending is approximate.",

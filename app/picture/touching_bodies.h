@@ -1,0 +1,25 @@
+// Who leans on whom: what floors, walls and other bodies do to a body at a recorded instant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/io/recording/frame_row.h"
+#include "solver/model/model.h"
+
+namespace topple::app {
+
+/// What a plane or another body does to a body.
+struct BodyTouch {
+  std::string by;             ///< name of the plane or body
+  Vec3 force = Vec3::Zero();  ///< N, on the body, floor's frame
+  Vec3 place = Vec3::Zero();  ///< m, the mean of where it acts, by |force|, floor's frame
+};
+
+/// Planes first, then bodies, in the model's order; those without a force are left out. A row holds the
+/// resultant of what touches each element and panel, not by whom: each is taken to touch the part of another
+/// body that is nearest to where it acts, and forces between parts follow from resultants by action and
+/// reaction, which is exact unless touching parts form a ring.
+std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std::size_t body);
+
+}  // namespace topple::app

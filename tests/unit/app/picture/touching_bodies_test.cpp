@@ -1,0 +1,64 @@
+#include "app/picture/touching_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "solver/io/recording/observer.h"
+#include "solver/io/scene/scene_file.h"
+#include "solver/run/run.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_weight = 9.80665;  // N, of a kilogram
+
+struct Resting {
+  explicit Resting(const std::string& text)
+      : scene(io::parse_scene("topple = 1\n[run]\nduration = 1\n[floor]\n" + text, "s.toml")) {
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    row = io::frame_row(run);
+  }
+  /// By name of what touches it.
+  std::map<std::string, BodyTouch> of(std::size_t body) const {
+    std::map<std::string, BodyTouch> out;
+    for (const BodyTouch& touch : touches(scene.setup.model, row, body)) out[touch.by] = touch;
+    return out;
+  }
+  io::Scene scene;
+  io::FrameRow row;
+};
+
+// Rows are floats and what stands still creeps: 1e-4 of a weight.
+void expect_force(const BodyTouch& touch, double kilograms) {
+  EXPECT_NEAR(touch.force.z(), kilograms * k_weight, 1e-4 * 10 * k_weight) << touch.by;
+  EXPECT_NEAR(touch.force.head<2>().norm(), 0, 1e-3 * 10 * k_weight) << touch.by;
+}
+
+// The face between them bears both; the resultant on it is neither's.
+TEST(TouchingBodies, two_blocks_on_one_press_with_their_weights) {
+  const Resting stack(
+      "[[block]]\nname = \"low\"\nsize = [0.6, 0.3, 0.2]\nmass = 5\n"
+      "[[block]]\nname = \"left\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [-0.2, 0, 0.205]\n"
+      "[[block]]\nname = \"right\"\nsize = [0.1, 0.1, 0.2]\nmass = 2\nat = [0.2, 0, 0.205]\n");
+  const auto low = stack.of(0), left = stack.of(1), right = stack.of(2);
+  ASSERT_EQ(low.size(), 3u);
+  expect_force(low.at("floor"), 8);
+  expect_force(low.at("left"), -1);
+  expect_force(low.at("right"), -2);
+  ASSERT_EQ(left.size(), 1u);
+  expect_force(left.at("low"), 1);
+  ASSERT_EQ(right.size(), 1u);
+  expect_force(right.at("low"), 2);
+  EXPECT_NEAR(left.at("low").place.x(), -0.2, 1e-3);
+  EXPECT_NEAR(right.at("low").place.z(), 0.2, 0.02);  // within a contact width
+}
+
+TEST(TouchingBodies, what_touches_nothing_has_no_touch) {
+  const Resting alone("[[block]]\nname = \"high\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [0, 0, 5]\n");
+  EXPECT_TRUE(alone.of(0).empty());
+}
+
+}  // namespace
+}  // namespace topple::app
