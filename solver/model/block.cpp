@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "solver/model/body_builder.h"
@@ -14,12 +13,6 @@ namespace {
 // Stiffness that nothing uses: a block is rigid.
 constexpr double k_young = 1e10, k_poisson = 0.2;  // Pa, -
 constexpr double k_density = 1e3;                  // kg/m^3
-
-std::string millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * metres);
-  return text;
-}
 
 Vec3 inertia_of(const BlockSpec& spec) {
   if (spec.inertia) return *spec.inertia;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "solver/math/rotation.h"
@@ -51,6 +52,12 @@ std::vector<Vec3> convex_hull(std::vector<Vec3> points, double tolerance) {
 }
 
 }  // namespace
+
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * metres);
+  return text;
+}
 
 BodyBuilder::BodyBuilder(Model& model, const std::string& name)
     : model_(model), body_(static_cast<int>(model.bodies.size())) {
@@ -155,15 +162,16 @@ void BodyBuilder::add_panel(const std::array<int, 4>& nodes) {
   const auto x = [&](int k) -> const Vec3& { return model_.node_position[nodes[k % 4]]; };
   const Vec3 along = x(1) - x(0), cross = (x(2) - x(0)).cross(x(3) - x(1));
   const double size = std::max((x(2) - x(0)).norm(), (x(3) - x(1)).norm());
+  const std::string which = "panel " + std::to_string(body().panel_count);
   for (int k = 0; k < 4; ++k)
     if (!((x(k + 1) - x(k)).cross(x(k + 2) - x(k + 1)).dot(cross) > 0))
-      throw BuildError("panels", "its corners are not those of a convex sheet, in order around it");
+      throw BuildError("panels", which + ": its corners are not those of a convex sheet, in order around it");
   const Vec3 normal = cross.normalized(), e1 = (along - along.dot(normal) * normal).normalized(),
              e2 = normal.cross(e1);
   if (const double off = std::abs(along.dot(normal)); off > k_flat * size)
-    throw BuildError("panels", "it is not flat: its diagonals pass each other " +
-                                   std::to_string(std::lround(1e3 * off)) + " mm apart, more than " +
-                                   std::to_string(k_flat) + " of their length");
+    throw BuildError("panels", which + " is not flat: its diagonals pass each other " + millimetres(off) +
+                                   " apart, more than " + millimetres(k_flat * size) +
+                                   ", a thousandth of their length");
   Panel panel{body_, nodes, std::numeric_limits<double>::infinity(), {}, {}};
   const auto place = [&](const Vec3& p) { return Panel::Place(e1.dot(p - x(0)), e2.dot(p - x(0))); };
   for (int k = 0; k < 4; ++k) panel.corner[k] = place(x(k));
@@ -196,8 +204,8 @@ void BodyBuilder::add_panel(const std::array<int, 4>& nodes) {
   }
   for (int k = 0; k < 4; ++k)
     if (covered[k] < (1 - k_flat) * (x(k + 1) - x(k)).norm())
-      throw BuildError("panels", "no members lie all along its side between corners " + std::to_string(k) +
-                                     " and " + std::to_string((k + 1) % 4));
+      throw BuildError("panels", which + ": no members lie all along its side between corners " +
+                                     std::to_string(k) + " and " + std::to_string((k + 1) % 4));
   model_.panels.push_back(std::move(panel));
   ++body().panel_count;
 }

@@ -22,6 +22,9 @@ struct BuildError : std::runtime_error {
   std::string key;
 };
 
+/// "12.5 mm", for errors.
+std::string millimetres(double metres);
+
 /// Appends one body to a model: construct, add lines, masses and contact points, then close. Node positions
 /// that agree within k_same_place are one node.
 class BodyBuilder {

@@ -315,6 +315,10 @@ void check_planes(const std::vector<Entry>& entries, const Setup& setup, const S
     }
 }
 
+std::array<Vec3, 4> corners_of(const Panel& panel, const std::vector<Vec3>& x) {
+  return {x[panel.node[0]], x[panel.node[1]], x[panel.node[2]], x[panel.node[3]]};
+}
+
 // Whether a point is inside a body of panels all around, nodes at x.
 bool is_inside(const Model& model, const std::vector<Vec3>& x, const Vec3& point, int body) {
   const Body& solid = model.bodies[body];
@@ -329,22 +333,29 @@ bool is_inside(const Model& model, const std::vector<Vec3>& x, const Vec3& point
 }
 
 /// Calls found(member, other member, body) on a member that is within one of another body, or, with -1, that
-/// crosses a panel of it or is inside a solid one.
+/// has its tip within a panel of it, crosses one or is inside a solid body.
 template <class F>
 void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
   NearSearch search(model);
   for (const ElementPair& pair : search.find(x, 0)) {
-    if (panel_of(model, pair.b) != nullptr) continue;
-    const auto &a = model.elements[pair.a].node, &b = model.elements[pair.b].node;
-    if (nearest_points(x[a[0]], x[a[1]], x[b[0]], x[b[1]]).between.norm() <=
-        k_deep * contact_length(model, pair))
-      found(model.elements[pair.a].member, model.elements[pair.b].member, body_of(model, pair.b));
+    const double deep = k_deep * contact_length(model, pair);
+    const auto& a = model.elements[pair.a].node;
+    const int member = model.elements[pair.a].member;
+    if (const Panel* const panel = panel_of(model, pair.b)) {
+      const std::array<Vec3, 4> corner = corners_of(*panel, x);
+      for (int end = 0; end < 2; ++end)
+        if (is_tip(model, pair.a, end) && nearest_on_panel(x[a[end]], corner).between.norm() <= deep)
+          found(member, -1, panel->body);
+    } else if (const auto& b = model.elements[pair.b].node;
+               nearest_points(x[a[0]], x[a[1]], x[b[0]], x[b[1]]).between.norm() <= deep) {
+      found(member, model.elements[pair.b].member, body_of(model, pair.b));
+    }
   }
   if (!model.surfaces) return;
   std::vector<Box> boxes(model.bodies.size());
   for (int i = 0; i < model.node_total(); ++i) boxes[model.node_body[i]].extend(x[i]);
   for (const Panel& panel : model.panels) {
-    const std::array<Vec3, 4> corner{x[panel.node[0]], x[panel.node[1]], x[panel.node[2]], x[panel.node[3]]};
+    const std::array<Vec3, 4> corner = corners_of(panel, x);
     for (int b = 0; b < static_cast<int>(boxes.size()); ++b) {
       if (b == panel.body || !boxes[b].intersects(boxes[panel.body])) continue;
       const Body& body = model.bodies[b];

@@ -8,6 +8,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/scene_choices_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_difference_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_errors_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/scene_panel_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_robustness_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_record_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_save_test.cpp
