@@ -78,7 +78,7 @@ target_link_options(random_events_test PRIVATE
   -Wl,--wrap=_ZN6topple6render5Stage10draw_sceneERKNS0_10SceneFrameERKNS0_6CameraENS0_9ColourMapEiiNS0_7QualityE)
 add_dependencies(random_events_test topple)
 gtest_discover_tests(random_events_test PROPERTIES TIMEOUT 900)
-foreach(drawn scene room throw)
+foreach(drawn scene room throw pour)
   add_executable(random_${drawn}_test ${CMAKE_CURRENT_LIST_DIR}/cli/random_${drawn}_test.cpp)
   target_include_directories(random_${drawn}_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
   target_link_libraries(random_${drawn}_test PRIVATE topple_app GTest::gtest_main)

@@ -3,9 +3,11 @@
 
 #include <cmath>
 
+#include "scene_samples.h"
 #include "solver/io/scene/scene.h"
 #include "solver/math/rotation.h"
 #include "solver/run/run.h"
+#include "unit/solver/panel_crossings.h"
 
 namespace topple::io {
 namespace {
@@ -95,6 +97,47 @@ TEST(Contents, slide_off_an_open_shelf_by_coulombs_law) {
         EXPECT_GT(since, 0);
         EXPECT_GT(moved.x(), 0.5);  // it lies before the cabinet
         EXPECT_LT(run.energy().balance_error(), 1e-3);
+      }
+}
+
+/// Against the closed cabinet, widths of both 1 mm.
+Scene thrown(const char* model, double turn, const std::string& at, const std::string& velocity) {
+  std::string text =
+      replaced(k_open, "shape = \"box\"\nsize = [\"25 mm\", \"25 mm\"]\nthickness = \"1.2 mm\"\n",
+               "shape = \"custom\"\nsize = [0.025, 0.025]\narea = 1.14e-4\niy = 1.08e-8\niz = 1.08e-8\n"
+               "j = 1.6e-8\nky = 0.44\nkz = 0.44\nwidth = \"1 mm\"\n");
+  text = replaced(text, "front = \"open\"\n", "panel_thickness = \"1 mm\"\n");
+  text += std::string("model = \"") + model + "\"\n[[block]]\nname = \"box\"\nsize = [0.12, 0.11, 0.1]\n" +
+          "mass = 1.2\nwidth = \"1 mm\"\nyaw = " + std::to_string(turn) +
+          "\ntilt = " + std::to_string(0.7 * turn) + "\nat = [" + at + "]\nvelocity = [" + velocity + "]\n";
+  return parse_scene(text, "thrown.toml", {"run.settle=false", "run.duration=0.1"});
+}
+
+// From behind, from before and from above at 20 m/s, which are 240 J on contacts that hold 5 J each before
+// they harden. A face that hits flat may end the run, which says who cannot go on and when.
+TEST(Contents, nobody_passes_a_panel_of_one_millimetre_at_20_metres_a_second) {
+  constexpr double k_interval = 1e-3;  // s, in which it moves by less than its size
+  for (const auto& [model, turns] : {std::pair("rigid", std::vector{0., 0.3, 0.6, 0.9}), {"frame", {0.3}}})
+    for (const double turn : turns)
+      for (const auto& [at, velocity] : {std::pair("-0.7, 0.13, 0.2", "20, 0, 0"),
+                                         {"0.7, 0.13, 0.2", "-20, 0, 0"},
+                                         {"0.05, 0.1, 1.3", "0, 0, -20"}}) {
+        SCOPED_TRACE(std::string(model) + ' ' + std::to_string(turn) + ' ' + at);
+        const Scene scene = thrown(model, turn, at, velocity);
+        topple::Run run(scene.setup);
+        double next = k_interval;
+        while (!run.over() && run.advance().ok())
+          for (; next < run.time(); next += k_interval)
+            ASSERT_EQ(test::panel_crossings(scene.setup.model, run.state()), 0) << run.time() << " s";
+        EXPECT_EQ(test::panel_crossings(scene.setup.model, run.state()), 0);
+        EXPECT_LT(run.energy().balance_error(), 1e-3);
+        EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0.9);
+        if (run.status().ok()) continue;
+        EXPECT_EQ(turn, 0);
+        EXPECT_EQ(
+            run.status().message(scene.setup.model).find("no step is short enough for the tolerance at 0.0"),
+            0u);
+        EXPECT_NE(run.status().message(scene.setup.model).find("body \""), std::string::npos);
       }
 }
 

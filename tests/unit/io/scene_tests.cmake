@@ -14,6 +14,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/scene_save_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/toml_precheck_test.cpp)
+target_include_directories(scene_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(scene_test PRIVATE topple_io GTest::gtest_main)
 target_compile_definitions(scene_test PRIVATE TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
   TOPPLE_MAKE_RECORDS="$<TARGET_FILE:make_records>")
