@@ -37,31 +37,21 @@ double contact_limit(const Model& model, const Body& body, const ContactLaw& law
   return std::min(limit, bounce_limit(body.mass, stiffness));
 }
 
-// For the members of the system's bodies that are near each other.
-double member_limit(const BodySystem& system, const ContactLaw& law, const BodyMotion& motion) {
-  const Model& model = system.model;
+// For the members of the system's bodies that are near each other and open. How those bounce that are closed,
+// light bodies among them on contacts that are stiff enough for heavy ones, the error of a step sees.
+double member_limit(const BodySystem& system, const BodyMotion& motion) {
   double limit = std::numeric_limits<double>::infinity();
   if (system.candidate_pairs.empty()) return limit;
-  std::vector<double> stiffness(system.bodies.size(), 0.);
-  const auto add = [&](int part, double more) {
-    const auto own = std::ranges::find(system.bodies, body_of(model, part));
-    if (own != system.bodies.end()) stiffness[own - system.bodies.begin()] += more;
-  };
   for (const MemberPair& pair : system.member_pairs()) {
     const NearestShares near = nearest_shares(pair, gather(pair, motion.position));
     for (int k = 0; k < near.count; ++k) {
       const NearestShares::At& at = near.at[k];
+      if (at.gap < 0) continue;
       Vec3 relative = Vec3::Zero();
       for (int i = 0; i < pair.nodes(); ++i) relative += at.share[i] * motion.velocity[pair.node[i]];
-      const double speed = -relative.dot(at.between) / at.between.norm();
-      const ContactAhead ahead = contact_ahead(law, at.gap, speed, pair.L, true);
-      add(pair.elements.a, ahead.stiffness);
-      add(pair.elements.b, ahead.stiffness);
-      limit = std::min(limit, ahead.limit);
+      limit = std::min(limit, closing_limit(at.gap, -relative.dot(at.between) / at.between.norm(), pair.L));
     }
   }
-  for (std::size_t b = 0; b < stiffness.size(); ++b)
-    limit = std::min(limit, bounce_limit(model.bodies[system.bodies[b]].mass, stiffness[b]));
   return limit;
 }
 
@@ -118,7 +108,7 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
 double FramePart::time_limit(const Parameters& parameters, const State& state) {
   const ContactLaw law = contact_law(parameters, state.time);
   system_.load(state, motion_);
-  double limit = std::min(k_longest_step, member_limit(system_, law, motion_));
+  double limit = std::min(k_longest_step, member_limit(system_, motion_));
   int first = 0;
   for (const int b : system_.bodies) {
     const Body& body = system_.model.bodies[b];

@@ -42,11 +42,8 @@ struct ContactAhead {
   double stiffness;  ///< N/m; 0 when it is open
 };
 /// gap: m, < 0 when it is closed. closing: m/s.
-inline ContactAhead contact_ahead(const ContactLaw& law, double gap, double closing, double L,
-                                  bool between_members = false) {
-  if (gap < 0)
-    return {std::numeric_limits<double>::infinity(),
-            (between_members ? law.member_share : 1) * penalty_stiffness(law, -gap / L, L, between_members)};
+inline ContactAhead contact_ahead(const ContactLaw& law, double gap, double closing, double L) {
+  if (gap < 0) return {std::numeric_limits<double>::infinity(), penalty_stiffness(law, -gap / L, L)};
   return {closing_limit(gap, closing, L), 0};
 }
 
