@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "scene_samples.h"
 #include "solver/io/scene/scene.h"
@@ -122,6 +123,27 @@ TEST(Contents, a_light_block_on_a_frames_shelf_does_not_shorten_its_steps) {
   }
   EXPECT_LT(steps[0], steps[1] / 10);
   EXPECT_LT((end[0] - end[1]).norm(), 1e-5);
+}
+
+// Three frames apart, each with a block on its shelf: whoever advances them.
+TEST(Contents, threads_do_not_change_a_bit) {
+  const Scene scene =
+      parse_scene(k_open + "model = \"frame\"\ncopies = [[0, 0, 0], [0, 4, 0], [0, 8, 0]]\n" + k_box +
+                      "copies = [[0, 0, 0], [0, 4, 0], [0, 8, 0]]\n[[shake]]\ntype = \"sine\"\nfrequency = "
+                      "2\namplitude = 6\n",
+                  "apart.toml", {"run.duration=0.2"});
+  const auto last = [&](int workers) {
+    topple::Run run(scene.setup);
+    if (workers > 1)
+      run.share({workers, [&](int count, const std::function<void(int, int)>& f) {
+                   for (int task = count - 1; task >= 0; --task) f(task, task % workers);
+                 }});
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    EXPECT_FALSE(run.state().member_sticks.empty());
+    return hash(run.state());
+  };
+  const auto alone = last(1);
+  for (const int workers : {2, 4}) EXPECT_EQ(last(workers), alone);
 }
 
 /// Against the closed cabinet, widths of both 1 mm.
