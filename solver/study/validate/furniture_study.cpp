@@ -180,10 +180,11 @@ std::string run_furniture_case(const std::vector<FurnitureValue>& values, const 
   std::vector<int> hits(levels.size());
   for (int n = 0; n < k_motions; ++n) {
     const auto motion = floor_noise(point.ratio * value.corner(), n);
-    for (std::size_t level = 0; level < levels.size(); ++level) {
-      if (give_up()) return "";
-      hits[level] += overturns(block, motion, levels[level] * value.median, k_after);
-    }
+    std::vector<BlockRun> runs;
+    for (const double level : levels) runs.push_back({block, motion, level * value.median, k_after});
+    const std::vector<bool> fell = overturns(runs, give_up);
+    if (fell.empty()) return "";
+    for (std::size_t level = 0; level < levels.size(); ++level) hits[level] += fell[level];
   }
   return ordered_json{{"levels", levels}, {"hits", hits}}.dump();
 }

@@ -115,13 +115,16 @@ void draw_anew(const RockFit& fit, const std::vector<bool>& fell, RockFindings& 
 
 }  // namespace
 
-bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, double factor) {
+std::vector<bool> falls(const RockTraits& traits, const Rock& rock, const std::vector<GraniteTest>& tests,
+                        double factor, const std::function<bool()>& give_up) {
   planar::Block block;
   block.inertia = traits.inertia_over_mass * rock.inertia;
   block.left = rock.left, block.right = rock.right, block.height = traits.height;
   block.static_friction = block.kinetic_friction = k_rough;
   block.restitution = rock.restitution;
-  return overturns(block, test.motion, factor, k_after_record);
+  std::vector<BlockRun> runs;
+  for (const GraniteTest& test : tests) runs.push_back({block, test.motion, factor, k_after_record});
+  return overturns(runs, give_up);
 }
 
 Rock designed(int k) {

@@ -11,6 +11,7 @@
 // fills the range evenly and depends on no outcome: leaving tests out, or drawing them anew, needs no runs.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ struct RockDistribution {
 /// s, that a run goes on behind the record.
 inline constexpr double k_after_record = 1;
 
-/// Whether the rock falls in this test, all accelerations times `factor`.
-bool falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test, double factor = 1);
+/// In which of the tests the rock falls, all accelerations times `factor`; empty: give_up() came true.
+std::vector<bool> falls(const RockTraits& traits, const Rock& rock, const std::vector<GraniteTest>& tests,
+                        double factor, const std::function<bool()>& give_up);
 
 /// The rocks whose runs a fit is made of; of equal weight.
 inline constexpr int k_design = 1024;

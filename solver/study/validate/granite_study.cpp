@@ -20,15 +20,11 @@ constexpr double k_change = 0.05;  // of the input
 constexpr int k_fit_of_rock = k_design + k_plain;
 constexpr int k_runs_of_rock = k_members + k_factors + 1;  // of all tests; then the rigid ones, test by test
 
-/// One rock in all tests; empty: gave up.
-template <class Falls>
-std::string row_of_tests(std::size_t first, std::size_t last, const std::function<bool()>& give_up,
-                         const Falls& falls_in) {
+/// A rock in tests; empty: gave up.
+std::string row_of(const std::vector<bool>& falls) {
+  if (falls.empty()) return "";
   std::string fell;
-  for (std::size_t i = first; i < last; ++i) {
-    if (give_up()) return "";
-    fell += falls_in(i) ? '1' : '0';
-  }
+  for (const bool one : falls) fell += one ? '1' : '0';
   return ordered_json{{"fell", fell}}.dump();
 }
 
@@ -149,7 +145,7 @@ std::string run_fit_case(const std::vector<GraniteTest>& tests, int k, const std
   const RockTraits& traits = rocks()[static_cast<std::size_t>(k / k_fit_of_rock)];
   const int of = k % k_fit_of_rock;
   const Rock rock = of < k_design ? designed(of) : plain(of - k_design);
-  return row_of_tests(0, tests.size(), give_up, [&](std::size_t i) { return falls(traits, rock, tests[i]); });
+  return row_of(falls(traits, rock, tests, 1, give_up));
 }
 
 GraniteFit fit_granite(const std::vector<GraniteTest>& tests, const std::vector<std::string>& rows) {
@@ -178,7 +174,7 @@ std::string run_prediction_case(const std::vector<GraniteTest>& tests, const Gra
   if (of >= k_runs_of_rock) {
     const auto test = static_cast<std::size_t>(of - k_runs_of_rock);
     const bool fell = rigid_falls(traits, found.plain, tests[test], give_up);
-    return give_up() ? "" : ordered_json{{"fell", fell ? "1" : "0"}}.dump();
+    return row_of(give_up() ? std::vector<bool>{} : std::vector<bool>{fell});
   }
   const bool member = of < k_members, changed = !member && of < k_members + k_factors;
   const Rock rock = member    ? found.members[static_cast<std::size_t>(of)]
@@ -186,8 +182,7 @@ std::string run_prediction_case(const std::vector<GraniteTest>& tests, const Gra
                               : found.plain;
   const double factor =
       changed ? even_factors(k_factors, k_change)[static_cast<std::size_t>(of - k_members)] : 1;
-  return row_of_tests(0, tests.size(), give_up,
-                      [&](std::size_t i) { return falls(traits, rock, tests[i], factor); });
+  return row_of(falls(traits, rock, tests, factor, give_up));
 }
 
 GraniteResults gather_granite(const std::vector<GraniteTest>& tests, const GraniteFit& fit, bool fitted_here,
