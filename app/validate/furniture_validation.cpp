@@ -100,17 +100,15 @@ std::optional<Comparison> compare_furniture(const ValidationOptions& options, co
       });
   if (!rows) return std::nullopt;
   all->curves = study::gather_furniture(*rows);
-  Comparison found;
-  found.title = "Furniture values of the Japanese evaluation";
-  found.entries = study::furniture_json(all->values, all->curves);
-  found.rows = study::furniture_rows(all->values, all->curves);
-  found.chart = [all = all.get()](const std::string& origin, study::ChartFormat format) {
-    return study::furniture_chart(all->values, all->curves, origin, format);
-  };
-  found.page = page_of(*all);
-  found.text = in_words(*all);
-  found.keeps = all;
-  return found;
+  return Comparison{.title = "Furniture values of the Japanese evaluation",
+                    .entries = study::furniture_json(all->values, all->curves),
+                    .rows = study::furniture_rows(all->values, all->curves),
+                    .chart =
+                        [all](const std::string& origin, study::ChartFormat format) {
+                          return study::furniture_chart(all->values, all->curves, origin, format);
+                        },
+                    .page = page_of(*all),
+                    .text = in_words(*all)};
 }
 
 }  // namespace

@@ -26,6 +26,25 @@ std::string with_interval(const study::Scores& scores) {
                      100 * scores.interval.high);
 }
 
+/// Mean share right over the halves.
+std::string mean_share(const study::RockResults& rock, study::Scores study::HalfScores::*of) {
+  double sum = 0;
+  for (const study::HalfScores& half : rock.halves) sum += (half.*of).share();
+  return percent(sum / static_cast<double>(rock.halves.size()));
+}
+
+std::string halves_in_words(const study::RockResults& rock) {
+  int behind = 0, beyond_chance = 0;
+  for (const study::HalfScores& half : rock.halves)
+    behind += half.only_plain > half.only_model, beyond_chance += half.behind_plain();
+  return fmt::format(
+      "one half by the other, {} times: right {}, threshold {}, plain block {} in the mean; behind the plain "
+      "block in {}, beyond chance in {}",
+      rock.halves.size(), mean_share(rock, &study::HalfScores::scores),
+      mean_share(rock, &study::HalfScores::threshold), mean_share(rock, &study::HalfScores::plain), behind,
+      beyond_chance);
+}
+
 std::string in_words(const Granite& of) {
   std::string text = fmt::format("{} tests, {}\n", of.data.tests.size(),
                                  of.results.fitted_here
@@ -36,12 +55,13 @@ std::string in_words(const Granite& of) {
     text += fmt::format(
         "{}: right {}, Brier {:.3f}; never falls {}, threshold of velocity {}, plain Housner block {}\n"
         "  {} of {} verdicts open under 5 % of the input; sure ones right {}; missed {}, expected {:.1f}\n"
-        "  rigid model on the plain block's edges: right {}, as the planar block {}\n",
+        "  rigid model of the median rock: right {}; as a planar block {}; alike in {}\n",
         study::rocks()[k].name, with_interval(rock.scores), rock.scores.brier,
         percent(rock.never.scores.share()), percent(rock.threshold.scores.share()),
         percent(rock.plain.scores.share()), rock.of_open.count, rock.scores.count,
         percent(rock.of_sure.share()), rock.scores.count - rock.scores.right, rock.expected_missed,
-        percent(rock.rigid.scores.share()), percent(rock.agreement));
+        percent(rock.rigid.scores.share()), percent(rock.median.scores.share()), percent(rock.agreement));
+    if (!rock.halves.empty()) text += "  " + halves_in_words(rock) + "\n";
   }
   return text;
 }
@@ -55,7 +75,8 @@ std::vector<std::vector<std::string>> score_rows(const Granite& of) {
           {"plain Housner block", rock.plain.scores},
           {"threshold of velocity", rock.threshold.scores},
           {"never falls", rock.never.scores},
-          {"rigid model, plain block's edges", rock.rigid.scores}})
+          {"median rock", rock.median.scores},
+          {"median rock, rigid model", rock.rigid.scores}})
       rows.push_back({study::rocks()[k].name + std::string(", ") + name, with_interval(scores),
                       fmt::format("{:.3f}", scores.brier), std::to_string(scores.confusion.hits),
                       std::to_string(scores.confusion.false_alarms), std::to_string(scores.confusion.misses),
@@ -80,6 +101,7 @@ std::vector<std::vector<std::string>> fit_rows(const Granite& of) {
     rows.push_back({study::rocks()[k].name, shown(at.median.left, low.median.left, high.median.left, 1e-3, 1),
                     shown(at.median.right, low.median.right, high.median.right, 1e-3, 1),
                     shown(at.median.restitution, low.median.restitution, high.median.restitution, 1, 2),
+                    shown(at.median.inertia, low.median.inertia, high.median.inertia, 1, 2),
                     shown(at.edge_scatter, low.edge_scatter, high.edge_scatter, 1e-2, 0),
                     shown(at.restitution_scatter, low.restitution_scatter, high.restitution_scatter, 1, 2),
                     fmt::format("{:.3f}", found.threshold),
@@ -119,6 +141,29 @@ std::string missed_section(const Granite& of) {
                       words + html_table({"", "velocity, m/s", "probability", "measured", "open"}, rows));
 }
 
+std::string halves_section(const Granite& of) {
+  if (!of.results.fitted_here) return "";
+  std::vector<std::vector<std::string>> rows;
+  std::string words = html_paragraph(fmt::format(
+      "Every other test by the rest and the reverse, then {} random cuts (seed {}), both ways. Only one "
+      "right: "
+      "tests that the scattered block tells rightly and the plain block does not, and the reverse.",
+      study::k_random_halves, study::k_half_seed));
+  for (std::size_t k = 0; k < study::k_rocks; ++k) {
+    words += html_paragraph(study::rocks()[k].name + std::string(": ") +
+                            halves_in_words(of.results.rocks[k]) + ".");
+    for (const study::HalfScores& half : of.results.rocks[k].halves)
+      rows.push_back({study::rocks()[k].name, with_interval(half.scores),
+                      fmt::format("{:.3f}", half.scores.brier), percent(half.plain.share()),
+                      percent(half.threshold.share()), percent(half.never.share()),
+                      fmt::format("{}, {}", half.only_model, half.only_plain)});
+  }
+  return html_section("One half by the other",
+                      words + html_table({"", "right, 95 %", "Brier", "plain block", "threshold",
+                                          "never falls", "only one right"},
+                                         rows));
+}
+
 std::string page_of(const Granite& of) {
   const auto& [first, second] = of.results.rocks;
   std::string result = html_tiles({{percent(first.scores.share()), "SP1: tests predicted rightly"},
@@ -134,14 +179,12 @@ std::string page_of(const Granite& of) {
                         "stands, fell", "stands, stood"},
                        score_rows(of));
   std::string fitted = html_paragraph(
-      "A planar block without slip, height and inertia of the mesh. Fitted by likelihood: the "
-      "distances of "
-      "both edges, a factor on the rate that Housner's impact leaves, and how far both scatter from test to "
-      "test. "
-      "In brackets: 95 % by drawing tests anew.");
-  fitted += html_table(
-      {"", "left, mm", "right, mm", "factor", "edges ±, %", "factor ±", "threshold, m/s", "plain block, mm"},
-      fit_rows(of));
+      "A planar block without slip, its height that of the mesh. Fitted by likelihood: the distances of both "
+      "edges, a factor on the rate that Housner's impact leaves, one on the inertia of the mesh, and how far "
+      "edges and rate scatter from test to test. In brackets: 95 % by drawing tests anew.");
+  fitted += html_table({"", "left, mm", "right, mm", "factor", "inertia", "edges ±, %", "factor ±",
+                        "threshold, m/s", "plain block, mm"},
+                       fit_rows(of));
   std::string open;
   for (std::size_t k = 0; k < study::k_rocks; ++k) {
     const study::RockResults& rock = of.results.rocks[k];
@@ -152,7 +195,7 @@ std::string page_of(const Granite& of) {
                                    study::rocks()[k].name, rock.scores.count, rock.of_open.count,
                                    rock.of_open.brier, rock.of_sure.count, percent(rock.of_sure.share())));
   }
-  return html_section("Result", result) + k_chart_here +
+  return html_section("Result", result) + k_chart_here + halves_section(of) +
          html_section("Probability instead of verdict", open) + html_section("What is fitted", fitted) +
          missed_section(of) +
          html_section(
@@ -183,25 +226,24 @@ std::optional<Comparison> compare_granite(const ValidationOptions& options, cons
   ordered_json predicting = settings;
   predicting["fit"] = study::fit_as_json(all->fit);
   const auto rows =
-      run_cases(options, "granite: predictions", stem, predicting, study::prediction_cases(tests),
+      run_cases(options, "granite: predictions", stem, predicting, study::prediction_cases(tests, here),
                 work([&](int k, const std::function<bool()>& give_up) {
-                  return study::run_prediction_case(tests, all->fit, k, give_up);
+                  return study::run_prediction_case(tests, all->fit, here, k, give_up);
                 }));
   if (!rows) return std::nullopt;
   all->results = study::gather_granite(tests, all->fit, here, *rows);
-  Comparison found;
-  found.title = "Two rocks of granite on a shaking table";
-  found.entries = study::granite_json(tests, all->fit, all->results);
-  found.rows = study::granite_rows(tests, all->results);
-  found.skipped = all->data.skipped;
-  found.chart = [all = all.get()](const std::string& origin, study::ChartFormat format) {
-    return study::granite_chart(all->data.tests, all->fit, all->results, origin, format);
-  };
-  found.page = page_of(*all);
-  found.text = in_words(*all);
-  if (here) found.fit = study::fit_as_json(all->fit);
-  found.keeps = all;
-  return found;
+  return Comparison{.title = "Two rocks of granite on a shaking table",
+                    .entries = study::granite_json(tests, all->fit, all->results),
+                    .rows = study::granite_rows(tests, all->results),
+                    .skipped = all->data.skipped,
+                    .chart =
+                        [all](const std::string& origin, study::ChartFormat format) {
+                          return study::granite_chart(all->data.tests, all->fit, all->results, origin,
+                                                      format);
+                        },
+                    .page = page_of(*all),
+                    .text = in_words(*all),
+                    .fit = here ? std::optional(study::fit_as_json(all->fit)) : std::nullopt};
 }
 
 }  // namespace

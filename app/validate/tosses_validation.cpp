@@ -146,18 +146,16 @@ std::optional<Comparison> compare_tosses(const ValidationOptions& options, const
   all->results.fitted_here = here;
   all->results.of_fitted = study::scored_tosses(all->results.fitted);
   all->results.of_published = study::scored_tosses(all->results.published);
-  Comparison found;
-  found.title = "A tossed cube";
-  found.entries = study::tosses_json(all->fit, all->results);
-  found.rows = study::toss_rows(all->tosses, all->results);
-  found.chart = [all = all.get()](const std::string& origin, study::ChartFormat format) {
-    return study::toss_chart(all->fit, all->results, origin, format);
-  };
-  found.page = page_of(*all);
-  found.text = in_words(*all);
-  if (here) found.fit = study::fit_as_json(all->fit);
-  found.keeps = all;
-  return found;
+  return Comparison{.title = "A tossed cube",
+                    .entries = study::tosses_json(all->fit, all->results),
+                    .rows = study::toss_rows(all->tosses, all->results),
+                    .chart =
+                        [all](const std::string& origin, study::ChartFormat format) {
+                          return study::toss_chart(all->fit, all->results, origin, format);
+                        },
+                    .page = page_of(*all),
+                    .text = in_words(*all),
+                    .fit = here ? std::optional(study::fit_as_json(all->fit)) : std::nullopt};
 }
 
 }  // namespace

@@ -31,10 +31,9 @@ struct Comparison {
   study::Skipped skipped = {};
   /// gnuplot script. `origin`: version and machine.
   std::function<std::string(const std::string& origin, study::ChartFormat format)> chart;
-  std::string page;                        ///< HTML of its sections; k_chart_here is where the chart comes
-  std::string text;                        ///< for a person
-  std::optional<Json> fit = {};            ///< of what was fitted here
-  std::shared_ptr<const void> keeps = {};  ///< what `chart` reads
+  std::string page;              ///< HTML of its sections; k_chart_here is where the chart comes
+  std::string text;              ///< for a person
+  std::optional<Json> fit = {};  ///< of what was fitted here
 };
 inline constexpr const char* k_chart_here = "<!-- chart -->";
 

@@ -16,8 +16,10 @@ namespace {
 
 constexpr double k_least_edge = 0.012, k_most_edge = 0.06;  // m, range of the design
 constexpr double k_least_restitution = 0.6;
-constexpr double k_step_edge = 0.1, k_step_restitution = 0.04;  // of the lattice of medians; in ln
-constexpr std::array<double, 3> k_edge_scatters{0.15, 0.2, 0.3};
+constexpr double k_most_inertia = 2.5;
+// Of the lattice of medians; of edges and inertia in their logarithms.
+constexpr double k_step_edge = 0.15, k_step_restitution = 0.05, k_step_inertia = 0.229;
+constexpr std::array<double, 2> k_edge_scatters{0.15, 0.25};
 constexpr std::array<double, 2> k_restitution_scatters{0.06, 0.12};
 constexpr double k_fewest = 10;                 // rocks, in effect, that a share is of
 constexpr double k_unlikely = 12;               // ln of a likelihood over the greatest, that counts as none
@@ -28,10 +30,11 @@ double between(double low, double high, double part) {
   return low + (high - low) * part;
 }
 
-Rock rock_at(double left, double right, double restitution) {
+/// Parts 0..1 of the ranges.
+Rock rock_at(double left, double right, double restitution, double inertia) {
   const double low = std::log(k_least_edge), high = std::log(k_most_edge);
   return {std::exp(between(low, high, left)), std::exp(between(low, high, right)),
-          between(k_least_restitution, 1, restitution), k_slow_inertia};
+          between(k_least_restitution, 1, restitution), std::pow(k_most_inertia, inertia)};
 }
 
 /// Quantile of a normal distribution that is cut at both ends.
@@ -43,22 +46,32 @@ double cut_quantile(double u, double middle, double deviation, double low, doubl
 }
 
 double weight_of(const Rock& rock, const RockDistribution& of) {
-  const std::array<double, 3> away{std::log(rock.left / of.median.left) / of.edge_scatter,
+  const std::array<double, 4> away{std::log(rock.left / of.median.left) / of.edge_scatter,
                                    std::log(rock.right / of.median.right) / of.edge_scatter,
-                                   (rock.restitution - of.median.restitution) / of.restitution_scatter};
-  const double square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+                                   (rock.restitution - of.median.restitution) / of.restitution_scatter,
+                                   std::log(rock.inertia / of.median.inertia) / k_inertia_scatter};
+  const double square = std::inner_product(away.begin(), away.end(), away.begin(), 0.);
   return square > k_far * k_far ? 0 : std::exp(-square / 2);
 }
 
 std::vector<RockDistribution> lattice() {
   std::vector<RockDistribution> all;
+  const auto steps = [](double from, double to, double step, const auto& take) {
+    for (int n = 0; from + n * step < to + 1e-9; ++n) take(from + n * step);
+  };
+  const double low = std::log(k_least_edge), high = std::log(k_most_edge);
   for (const double edges : k_edge_scatters)
     for (const double landing : k_restitution_scatters)
-      for (double left = k_least_edge; left <= k_most_edge; left *= std::exp(k_step_edge))
-        for (double right = k_least_edge; right <= k_most_edge; right *= std::exp(k_step_edge))
-          for (double restitution = 1; restitution > k_least_restitution - 1e-9;
-               restitution -= k_step_restitution)
-            all.push_back({{left, right, restitution, k_slow_inertia}, edges, landing});
+      steps(low, high, k_step_edge, [&](double left) {
+        steps(low, high, k_step_edge, [&](double right) {
+          steps(k_least_restitution, 1, k_step_restitution, [&](double restitution) {
+            steps(0, std::log(k_most_inertia), k_step_inertia, [&](double inertia) {
+              all.push_back(
+                  {{std::exp(left), std::exp(right), restitution, std::exp(inertia)}, edges, landing});
+            });
+          });
+        });
+      });
   return all;
 }
 
@@ -67,13 +80,15 @@ Rock drawn_from(const RockDistribution& from, int k) {
   const auto at = [k](int dimension) {
     return shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), dimension);
   };
+  const auto of_logarithm = [](double u, double median, double scatter, double low, double high) {
+    return std::exp(cut_quantile(u, std::log(median), scatter, std::log(low), std::log(high)));
+  };
   const auto edge = [&](double u, double median) {
-    return std::exp(
-        cut_quantile(u, std::log(median), from.edge_scatter, std::log(k_least_edge), std::log(k_most_edge)));
+    return of_logarithm(u, median, from.edge_scatter, k_least_edge, k_most_edge);
   };
   return {edge(at(0), from.median.left), edge(at(1), from.median.right),
           cut_quantile(at(2), from.median.restitution, from.restitution_scatter, k_least_restitution, 1),
-          k_slow_inertia};
+          of_logarithm(at(3), from.median.inertia, k_inertia_scatter, 1, k_most_inertia)};
 }
 
 Interval middle_of(std::vector<double> values) {
@@ -91,6 +106,7 @@ void each_number(Distribution& low, Distribution& high, F f) {
   f(low.median.right, high.median.right, [](const RockDistribution& d) { return d.median.right; });
   f(low.median.restitution, high.median.restitution,
     [](const RockDistribution& d) { return d.median.restitution; });
+  f(low.median.inertia, high.median.inertia, [](const RockDistribution& d) { return d.median.inertia; });
   f(low.edge_scatter, high.edge_scatter, [](const RockDistribution& d) { return d.edge_scatter; });
   f(low.restitution_scatter, high.restitution_scatter,
     [](const RockDistribution& d) { return d.restitution_scatter; });
@@ -131,14 +147,12 @@ Rock designed(int k) {
   const auto at = [k](int dimension) {
     return shifted_sobol(k_stream, static_cast<std::uint32_t>(k), dimension);
   };
-  return rock_at(at(0), at(1), at(2));
+  return rock_at(at(0), at(1), at(2), at(3));
 }
 
 Rock plain(int k) {
   constexpr double k_last = k_plain_edges - 1;
-  Rock rock = rock_at(k % k_plain_edges / k_last, k / k_plain_edges / k_last, 1);
-  rock.inertia = 1;
-  return rock;
+  return rock_at(k % k_plain_edges / k_last, k / k_plain_edges / k_last, 1, 0);
 }
 
 RockFit::RockFit(const RunTable& runs) : tests_(runs.front().size()) {
@@ -193,7 +207,8 @@ RockDistribution RockFit::mean(const std::vector<double>& belief) const {
   using D = RockDistribution;
   return {{std::exp(over([](const D& d) { return std::log(d.median.left); })),
            std::exp(over([](const D& d) { return std::log(d.median.right); })),
-           over([](const D& d) { return d.median.restitution; }), k_slow_inertia},
+           over([](const D& d) { return d.median.restitution; }),
+           std::exp(over([](const D& d) { return std::log(d.median.inertia); }))},
           std::exp(over([](const D& d) { return std::log(d.edge_scatter); })),
           std::exp(over([](const D& d) { return std::log(d.restitution_scatter); }))};
 }
@@ -203,7 +218,7 @@ std::vector<Rock> RockFit::drawn(const std::vector<double>& belief) const {
   std::partial_sum(belief.begin(), belief.end(), up_to.begin());
   std::vector<Rock> members;
   for (int k = 0; k < k_members; ++k) {
-    const double u = shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), 3) * up_to.back();
+    const double u = shifted_sobol(k_stream + 1, static_cast<std::uint32_t>(k), 4) * up_to.back();
     const auto at = std::ranges::upper_bound(up_to, u);
     const auto c = std::min(static_cast<std::size_t>(at - up_to.begin()), candidates() - 1);
     members.push_back(drawn_from(candidate_[c], k));
@@ -221,6 +236,40 @@ int best_plain(const RunTable& runs, const std::vector<bool>& fell, const std::v
   return best;
 }
 
+Predictions predicted(const RockFit& fit, const RunTable& plain_runs, const std::vector<double>& velocity,
+                      const std::vector<bool>& fell, const std::vector<bool>& used) {
+  const std::vector<double> belief = fit.belief(fell, std::vector<double>(used.begin(), used.end()));
+  const std::string& by_plain = plain_runs[static_cast<std::size_t>(best_plain(plain_runs, fell, used))];
+  const double threshold = best_threshold(velocity, fell, used);
+  Predictions out;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    out.probability.push_back(fit.probability(belief, i));
+    out.by_threshold.push_back(velocity[i] > threshold);
+    out.by_plain.push_back(by_plain[i] == '1');
+  }
+  return out;
+}
+
+std::vector<std::vector<bool>> halves_of(std::size_t tests) {
+  std::vector<std::vector<bool>> out;
+  const auto add = [&](std::vector<bool> used) {
+    out.push_back(used);
+    used.flip();
+    out.push_back(std::move(used));
+  };
+  std::vector<bool> used(tests);
+  for (std::size_t i = 0; i < tests; i += 2) used[i] = true;
+  add(used);
+  std::vector<std::size_t> order(tests);
+  for (std::uint64_t n = 0; n < k_random_halves; ++n) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [n](std::size_t i) { return scattered(k_half_seed + n, i); });
+    for (std::size_t k = 0; k < tests; ++k) used[order[k]] = k < tests / 2;
+    add(used);
+  }
+  return out;
+}
+
 RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, const RunTable& designed_runs,
                       const RunTable& plain_runs) {
   std::vector<bool> fell;
@@ -230,24 +279,27 @@ RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, c
   const std::size_t count = tests.size();
   const RockFit fit(designed_runs);
   RockFindings found;
-  found.probability.resize(count), found.by_threshold.resize(count), found.by_plain.resize(count);
+  Predictions& crossed = found.crossed;
+  crossed = {std::vector<double>(count), std::vector<bool>(count), std::vector<bool>(count)};
   for (std::size_t fold = 0; fold < k_folds; ++fold) {
-    std::vector<double> weight(count, 1);
     std::vector<bool> used(count, true);
-    for (std::size_t i = fold; i < count; i += k_folds) weight[i] = 0, used[i] = false;
-    const std::vector<double> belief = fit.belief(fell, weight);
-    const int block = best_plain(plain_runs, fell, used);
-    const double threshold = best_threshold(velocity, fell, used);
+    for (std::size_t i = fold; i < count; i += k_folds) used[i] = false;
+    const Predictions by_others = predicted(fit, plain_runs, velocity, fell, used);
     for (std::size_t i = fold; i < count; i += k_folds) {
-      found.probability[i] = fit.probability(belief, i);
-      found.by_threshold[i] = velocity[i] > threshold;
-      found.by_plain[i] = plain_runs[static_cast<std::size_t>(block)][i] == '1';
+      crossed.probability[i] = by_others.probability[i];
+      crossed.by_threshold[i] = by_others.by_threshold[i];
+      crossed.by_plain[i] = by_others.by_plain[i];
     }
+  }
+  for (std::vector<bool>& used : halves_of(count)) {
+    Predictions by_others = predicted(fit, plain_runs, velocity, fell, used);
+    found.halves.push_back({std::move(used), std::move(by_others)});
   }
   const std::vector<bool> all(count, true);
   const std::vector<double> belief = fit.belief(fell, std::vector<double>(count, 1));
   found.fitted = fit.mean(belief);
   found.members = fit.drawn(belief);
+  for (std::size_t i = 0; i < count; ++i) found.in_sample.push_back(fit.probability(belief, i));
   found.threshold = best_threshold(velocity, fell, all);
   found.plain = plain(best_plain(plain_runs, fell, all));
   draw_anew(fit, fell, found);

@@ -1,10 +1,12 @@
 // What is fitted to shake-table tests of a rock, and by which rule.
 //
-// A rock is a planar block without slip, its height and inertia those of its mesh, the inertia times
-// k_slow_inertia. Unknown are the distances of its two edges and the factor on the rate that Housner's impact
-// leaves. It is put back by hand between tests, so they scatter: the logarithms of both distances with one
-// standard deviation, the factor with another, cut where the design ends. The probability p of falling in a
-// test is the share among rocks so scattered, and the likelihood of a distribution
+// A rock is a planar block without slip, its height that of its mesh. Unknown are the distances of its two
+// edges, the factor on the rate that Housner's impact leaves, and a factor on the inertia of its mesh: what
+// rolls on a round underside falls as slowly as with so much more. It is put back by hand between tests, so
+// they scatter: the logarithms of both distances with one standard deviation, the factor on the rate with
+// another, the logarithm of that on the inertia with k_inertia_scatter, cut where the design ends. The
+// probability p of falling in a test is the share among rocks so scattered, and the likelihood of a
+// distribution
 //   ln L = sum over tests of ln(fell ? q : 1 - q),  q = e + (1 - 2 e) p,  e = k_unknown.
 // What is fitted is the distribution over a lattice of medians and scatters that is proportional to L; a test
 // is predicted by the mean of p over it. Shares are weighted means over the runs of one design of rocks that
@@ -26,16 +28,13 @@ struct Rock {
   double inertia = 1;          ///< factor on that about the centre of gravity
 };
 
-/// The underside is round: what rolls on a radius of 55 mm falls as slowly as with so much more inertia. Of
-/// 1, 1.25, 1.6 and 2 that under which the 238 tests of odd numbers are likeliest, both rocks together.
-inline constexpr double k_slow_inertia = 1.6;
-
 /// Rocks that scatter about a median.
 struct RockDistribution {
   Rock median;
   double edge_scatter = 0;         ///< standard deviation of the logarithms of the edges
   double restitution_scatter = 0;  ///< standard deviation
 };
+inline constexpr double k_inertia_scatter = 0.25;  ///< standard deviation of its logarithm
 
 /// s, that a run goes on behind the record.
 inline constexpr double k_after_record = 1;
@@ -87,8 +86,27 @@ class RockFit {
 /// The plain block that is right most often in the used tests; of equals the first of its lattice.
 int best_plain(const RunTable& runs, const std::vector<bool>& fell, const std::vector<bool>& used);
 
+/// What is said of tests by others.
+struct Predictions {
+  std::vector<double> probability;
+  std::vector<bool> by_threshold, by_plain;  ///< of the baselines
+};
+/// Of each test, in the order of the fit: by the used ones. Outcomes of the others are not looked at.
+Predictions predicted(const RockFit& fit, const RunTable& plain_runs, const std::vector<double>& velocity,
+                      const std::vector<bool>& fell, const std::vector<bool>& used);
+
 /// Folds of the cross-validation: test i of the list is in fold i % k_folds.
 inline constexpr std::size_t k_folds = 10;
+
+/// The tests cut in two, one half predicted by the other, as `used` says.
+struct Half {
+  std::vector<bool> used;
+  Predictions predictions;
+};
+/// Every other test of the list by the rest, then k_random_halves times that half of the tests with the lower
+/// scattered(k_half_seed + n, index); each also the other way round.
+inline constexpr std::uint64_t k_random_halves = 5, k_half_seed = 2021;
+std::vector<std::vector<bool>> halves_of(std::size_t tests);
 
 /// What is found in tests about one rock.
 struct RockFindings {
@@ -97,9 +115,10 @@ struct RockFindings {
   RockDistribution low, high;  ///< each number for itself, 95 % by drawing tests anew k_draws times
   double threshold = 0;        ///< m/s, of the baseline
   Rock plain;                  ///< of the baseline
-  // Of each test, by what was fitted on the other folds.
-  std::vector<double> probability;
-  std::vector<bool> by_threshold, by_plain;
+  // Not in a file:
+  Predictions crossed;            ///< of each test, by what was fitted on the other folds
+  std::vector<double> in_sample;  ///< of each test, by what was fitted on all
+  std::vector<Half> halves;
 };
 inline constexpr std::uint64_t k_draws = 200;
 RockFindings fit_rock(const std::vector<GraniteTest>& tests, std::size_t rock, const RunTable& designed_runs,

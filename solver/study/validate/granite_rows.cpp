@@ -31,6 +31,7 @@ constexpr Number k_numbers[] = {
     {"left_m", [](RockDistribution& d) -> double& { return d.median.left; }, 1e-3, 1},
     {"right_m", [](RockDistribution& d) -> double& { return d.median.right; }, 1e-3, 1},
     {"restitution", [](RockDistribution& d) -> double& { return d.median.restitution; }, 0, 1},
+    {"inertia", [](RockDistribution& d) -> double& { return d.median.inertia; }, 1, 10},
     {"edge_scatter", [](RockDistribution& d) -> double& { return d.edge_scatter; }, 1e-6, 2},
     {"restitution_scatter", [](RockDistribution& d) -> double& { return d.restitution_scatter; }, 1e-6, 2}};
 
@@ -74,6 +75,20 @@ ordered_json missed_json(const std::vector<GraniteTest>& tests, const RockResult
   return missed;
 }
 
+ordered_json halves_json(const RockResults& rock) {
+  ordered_json halves = ordered_json::array();
+  for (const HalfScores& half : rock.halves)
+    halves.push_back({{"tests", half.scores.count},
+                      {"right", rounded(half.scores.share())},
+                      {"brier", rounded(half.scores.brier)},
+                      {"never", rounded(half.never.share())},
+                      {"pgv", rounded(half.threshold.share())},
+                      {"housner", rounded(half.plain.share())},
+                      {"only_model_right", half.only_model},
+                      {"only_housner_right", half.only_plain}});
+  return halves;
+}
+
 ordered_json rock_json(const std::vector<GraniteTest>& tests, std::size_t k, const RockFindings& found,
                        const GraniteResults& results) {
   const RockResults& rock = results.rocks[k];
@@ -95,7 +110,11 @@ ordered_json rock_json(const std::vector<GraniteTest>& tests, std::size_t k, con
            {{"never", rounded(rock.never.scores.brier)},
             {"pgv", rounded(rock.threshold.scores.brier)},
             {"housner", rounded(rock.plain.scores.brier)}}},
-          {"rigid", {{"right", rounded(rock.rigid.scores.share())}, {"as_planar", rounded(rock.agreement)}}},
+          {"median_rock",
+           {{"planar", scores_json(rock.median.scores)},
+            {"rigid", scores_json(rock.rigid.scores)},
+            {"alike", rounded(rock.agreement)}}},
+          {"halves", halves_json(rock)},
           {"in_sample", scores_json(rock.in_sample)},
           {"confusion",
            {{"falls_fell", c.hits},
@@ -128,8 +147,7 @@ RockFindings rock_from(const ordered_json& json) {
     throw io::InputError(fmt::format("members: there are {}, not {}", members.size(), k_members));
   for (const ordered_json& member : members)
     found.members.push_back({number_of(member, 0, 1e-3, 1), number_of(member, 1, 1e-3, 1),
-                             number_of(member, 2, 0, 1), k_slow_inertia});
-  found.fitted.median.inertia = k_slow_inertia;
+                             number_of(member, 2, 0, 1), number_of(member, 3, 1, 10)});
   const ordered_json& baselines = json.at("baselines");
   found.threshold = number_of(baselines, "pgv_m_s", 0, 100);
   found.plain.left = number_of(baselines, "housner_left_m", 1e-3, 1);
@@ -153,6 +171,7 @@ ordered_json granite_rows(const std::vector<GraniteTest>& tests, const GraniteRe
                       {"right", int{rock.forecasts[i].right()}},
                       {"pgv_falls", int{rock.threshold.falls[i]}},
                       {"housner_falls", int{rock.plain.falls[i]}},
+                      {"median_falls", int{rock.median.falls[i]}},
                       {"rigid_falls", int{rock.rigid.falls[i]}}});
     }
   return rows;
@@ -187,7 +206,8 @@ ordered_json fit_as_json(const GraniteFit& fit) {
       rock[std::string(number.key) + "_95"] = as_json({number.of(low), number.of(high)});
     }
     for (const Rock& member : found.members)
-      rock["members"].push_back({rounded(member.left), rounded(member.right), rounded(member.restitution)});
+      rock["members"].push_back({rounded(member.left), rounded(member.right), rounded(member.restitution),
+                                 rounded(member.inertia)});
     rock["baselines"] = {{"pgv_m_s", rounded(found.threshold)},
                          {"housner_left_m", rounded(found.plain.left)},
                          {"housner_right_m", rounded(found.plain.right)}};

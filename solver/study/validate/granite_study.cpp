@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/io/common/errors.h"
+#include "solver/study/validate/granite_rigid.h"
 
 namespace topple::study {
 
@@ -18,7 +19,8 @@ namespace {
 constexpr int k_factors = 9;
 constexpr double k_change = 0.05;  // of the input
 constexpr int k_fit_of_rock = k_design + k_plain;
-constexpr int k_runs_of_rock = k_members + k_factors + 1;  // of all tests; then the rigid ones, test by test
+constexpr int k_plain_run = k_factors;  // behind the median rock under all factors on the input
+constexpr int k_first_member = k_plain_run + 1;
 
 /// A rock in tests; empty: gave up.
 std::string row_of(const std::vector<bool>& falls) {
@@ -32,8 +34,13 @@ std::string fell_in(const std::string& row) {
   return ordered_json::parse(row).at("fell").get<std::string>();
 }
 
-int runs_of_rock(std::size_t tests) {
-  return k_runs_of_rock + static_cast<int>(tests);
+/// Behind them the rigid ones, test by test.
+int first_rigid(bool fitted_here) {
+  return k_first_member + (fitted_here ? 0 : k_members);
+}
+
+int runs_of_rock(std::size_t tests, bool fitted_here) {
+  return first_rigid(fitted_here) + static_cast<int>(tests);
 }
 
 Verdicts verdicts_of(std::vector<bool> falls, const std::vector<GraniteTest>& tests, std::size_t rock) {
@@ -69,28 +76,28 @@ Scores scored_if(const std::vector<Forecast>& forecasts, const std::vector<bool>
 }
 
 struct RockRuns {
-  std::vector<double> share;  ///< of members that fell, per test
-  std::vector<bool> sure, plain, rigid;
+  std::vector<double> share;  ///< of members that fell, per test; empty where they were not run
+  std::vector<bool> sure, median, plain, rigid;
 };
 
-RockRuns runs_of(const std::vector<GraniteTest>& tests, std::size_t rock,
+RockRuns runs_of(const std::vector<GraniteTest>& tests, std::size_t rock, bool fitted_here,
                  const std::vector<std::string>& rows) {
-  const std::size_t begin = rock * static_cast<std::size_t>(runs_of_rock(tests.size()));
-  const auto row = [&](int k) { return fell_in(rows[begin + static_cast<std::size_t>(k)]); };
+  const std::size_t begin = rock * static_cast<std::size_t>(runs_of_rock(tests.size(), fitted_here));
+  const auto row = [&](int k) { return as_bools(fell_in(rows[begin + static_cast<std::size_t>(k)])); };
   RockRuns out;
-  out.share.resize(tests.size()), out.sure.assign(tests.size(), true);
-  for (int k = 0; k < k_members; ++k) {
-    const std::string fell = row(k);
-    for (std::size_t i = 0; i < tests.size(); ++i) out.share[i] += (fell[i] == '1') / double{k_members};
+  out.sure.assign(tests.size(), true);
+  out.median = row(k_factors / 2), out.plain = row(k_plain_run);
+  for (int k = 0; k < k_factors; ++k) {
+    const std::vector<bool> fell = row(k);
+    for (std::size_t i = 0; i < tests.size(); ++i) out.sure[i] = out.sure[i] && fell[i] == out.median[i];
   }
-  const std::string first = row(k_members);
-  for (int k = 1; k < k_factors; ++k) {
-    const std::string fell = row(k_members + k);
-    for (std::size_t i = 0; i < tests.size(); ++i) out.sure[i] = out.sure[i] && fell[i] == first[i];
+  if (!fitted_here) out.share.resize(tests.size());
+  for (int k = k_first_member; k < first_rigid(fitted_here); ++k) {
+    const std::vector<bool> fell = row(k);
+    for (std::size_t i = 0; i < tests.size(); ++i) out.share[i] += fell[i] / double{k_members};
   }
-  out.plain = as_bools(row(k_members + k_factors));
   for (int i = 0; i < static_cast<int>(tests.size()); ++i)
-    out.rigid.push_back(row(k_runs_of_rock + i) == "1");
+    out.rigid.push_back(row(first_rigid(fitted_here) + i).front());
   return out;
 }
 
@@ -100,29 +107,60 @@ std::vector<bool> above(const std::vector<GraniteTest>& tests, double threshold)
   return out;
 }
 
+std::vector<Forecast> forecasts_of(const std::vector<double>& probability,
+                                   const std::vector<GraniteTest>& tests, std::size_t rock) {
+  std::vector<Forecast> out;
+  for (std::size_t i = 0; i < tests.size(); ++i) out.push_back({probability[i], tests[i].fell[rock]});
+  return out;
+}
+
+HalfScores scores_of(const Half& half, const std::vector<GraniteTest>& tests, std::size_t rock) {
+  HalfScores out;
+  const Predictions& by_others = half.predictions;
+  const auto scored_others = [&](const std::vector<double>& probability) {
+    return scored_if(forecasts_of(probability, tests, rock), half.used, false);
+  };
+  const auto as_numbers = [](const std::vector<bool>& falls) {
+    return std::vector<double>(falls.begin(), falls.end());
+  };
+  out.scores = scored_others(by_others.probability);
+  out.plain = scored_others(as_numbers(by_others.by_plain));
+  out.threshold = scored_others(as_numbers(by_others.by_threshold));
+  out.never = scored_others(std::vector<double>(tests.size(), 0));
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const bool fell = tests[i].fell[rock], model = (by_others.probability[i] > 0.5) == fell,
+               block = by_others.by_plain[i] == fell;
+    out.only_model += !half.used[i] && model && !block;
+    out.only_plain += !half.used[i] && block && !model;
+  }
+  return out;
+}
+
 RockResults results_of(const std::vector<GraniteTest>& tests, std::size_t rock, const RockFindings& found,
                        bool fitted_here, const std::vector<std::string>& rows) {
-  const RockRuns runs = runs_of(tests, rock, rows);
+  const RockRuns runs = runs_of(tests, rock, fitted_here, rows);
   RockResults out;
-  std::vector<double> measured, computed;
-  std::vector<Forecast> all;
-  for (std::size_t i = 0; i < tests.size(); ++i) {
-    const double share = fitted_here ? found.probability[i] : runs.share[i];
-    out.forecasts.push_back({share, tests[i].fell[rock]});
-    all.push_back({runs.share[i], tests[i].fell[rock]});
-    out.expected_missed += std::min(share, 1 - share);
-    measured.push_back(tests[i].fell[rock]), computed.push_back(share);
+  const std::vector<double>& computed = fitted_here ? found.crossed.probability : runs.share;
+  out.forecasts = forecasts_of(computed, tests, rock);
+  std::vector<double> measured;
+  for (const Forecast& one : out.forecasts) {
+    out.expected_missed += std::min(one.probability, 1 - one.probability);
+    measured.push_back(one.measured);
   }
-  out.scores = scored(out.forecasts), out.in_sample = scored(all);
+  out.scores = scored(out.forecasts);
+  out.in_sample = fitted_here ? scored(forecasts_of(found.in_sample, tests, rock)) : out.scores;
   out.sure = runs.sure;
   out.of_sure = scored_if(out.forecasts, out.sure, true);
   out.of_open = scored_if(out.forecasts, out.sure, false);
   out.never = verdicts_of(std::vector<bool>(tests.size(), false), tests, rock);
-  out.threshold = verdicts_of(fitted_here ? found.by_threshold : above(tests, found.threshold), tests, rock);
-  out.plain = verdicts_of(fitted_here ? found.by_plain : runs.plain, tests, rock);
+  out.threshold =
+      verdicts_of(fitted_here ? found.crossed.by_threshold : above(tests, found.threshold), tests, rock);
+  out.plain = verdicts_of(fitted_here ? found.crossed.by_plain : runs.plain, tests, rock);
+  out.median = verdicts_of(runs.median, tests, rock);
   out.rigid = verdicts_of(runs.rigid, tests, rock);
   for (std::size_t i = 0; i < tests.size(); ++i)
-    out.agreement += (runs.rigid[i] == runs.plain[i]) / static_cast<double>(tests.size());
+    out.agreement += (runs.rigid[i] == runs.median[i]) / static_cast<double>(tests.size());
+  for (const Half& half : found.halves) out.halves.push_back(scores_of(half, tests, rock));
   out.measured = curve_of(tests, measured), out.computed = curve_of(tests, computed);
   return out;
 }
@@ -161,28 +199,27 @@ GraniteFit fit_granite(const std::vector<GraniteTest>& tests, const std::vector<
   return fit;
 }
 
-int prediction_cases(const std::vector<GraniteTest>& tests) {
-  return static_cast<int>(k_rocks) * runs_of_rock(tests.size());
+int prediction_cases(const std::vector<GraniteTest>& tests, bool fitted_here) {
+  return static_cast<int>(k_rocks) * runs_of_rock(tests.size(), fitted_here);
 }
 
-std::string run_prediction_case(const std::vector<GraniteTest>& tests, const GraniteFit& fit, int k,
-                                const std::function<bool()>& give_up) {
-  const auto index = static_cast<std::size_t>(k / runs_of_rock(tests.size()));
+std::string run_prediction_case(const std::vector<GraniteTest>& tests, const GraniteFit& fit,
+                                bool fitted_here, int k, const std::function<bool()>& give_up) {
+  const int in_rock = runs_of_rock(tests.size(), fitted_here), of = k % in_rock;
+  const auto index = static_cast<std::size_t>(k / in_rock);
   const RockTraits& traits = rocks()[index];
   const RockFindings& found = fit.rocks[index];
-  const int of = k % runs_of_rock(tests.size());
-  if (of >= k_runs_of_rock) {
-    const auto test = static_cast<std::size_t>(of - k_runs_of_rock);
-    const bool fell = rigid_falls(traits, found.plain, tests[test], give_up);
-    return row_of(give_up() ? std::vector<bool>{} : std::vector<bool>{fell});
-  }
-  const bool member = of < k_members, changed = !member && of < k_members + k_factors;
-  const Rock rock = member    ? found.members[static_cast<std::size_t>(of)]
-                    : changed ? found.fitted.median
-                              : found.plain;
-  const double factor =
-      changed ? even_factors(k_factors, k_change)[static_cast<std::size_t>(of - k_members)] : 1;
-  return row_of(falls(traits, rock, tests, factor, give_up));
+  const Rock& median = found.fitted.median;
+  const auto all = [&](const Rock& rock, double factor) {
+    return row_of(falls(traits, rock, tests, factor, give_up));
+  };
+  if (of < k_plain_run) return all(median, even_factors(k_factors, k_change)[static_cast<std::size_t>(of)]);
+  if (of == k_plain_run) return all(found.plain, 1);
+  if (of < first_rigid(fitted_here))
+    return all(found.members[static_cast<std::size_t>(of - k_first_member)], 1);
+  const auto test = static_cast<std::size_t>(of - first_rigid(fitted_here));
+  const bool fell = rigid_falls(traits, median, tests[test], give_up);
+  return row_of(give_up() ? std::vector<bool>{} : std::vector<bool>{fell});
 }
 
 GraniteResults gather_granite(const std::vector<GraniteTest>& tests, const GraniteFit& fit, bool fitted_here,

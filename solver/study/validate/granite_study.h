@@ -31,15 +31,28 @@ nlohmann::ordered_json fit_as_json(const GraniteFit& fit);
 /// Throws io::InputError, with `name`, on what is no such file.
 GraniteFit fit_from_json(const std::string& text, const std::string& name);
 
-/// The runs of predictions.
-int prediction_cases(const std::vector<GraniteTest>& tests);
-std::string run_prediction_case(const std::vector<GraniteTest>& tests, const GraniteFit& fit, int k,
-                                const std::function<bool()>& give_up);
+/// The runs of predictions. `fitted_here`: on these tests, for which those of the fit tell how many of its
+/// rocks fall.
+int prediction_cases(const std::vector<GraniteTest>& tests, bool fitted_here);
+std::string run_prediction_case(const std::vector<GraniteTest>& tests, const GraniteFit& fit,
+                                bool fitted_here, int k, const std::function<bool()>& give_up);
 
 /// A share right beside how sure that is.
 struct Verdicts {
   std::vector<bool> falls;
   Scores scores;
+};
+
+/// One half of the tests predicted by the other.
+struct HalfScores {
+  Scores scores, plain, threshold, never;
+  int only_model = 0, only_plain = 0;  ///< right, the other not
+
+  /// The plain block is right where the model is not so much more often than the reverse that 95 % do not
+  /// hold an even chance.
+  bool behind_plain() const {
+    return only_plain > 0 && wilson(only_plain, only_model + only_plain).low > 0.5;
+  }
 };
 
 struct RockResults {
@@ -48,10 +61,12 @@ struct RockResults {
   /// Whether the input times 0.95 to 1.05 leaves the verdict of the median rock as it is.
   std::vector<bool> sure;
   Scores of_sure, of_open;  ///< count 0: there is none
-  Verdicts never, threshold, plain, rigid;
-  double agreement = 0;          ///< of the rigid model with the planar one, share of tests
-  double expected_missed = 0;    ///< were every probability true: sum of min(p, 1 - p)
-  Fragility measured, computed;  ///< over the peak velocity, m/s
+  Verdicts never, threshold, plain;
+  Verdicts median, rigid;          ///< of the median rock, as a planar block and as a body of the rigid model
+  double agreement = 0;            ///< of these two, share of tests
+  std::vector<HalfScores> halves;  ///< as halves_of(); empty where nothing was fitted here
+  double expected_missed = 0;      ///< were every probability true: sum of min(p, 1 - p)
+  Fragility measured, computed;    ///< over the peak velocity, m/s
 };
 
 struct GraniteResults {
@@ -68,9 +83,5 @@ nlohmann::ordered_json granite_json(const std::vector<GraniteTest>& tests, const
 
 /// What a fit and its rows depend on: a hash of the tests.
 std::string fingerprint(const std::vector<GraniteTest>& tests);
-
-/// A rock in the rigid model, which lands as Housner has it: whether it falls. `rock.restitution` is not its.
-bool rigid_falls(const RockTraits& traits, const Rock& rock, const GraniteTest& test,
-                 const std::function<bool()>& give_up);
 
 }  // namespace topple::study
