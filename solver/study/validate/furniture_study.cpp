@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "solver/io/common/errors.h"
@@ -121,15 +122,20 @@ std::vector<FurnitureValue> read_furniture(const std::filesystem::path& folder) 
   const DataTable table(text, file.string(), {"a0_gal", "ar50_gal", "height_m"});
   std::vector<FurnitureValue> values;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (!(table.at(row, 0) > 0 && table.at(row, 0) < 980)) table.fail(row, 0, "is outside 0..980 gal");
+    if (!(table.at(row, 0) >= 20 && table.at(row, 0) < 980)) table.fail(row, 0, "is outside 20..980 gal");
     if (!(table.at(row, 1) >= table.at(row, 0))) table.fail(row, 1, "is below a0_gal");
     if (!(table.at(row, 2) >= 0.1 && table.at(row, 2) <= 10)) table.fail(row, 2, "is outside 0.1..10 m");
     values.push_back(quoted_value("", table.at(row, 0), table.at(row, 1), table.at(row, 2)));
   }
   if (values.empty()) throw io::InputError(file.string() + ": has no piece");
   const std::vector<std::string> names = text_column(text, "name");
-  for (std::size_t row = 0; row < values.size(); ++row)
+  std::map<std::string, int> lines;
+  for (std::size_t row = 0; row < values.size(); ++row) {
     values[row].name = row < names.size() ? names[row] : fmt::format("piece {}", row + 1);
+    if (const auto [other, is_new] = lines.emplace(values[row].name, table.line(row)); !is_new)
+      throw io::InputError(fmt::format("{}:{}: name: \"{}\" is in line {} already", file.string(),
+                                       table.line(row), values[row].name, other->second));
+  }
   return values;
 }
 

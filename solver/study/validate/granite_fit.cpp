@@ -45,12 +45,21 @@ double cut_quantile(double u, double middle, double deviation, double low, doubl
   return std::clamp(middle + deviation * normal_quantile(part), low, high);
 }
 
-double weight_of(const Rock& rock, const RockDistribution& of) {
-  const std::array<double, 4> away{std::log(rock.left / of.median.left) / of.edge_scatter,
-                                   std::log(rock.right / of.median.right) / of.edge_scatter,
-                                   (rock.restitution - of.median.restitution) / of.restitution_scatter,
-                                   std::log(rock.inertia / of.median.inertia) / k_inertia_scatter};
-  const double square = std::inner_product(away.begin(), away.end(), away.begin(), 0.);
+/// Where a rock lies among others.
+std::array<double, 4> place_of(const Rock& rock) {
+  return {std::log(rock.left), std::log(rock.right), rock.restitution, std::log(rock.inertia)};
+}
+
+/// About this place.
+double weight_of(const std::array<double, 4>& rock, const std::array<double, 4>& median,
+                 const RockDistribution& of) {
+  const std::array<double, 4> deviation{of.edge_scatter, of.edge_scatter, of.restitution_scatter,
+                                        k_inertia_scatter};
+  double square = 0;
+  for (std::size_t d = 0; d < deviation.size(); ++d) {
+    const double away = (rock[d] - median[d]) / deviation[d];
+    square += away * away;
+  }
   return square > k_far * k_far ? 0 : std::exp(-square / 2);
 }
 
@@ -156,14 +165,15 @@ Rock plain(int k) {
 }
 
 RockFit::RockFit(const RunTable& runs) : tests_(runs.front().size()) {
-  std::vector<Rock> rocks;
-  for (int k = 0; k < static_cast<int>(runs.size()); ++k) rocks.push_back(designed(k));
+  std::vector<std::array<double, 4>> places;
+  for (int k = 0; k < static_cast<int>(runs.size()); ++k) places.push_back(place_of(designed(k)));
   std::vector<double> sum(tests_);
   for (const RockDistribution& one : lattice()) {
     double total = 0, squares = 0;
+    const std::array<double, 4> median = place_of(one.median);
     std::ranges::fill(sum, 0.);
-    for (std::size_t k = 0; k < rocks.size(); ++k) {
-      const double weight = weight_of(rocks[k], one);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double weight = weight_of(places[k], median, one);
       if (weight == 0) continue;
       total += weight, squares += weight * weight;
       for (std::size_t i = 0; i < tests_; ++i) sum[i] += runs[k][i] == '1' ? weight : 0;

@@ -20,6 +20,9 @@ constexpr double k_farthest = 10;   // m
 constexpr double k_longest = 0.05;  // s, between rows
 constexpr int k_last_number = 999999;
 constexpr std::size_t k_fewest_rows = 10;
+// A toss begins as its velocities say, over so many rows (the data: within 0.06 m/s and 0.9 rad/s).
+constexpr std::size_t k_beginning = 3;
+constexpr double k_other_velocity = 0.5, k_other_spin = 5;  // m/s, rad/s
 
 enum Column : std::size_t {
   number,
@@ -49,6 +52,19 @@ CubePose pose_at(const DataTable& table, std::size_t row, double start) {
   return pose;
 }
 
+/// Fails where the first rows do not move as the velocities of the first say.
+void expect_as_told(const DataTable& table, std::size_t first, const Toss& toss) {
+  const CubePose &from = toss.rows.front(), &to = toss.rows[k_beginning];
+  const Vec3 moved = (to.place - from.place) / to.time;
+  if (const double off = (moved - toss.velocity).norm(); off > k_other_velocity)
+    table.fail(first, velocity,
+               fmt::format("the next rows move by {:.3g} m/s otherwise; is it in m/s?", off));
+  const double turned = from.rotation.angularDistance(to.rotation) / to.time;
+  if (const double off = std::abs(turned - toss.angular_velocity.norm()); off > k_other_spin)
+    table.fail(first, spin,
+               fmt::format("the next rows turn by {:.3g} rad/s otherwise; is it in rad/s?", off));
+}
+
 }  // namespace
 
 std::vector<Toss> read_tosses(const fs::path& folder) {
@@ -65,6 +81,7 @@ std::vector<Toss> read_tosses(const fs::path& folder) {
                          "vz_m_s", "wx_rad_s", "wy_rad_s", "wz_rad_s"});
   std::vector<Toss> tosses;
   std::map<int, int> lines;
+  std::vector<std::size_t> first_rows;
   double start = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const int toss = table.whole(row, number, 0, k_last_number);
@@ -73,6 +90,7 @@ std::vector<Toss> read_tosses(const fs::path& folder) {
         table.fail(row, number, fmt::format("{} began in line {} already", toss, other->second));
       start = table.at(row, time);
       tosses.emplace_back();
+      first_rows.push_back(row);
       tosses.back().number = toss;
       tosses.back().velocity = vector_at(table, row, velocity);
     } else if (const double step = table.at(row, time) - table.at(row - 1, time);
@@ -85,10 +103,13 @@ std::vector<Toss> read_tosses(const fs::path& folder) {
     into.rows.push_back(pose_at(table, row, start));
     if (into.rows.size() == 1) into.angular_velocity = into.rows[0].rotation * vector_at(table, row, spin);
   }
-  for (const Toss& toss : tosses)
+  for (std::size_t i = 0; i < tosses.size(); ++i) {
+    const Toss& toss = tosses[i];
     if (toss.rows.size() < k_fewest_rows)
       throw io::InputError(fmt::format("{}:{}: toss {} has {} rows, {} at least", file.string(),
                                        lines[toss.number], toss.number, toss.rows.size(), k_fewest_rows));
+    expect_as_told(table, first_rows[i], toss);
+  }
   if (tosses.empty()) throw io::InputError(file.string() + ": has no toss");
   return tosses;
 }

@@ -34,7 +34,8 @@ struct Toss {
 };
 
 /// Throws io::InputError "FILE:LINE: ..." on what is not of this form: a column that is missing, times that
-/// do not rise within a toss, rows of a toss apart from each other, a rotation that is no unit quaternion.
+/// do not rise within a toss, rows of a toss apart from each other, a rotation that is no unit quaternion,
+/// first rows that do not move as their velocities say.
 std::vector<Toss> read_tosses(const std::filesystem::path& folder);
 
 /// Median height of the cubes' middles at their last rows over half an edge, m: what the data's zero is off

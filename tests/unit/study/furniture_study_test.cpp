@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
+#include "solver/io/common/errors.h"
 #include "solver/study/validate/block_run.h"
 
 namespace topple::study {
@@ -43,6 +47,34 @@ TEST(FurnitureStudy, a_slow_floor_overturns_at_what_lifts_and_a_smooth_one_never
   ASSERT_TRUE(slow);
   EXPECT_NEAR(slow->median * values[0].median / values[0].lift, 1, 0.03);  // levels are 3.6 % apart
   EXPECT_FALSE(half({0, 0.5, 0.9 * values[0].slenderness()}));
+}
+
+TEST(FurnitureStudy, values_of_another_form_are_named_with_their_line) {
+  namespace fs = std::filesystem;
+  std::string name = (fs::temp_directory_path() / "topple-furniture-XXXXXX").string();
+  ASSERT_NE(mkdtemp(name.data()), nullptr);
+  const fs::path folder = name;
+  const auto read = [&](const std::string& rows) {
+    std::ofstream(folder / "furniture.csv") << "name,a0_gal,ar50_gal,height_m\n" + rows;
+    return read_furniture(folder);
+  };
+  EXPECT_EQ(read("shelf,174,205,1.8\ndesk,535,826,0.7\n")[1].name, "desk");
+  struct Bad {
+    const char *rows, *part;
+  };
+  for (const Bad& bad :
+       {Bad{"shelf,174,205,1.8\nshelf,232,287,1.8\n", ":3: name: \"shelf\" is in line 2 already"},
+        Bad{"shelf,174,nan,1.8\n", ":2: ar50_gal: \"nan\" is no finite number"},
+        Bad{"shelf,1.74,2.05,1.8\n", ":2: a0_gal: is outside 20..980 gal"},
+        Bad{"shelf,174,205,1800\n", ":2: height_m: is outside 0.1..10 m"},
+        Bad{"shelf,174,105,1.8\n", ":2: ar50_gal: is below a0_gal"}})
+    try {
+      read(bad.rows);
+      ADD_FAILURE() << "read: " << bad.part;
+    } catch (const io::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(bad.part), std::string::npos) << error.what();
+    }
+  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -170,8 +170,7 @@ TEST(GraniteFit, comes_back_from_its_file) {
   GraniteFit fit;
   fit.tests = 90;
   const std::vector<GraniteTest> tests = with_outcomes({0.025, 0.03, 0.9, 1.6}, 0.15);
-  for (RockFindings& rock : fit.rocks)
-    rock = fit_rock(tests, k_rock, runs().designed_runs, runs().plain_runs);
+  fit.rocks.fill(fit_rock(tests, k_rock, runs().designed_runs, runs().plain_runs));
   const std::string text = fit_as_json(fit).dump();
   const GraniteFit read = fit_from_json(text, "fit.json");
   for (std::size_t k = 0; k < k_rocks; ++k) {

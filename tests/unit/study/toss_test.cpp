@@ -36,15 +36,16 @@ class TossFolder : public ::testing::Test {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
     }
   }
-  /// Rows of a cube that rests at a place; the first two of toss 1 are the data's (DAIRLab/contact-nets,
+  /// Rows of a cube that goes on, unturned, as the first row of toss 1 has it (DAIRLab/contact-nets,
   /// BSD-3-Clause).
   static std::string toss(int number, int rows) {
     std::string text;
-    for (int n = 0; n < rows; ++n)
-      text += std::to_string(number) + "," + std::to_string(n * 0.00676) +
-              ",0.19211,0.21764,0.14638,0.90946,-0.14460,-0.31963,-0.22317,-0.81867,-0.73155,-0.14183,2."
-              "10431,0.40191,"
-              "-2.37613\n";
+    for (int n = 0; n < rows; ++n) {
+      const double t = n * 0.00676;
+      text += std::to_string(number) + "," + std::to_string(t) + "," + std::to_string(0.19211 - 0.81867 * t) +
+              "," + std::to_string(0.21764 - 0.73155 * t) + "," + std::to_string(0.14638 - 0.14183 * t) +
+              ",0.90946,-0.14460,-0.31963,-0.22317,-0.81867,-0.73155,-0.14183,2.10431,0.40191,-2.37613\n";
+    }
     return text;
   }
   fs::path folder_;
@@ -73,6 +74,18 @@ TEST_F(TossFolder, what_is_not_of_the_form_is_named_with_its_line) {
   text.replace(text.find("0.90946"), 7, "0.50000");
   write(text);
   expect_refused("tosses.csv:2: qw: the quaternion has the length ");
+  text = k_head + toss(1, 12);
+  text.replace(text.find(",-0.81867"), 9, ",-81.867");
+  write(text);
+  expect_refused("tosses.csv:2: vx_m_s: the next rows move by 81");
+  text = k_head + toss(1, 12);
+  text.replace(text.find(",2.10431"), 8, ",120.568");
+  write(text);
+  expect_refused("tosses.csv:2: wx_rad_s: the next rows turn by 12");
+  text = k_head + toss(1, 12);
+  text.replace(text.find(",2.10431"), 8, ",nan");
+  write(text);
+  expect_refused("tosses.csv:2: wx_rad_s: \"nan\" is no finite number");
   write(k_head + toss(1, 5));
   expect_refused("has 5 rows");
   write("toss,time_ms\n1,2\n");
