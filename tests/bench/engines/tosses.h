@@ -28,7 +28,7 @@ std::vector<study::CubePose> stepped_toss(const study::Toss& toss, double h,
 
 /// All settings on all tosses of a folder of data. Writes FOLDER/tosses.csv and prints each engine beside
 /// topple, each toss under the setting that is best on the other nine tenths by the cost of contact_grid(),
-/// whatever that costs and among settings that take no more than once and twice topple's CPU time.
+/// whatever that costs, and among settings that take no more CPU time than topple's best.
 void run_tosses(const std::filesystem::path& folder, const std::string& data);
 
 }  // namespace topple::bench
