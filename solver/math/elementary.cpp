@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-4";
+  return "topple-5";
 }
 
 }  // namespace topple
