@@ -14,8 +14,8 @@ namespace {
 constexpr double k_weight = 9.80665;  // N, of a kilogram
 
 struct Resting {
-  explicit Resting(const std::string& text)
-      : scene(io::parse_scene("topple = 1\n[run]\nduration = 1\n[floor]\n" + text, "s.toml")) {
+  explicit Resting(const std::string& text, const std::vector<std::string>& set = {})
+      : scene(io::parse_scene("topple = 1\n[run]\nduration = 1\n[floor]\n" + text, "s.toml", set)) {
     topple::Run run(scene.setup);
     while (!run.over()) EXPECT_TRUE(run.advance().ok());
     row = io::frame_row(run);
@@ -39,9 +39,9 @@ void expect_force(const BodyTouch& touch, double kilograms) {
 // The face between them bears both; the resultant on it is neither's.
 TEST(TouchingBodies, two_blocks_on_one_press_with_their_weights) {
   const Resting stack(
-      "[[block]]\nname = \"low\"\nsize = [0.6, 0.3, 0.2]\nmass = 5\n"
-      "[[block]]\nname = \"left\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [-0.2, 0, 0.205]\n"
-      "[[block]]\nname = \"right\"\nsize = [0.1, 0.1, 0.2]\nmass = 2\nat = [0.2, 0, 0.205]\n");
+      "[[block]]\nname = \"low\"\nsize = [0.6, 0.3, 0.2]\nmass = 5\nwidth = 0.01\n"
+      "[[block]]\nname = \"left\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nwidth = 0.01\nat = [-0.2, 0, 0.21]\n"
+      "[[block]]\nname = \"right\"\nsize = [0.1, 0.1, 0.2]\nmass = 2\nwidth = 0.01\nat = [0.2, 0, 0.21]\n");
   const auto low = stack.of(0), left = stack.of(1), right = stack.of(2);
   ASSERT_EQ(low.size(), 3u);
   expect_force(low.at("floor"), 8);
@@ -56,7 +56,8 @@ TEST(TouchingBodies, two_blocks_on_one_press_with_their_weights) {
 }
 
 TEST(TouchingBodies, what_touches_nothing_has_no_touch) {
-  const Resting alone("[[block]]\nname = \"high\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [0, 0, 5]\n");
+  const Resting alone("[[block]]\nname = \"high\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [0, 0, 5]\n",
+                      {"run.settle=false", "run.duration=0.1"});
   EXPECT_TRUE(alone.of(0).empty());
 }
 
