@@ -20,22 +20,30 @@ namespace {
 
 using namespace window_words;
 
-constexpr double k_tilt_room = 1.35;  // tilts beyond this share of the critical angle leave the lane
+constexpr double k_tilt_room = 1.35;  // of the critical angle; tilts beyond it are cut there
 constexpr double k_least_gal = 10, k_least_tilt = 1;
 constexpr double k_headroom = 1.08;  // of the lane of the floor, over its greatest acceleration
 
 constexpr std::size_t k_coloured = 5;  // bodies with a colour of their own
 
-/// Those that tilt most over the run, of the share that they can, in their own order; all of a few.
+/// As the run begins, rad; 0: none.
+double critical_angle(const Player& player, std::size_t body) {
+  return player.way().empty() ? 0 : player.way().front()->body[body].critical_angle;
+}
+
+/// Tilts over the critical angle of the body; of one that has none, over a quarter turn.
+double tilt_share(const Player& player, const io::FrameRow& row, std::size_t body) {
+  const double critical = critical_angle(player, body);
+  return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
+}
+
+/// Those that tilt most over the run, of what they can, in their own order; all of a few.
 std::vector<std::size_t> coloured_bodies(const Player& player) {
   const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
   std::vector<std::pair<double, std::size_t>> shares;
   for (std::size_t b = 0; b < furniture; ++b) {
     double most = 0;
-    for (const RowPtr& row : player.way()) {
-      const double critical = row->body[b].critical_angle;
-      most = std::max(most, row->body[b].tilt / (critical > 0 ? critical : 1));
-    }
+    for (const RowPtr& row : player.way()) most = std::max(most, tilt_share(player, *row, b));
     shares.emplace_back(-most, b);
   }
   std::ranges::sort(shares);
@@ -110,26 +118,31 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
 void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
   const std::vector<RowPtr>& rows = player.way();
   const auto& bodies = player.scene().setup.model.bodies;
-  const auto tilt = [](std::size_t b) {
-    return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
-  };
-  double critical = 0, most = k_least_tilt;
   const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
-  for (std::size_t b = 0; b < furniture; ++b) {
-    if (!rows.empty()) critical = std::max(critical, rows.back()->body[b].critical_angle * k_degrees);
-    most = std::max(most, 1.1 * peak(rows, tilt(b)));
-  }
+  bool shares = false;  // else degrees: nothing falls by itself
+  for (std::size_t b = 0; b < furniture; ++b) shares |= critical_angle(player, b) > 0;
+  const auto tilt = [&player, shares](std::size_t b) -> Value {
+    if (!shares) return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
+    return
+        [&player, b](const io::FrameRow& row) { return std::min(tilt_share(player, row, b), k_tilt_room); };
+  };
+  double most = 0;
+  for (std::size_t b = 0; b < furniture; ++b) most = std::max(most, peak(rows, tilt(b)));
   lane.low = 0;
-  lane.high = critical > 0 ? k_tilt_room * critical : most;
+  lane.high = shares ? k_tilt_room : std::max(k_least_tilt, 1.1 * most);
   list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
-  if (critical > 0) {
+  const float line = ImGui::GetTextLineHeight();
+  if (shares) {
     const int dashes = static_cast<int>(std::ceil((lane.right - lane.left) / 9));
     for (int k = 0; k < dashes; ++k) {
       const float x = lane.left + 9 * static_cast<float>(k);
-      list.AddLine({x, lane.y(critical)}, {std::min(x + 5, lane.right), lane.y(critical)}, theme().axis);
+      list.AddLine({x, lane.y(1)}, {std::min(x + 5, lane.right), lane.y(1)}, theme().axis);
     }
-    add_text(list, lane.left + 4, lane.y(critical) - ImGui::GetTextLineHeight() - 1, theme().text,
-             fmt::format("{:.1f}°", critical));
+    add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text, say(k_falls_at_one));
+  }
+  if (shares && most >= k_tilt_room) {
+    const std::string words = say(k_cut_above, k_tilt_room);
+    add_text(list, lane.right - text_width(words) - 4, lane.top + 2, theme().text, words);
   }
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
@@ -139,9 +152,9 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
       add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
       add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other, 1.6f);
     }
-  const float line = ImGui::GetTextLineHeight(), room = lane.left - label_left - 4;
+  const float room = lane.left - label_left - 4;
   float y = lane.top - 2;
-  add_text(list, label_left, y, theme().text, say(k_tilt_lane));
+  add_text(list, label_left, y, theme().text, say(shares ? k_tilt_share_lane : k_tilt_lane));
   const auto fits = static_cast<std::size_t>(std::max((lane.bottom - y) / line - 1, 0.f));
   const bool all = coloured.size() == furniture && coloured.size() <= fits;
   const std::size_t shown =
