@@ -39,7 +39,6 @@ void draw_demos(const Player& player, TeachingState& state) {
   ImGui::TextWrapped(
       "%s", say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size())
                 .c_str());
-  ImGui::TextWrapped("%s", say(guide.text()).c_str());
   ImGui::BeginDisabled(guide.under_way() || guide.step().value_or(0) == 0);
   if (ImGui::Button((say(k_previous) + "##previous").c_str())) guide.previous();
   ImGui::EndDisabled();
@@ -48,7 +47,9 @@ void draw_demos(const Player& player, TeachingState& state) {
   if (ImGui::Button((say(k_next) + "##next").c_str())) guide.next();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (ImGui::Button((say(k_quit_demo) + "##quit").c_str())) state.guide.reset();
+  const bool quit = ImGui::Button((say(k_quit_demo) + "##quit").c_str());
+  ImGui::TextWrapped("%s", say(guide.text()).c_str());  // below: the buttons stay where they are
+  if (quit) state.guide.reset();
 }
 
 void draw_accuracy(const Player& player, TeachingState& state) {

@@ -75,6 +75,8 @@ void Chooser::filter() {
     std::vector<Entry> some;
     for (const Entry& entry : all)
       if (lower(entry.source + " " + entry.title).find(wanted) != std::string::npos) some.push_back(entry);
+    // names that begin so come first, then names that hold it, then titles
+    std::ranges::stable_sort(some, {}, [&](const Entry& entry) { return lower(entry.source).find(wanted); });
     return some;
   };
   shown_scenes_ = only(scenes_);

@@ -29,6 +29,15 @@ TEST_F(ShellTest, typing_filters_the_scenes_and_enter_opens_the_one_selected) {
   EXPECT_FALSE(shell_->chooser().is_open());
 }
 
+// "yield" stands in the titles of others that come first in the list.
+TEST_F(ShellTest, a_name_that_begins_as_typed_comes_before_titles_that_hold_it) {
+  shell_->choose_scene();
+  frame();
+  type("yield");
+  EXPECT_GT(shell_->chooser().shown().size(), 1u);
+  EXPECT_EQ(shell_->chooser().selected(), "yielding");
+}
+
 TEST_F(ShellTest, thumbnails_fill_in_and_are_kept) {
   shell_->choose_scene();
   const auto kept = [&] {
