@@ -96,9 +96,9 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
 void Viewer::press(const render::KeyPress& press) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
-  const bool for_control =
-      press.key == ' ' || press.key == render::key::home || press.key == render::key::end;
-  if (io.NavVisible && for_control) return;  // the control that has the focus takes it
+  const bool to_an_end = press.key == render::key::home || press.key == render::key::end;
+  if (io.NavVisible && (to_an_end || press.key == ' ')) return;  // the control that has the focus takes it
+  if (to_an_end) ImGui::SetWindowFocus(nullptr);  // of a panel it would move the focus, and show it
   refused_.clear();
   for (const KeyAction& action : key_actions())
     if (action.act && action.key == press.key && action.control == press.control &&
