@@ -140,9 +140,9 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
     }
     add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text, say(k_falls_at_one));
   }
-  if (shares && most >= k_tilt_room) {
+  if (shares && most >= k_tilt_room && lane.y(1) - lane.top > line) {
     const std::string words = say(k_cut_above, k_tilt_room);
-    add_text(list, lane.right - text_width(words) - 4, lane.top + 2, theme().text, words);
+    add_text(list, lane.right - text_width(words) - 4, lane.top, theme().text, words);
   }
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };

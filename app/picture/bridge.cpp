@@ -384,9 +384,11 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
   out.caption.lines.push_back(instant_in_words(setup, row));
   if (!parameters.shakes.empty()) {
     const Shake& shake = parameters.shakes.front();
+    const auto whole = [](double value) { return std::round(value) + 0.; };  // no -0
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
-    out.caption.lines.push_back(say(window_words::k_now, shake_in_words(parameters), a, 1e3 * d));
+    out.caption.lines.push_back(
+        say(window_words::k_now, shake_in_words(parameters), whole(a), whole(1e3 * d)));
     out.trace = {.label = say(window_words::k_floor_trace),
                  .at = extent_.time_s,
                  .value = extent_.acceleration_gal,

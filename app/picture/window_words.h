@@ -31,6 +31,7 @@ inline constexpr Phrase k_toppling{"toppling, tilt {0:.1f}° (critical {1:.1f}°
 inline constexpr Phrase k_rocking{"rocking, {0:.1f}° of {1:.1f}°", "ロッキング、{0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
+inline constexpr Phrase k_all_stand{"all {0} stand", "{0}体すべて直立"};
 inline constexpr Phrase k_other_stands{"1 other stands", "ほか1体は直立"};
 inline constexpr Phrase k_others_stand{"{0} others stand", "ほか{0}体は直立"};
 inline constexpr Phrase k_others{"{0} others: {1}", "ほか{0}体：{1}"};

@@ -110,7 +110,10 @@ std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow&
   }
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, row, bodies[i]));
-  if (told < bodies.size()) lines.push_back(others_in_words(row, std::span(bodies).subspan(told)));
+  if (told == 0 && !bodies.empty())
+    lines.push_back(say(k_all_stand, bodies.size()));
+  else if (told < bodies.size())
+    lines.push_back(others_in_words(row, std::span(bodies).subspan(told)));
   return lines;
 }
 
