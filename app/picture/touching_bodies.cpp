@@ -1,6 +1,7 @@
 #include "app/picture/touching_bodies.h"
 
-#include <algorithm>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <limits>
 #include <set>
 
@@ -61,24 +62,25 @@ void join_nearest(std::vector<TouchedPart>& parts) {
   }
 }
 
-/// The force between parts that touch: of one that touches no third its own, which is taken off the other; in
-/// a ring that of the first. f(part, other, force on part).
+/// The forces between parts that touch, the least that sum up to the resultant of each: differences of
+/// potentials of the parts. f(part, other, force on part).
 template <class F>
-void each_pair(std::vector<TouchedPart>& parts, F f) {
-  for (;;) {
-    const auto fewest = [](const TouchedPart& part) {
-      return part.others.empty() ? std::numeric_limits<std::size_t>::max() : part.others.size();
-    };
-    const auto next = std::ranges::min_element(parts, {}, fewest);
-    if (next == parts.end() || next->others.empty()) return;
-    const std::size_t i = static_cast<std::size_t>(next - parts.begin()), j = *next->others.begin();
-    const Vec3 force = next->force;
-    f(i, j, force);
-    parts[i].force.setZero();
-    parts[j].force += force;
-    parts[i].others.erase(j);
-    parts[j].others.erase(i);
+void each_pair(const std::vector<TouchedPart>& parts, F f) {
+  const auto count = static_cast<int>(parts.size());
+  std::vector<Eigen::Triplet<double>> sums;
+  Eigen::MatrixX3d resultants(count, 3);
+  for (int i = 0; i < count; ++i) {
+    resultants.row(i) = parts[i].force;
+    sums.emplace_back(i, i, parts[i].others.size());
+    for (const std::size_t j : parts[i].others) sums.emplace_back(i, static_cast<int>(j), -1);
   }
+  Eigen::SparseMatrix<double> graph(count, count);
+  graph.setFromTriplets(sums.begin(), sums.end());
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(graph);
+  solver.setTolerance(1e-6);  // resultants of rows are floats: less is not there to be found
+  const Eigen::MatrixX3d potential = solver.solve(resultants);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (const std::size_t j : parts[i].others) f(i, j, Vec3(potential.row(i) - potential.row(j)));
 }
 
 void add(BodyTouch& touch, const Vec3& force, const Vec3& place, double& weight) {
@@ -107,10 +109,8 @@ std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std:
   std::vector<TouchedPart> parts = touched_parts(model, row);
   join_nearest(parts);
   each_pair(parts, [&](std::size_t i, std::size_t j, const Vec3& force) {
-    for (const auto& [part, other, sign] : {std::tuple(i, j, 1.), std::tuple(j, i, -1.)})
-      if (parts[part].body == body)
-        add(all[planes + parts[other].body], sign * force, parts[i].place,
-            weight[planes + parts[other].body]);
+    const std::size_t other = planes + parts[j].body;
+    if (parts[i].body == body) add(all[other], force, parts[i].place, weight[other]);
   });
   std::vector<BodyTouch> out;
   for (std::size_t k = 0; k < all.size(); ++k)

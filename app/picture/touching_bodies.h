@@ -18,8 +18,9 @@ struct BodyTouch {
 
 /// Planes first, then bodies, in the model's order; those without a force are left out. A row holds the
 /// resultant of what touches each element and panel, not by whom: each is taken to touch the part of another
-/// body that is nearest to where it acts, and forces between parts follow from resultants by action and
-/// reaction, which is exact unless touching parts form a ring.
+/// body that is nearest to where it acts, and forces between parts are the least that agree with all
+/// resultants by action and reaction. What these leave open, as where three bodies touch each other, is
+/// shared out so.
 std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std::size_t body);
 
 }  // namespace topple::app

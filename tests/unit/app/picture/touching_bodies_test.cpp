@@ -55,6 +55,26 @@ TEST(TouchingBodies, two_blocks_on_one_press_with_their_weights) {
   EXPECT_NEAR(right.at("low").place.z(), 0.2, 0.02);  // within a contact width
 }
 
+// Edges cross edges: each of two parts touches two, all around. The centre of gravity divides the plank's
+// weight between its supports by 0.3 to 0.7 m.
+TEST(TouchingBodies, a_plank_presses_its_two_supports_by_the_lever) {
+  const Resting plank(
+      "[[block]]\nname = \"plank\"\nsize = [1.2, 0.2, 0.04]\nmass = 10\nwidth = 0.01\ncg = [0.2, 0, 0.02]\n"
+      "at = [0, 0, 0.41]\n"
+      "[[block]]\nname = \"left\"\nsize = [0.1, 0.5, 0.4]\nmass = 5\nwidth = 0.01\nat = [-0.5, 0, 0]\n"
+      "[[block]]\nname = \"right\"\nsize = [0.1, 0.5, 0.4]\nmass = 5\nwidth = 0.01\nat = [0.5, 0, 0]\n");
+  const auto on = plank.of(0);
+  ASSERT_EQ(on.size(), 2u);
+  const double left = on.at("left").force.z(), right = on.at("right").force.z();
+  EXPECT_NEAR(left + right, 10 * k_weight, 1e-3 * 10 * k_weight);
+  EXPECT_NEAR(plank.of(1).at("plank").force.z(), -left, 1e-6 * 10 * k_weight);
+  // a support of 0.1 m bears somewhere between its edges
+  EXPECT_GT(right / (10 * k_weight), 0.65);
+  EXPECT_LT(right / (10 * k_weight), 0.75);
+  EXPECT_NEAR(plank.of(1).at("floor").force.z(), 5 * k_weight + left, 1e-3 * 10 * k_weight);
+  EXPECT_NEAR(plank.of(2).at("floor").force.z(), 5 * k_weight + right, 1e-3 * 10 * k_weight);
+}
+
 TEST(TouchingBodies, what_touches_nothing_has_no_touch) {
   const Resting alone("[[block]]\nname = \"high\"\nsize = [0.1, 0.1, 0.2]\nmass = 1\nat = [0, 0, 5]\n",
                       {"run.settle=false", "run.duration=0.1"});
