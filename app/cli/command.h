@@ -37,11 +37,11 @@ struct Commands {
 /// Adds a command and its options; stands beside what the command does.
 using AddCommand = void(Commands& commands);
 AddCommand add_run, add_view, add_render, add_export, add_modes, add_verify, add_study, add_compare,
-    add_report, add_validate, add_check, add_info, add_recover, add_scenes;
+    add_report, add_validate, add_check, add_info, add_recover, add_scenes, add_furniture;
 /// In the order of --help.
 inline constexpr AddCommand* k_commands[] = {add_run,    add_view,  add_render,  add_export, add_modes,
                                              add_verify, add_study, add_compare, add_report, add_validate,
-                                             add_check,  add_info,  add_recover, add_scenes};
+                                             add_check,  add_info,  add_recover, add_scenes, add_furniture};
 
 /// A path or name, which may not be empty. `type` with an ending, "FILE.png": nor may it end as a picture,
 /// video or page of another kind.

@@ -18,9 +18,9 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/terms.h"
+#include "solver/io/edit/scene_difference.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
-#include "solver/io/scene/scene_difference.h"
 
 namespace topple::app {
 namespace {

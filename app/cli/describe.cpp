@@ -10,8 +10,8 @@
 #include "app/support/progress.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/recording/rerun.h"
-#include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene_words.h"
 #include "solver/math/elementary.h"
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/cli/nearest_name.h"
 #include "app/support/errors.h"
+#include "solver/io/common/nearest_name.h"
 
 namespace topple::app {
 namespace {
@@ -20,7 +20,7 @@ std::string nearest_option(const CLI::App& table, const std::string& name) {
     add(*command);
     for (const CLI::App* group : command->get_subcommands({})) add(*group);
   }
-  return nearest_name(name, known);
+  return io::nearest_name(name, known);
 }
 
 /// Empty: all are known.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/picture/bridge.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
 namespace {

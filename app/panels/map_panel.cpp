@@ -8,7 +8,7 @@
 #include "app/panels/lane.h"
 #include "app/panels/log_chart.h"
 #include "app/panels/teaching_words.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
 namespace {

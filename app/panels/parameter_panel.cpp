@@ -10,7 +10,7 @@
 #include "app/panels/precision_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/scene/scene.h"
 #include "solver/model/excitation.h"
 

@@ -11,7 +11,7 @@
 #include "app/panels/shell_words.h"
 #include "app/panels/teaching_words.h"
 #include "solver/body/model_level.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
 namespace {

@@ -13,7 +13,7 @@
 #include "app/support/terms.h"
 #include "render/scene/text_layout.h"
 #include "solver/body/model_level.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
 namespace {

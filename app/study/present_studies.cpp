@@ -5,7 +5,7 @@
 
 #include "app/study/study_results.h"
 #include "app/support/clock.h"
-#include "solver/io/scene/scene_save.h"
+#include "solver/io/edit/scene_save.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/parallel.h"
 

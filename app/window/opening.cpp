@@ -15,8 +15,8 @@
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
+#include "solver/io/edit/scene_save.h"
 #include "solver/io/recording/rerun.h"
-#include "solver/io/scene/scene_save.h"
 
 namespace topple::app {
 namespace {

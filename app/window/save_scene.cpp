@@ -9,8 +9,8 @@
 #include "app/panels/shell_words.h"
 #include "app/support/files.h"
 #include "app/window/message.h"
+#include "solver/io/edit/scene_save.h"
 #include "solver/io/scene/scene_file.h"
-#include "solver/io/scene/scene_save.h"
 
 namespace topple::app {
 namespace {

@@ -1,12 +1,13 @@
 include(${PROJECT_SOURCE_DIR}/assets/embed.cmake)
 
-file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml
+file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/furniture/*.toml
+  ${PROJECT_SOURCE_DIR}/assets/scenes/*.toml
   ${PROJECT_SOURCE_DIR}/assets/scenes/elements/*.toml
   ${PROJECT_SOURCE_DIR}/assets/scenes/verify/*.toml)
 topple_embed(
   TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/scene/builtin_scenes.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
-  BASE ${PROJECT_SOURCE_DIR}/assets/scenes
+  BASE ${PROJECT_SOURCE_DIR}/assets
   FILES ${scene_files})
 
 set(record_files
@@ -25,24 +26,30 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_csv.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/accelerogram/accelerogram_text.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/edit_text.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit/scene_difference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit/scene_number.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit/scene_rewrite.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit/scene_save.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/edit/edit_text.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/furniture.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/furniture_fit.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/furniture_kind.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/furniture_place.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_anchors.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_check.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_difference.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_entry.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_number.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_planar.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_rewrite.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_save.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_shakes.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/stock.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/toml_precheck.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/common/nearest_name.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

@@ -14,12 +14,6 @@ namespace {
 constexpr double k_young = 1e10, k_poisson = 0.2;  // Pa, -
 constexpr double k_density = 1e3;                  // kg/m^3
 
-Vec3 inertia_of(const BlockSpec& spec) {
-  if (spec.inertia) return *spec.inertia;
-  const Vec3 square = spec.size.cwiseProduct(spec.size);
-  return spec.mass / 12 * (Vec3::Constant(square.sum()) - square);
-}
-
 void check(const BlockSpec& spec) {
   static constexpr const char* k_axes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
@@ -125,6 +119,12 @@ class BlockBuilder {
 };
 
 }  // namespace
+
+Vec3 inertia_of(const BlockSpec& spec) {
+  if (spec.inertia) return *spec.inertia;
+  const Vec3 square = spec.size.cwiseProduct(spec.size);
+  return spec.mass / 12 * (Vec3::Constant(square.sum()) - square);
+}
 
 double contact_width_of(const Vec3& size) {
   return std::min(size.minCoeff() / 20, 0.02);

@@ -25,6 +25,9 @@ struct BlockSpec : Placement {
 /// Default of BlockSpec::width, m: a twentieth of the smallest side, at most 20 mm.
 double contact_width_of(const Vec3& size);
 
+/// Its inertia about its centre of gravity, kg m^2, along its own axes.
+Vec3 inertia_of(const BlockSpec& spec);
+
 /// Adds a block whose lowest edges touch the height of `at` with their surface. Its first node is its centre
 /// of gravity and has all of the mass; its first two panels are its base and its top, corner above corner in
 /// its own axes. Throws BuildError.

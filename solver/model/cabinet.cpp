@@ -243,9 +243,30 @@ class CabinetBuilder {
       refuse_height(problem_at);
       refuse_inertia(problem_at(spec_.cg_height), rotary_sum);
     }
+    std::vector<double> mass(body.node_count);
+    for (int i = 0; i < body.node_count; ++i) mass[i] = (*masses)[group[i]];
+    if (spec_.cg_offset) shift(local, mass);
     for (int i = 0; i < body.node_count; ++i) {
-      model_.node_mass[body.first_node + i] = (*masses)[group[i]];
+      model_.node_mass[body.first_node + i] = mass[i];
       model_.node_inertia[body.first_node + i] = rotary[i] * Mat3::Identity();
+    }
+  }
+
+  // CabinetSpec::cg_offset: factors 1 + a . (r - centre) keep the mass, and `a` keeps the height.
+  void shift(const std::vector<Vec3>& at, std::vector<double>& mass) const {
+    Vec3 centre = Vec3::Zero();
+    for (std::size_t i = 0; i < at.size(); ++i) centre += mass[i] / spec_.mass * at[i];
+    Mat3 second = Mat3::Zero();
+    for (std::size_t i = 0; i < at.size(); ++i)
+      second += mass[i] / spec_.mass * (at[i] - centre) * (at[i] - centre).transpose();
+    const Vec3 wanted(spec_.cg_offset->x(), spec_.cg_offset->y(), centre.z());
+    const Vec3 slope = second.ldlt().solve(wanted - centre);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const double factor = 1 + slope.dot(at[i] - centre);
+      if (factor < k_least_share)
+        throw BuildError("cg_offset", number(1e3 * wanted.x()) + " mm, " + number(1e3 * wanted.y()) +
+                                          " mm cannot be reached with positive densities");
+      mass[i] *= factor;
     }
   }
 
@@ -327,6 +348,10 @@ class CabinetBuilder {
 };
 
 }  // namespace
+
+Vec3 inertia_of(const CabinetSpec& spec) {
+  return target_inertia(spec, spec.cg_height);
+}
 
 BodyStart add_cabinet(Model& model, const CabinetSpec& spec) {
   CabinetBuilder(model, spec).build();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct CabinetSpec : Placement {
   Vec3 size{0.38, 0.88, 1.79};  ///< m, depth (x), width (y), height (z)
   double mass = 40;             ///< kg
   double cg_height = 0.895;     ///< m above the bottom centre lines
+  /// m, of the centre of gravity off the middle along depth and width, by densities that vary linearly with
+  /// both; none: as the symmetric densities give.
+  std::optional<Eigen::Vector2d> cg_offset;
   Inertia inertia = Inertia::panels;
   Vec3 inertia_given = Vec3::Zero();  ///< kg m^2 about the centre of gravity
   int section = 0, material = 0;      ///< indices into the model's lists
@@ -90,6 +94,9 @@ BodyStart add_grid(Model& model, const GridSpec& spec);
 
 /// Name of copy `index`, from 0, of what is called `name`: the first keeps it, the others add -2, -3, ...
 std::string copy_name(const std::string& name, std::size_t index);
+
+/// Inertia about its centre of gravity that a cabinet asks for, kg m^2, along its own axes.
+Vec3 inertia_of(const CabinetSpec& spec);
 
 /// Adds a cabinet whose lowest members touch the height of `at` with their surface. Throws BuildError.
 BodyStart add_cabinet(Model& model, const CabinetSpec& spec);

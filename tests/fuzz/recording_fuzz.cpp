@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "fuzz.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/recording/recording_reader.h"
-#include "solver/io/scene/edit_text.h"
 #include "solver/state/state.h"
 
 using namespace topple;

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "solver/io/common/errors.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/recording/recording_reader.h"
-#include "solver/io/scene/edit_text.h"
 
 namespace topple::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "solver/io/common/units.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/recording/recording_format.h"
-#include "solver/io/scene/edit_text.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::io {

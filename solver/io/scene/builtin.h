@@ -16,6 +16,8 @@ const std::vector<BuiltinScene>& builtin_scenes();
 const std::vector<BuiltinScene>& verification_scenes();
 /// The same of the benchmarks of `topple study elements`, "elements/NAME".
 const std::vector<BuiltinScene>& study_scenes();
+/// The same of the kinds of furniture (furniture_kind.h), "bookshelf".
+const std::vector<BuiltinScene>& builtin_furniture();
 
 /// Synthetic accelerograms (assets/records), name and text; scenes name them as files.
 const std::vector<BuiltinScene>& builtin_records();

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/io/scene/stock.h"
 
 namespace topple::io {
 namespace {
@@ -45,12 +47,18 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::v
   check_scene(root, origin);
 
   Scene scene;
+  const ReadSceneFile read_file = read ? read : files_beside(origin);
   scene.name = fs::path(origin).stem().string();
+  scene.text = overrides.empty() ? std::string(text) : write_toml(root);
+  if (root.find("furniture")) {
+    expand_furniture(root, origin, read_file, scene.files);
+    check_scene(root, origin);
+  }
+  add_stock(root);
   const Entry entry(origin, "", "", &root, root.place);
   scene.title = entry.has("title") ? entry.text("title") : scene.name;
-  scene.text = overrides.empty() ? std::string(text) : write_toml(root);
   read_run(entry, scene.setup);
-  read_shakes(entry, read ? read : files_beside(origin), scene);
+  read_shakes(entry, read_file, scene);
   read_contact(entry, scene.setup);
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);

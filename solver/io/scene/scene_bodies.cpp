@@ -10,6 +10,7 @@
 #include "solver/frame/integrator.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/io/scene/stock.h"
 #include "solver/model/block.h"
 #include "solver/model/cabinet.h"
 #include "solver/reduced/elastic_basis.h"
@@ -48,10 +49,7 @@ class Library {
     const std::string name = entry.text(key);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<int>(found - names.begin());
-    std::string known;
-    for (const std::string& other : names) known += (known.empty() ? "; known: " : ", ") + other;
-    entry.fail(key,
-               "there is no [[" + key + "]] \"" + name + "\"" + (names.empty() ? " nor any other" : known));
+    entry.fail(key, no_such_stuff(key, name, names));
   }
 
   const Model& model_;
@@ -92,6 +90,10 @@ CabinetSpec read_cabinet(const Entry& entry, const Library& library) {
   if (!(spec.cg_height < spec.size.z()))
     entry.fail("cg_height", short_number(1e3 * spec.cg_height) + " mm is not below the top, " +
                                 short_number(1e3 * spec.size.z()) + " mm");
+  if (entry.has("cg_offset")) {
+    const std::vector<double> offset = entry.numbers("cg_offset");
+    spec.cg_offset = Eigen::Vector2d(offset[0], offset[1]);
+  }
   if (entry.is_word("inertia")) {
     spec.inertia = entry.chosen("inertia", k_inertias);
   } else {
@@ -477,7 +479,8 @@ void read_bodies(const Entry& root, Setup& setup) {
     of_body.resize(model.bodies.size(), entry);
   }
   if (model.bodies.empty()) {
-    root.fail("there are no bodies; a scene has at least one [[cabinet]], [[frame]] or [[block]]");
+    root.fail(
+        "there are no bodies; a scene has at least one [[furniture]], [[cabinet]], [[frame]] or [[block]]");
   }
   read_grids(root, library, setup);
   setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);

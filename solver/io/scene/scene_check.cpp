@@ -47,7 +47,9 @@ class Checker {
       if (key.type == KeyType::choice) value(key, item.value, below(path, item.key));
     }
     for (const Item& item : node.items) value(*find_key(name, item.key), item.value, below(path, item.key));
-    for (const Item& item : node.items) belongs(*find_key(name, item.key), node, item, path);
+    for (const Item& item : node.items)
+      // what a body of furniture chose is known when its kind is
+      if (const Key& key = *find_key(name, item.key); key.table == name) belongs(key, node, item, path);
     for (const Key& key : scene_keys()) {
       if (key.table != name || !key.required || node.find(key.name) || !applies(key, node)) continue;
       std::string message = "missing";
@@ -70,7 +72,9 @@ class Checker {
         if (other.table == table) names.push_back(other.name);
       }
       std::sort(names.begin(), names.end());
-      fail(item.key_place, below(path, item.key), "unknown key; known: " + joined(names));
+      fail(item.key_place, below(path, item.key),
+           "unknown key; known: " + joined(names) +
+               (table == "furniture" ? ", and keys of the body that it becomes" : ""));
     }
     return *key;
   }
@@ -292,11 +296,10 @@ class Checker {
     const std::string name = nested_name(key);
     for (std::size_t k = 0; k < node.items.size(); ++k) {
       const Node& entry = node.items[k].value;
-      const std::string entry_path = below(path, entry_label(node, k));
-      if (entry.kind != Node::Kind::table) {
-        fail(entry.place, entry_path, "expected a table, found " + shown(entry));
-      }
-      table(entry, name, entry_path);
+      const std::string of_entry = entry_path(node, path, k);
+      if (entry.kind != Node::Kind::table)
+        fail(entry.place, of_entry, "expected a table, found " + shown(entry));
+      table(entry, name, of_entry);
     }
   }
 
@@ -318,7 +321,7 @@ void check_names(const Node& root, const std::string& origin, const std::vector<
       if (fresh) continue;
       std::string where;
       if (first->second.line > 0) where = ", first in line " + std::to_string(first->second.line);
-      fail(origin, place, std::string(kind) + "." + entry_label(*list, k) + ".name",
+      fail(origin, place, entry_path(*list, std::string(kind), k) + ".name",
            "\"" + name + "\" is used twice" + where);
     }
   }

@@ -170,11 +170,60 @@ Item* Node::find_item(std::string_view key) {
   return const_cast<Item*>(static_cast<const Node&>(*this).find_item(key));
 }
 
+Node number_node(double value, const Place& place) {
+  Node node;
+  node.kind = Node::Kind::real;
+  node.place = place;
+  node.real = value;
+  return node;
+}
+
+Node text_node(const std::string& text, const Place& place) {
+  Node node;
+  node.kind = Node::Kind::text;
+  node.place = place;
+  node.text = text;
+  return node;
+}
+
+Node list_node(std::vector<Node> values, const Place& place) {
+  Node node;
+  node.kind = Node::Kind::list;
+  node.place = place;
+  for (Node& value : values) node.items.push_back({{}, place, std::move(value)});
+  return node;
+}
+
+Node numbers_node(std::initializer_list<double> values, const Place& place) {
+  std::vector<Node> nodes;
+  for (const double value : values) nodes.push_back(number_node(value, place));
+  return list_node(std::move(nodes), place);
+}
+
+void set_key(Node& table, std::string_view key, Node value) {
+  if (Item* const item = table.find_item(key)) {
+    item->key_place = value.place;
+    item->value = std::move(value);
+    return;
+  }
+  const Place place = value.place;
+  table.items.push_back({std::string(key), place, std::move(value)});
+}
+
+void set_place(Node& node, const Place& place) {
+  node.place = place;
+  for (Item& item : node.items) {
+    item.key_place = place;
+    set_place(item.value, place);
+  }
+}
+
 std::string error_line(const std::string& origin, const Place& place, const std::string& path,
                        const std::string& message) {
   std::string line = place.override_text
                          ? "--set " + *place.override_text
-                         : origin + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+                         : (place.file ? *place.file : origin) + ":" + std::to_string(place.line) + ":" +
+                               std::to_string(place.column);
   line += ": ";
   if (!path.empty()) line += path + ": ";
   return without_control_characters(line + message);
@@ -248,6 +297,11 @@ std::string entry_label(const Node& list, std::size_t index) {
   const Node* name = list.items[index].value.find("name");
   if (name && name->kind == Node::Kind::text && !name->text.empty()) return name->text;
   return std::to_string(index + 1);
+}
+
+std::string entry_path(const Node& list, const std::string& key, std::size_t index) {
+  const SourceEntry* const source = list.items[index].value.source.get();
+  return source ? source->path : key + "." + entry_label(list, index);
 }
 
 std::string_view kind_name(Node::Kind kind) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,6 +15,14 @@ struct Place {
   int line = 0;
   int column = 0;
   std::shared_ptr<const std::string> override_text;  ///< "contact.friction=9"; null: in the file
+  std::shared_ptr<const std::string> file = {};      ///< null: the scene's own
+};
+
+/// Entry of an array by which people know what was made of it, such as the cabinet of a [[furniture]].
+struct SourceEntry {
+  std::string table;   ///< "furniture"
+  std::size_t number;  ///< from 1
+  std::string path;    ///< "furniture.bookshelf": what errors call it
 };
 
 struct Item;
@@ -27,7 +36,8 @@ struct Node {
   std::int64_t integer = 0;
   double real = 0;  ///< of an integer too
   std::string text;
-  std::vector<Item> items;  ///< of a list or a table, in the order written
+  std::vector<Item> items;                         ///< of a list or a table, in the order written
+  std::shared_ptr<const SourceEntry> source = {};  ///< of an entry that was not written as one of its list
 
   /// The value of a key of a table; null when absent.
   const Node* find(std::string_view key) const;
@@ -42,6 +52,16 @@ struct Item {
   Place key_place;
   Node value;
 };
+
+/// Of a tree, made rather than written: all of it says that it was written at `place`.
+Node number_node(double value, const Place& place);
+Node text_node(const std::string& text, const Place& place);
+Node list_node(std::vector<Node> values, const Place& place);
+Node numbers_node(std::initializer_list<double> values, const Place& place);
+/// The key of a table becomes `value`, in its place or behind the last.
+void set_key(Node& table, std::string_view key, Node value);
+/// Everything in the tree was written at `place`.
+void set_place(Node& node, const Place& place);
 
 /// "ORIGIN:L:C: PATH: MESSAGE" or "--set KEY=VALUE: PATH: MESSAGE", always one line.
 std::string error_line(const std::string& origin, const Place& place, const std::string& path,
@@ -67,6 +87,9 @@ std::string write_toml(const Node& root);
 
 /// What errors and overrides call entry `index` of an array: its name, else its number from 1.
 std::string entry_label(const Node& list, std::size_t index);
+
+/// What errors call that entry of the array `key`: "cabinet.free", or the entry that it was made of.
+std::string entry_path(const Node& list, const std::string& key, std::size_t index);
 
 /// "a table", "text", "a list": what was found.
 std::string_view kind_name(Node::Kind kind);

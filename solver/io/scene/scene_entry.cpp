@@ -118,7 +118,7 @@ std::vector<Entry> Entry::entries(std::string_view key) const {
   const std::string path = (path_.empty() ? "" : path_ + ".") + std::string(key);
   for (std::size_t k = 0; list && k < list->items.size(); ++k) {
     const Node& node = list->items[k].value;
-    result.emplace_back(origin_, nested, path + "." + entry_label(*list, k), &node, node.place);
+    result.emplace_back(origin_, nested, entry_path(*list, path, k), &node, node.place);
     result.back().name_ = entry_name(*list, key, k);
   }
   return result;

@@ -48,8 +48,13 @@ class Entry {
   /// The entries of a list of tables, or the table itself.
   std::vector<Entry> entries(std::string_view key) const;
   Entry entry(std::string_view key) const;
+  /// `node`, of another table, under the path of this one, which is blamed for what `node` does not have.
+  Entry as(std::string_view table, const Node& node) const { return {origin_, table, path_, &node, place_}; }
   /// Its name, or "cabinet-2" when it has none.
   const std::string& name() const { return name_; }
+  const std::string& path() const { return path_; }
+  const Place& place() const { return place_; }
+  const Node* node() const { return node_; }
 
   /// Blames a value, the key's absence, or with `part` an entry of a list. Throws InputError.
   [[noreturn]] void fail(std::string_view key, const std::string& message, int part = -1) const;

@@ -1,5 +1,6 @@
 #include "solver/io/scene/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -68,6 +69,13 @@ ReadSceneFile kept_files(const Scene& scene) {
       if (file.name == name) return file.bytes;
     throw InputError(name + ": is not among the files of the scene");
   };
+}
+
+const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
+                            std::vector<SceneFile>& files) {
+  auto file = std::ranges::find(files, name, &SceneFile::name);
+  if (file == files.end()) file = files.insert(files.end(), {name, read(name)});
+  return file->bytes;
 }
 
 }  // namespace topple::io

@@ -16,4 +16,8 @@ ReadSceneFile builtin_files();
 /// Those that a scene keeps, which must outlive it.
 ReadSceneFile kept_files(const Scene& scene);
 
+/// Of a file that a scene names; read once and kept in `files`.
+const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
+                            std::vector<SceneFile>& files);
+
 }  // namespace topple::io

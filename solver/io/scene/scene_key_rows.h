@@ -115,7 +115,7 @@ class Rows {
   std::string_view table_;
 };
 
-/// [[cabinet]], [[frame]] and its parts, [[block]].
+/// [[cabinet]], [[frame]] and its parts, [[block]], [[furniture]] and its kinds.
 void add_body_keys(std::vector<Key>& keys);
 
 }  // namespace topple::io

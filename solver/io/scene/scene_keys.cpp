@@ -51,6 +51,10 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("cabinet", T::tables, "a steel cabinet, built from members");
   rows.plain("frame", T::tables, "anything made of straight members");
   rows.plain("block", T::tables, "a rigid solid piece without members");
+  rows.plain("furniture", T::tables,
+             "a piece of the library; any key of the [[cabinet]], [[frame]] or [[block]] that it becomes may "
+             "be given beside its own");
+  rows.plain("kind", T::table, "makes a file of one body a kind of [[furniture]]");
   rows.plain("anchor", T::tables, "ties a body to a wall or floor").only_in({"dynamic", "static"});
   rows.plain("probe", T::tables, "motion reported in the summary");
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
@@ -388,6 +392,9 @@ const Key* find_key(std::string_view table, std::string_view name) {
   for (const Key& key : scene_keys()) {
     if (key.table == table && key.name == name) return &key;
   }
+  if (table != "furniture") return nullptr;
+  for (const std::string_view body : k_furniture_bodies)
+    if (const Key* const key = find_key(body, name)) return key;
   return nullptr;
 }
 

@@ -13,7 +13,10 @@ namespace topple::io {
 /// The table, in the order of the reference.
 const std::vector<Key>& scene_keys();
 
-/// Null when there is no such key.
+/// Tables of which a [[furniture]] becomes an entry.
+inline constexpr std::string_view k_furniture_bodies[] = {"cabinet", "frame", "block"};
+
+/// Null when there is no such key. Of "furniture" also one of a body that it may become.
 const Key* find_key(std::string_view table, std::string_view name);
 
 /// "0..1.5", "0.001..1e+06 kgf".

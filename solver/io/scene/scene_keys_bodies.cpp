@@ -77,6 +77,9 @@ void add_cabinet(std::vector<Key>& keys) {
   rows.number("mass", D::mass, "kg", 1e-3, 1e5, "mass; densities are adjusted to it").absent(cabinet.mass);
   rows.number("cg_height", D::length, "mm", 1e-3, k_large, "centre of gravity above the bottom centre lines")
       .absent_means("half of the height");
+  rows.numbers("cg_offset", 2, D::length, "mm", -k_large, k_large,
+               "centre of gravity off the middle, along depth and width")
+      .absent_means("[0, 0]; of an open front what its members give");
   rows.numbers("inertia", 3, D::inertia, "kg m^2", 1e-9, 1e7,
                "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
       .or_word(words_of(k_inertias))
@@ -198,6 +201,55 @@ void add_frame_panels(std::vector<Key>& keys) {
       .required();
 }
 
+// Of what is in a piece of furniture; `absent`: what an absent centre means.
+void add_contents(std::vector<Key>& keys, std::string_view table, std::string_view absent) {
+  Rows rows(keys, table);
+  rows.number("mass", D::mass, "kg", 0, 1e5, "of all that is inside; 0: empty").required();
+  rows.numbers("cg", 3, D::length, "mm", -k_large, k_large,
+               "its centre of gravity from the middle of the base along depth, width and height; it fills a "
+               "box about it that reaches the nearer sides")
+      .absent_means(absent);
+}
+
+void add_kind(std::vector<Key>& keys) {
+  Rows rows(keys, "kind");
+  rows.plain("source", T::text, "of its sizes, masses and sections, or \"assumed\"").required();
+  rows.plain("contents", T::table, "what it holds where a [[furniture]] does not say")
+      .absent_means("nothing");
+  add_contents(keys, "kind.contents", "the middle of the piece");
+}
+
+void add_furniture(std::vector<Key>& keys) {
+  Rows rows(keys, "furniture");
+  rows.plain("name", T::text, "name of the body; copies add -2, -3, ...")
+      .absent_means("that of its kind; -2, -3, ... where another has it");
+  rows.plain("kind", T::text,
+             "a kind of the library (`topple furniture`), or a TOML file from the folder of the scene with "
+             "one body and `[kind]`")
+      .required();
+  rows.numbers("size", 3, D::length, "mm", 0.01, k_large,
+               "outer depth, width and height; lengths of the kind are stretched, sections stay")
+      .absent_means("of the kind");
+  rows.number("mass", D::mass, "kg", 1e-3, 1e5, "empty").absent_means("of the kind, as its volume");
+  rows.plain("contents", T::table, "what is inside").absent_means("of the kind, as its volume");
+  add_contents(keys, "furniture.contents", "as in the kind");
+  rows.numbers("at", 3, D::length, "m", -k_far, k_far,
+               "centre of the footprint, and the height that it stands on; or against, or beside")
+      .at_least(2)
+      .absent_means("[0, 0]");
+  rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical; only with `at`")
+      .absent(0);
+  rows.plain("against", T::text, "a [[wall]], to which it turns its back").absent_means("`at`");
+  rows.number("offset", D::length, "m", -k_far, k_far,
+              "of its middle from the wall's `at`, to the right as one faces the wall; only with `against`")
+      .absent(0);
+  rows.plain("beside", T::text,
+             "another [[furniture]], to the right of it as one faces it, its back in line with that one's")
+      .absent_means("`at`");
+  rows.number("gap", D::length, "mm", 0, k_far, "to the wall or the other piece")
+      .absent_means("10 mm to a wall; 60 mm to a piece: within 50 mm each is computed as touching");
+}
+
 }  // namespace
 
 void add_body_keys(std::vector<Key>& keys) {
@@ -209,6 +261,8 @@ void add_body_keys(std::vector<Key>& keys) {
   add_frame_masses(keys);
   add_frame_panels(keys);
   add_block(keys);
+  add_furniture(keys);
+  add_kind(keys);
 }
 
 }  // namespace topple::io

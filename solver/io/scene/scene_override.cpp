@@ -13,14 +13,6 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-void set_place(Node& node, const Place& place) {
-  node.place = place;
-  for (Item& item : node.items) {
-    item.key_place = place;
-    set_place(item.value, place);
-  }
-}
-
 // A value that is not valid TOML is text: 50 kgf, rigid.
 Node parse_value(const std::string& text, const Place& place) {
   Node value;

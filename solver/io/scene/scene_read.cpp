@@ -21,42 +21,6 @@ void check_wall(const Entry& entry, const Section& section) {
                               short_number(1e3 * smaller) + " mm");
 }
 
-Section read_section(const Entry& entry) {
-  Section section;
-  section.name = entry.name();
-  section.shape = entry.chosen("shape", section_shapes());
-  const SectionTraits& shape = traits(section.shape);
-  if (entry.has("size")) {
-    const std::vector<double> size = entry.numbers("size");
-    if (shape.is_round && size.size() != 1)
-      entry.fail("size", "a " + std::string(shape.word) + " has one size, its outer diameter");
-    if (!shape.is_round && size.size() != 2)
-      entry.fail("size", "expected [a, b], the sizes along local y and z");
-    section.size_y = size.front();
-    section.size_z = size.back();
-  } else if (shape.complete) {
-    entry.fail("size", "missing (outer sizes along local y and z; pipe: the diameter)");
-  }
-  if (shape.has_wall) {
-    section.thickness = entry.number("thickness");
-    check_wall(entry, section);
-  }
-  if (!shape.complete) {
-    section.area = entry.number("area");
-    section.iy = entry.number("iy");
-    section.iz = entry.number("iz");
-    section.j = entry.number("j");
-    section.ky = entry.number("ky");
-    section.kz = entry.number("kz");
-    section.width = entry.number("width");
-    if (entry.has("zy")) section.zy = entry.number("zy");
-    if (entry.has("zz")) section.zz = entry.number("zz");
-    if (entry.has("zt")) section.zt = entry.number("zt");
-    if (!entry.has("size")) section.size_y = section.size_z = section.width;
-  }
-  return section;
-}
-
 // Of a cabinet or frame.
 int bodies_of(const Entry& entry) {
   return std::max<int>(1, static_cast<int>(entry.vectors("copies").size()));
@@ -209,6 +173,42 @@ void read_planes(const Entry& root, Setup& setup) {
     setup.model.planes.push_back(
         {wall.name(), Vec3(at[0], at[1], 0), wall.direction("normal"), wall.number("width")});
   }
+}
+
+Section read_section(const Entry& entry) {
+  Section section;
+  section.name = entry.name();
+  section.shape = entry.chosen("shape", section_shapes());
+  const SectionTraits& shape = traits(section.shape);
+  if (entry.has("size")) {
+    const std::vector<double> size = entry.numbers("size");
+    if (shape.is_round && size.size() != 1)
+      entry.fail("size", "a " + std::string(shape.word) + " has one size, its outer diameter");
+    if (!shape.is_round && size.size() != 2)
+      entry.fail("size", "expected [a, b], the sizes along local y and z");
+    section.size_y = size.front();
+    section.size_z = size.back();
+  } else if (shape.complete) {
+    entry.fail("size", "missing (outer sizes along local y and z; pipe: the diameter)");
+  }
+  if (shape.has_wall) {
+    section.thickness = entry.number("thickness");
+    check_wall(entry, section);
+  }
+  if (!shape.complete) {
+    section.area = entry.number("area");
+    section.iy = entry.number("iy");
+    section.iz = entry.number("iz");
+    section.j = entry.number("j");
+    section.ky = entry.number("ky");
+    section.kz = entry.number("kz");
+    section.width = entry.number("width");
+    if (entry.has("zy")) section.zy = entry.number("zy");
+    if (entry.has("zz")) section.zz = entry.number("zz");
+    if (entry.has("zt")) section.zt = entry.number("zt");
+    if (!entry.has("size")) section.size_y = section.size_z = section.width;
+  }
+  return section;
 }
 
 void read_materials_and_sections(const Entry& root, Setup& setup) {

@@ -23,6 +23,9 @@ bool is_beams(const Entry& entry);
 /// Planes: [floor] first, then each [[wall]].
 void read_planes(const Entry& root, Setup& setup);
 
+/// [[section]], not completed.
+Section read_section(const Entry& entry);
+
 /// [[material]] and [[section]]; sections are completed with the Poisson's ratio of the first member that
 /// uses them.
 void read_materials_and_sections(const Entry& root, Setup& setup);

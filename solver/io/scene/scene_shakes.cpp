@@ -4,6 +4,7 @@
 
 #include "solver/io/accelerogram/accelerogram_file.h"
 #include "solver/io/common/units.h"
+#include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
@@ -29,13 +30,6 @@ void read_frequency(const Entry& entry, Shake& shake) {
     entry.fail("frequency", "a sine has one; a sweep goes from one to another");
   }
   shake.frequency = frequency[0];
-}
-
-const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
-                            std::vector<SceneFile>& files) {
-  auto file = std::find_if(files.begin(), files.end(), [&](const SceneFile& f) { return f.name == name; });
-  if (file == files.end()) file = files.insert(files.end(), {name, read(name)});
-  return file->bytes;
 }
 
 double seconds(const AccelerogramComponent& component) {

@@ -10,10 +10,11 @@
 #include <optional>
 
 #include "solver/io/common/units.h"
+#include "solver/io/edit/scene_number.h"
+#include "solver/io/edit/scene_save.h"
+#include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
-#include "solver/io/scene/scene_number.h"
-#include "solver/io/scene/scene_save.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 #include "solver/planar/transition.h"
@@ -253,6 +254,20 @@ double length_of(const io::Node& node) {
   return node.is_number() ? node.real : io::parse_quantity(node.text, io::Dimension::length).si.value_or(0);
 }
 
+/// The same of a [[furniture]]: all that it leaves to its kind is said, because that would follow the size.
+std::vector<std::string> piece_changes(const io::FurniturePiece& piece, const std::string& key,
+                                       double value) {
+  const std::string path = fmt::format("furniture.{}.", piece.number);
+  const bool heavier = key == "mass";
+  const double mass = heavier ? value : 1;
+  const Vec3 size = heavier ? piece.size : Vec3(piece.size + (value - 1) * piece.rocking_size);
+  const Vec3 cg = heavier ? piece.contents_cg : Vec3(value * piece.contents_cg);
+  return {fmt::format("{}size=[{}, {}, {}]", path, size.x(), size.y(), size.z()),
+          fmt::format("{}mass={}", path, mass * piece.mass),
+          fmt::format("{}contents={{ mass = {}, cg = [{}, {}, {}] }}", path, mass * piece.contents_mass,
+                      cg.x(), cg.y(), cg.z())};
+}
+
 /// Overrides that multiply the keys of all bodies.
 std::vector<std::string> body_changes(const io::Scene& scene, const std::string& key, double value) {
   std::vector<std::string> out;
@@ -275,9 +290,11 @@ std::vector<std::string> body_changes(const io::Scene& scene, const std::string&
     out.push_back(fmt::format("{}size=[{}]", path, size));
     if (body.find("cg_height")) add(scaled_number(scene, path + "cg_height", value));
   }
-  if (static_cast<int>(bodies ? bodies->items.size() : 0) == 0)
-    throw InputError("--vary " + key + ": no [[" + std::string(k_bodies) + "]] whose " + key +
-                     " the rigid model could take");
+  for (const io::FurniturePiece& piece : io::furniture_of(scene))
+    for (std::string& change : piece_changes(piece, key, value)) out.push_back(std::move(change));
+  if (out.empty())
+    throw InputError("--vary " + key + ": no [[" + std::string(k_bodies) + "]] or [[furniture]] whose " +
+                     key + " the rigid model could take");
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/study/common/measure.h"

@@ -1,4 +1,4 @@
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // [[block]]: what a scene makes of it, and one line for each thing that is wrong with it.
 #include "scene_samples.h"
-#include "solver/io/scene/edit_text.h"
-#include "solver/io/scene/scene_save.h"
+#include "solver/io/edit/edit_text.h"
+#include "solver/io/edit/scene_save.h"
 
 namespace topple::io {
 namespace {

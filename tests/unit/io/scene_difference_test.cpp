@@ -1,4 +1,4 @@
-#include "solver/io/scene/scene_difference.h"
+#include "solver/io/edit/scene_difference.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
   EXPECT_EQ(error_of("tople = 1\n" + k_scene),
             "s.toml:1:1: tople: unknown key; known: anchor, block, cabinet, contact, expect, floor, frame, "
-            "material, probe, run, "
+            "furniture, kind, material, probe, run, "
             "section, shake, title, topple, wall");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
@@ -254,12 +254,18 @@ TEST(SceneErrors, names_used_twice_are_refused_within_a_kind) {
 }
 
 TEST(SceneErrors, references_to_nothing_list_what_there_is) {
-  EXPECT_EQ(error_of(replaced(k_cabinet_scene, "section = \"post\"", "section = \"pst\"")),
-            "s.toml:14:11: cabinet.free.section: there is no [[section]] \"pst\"; known: post");
-  EXPECT_EQ(error_of(replaced(k_scene, "material = \"steel\"", "material = \"wood\"")),
-            "s.toml:15:59: frame.beam.members.1.material: there is no [[material]] \"wood\"; known: steel");
-  EXPECT_EQ(error_of(k_head + k_cabinet),
-            "s.toml:4:11: cabinet.free.section: there is no [[section]] \"post\" nor any other");
+  EXPECT_EQ(
+      error_of(replaced(k_cabinet_scene, "section = \"post\"", "section = \"pst\"")),
+      "s.toml:14:11: cabinet.free.section: there is no [[section]] \"pst\"; known: post; built in: "
+      "\"box 30x1\", \"box 40x20x1.2\", \"solid 30\", \"solid 40x20\", \"pipe 25x1.2\", \"sheet 700x25\"");
+  EXPECT_EQ(error_of(replaced(k_scene, "material = \"steel\"", "material = \"oak\"")),
+            "s.toml:15:59: frame.beam.members.1.material: there is no [[material]] \"oak\"; known: steel; "
+            "built in: "
+            "aluminium, plastic, stainless steel, steel, wood");
+  EXPECT_EQ(
+      error_of(k_head + k_cabinet),
+      "s.toml:4:11: cabinet.free.section: there is no [[section]] \"post\" nor any other; built in: "
+      "\"box 30x1\", \"box 40x20x1.2\", \"solid 30\", \"solid 40x20\", \"pipe 25x1.2\", \"sheet 700x25\"");
   EXPECT_EQ(after_beam("[[probe]]\nname = \"p\"\nbody = \"beem\"\n"),
             "s.toml:19:8: probe.p.body: there is no body \"beem\"; known: beam");
   EXPECT_EQ(after_beam("[[probe]]\nname = \"p\"\nbody = \"beam\"\nnode = 2\n"),
@@ -292,9 +298,10 @@ TEST(SceneErrors, settling_from_motion_or_without_gravity_is_refused) {
 }
 
 TEST(SceneErrors, a_scene_without_bodies_is_refused) {
-  EXPECT_EQ(error_of(k_head + k_library),
-            "s.toml:1:1: there are no bodies; a scene has at least one [[cabinet]], [[frame]] or "
-            "[[block]]");
+  EXPECT_EQ(
+      error_of(k_head + k_library),
+      "s.toml:1:1: there are no bodies; a scene has at least one [[furniture]], [[cabinet]], [[frame]] or "
+      "[[block]]");
 }
 
 TEST(SceneErrors, bodies_that_cannot_be_built_blame_the_key) {

@@ -1,13 +1,13 @@
 // Scenes saved as they have become by edits.
-#include "solver/io/scene/scene_save.h"
+#include "solver/io/edit/scene_save.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "solver/io/scene/edit_text.h"
-#include "solver/io/scene/scene_rewrite.h"
+#include "solver/io/edit/edit_text.h"
+#include "solver/io/edit/scene_rewrite.h"
 
 namespace topple::io {
 namespace {

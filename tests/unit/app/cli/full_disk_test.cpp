@@ -104,6 +104,7 @@ TEST_F(FullDiskTest, results_that_standard_output_does_not_take_are_a_failure) {
                                                {"info", "a.h5"},
                                                {"check", "s.toml"},
                                                {"scenes"},
+                                               {"furniture"},
                                                {"--help"}})
     expect_one_line(call, 1, "No space left on device", {.output = "/dev/full"});
 }

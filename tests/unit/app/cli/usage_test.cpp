@@ -1,5 +1,5 @@
 // Calls that are wrong in themselves, and help.
-#include "app/cli/nearest_name.h"
+#include "solver/io/common/nearest_name.h"
 #include "solver/math/processor.h"
 #include "unit/app/program.h"
 #include "unit/app/scenes.h"
@@ -23,7 +23,7 @@ TEST_F(UsageTest, help_and_version_go_to_standard_output) {
   EXPECT_EQ(topple({"--version"}).out,
             std::string("topple " TOPPLE_VERSION "\nsolver for ") + instruction_set() + "\n");
   for (const char* command : {"", "run", "render", "export", "verify", "study", "compare", "report",
-                              "validate", "check", "info", "recover", "scenes"}) {
+                              "validate", "check", "info", "recover", "scenes", "furniture"}) {
     SCOPED_TRACE(command);
     const Ended ended =
         topple(*command ? std::vector<std::string>{command, "--help"} : std::vector<std::string>{"--help"});
@@ -60,6 +60,7 @@ TEST_F(UsageTest, the_option_that_is_nearest_to_a_mistyped_one_is_named) {
 }
 
 TEST(NearestName, is_that_of_the_fewest_slips_and_none_where_there_are_many) {
+  using io::edit_distance, io::nearest_name;
   EXPECT_EQ(edit_distance("", "abc"), 3);
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
   EXPECT_EQ(edit_distance("sittign", "sitting"), 1);

@@ -1,4 +1,4 @@
-#include "solver/io/scene/scene_number.h"
+#include "solver/io/edit/scene_number.h"
 
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_document.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace topple::app {
+namespace topple::io {
 
 /// Least number of letters to insert, drop, replace or exchange with their neighbour, each place touched
 /// once, that makes `b` of `a`.
@@ -15,4 +15,4 @@ int edit_distance(std::string_view a, std::string_view b);
 /// with three letters or more. Empty: none is near.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
 
-}  // namespace topple::app
+}  // namespace topple::io

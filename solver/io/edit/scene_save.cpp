@@ -1,14 +1,15 @@
-#include "solver/io/scene/scene_save.h"
+#include "solver/io/edit/scene_save.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
-#include "solver/io/scene/edit_text.h"
+#include "solver/io/edit/edit_text.h"
+#include "solver/io/edit/scene_rewrite.h"
+#include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
-#include "solver/io/scene/scene_rewrite.h"
 #include "solver/model/excitation.h"
 
 namespace topple::io {
@@ -23,31 +24,12 @@ std::string toml_of(Edit edit) {
   return edit_value_text(edit, EditSpelling::in_scene);
 }
 
-/// The entry that a body was built from.
-struct BodyEntry {
-  std::string table;
-  std::size_t number, first_body, bodies;
-};
-
-BodyEntry entry_of_body(const Node& root, std::size_t body) {
-  std::size_t first = 0;
-  for (const char* const table : {"cabinet", "frame", "block"}) {
-    const Node* const list = root.find(table);
-    for (std::size_t i = 0; list && i < list->items.size(); ++i) {
-      const Node* const copies = list->items[i].value.find("copies");
-      const std::size_t count = copies ? std::max<std::size_t>(1, copies->items.size()) : 1;
-      if (body < first + count) return {table, i + 1, first, count};
-      first += count;
-    }
-  }
-  throw InputError("no entry of the scene is body " + std::to_string(body + 1));
-}
-
 class Rewriting {
  public:
   Rewriting(const Scene& scene, const Parameters& now)
       : model_(scene.setup.model),
         now_(now),
+        entries_(body_entries(scene)),
         analysis_(find_key("run", "analysis")->choices[static_cast<std::size_t>(scene.setup.run.analysis)]) {
     saved_.text = scene.text;
   }
@@ -85,20 +67,21 @@ class Rewriting {
 
   void take(const Parameters& read) {
     const Node root = parse_toml(saved_.text, "scene");
-    for (const auto& [key, index] : different(read))
-      change(root, {key, index, edited_value(now_, key, index)});
+    for (const auto& [key, index] : different(read)) change({key, index, edited_value(now_, key, index)});
     for (std::size_t i = 0; i < now_.shakes.size(); ++i) drop_foreign(root, i);
     drop_foreign(root, read);
     if (!frames_only() && read.integrator != now_.integrator && saved_.given_up.empty())
       saved_.given_up.push_back(edit_key({Edit::Key::integrator}));
   }
 
-  void change(const Node& root, const Edit& edit) {
+  void change(const Edit& edit) {
     std::string value = toml_of(edit);
     if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
     const Edit::Of of = traits(edit.key).of;
     if (of == Edit::Of::body) {
-      const BodyEntry entry = entry_of_body(root, static_cast<std::size_t>(edit.index));
+      const BodyEntry& entry = *std::ranges::find_if(entries_, [&](const BodyEntry& one) {
+        return static_cast<std::size_t>(edit.index) < one.first_body + one.bodies;
+      });
       for (std::size_t b = entry.first_body; b < entry.first_body + entry.bodies; ++b)
         if (edited_value(now_, edit.key, static_cast<int>(b)) != edit.value)
           throw InputError(edit_key(edit) + ": \"" + model_.bodies[b].name + "\" is a copy of the same [[" +
@@ -163,6 +146,7 @@ class Rewriting {
 
   const Model& model_;
   const Parameters& now_;
+  const std::vector<BodyEntry> entries_;
   const std::string_view analysis_;
   SavedScene saved_;
   std::vector<KeyChange> changes_;

@@ -1,8 +1,8 @@
-#include "app/cli/nearest_name.h"
+#include "solver/io/common/nearest_name.h"
 
 #include <algorithm>
 
-namespace topple::app {
+namespace topple::io {
 
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
@@ -34,4 +34,4 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   return nearest;
 }
 
-}  // namespace topple::app
+}  // namespace topple::io

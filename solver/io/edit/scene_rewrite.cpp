@@ -1,4 +1,4 @@
-#include "solver/io/scene/scene_rewrite.h"
+#include "solver/io/edit/scene_rewrite.h"
 
 #include <utf8.h>
 
