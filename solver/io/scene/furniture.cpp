@@ -52,7 +52,7 @@ void read_contents(Piece& piece, double volume) {
   piece.contents_cg = piece.kind.contents_cg.cwiseProduct(share);
   const Entry contents = piece.entry.entry("contents");
   if (!contents.present()) return;
-  piece.contents_mass = contents.number("mass");
+  if (contents.has("mass")) piece.contents_mass = contents.number("mass");
   if (contents.has("cg")) piece.contents_cg = contents.vector("cg");
 }
 

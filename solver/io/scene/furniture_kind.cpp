@@ -131,7 +131,7 @@ FurnitureKind furniture_kind(const std::string& name, const std::string& origin,
   if (name.ends_with(".toml")) {
     const std::string file = (fs::path(origin).parent_path() / name).string();
     try {
-      return read_kind(bytes_of(name, read, files), fs::path(name).stem().string(), file);
+      return read_kind(bytes_of(name, read, files), kind_stem(name), file);
     } catch (const InputError& error) {
       if (std::ranges::find(files, name, &SceneFile::name) != files.end()) throw;
       fail(origin, place, path, error.what());  // it could not be read

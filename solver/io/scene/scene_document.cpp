@@ -294,9 +294,22 @@ std::string write_toml(const Node& root) {
 }
 
 std::string entry_label(const Node& list, std::size_t index) {
-  const Node* name = list.items[index].value.find("name");
-  if (name && name->kind == Node::Kind::text && !name->text.empty()) return name->text;
-  return std::to_string(index + 1);
+  const auto text = [&](std::size_t at, std::string_view key) {
+    const Node* const node = list.items[at].value.find(key);
+    return node && node->kind == Node::Kind::text ? node->text : std::string();
+  };
+  if (const std::string name = text(index, "name"); !name.empty()) return name;
+  const std::string kind = text(index, "kind");
+  if (kind.empty()) return std::to_string(index + 1);
+  std::size_t same = 1;
+  for (std::size_t k = 0; k < index; ++k) same += text(k, "name").empty() && text(k, "kind") == kind;
+  return kind_stem(kind) + (same > 1 ? "-" + std::to_string(same) : "");
+}
+
+std::string kind_stem(const std::string& kind) {
+  if (!kind.ends_with(".toml")) return kind;
+  const std::size_t begin = kind.rfind('/') + 1;  // npos + 1: there is no folder
+  return kind.substr(begin, kind.size() - begin - 5);
 }
 
 std::string entry_path(const Node& list, const std::string& key, std::size_t index) {

@@ -85,8 +85,12 @@ std::string written_text(std::string_view text);
 /// TOML text of the tree; comments are lost, order is kept.
 std::string write_toml(const Node& root);
 
-/// What errors and overrides call entry `index` of an array: its name, else its number from 1.
+/// What errors and overrides call entry `index` of an array: its name, else that of its kind, of further ones
+/// of that kind with -2, -3, ..., else its number from 1.
 std::string entry_label(const Node& list, std::size_t index);
+
+/// Name of a kind of furniture: of a file without folder and extension.
+std::string kind_stem(const std::string& kind);
 
 /// What errors call that entry of the array `key`: "cabinet.free", or the entry that it was made of.
 std::string entry_path(const Node& list, const std::string& key, std::size_t index);

@@ -50,7 +50,8 @@ ReadSceneFile files_beside(const std::string& origin) {
     std::error_code status;
     if (!fs::exists(path, status)) {
       if (std::optional<std::string> record = builtin_record(name)) return *std::move(record);
-      throw InputError(path + ": no such file; built-in records: " + known_records());
+      throw InputError(path + ": no such file" +
+                       (name.ends_with(".toml") ? "" : "; built-in records: " + known_records()));
     }
     return read_whole_file(path);
   };

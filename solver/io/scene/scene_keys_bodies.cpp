@@ -201,14 +201,15 @@ void add_frame_panels(std::vector<Key>& keys) {
       .required();
 }
 
-// Of what is in a piece of furniture; `absent`: what an absent centre means.
-void add_contents(std::vector<Key>& keys, std::string_view table, std::string_view absent) {
+// Of what is in a piece of furniture.
+void add_contents(std::vector<Key>& keys, std::string_view table, std::string_view mass_absent,
+                  std::string_view cg_absent) {
   Rows rows(keys, table);
-  rows.number("mass", D::mass, "kg", 0, 1e5, "of all that is inside; 0: empty").required();
+  rows.number("mass", D::mass, "kg", 0, 1e5, "of all that is inside; 0: empty").absent_means(mass_absent);
   rows.numbers("cg", 3, D::length, "mm", -k_large, k_large,
                "its centre of gravity from the middle of the base along depth, width and height; it fills a "
                "box about it that reaches the nearer sides")
-      .absent_means(absent);
+      .absent_means(cg_absent);
 }
 
 void add_kind(std::vector<Key>& keys) {
@@ -216,7 +217,8 @@ void add_kind(std::vector<Key>& keys) {
   rows.plain("source", T::text, "of its sizes, masses and sections, or \"assumed\"").required();
   rows.plain("contents", T::table, "what it holds where a [[furniture]] does not say")
       .absent_means("nothing");
-  add_contents(keys, "kind.contents", "the middle of the piece");
+  add_contents(keys, "kind.contents", "", "the middle of the piece");
+  keys[keys.size() - 2].required = true;
 }
 
 void add_furniture(std::vector<Key>& keys) {
@@ -232,7 +234,7 @@ void add_furniture(std::vector<Key>& keys) {
       .absent_means("of the kind");
   rows.number("mass", D::mass, "kg", 1e-3, 1e5, "empty").absent_means("of the kind, as its volume");
   rows.plain("contents", T::table, "what is inside").absent_means("of the kind, as its volume");
-  add_contents(keys, "furniture.contents", "as in the kind");
+  add_contents(keys, "furniture.contents", "of the kind, as its volume", "as in the kind");
   rows.numbers("at", 3, D::length, "m", -k_far, k_far,
                "centre of the footprint, and the height that it stands on; or against, or beside")
       .at_least(2)

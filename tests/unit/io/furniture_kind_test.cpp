@@ -190,7 +190,7 @@ TEST(Furniture, keys_of_the_body_and_overrides_reach_it) {
       "[[furniture]]\nkind = \"cabinet\"\nbase = \"edges\"\nshelves = 2\ndamping = 0.02\n";
   const Scene scene = parse_scene(k_empty_room + piece, "s.toml",
                                   {"furniture.1.mass=70 kg", "furniture.1.tilt=1 deg", "run.settle=false",
-                                   "furniture.1.contents.mass=5"});
+                                   "furniture.cabinet.contents.mass=5"});
   EXPECT_NEAR(scene.setup.model.bodies[0].mass, 75, 1e-9);
   EXPECT_EQ(scene.setup.parameters.damping[0], 0.02);
   EXPECT_NEAR(scene.setup.starts[0].rotation.norm(), k_pi / 180, 1e-12);
@@ -296,40 +296,43 @@ TEST(FurnitureErrors, name_file_line_and_key) {
     EXPECT_EQ(text.substr(0, with.size()), with);
     EXPECT_EQ(text.find('\n'), std::string::npos);
   };
-  begins(refused_piece("[[furniture]]\nkind = \"bokshelf\"\n"),
-         "s.toml:8:8: furniture.1.kind: there is no kind \"bokshelf\"; the nearest is bookshelf; known: "
-         "bookshelf, "
-         "cabinet, ");
+  begins(
+      refused_piece("[[furniture]]\nkind = \"bokshelf\"\n"),
+      "s.toml:8:8: furniture.bokshelf.kind: there is no kind \"bokshelf\"; the nearest is bookshelf; known: "
+      "bookshelf, "
+      "cabinet, ");
   begins(refused_piece(shelf + "against = \"bakc\"\n"),
-         "s.toml:9:11: furniture.1.against: there is no [[wall]] \"bakc\"; the nearest is back; known: back");
+         "s.toml:9:11: furniture.bookshelf.against: there is no [[wall]] \"bakc\"; the nearest is back; "
+         "known: back");
   begins(refused_piece(shelf + "beside = \"fridge\"\n"),
-         "s.toml:9:10: furniture.1.beside: there is no [[furniture]] \"fridge\" nor any other");
+         "s.toml:9:10: furniture.bookshelf.beside: there is no [[furniture]] \"fridge\" nor any other");
   begins(refused_piece(shelf + "beside = \"bookshelf\"\n"),
-         "s.toml:9:10: furniture.1.beside: \"bookshelf\" stands beside itself, in a circle");
+         "s.toml:9:10: furniture.bookshelf.beside: \"bookshelf\" stands beside itself, in a circle");
   begins(refused_piece(
              "[[furniture]]\nkind = \"desk\"\nbeside = \"chair\"\n[[furniture]]\nkind = \"chair\"\nbeside = "
              "\"desk\"\n"),
-         "s.toml:9:10: furniture.1.beside: \"desk\" stands beside itself, in a circle");
+         "s.toml:9:10: furniture.desk.beside: \"desk\" stands beside itself, in a circle");
   begins(refused_piece(shelf + "size = [0.3, -0.9, 1.8]\n"),
-         "s.toml:9:14: furniture.1.size.2: -0.9 m is outside 10..10000 mm");
+         "s.toml:9:14: furniture.bookshelf.size.2: -0.9 m is outside 10..10000 mm");
   begins(refused_piece(shelf + "contents = { mass = \"-1 kg\" }\n"),
-         "s.toml:9:21: furniture.1.contents.mass: \"-1 kg\" is outside 0..100000 kg");
+         "s.toml:9:21: furniture.bookshelf.contents.mass: \"-1 kg\" is outside 0..100000 kg");
   begins(refused_piece(shelf + "contents = { mass = 5, cg = [0, 0, 2] }\n"),
-         "s.toml:9:29: furniture.1.contents.cg: along the height, 2000 mm is not inside the piece, which "
+         "s.toml:9:29: furniture.bookshelf.contents.cg: along the height, 2000 mm is not inside the piece, "
+         "which "
          "reaches "
          "from 0 mm to 1800 mm");
   begins(refused_piece(shelf + "size = [0.02, 0.9, 1.8]\n"),
-         "s.toml:9:8: furniture.1.size: the depth, 20 mm, is not more than the 30 mm of its members");
+         "s.toml:9:8: furniture.bookshelf.size: the depth, 20 mm, is not more than the 30 mm of its members");
   begins(refused_piece(shelf + "at = [0, 0]\nagainst = \"back\"\n"),
-         "s.toml:10:11: furniture.1.against: stands beside `at`; a piece has one of them");
+         "s.toml:10:11: furniture.bookshelf.against: stands beside `at`; a piece has one of them");
   begins(refused_piece(shelf + "against = \"back\"\nyaw = \"90 deg\"\n"),
-         "s.toml:10:7: furniture.1.yaw: belongs to `at`");
+         "s.toml:10:7: furniture.bookshelf.yaw: belongs to `at`");
   begins(refused_piece(shelf + "nodes = [[0, 0, 0]]\n"),
-         "s.toml:9:9: furniture.1.nodes: is no key of a [[cabinet]], which a bookshelf becomes");
+         "s.toml:9:9: furniture.bookshelf.nodes: is no key of a [[cabinet]], which a bookshelf becomes");
   begins(refused_piece(shelf + "shelfs = 3\n"),
-         "s.toml:9:1: furniture.1.shelfs: unknown key; known: against, at, beside, ");
+         "s.toml:9:1: furniture.bookshelf.shelfs: unknown key; known: against, at, beside, ");
   begins(refused_piece(shelf + "section = \"box 30\"\n"),
-         "s.toml:9:11: furniture.1.section: there is no [[section]] \"box 30\"");
+         "s.toml:9:11: furniture.bookshelf.section: there is no [[section]] \"box 30\"");
   begins(refused_piece("[[furniture]]\nname = \"a\"\nkind = \"desk\"\n[[furniture]]\nname = \"a\"\nkind = "
                        "\"desk\"\nat = [2, "
                        "0]\n"),
@@ -354,8 +357,10 @@ TEST(FurnitureErrors, in_a_kind_of_ones_own_name_its_file_and_line) {
   EXPECT_EQ(refused_piece(use, head + "[[cabinet]]\nmass = 5\nsection = \"box 30x1\"\nmaterial = \"oak\"\n")
                 .substr(0, 66),
             "my.toml:7:12: cabinet.1.material: there is no [[material]] \"oak\" n");
-  EXPECT_EQ(refused_piece(use, head + block + "cg = [0, 0, 1]\n").substr(0, 43),
-            "my.toml:7:6: furniture.1.cg: z = 1000 mm is");
+  EXPECT_EQ(refused_piece(use, head + block + "cg = [0, 0, 1]\n").substr(0, 44),
+            "my.toml:7:6: furniture.my.cg: z = 1000 mm is");
+  EXPECT_EQ(refused_piece(use, head + "contents = { cg = [0, 0, 0.1] }\n" + block).substr(0, 43),
+            "my.toml:4:12: kind.contents.mass: missing (");
   EXPECT_EQ(refused_piece(use, "what"),
             "my.toml:1:5: Error while parsing key-value pair: encountered end-of-file");
 }
