@@ -261,13 +261,13 @@ class CabinetBuilder {
       second += mass[i] / spec_.mass * (at[i] - centre) * (at[i] - centre).transpose();
     const Vec3 wanted(spec_.cg_offset->x(), spec_.cg_offset->y(), centre.z());
     const Vec3 slope = second.ldlt().solve(wanted - centre);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const double factor = 1 + slope.dot(at[i] - centre);
-      if (factor < k_least_share)
-        throw BuildError("cg_offset", number(1e3 * wanted.x()) + " mm, " + number(1e3 * wanted.y()) +
-                                          " mm cannot be reached with positive densities");
-      mass[i] *= factor;
-    }
+    double lightest = 0;
+    for (const Vec3& x : at) lightest = std::min(lightest, slope.dot(x - centre));
+    if (1 + lightest < k_least_share)
+      throw BuildError("cg_offset", millimetres(wanted.x()) + ", " + millimetres(wanted.y()) +
+                                        " cannot be reached with positive densities, only " +
+                                        number((k_least_share - 1) / lightest) + " of the way");
+    for (std::size_t i = 0; i < at.size(); ++i) mass[i] *= 1 + slope.dot(at[i] - centre);
   }
 
   // Sheets on the diagonals where there are any, the rest on the edges.

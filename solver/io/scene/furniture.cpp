@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 
+#include "solver/io/scene/furniture_kind.h"
 #include "solver/io/scene/furniture_piece.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_keys.h"

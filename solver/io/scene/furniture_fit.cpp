@@ -340,16 +340,18 @@ Vec3 outer_size(const std::string& table, const Entry& body, const SectionWidth&
   return fit_of(table).outer(body, width);
 }
 
-void fit(Piece& piece) {
+void check_inside(const Entry& contents, const Vec3& cg, const Vec3& size) {
   for (int k = 0; k < 3; ++k) {
-    const double from = k < 2 ? -piece.size[k] / 2 : 0, to = from + piece.size[k];
-    const double at = piece.contents_cg[k];
-    if (piece.contents_mass > 0 && (!(at > from) || !(at < to)))
-      piece.entry.entry("contents")
-          .fail("cg", std::string("along the ") + k_axes[k] + ", " + topple::millimetres(at) +
-                          " is not inside the piece, which reaches from " + topple::millimetres(from) +
-                          " to " + topple::millimetres(to));
+    const double from = k < 2 ? -size[k] / 2 : 0, to = from + size[k];
+    if (!(cg[k] > from) || !(cg[k] < to))
+      contents.fail("cg", std::string("along the ") + k_axes[k] + ", " + topple::millimetres(cg[k]) +
+                              " is not inside the piece, which reaches from " + topple::millimetres(from) +
+                              " to " + topple::millimetres(to));
   }
+}
+
+void fit(Piece& piece) {
+  if (piece.contents_mass > 0) check_inside(piece.entry.entry("contents"), piece.contents_cg, piece.size);
   fit_of(piece.kind.table).fit(piece);
 }
 

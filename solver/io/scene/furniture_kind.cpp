@@ -6,7 +6,6 @@
 
 #include "solver/io/common/nearest_name.h"
 #include "solver/io/scene/builtin.h"
-#include "solver/io/scene/furniture_piece.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_keys.h"
@@ -110,6 +109,7 @@ FurnitureKind read_kind(std::string_view text, const std::string& name, const st
   const Entry contents = about.entry("contents");
   kind.contents_mass = contents.present() ? contents.number("mass") : 0;
   kind.contents_cg = contents.has("cg") ? contents.vector("cg") : Vec3(0, 0, kind.size.z() / 2);
+  check_inside(contents, kind.contents_cg, kind.size);
   return kind;
 }
 

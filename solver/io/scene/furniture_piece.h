@@ -1,4 +1,4 @@
-// A piece of furniture on its way from [[furniture]] to the body that it becomes.
+// Kinds of furniture, and a piece on its way from [[furniture]] to the body that it becomes.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/scene/furniture_kind.h"
+#include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_entry.h"
+#include "solver/math/types.h"
 
 namespace topple::io {
 
@@ -19,6 +20,20 @@ SectionWidth section_widths(std::vector<Node> sections, const std::string& origi
 
 /// Outer depth, width and height of a body that stands upright, m. `body`: an entry of `table`.
 Vec3 outer_size(const std::string& table, const Entry& body, const SectionWidth& width);
+
+/// A kind as its file has it.
+struct FurnitureKind {
+  std::string name;   ///< "bookshelf": of the file without folder and extension
+  std::string title;  ///< of the file
+  std::string source;
+  std::string table;                      ///< of the body: "cabinet", "frame" or "block"
+  Node body;                              ///< without name
+  std::vector<Node> materials, sections;  ///< of the file, named "bookshelf/post"; the body calls them so
+  Vec3 size;                              ///< m, outer depth, width and height
+  double mass;                            ///< kg, empty
+  double contents_mass;                   ///< kg
+  Vec3 contents_cg;                       ///< m, from the middle of the outer base
+};
 
 /// A piece whose body has yet to be fitted to it.
 struct Piece {
@@ -35,6 +50,9 @@ struct Piece {
   /// Its body, for what is read of it.
   Entry body_entry() const { return entry.as(kind.table, body); }
 };
+
+/// Refuses contents whose centre is not within a piece of this outer size.
+void check_inside(const Entry& contents, const Vec3& cg, const Vec3& size);
 
 /// Gives the body the size, the mass and the centre of gravity of the piece and its contents. Throws
 /// InputError.

@@ -234,7 +234,6 @@ void add_furniture(std::vector<Key>& keys) {
       .absent_means("of the kind");
   rows.number("mass", D::mass, "kg", 1e-3, 1e5, "empty").absent_means("of the kind, as its volume");
   rows.plain("contents", T::table, "what is inside").absent_means("of the kind, as its volume");
-  add_contents(keys, "furniture.contents", "of the kind, as its volume", "as in the kind");
   rows.numbers("at", 3, D::length, "m", -k_far, k_far,
                "centre of the footprint, and the height that it stands on; or against, or beside")
       .at_least(2)
@@ -250,6 +249,7 @@ void add_furniture(std::vector<Key>& keys) {
       .absent_means("`at`");
   rows.number("gap", D::length, "mm", 0, k_far, "to the wall or the other piece")
       .absent_means("10 mm to a wall; 60 mm to a piece: within 50 mm each is computed as touching");
+  add_contents(keys, "furniture.contents", "of the kind, as its volume", "as in the kind");
 }
 
 }  // namespace

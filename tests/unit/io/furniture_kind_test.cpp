@@ -321,6 +321,9 @@ TEST(FurnitureErrors, name_file_line_and_key) {
          "which "
          "reaches "
          "from 0 mm to 1800 mm");
+  begins(refused_piece(shelf + "contents = { mass = 120, cg = [0.145, 0, 0.9] }\n"),
+         "s.toml:9:12: furniture.bookshelf.cg_offset: 116 mm, 0 mm cannot be reached with positive "
+         "densities, only 0.");
   begins(refused_piece(shelf + "size = [0.02, 0.9, 1.8]\n"),
          "s.toml:9:8: furniture.bookshelf.size: the depth, 20 mm, is not more than the 30 mm of its members");
   begins(refused_piece(shelf + "at = [0, 0]\nagainst = \"back\"\n"),
@@ -361,6 +364,8 @@ TEST(FurnitureErrors, in_a_kind_of_ones_own_name_its_file_and_line) {
             "my.toml:7:6: furniture.my.cg: z = 1000 mm is");
   EXPECT_EQ(refused_piece(use, head + "contents = { cg = [0, 0, 0.1] }\n" + block).substr(0, 43),
             "my.toml:4:12: kind.contents.mass: missing (");
+  EXPECT_EQ(refused_piece(use, head + "contents = { mass = 1, cg = [0, 0, 0.4] }\n" + block).substr(0, 60),
+            "my.toml:4:29: kind.contents.cg: along the height, 400 mm is ");
   EXPECT_EQ(refused_piece(use, "what"),
             "my.toml:1:5: Error while parsing key-value pair: encountered end-of-file");
 }
