@@ -70,6 +70,21 @@ void BodyTies::add_loads(std::vector<BodyVelocity>& loads) const {
   }
 }
 
+// What the turn of an end's arm and modes with the body, and the arm's change by the modes, take off the
+// block of groups i and j.
+void BodyTies::add_turning(const End& end, int i, int j, const Vec3& force, Mat6& block) {
+  if (i == 0 && j == 0) block.bottomRightCorner<3, 3>() -= skew(force) * skew(end.arm);
+  if ((i == 0) == (j == 0)) return;
+  const int first = 6 * (std::max(i, j) - 1);
+  for (int k = 0; k < 6 && first + k < end.modes; ++k) {
+    const Vec3 turning = end.turned[first + k].cross(force);
+    if (i == 0)
+      block.block<3, 1>(3, k) -= turning;
+    else
+      block.block<1, 3>(k, 3) -= turning.transpose();
+  }
+}
+
 void BodyTies::each_block(const AddBlock& add) const {
   using Columns = Eigen::Matrix<double, 3, 6>;
   const auto columns = [](const End& end, int group) {
@@ -94,8 +109,7 @@ void BodyTies::each_block(const AddBlock& add) const {
         for (int i = 0; i < groups(row); ++i)
           for (int j = 0; j < groups(column); ++j) {
             Mat6 block = sign * columns(row, i).transpose() * tangent * columns(column, j);
-            if (a == b && i == 0 && j == 0)
-              block.bottomRightCorner<3, 3>() -= (a == 0 ? 1 : -1) * skew(force) * skew(row.arm);
+            if (a == b) add_turning(row, i, j, a == 0 ? force : Vec3(-force), block);
             add(row.body, i, column.body, j, block, Mat6::Zero());
           }
       }

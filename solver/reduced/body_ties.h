@@ -70,6 +70,8 @@ class BodyTies {
     return anchor_force(anchor(tie), tie.state, tie.end[0].at, tie.end[1].at);
   }
 
+  static void add_turning(const End& end, int i, int j, const Vec3& force, Mat6& block);
+
   const Model& model_;
   std::vector<Tie> ties_;
 };
