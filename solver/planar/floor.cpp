@@ -216,8 +216,9 @@ double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizont
   part.ends_at(shake.start, t);
   part.ends_at(shake_end(shake), t);
   part.ends_at(ground_end(shake), t);
+  if (t < shake.start || t >= shake_end(shake)) return part.end;
   const Share share_now{shake, t, part};
-  if (t >= shake.start && t < ground_end(shake)) {
+  if (t < ground_end(shake)) {
     const double level = shake.building ? shake.building->ground : 1;
     const auto add_along = [&](const Vec3& direction, const Line& of) {
       if (level * direction.dot(along) != 0) add(horizontal, level * direction.dot(along), of);
@@ -243,8 +244,7 @@ double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizont
       }
     }
   }
-  if (shake.building && t >= shake.start && t < shake_end(shake))
-    add_floor_of_building(shake, along, t, share_now, part, horizontal);
+  if (shake.building) add_floor_of_building(shake, along, t, share_now, part, horizontal);
   return part.end;
 }
 
