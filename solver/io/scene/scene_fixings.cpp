@@ -10,7 +10,7 @@
 namespace topple::io {
 namespace {
 
-constexpr double k_nowhere = 0.1;     // m, from `at` to the body
+constexpr double k_off_body = 0.1;     // m, from `at` to the body
 constexpr double k_upper = 0.05;      // of a body's height: what counts as its top
 constexpr double k_same = 1e-3;       // m: nodes as near as that are equally near
 constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes
@@ -203,9 +203,9 @@ class Fixing {
 
   void check_reach(const char* key, int of, const Vec3& point) const {
     const auto [member, distance] = nearest_member(model(), of, start_, point);
-    if (distance > k_nowhere)
+    if (distance > k_off_body)
       entry_.fail(key, "finds no point of \"" + model().bodies[of].name + "\" within " +
-                           millimetres(k_nowhere) + ": the nearest member, \"" +
+                           millimetres(k_off_body) + ": the nearest member, \"" +
                            model().members[member].name + "\", is " + millimetres(distance) + " away");
   }
 
