@@ -229,7 +229,8 @@ std::string dynamic_head(const ordered_json& s) {
 
 std::string anchor_line(const ordered_json& a) {
   const double peak = a["peak_force_N"].get<double>();
-  std::string line = fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
+  std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
+  line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
   if (a["broke"].get<bool>())
     return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
   if (!a["strength_N"].is_null())
@@ -245,10 +246,30 @@ std::size_t letters(const std::string& text) {
 }
 
 ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
+  const auto name = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].name; };
+  const auto place = [&](const AnchorEnd& end) -> ordered_json {
+    if (end.body < 0) return nullptr;
+    return {{"body", name(end.body)},
+            {"node", end.node - model.bodies[static_cast<std::size_t>(end.body)].first_node},
+            {"distance_m", number(end.arm.norm())}};
+  };
   return {{"name", anchor.name},
-          {"body", model.bodies[static_cast<std::size_t>(anchor.body)].name},
+          {"body", name(anchor.body)},
           {"type", anchor_type(anchor)},
-          {"strength_N", number(anchor.strength)}};
+          {"strength_N", number(anchor.strength)},
+          {"stiffness_N_m", number(anchor.stiffness)},
+          {"fixing", anchor.fixing.empty() ? ordered_json(nullptr) : ordered_json(anchor.fixing)},
+          {"own_end", place(anchor.own())},
+          {"other_end", place(anchor.other)}};
+}
+
+std::string fixing_line(const ordered_json& a) {
+  const auto at = [](const ordered_json& end) {
+    return fmt::format("node {} of {}, {:.0f} mm from it", end["node"].get<int>(),
+                       end["body"].get<std::string>(), 1e3 * end["distance_m"].get<double>());
+  };
+  return fmt::format("fixing {}: {} on {}{}", a["name"].get<std::string>(), a["fixing"].get<std::string>(),
+                     at(a["own_end"]), a["other_end"].is_null() ? "" : ", to " + at(a["other_end"]));
 }
 
 ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {

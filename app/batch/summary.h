@@ -28,8 +28,10 @@ nlohmann::ordered_json failed_estimate(const Setup& setup, const std::string& me
 /// "step halved" or "tolerance divided by 10": what the finer run of `setup` has.
 std::string refinement_in_words(const Setup& setup);
 
-/// Name, body, type and strength of an anchor.
+/// Name, body, type and strength of an anchor; where its ends are; of a [[fixing]] its kind too.
 nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor);
+/// Of one that stands for a [[fixing]], which nodes it took and how far they are, in a line.
+std::string fixing_line(const nlohmann::ordered_json& described);
 
 /// Of a UTF-8 text; what is not counts as one each.
 std::size_t letters(const std::string& text);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "app/batch/summary.h"
 #include "app/cli/command.h"
 #include "app/support/errors.h"
 #include "app/support/log.h"
@@ -16,8 +18,11 @@ int check_command(const CheckOptions& options) {
   int code = k_done;
   for (const std::string& scene : options.scenes) {
     try {
-      io::load_scene(scene, options.overrides);
+      const io::Scene read = io::load_scene(scene, options.overrides);
       fmt::print("{}: ok\n", scene);
+      for (const Anchor& anchor : read.setup.model.anchors)
+        if (!anchor.fixing.empty())
+          fmt::print("{}\n", fixing_line(describe_anchor(read.setup.model, anchor)));
     } catch (const io::InputError& error) {
       log_message(error.what());
       code = k_bad_input;

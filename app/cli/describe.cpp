@@ -130,7 +130,6 @@ ordered_json scene_description(const io::Scene& scene) {
     const Anchor& anchor = setup.model.anchors[k];
     out["anchors"].push_back(describe_anchor(setup.model, anchor));
     out["anchors"].back()["length_m"] = anchor.length;
-    out["anchors"].back()["stiffness_N_m"] = anchor.stiffness;
     out["anchors"].back()["on"] = setup.parameters.anchors[k];
   }
   return out;

@@ -108,7 +108,8 @@ double anchor_value(const FrameContext& now, std::size_t index) {
 double stretch_value(const FrameContext& now, std::size_t index) {
   const io::AnchorNumbers& anchor = now.row.anchor[index];
   if (anchor.state == io::k_anchor_away || anchor.state == io::k_anchor_broken) return k_no_value;
-  const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) - now.model.anchors[index].to;
+  const Vec3 span = attached_point(now.model, now.row, Vec3::Zero(), index) -
+                    far_point(now.model, now.row, Vec3::Zero(), index);
   return 1e3 * (span.norm() - anchor.natural_length);
 }
 

@@ -105,9 +105,21 @@ std::vector<Vec3> sagging(const Vec3& from, const Vec3& to, double length) {
 
 }  // namespace
 
+namespace {
+
+Vec3 place_of(const io::FrameRow& row, const Vec3& shift, const AnchorEnd& end) {
+  return position(row, end.node) + shift + rotation(row, end.node) * end.arm;
+}
+
+}  // namespace
+
 Vec3 attached_point(const Model& model, const io::FrameRow& row, const Vec3& shift, std::size_t k) {
+  return place_of(row, shift, model.anchors[k].own());
+}
+
+Vec3 far_point(const Model& model, const io::FrameRow& row, const Vec3& shift, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
-  return position(row, anchor.node) + shift + rotation(row, anchor.node) * anchor.arm;
+  return anchor.other.body < 0 ? Vec3(anchor.to + shift) : place_of(row, shift, anchor.other);
 }
 
 void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift, render::SceneFrame& out) {
@@ -120,10 +132,10 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
     const Anchor& anchor = model.anchors[k];
     const float state = row.anchor[k].state;
     const double length = row.anchor[k].natural_length;
-    const Vec3 from = anchor.to + shift, to = attached_point(model, row, shift, k);
+    const Vec3 from = far_point(model, row, shift, k), to = attached_point(model, row, shift, k);
     Vec3 direction = to - from;
-    if (!(direction.norm() > 1e-6)) continue;
-    direction.normalize();
+    // a pin is a bolt head where it is, as long as it is short
+    direction = direction.norm() > 1e-6 ? Vec3(direction.normalized()) : Vec3(Vec3::UnitY());
     Painter painter(out, static_cast<std::uint32_t>(model.members.size() + k),
                     static_cast<std::uint32_t>(anchor.body), first_profile);
     const bool strap = anchor.type == Anchor::Type::strap;

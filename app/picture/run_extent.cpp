@@ -64,6 +64,7 @@ void RunExtent::add(const Model& model, const Parameters& parameters, const io::
     high = high.cwiseMax(position(row, i) + shift);
   }
   for (const Anchor& anchor : model.anchors) {
+    if (anchor.other.body >= 0) continue;  // within its bodies
     low = low.cwiseMin(anchor.to + shift);
     high = high.cwiseMax(anchor.to + shift);
   }

@@ -58,6 +58,8 @@ inline constexpr Phrase k_anchors{"anchors: {0}", "固定具：{0}"};
 // the instant, the floor
 inline constexpr Phrase k_load_instant{"load step {0} of {1}, load factor {2:.4g}",
                                        "荷重ステップ {0}/{1}、荷重係数 {2:.4g}"};
+inline constexpr Phrase k_on_storey{" at the ground, here storey {0} of {1}", "（地動、{1}層中{0}層）"};
+inline constexpr Phrase k_in_a_building{" at the ground of a building", "（建物の地動）"};
 inline constexpr Phrase k_floor_sine{"floor: {0:.4g} Hz, {1:.4g} gal", "床：{0:.4g} Hz、{1:.4g} gal"};
 inline constexpr Phrase k_floor_sweep{"floor: sweep {0:.4g} to {1:.4g} Hz, {2:.4g} gal",
                                       "床：スイープ波 {0:.4g}～{1:.4g} Hz、{2:.4g} gal"};

@@ -50,6 +50,12 @@ constexpr ShakeWords k_shake_words[] = {
      }},
 };
 
+std::string building_in_words(const Shake& shake) {
+  if (!shake.building) return "";
+  return shake.building->of > 0 ? say(k_on_storey, shake.building->storey, shake.building->of)
+                                : say(k_in_a_building);
+}
+
 /// Of the angle at which it would topple; of a body without one, of that at which it lies.
 double share_of_critical(const io::FrameRow& row, std::size_t body) {
   const double critical = row.body[body].critical_angle;
@@ -170,7 +176,7 @@ std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
   for (const ShakeWords& words : k_shake_words)
-    if (words.kind == shake.kind) return words.say_it(shake);
+    if (words.kind == shake.kind) return words.say_it(shake) + building_in_words(shake);
   return traits(shake.kind).word;
 }
 

@@ -170,9 +170,41 @@ std::string falling_section(ReportPage& page) {
   return page.section(words::k_falling, out);
 }
 
+namespace {
+
+/// A row for each anchor.
+std::string holding_table(ReportPage& page) {
+  std::vector<std::vector<std::string>> rows;
+  bool assumed = false;
+  for (const ordered_json& a : page.report().summary["anchors"]) {
+    const bool fixing = !a["fixing"].is_null(), bounded = !a["strength_N"].is_null();
+    assumed = assumed || fixing;
+    const double peak = a["peak_force_N"].get<double>();
+    std::string share = bounded ? shown(100 * peak / a["strength_N"].get<double>(), 0) + " %" : "\u2013";
+    if (a["broke"].get<bool>())
+      share = page.say(words::k_anchor_broke, shown(a["break_time_s"].get<double>(), 2));
+    rows.push_back({escaped(a["name"].get<std::string>()), escaped(a["body"].get<std::string>()),
+                    a["other_end"].is_null() ? page.say(words::k_anchor_frame)
+                                             : escaped(a["other_end"]["body"].get<std::string>()),
+                    escaped(a[fixing ? "fixing" : "type"].get<std::string>()),
+                    short_shown(a["stiffness_N_m"].get<double>() / 1e3),
+                    bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013", short_shown(peak),
+                    share});
+  }
+  std::vector<std::string> head;
+  for (const Phrase* what :
+       {&words::k_anchor_name, &words::k_anchor_of, &words::k_anchor_to, &words::k_anchor_kind,
+        &words::k_anchor_stiffness, &words::k_anchor_strength, &words::k_anchor_peak, &words::k_anchor_share})
+    head.push_back(page.say(*what));
+  return page.table(head, rows) + (assumed ? page.paragraph(page.say(words::k_assumed_fixings), "note") : "");
+}
+
+}  // namespace
+
 std::string anchors_section(ReportPage& page) {
   const ordered_json& without = *page.report().without_anchors;
-  std::string out = page.paragraph(page.say(words::k_anchors_text, page.report().anchors));
+  std::string out = holding_table(page);
+  out += page.paragraph(page.say(words::k_anchors_text, page.report().anchors));
   if (without["status"] == "diverged")
     return page.section(
         words::k_anchors,

@@ -62,9 +62,19 @@ constexpr ShakeSentence k_sentences[] = {
      }},
 };
 
+std::string building(const ReportPage& page, const Shake& shake) {
+  if (!shake.building) return "";
+  const FloorResponse& of = *shake.building;
+  double longest = 0;
+  for (const BuildingMode& mode : of.modes) longest = std::max(longest, mode.period);
+  return of.of > 0 ? page.text(words::k_in_building, of.storey, of.of, short_shown(longest, 3),
+                               short_shown(of.modes.front().damping, 3))
+                   : page.text(words::k_in_modes, of.modes.size(), short_shown(longest, 3));
+}
+
 std::string in_words(const ReportPage& page, const Shake& shake) {
   for (const ShakeSentence& sentence : k_sentences)
-    if (sentence.kind == shake.kind) return sentence.in_words(page, shake);
+    if (sentence.kind == shake.kind) return sentence.in_words(page, shake) + building(page, shake);
   return traits(shake.kind).word;
 }
 

@@ -67,6 +67,12 @@ inline constexpr std::pair<Shake::Shape, Phrase> k_shapes[] = {
 };
 inline constexpr Phrase k_record{"Record of {0} s, components: {1}, peak {2} gal (scale {3}), from {4} s",
                                  "加速度記録 {0}秒、{1}成分、最大 {2} gal（倍率 {3}）、{4}秒から"};
+inline constexpr Phrase k_in_building{
+    "; on floor {0} of {1} of a building of period {2} s and damping {3}, whose ground moves like that",
+    "。地動として、固有周期{2}秒、減衰定数{3}の建物（{1}層）の{0}層目の床に入力"};
+inline constexpr Phrase k_in_modes{
+    "; on a floor of a building of {0} modes, the longest of {1} s, whose ground moves like that",
+    "。地動として、{0}個のモード（最長周期{1}秒）をもつ建物の床に入力"};
 inline constexpr Phrase k_jump{
     "The floor starts with a jump of velocity, which the chart and the intensity do not contain.",
     "床は初速度（速度の跳び）をもって動き始める。図と計測震度相当値にはこの跳びを含まない。"};
@@ -140,6 +146,22 @@ inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有�
 inline constexpr Phrase k_anchors_text{
     "The scene holds its furniture with {0} anchor(s). The same run with all of them removed:",
     "シーンには固定具が{0}個ある。すべて取り外した場合との比較を示す。"};
+inline constexpr Phrase k_anchor_name{"fixing", "固定具"};
+inline constexpr Phrase k_anchor_of{"body", "家具"};
+inline constexpr Phrase k_anchor_to{"tied to", "取付先"};
+inline constexpr Phrase k_anchor_kind{"kind", "種類"};
+inline constexpr Phrase k_anchor_stiffness{"stiffness, kN/m", "剛性 kN/m"};
+inline constexpr Phrase k_anchor_strength{"strength, N", "強度 N"};
+inline constexpr Phrase k_anchor_peak{"greatest force, N", "最大力 N"};
+inline constexpr Phrase k_anchor_share{"of its strength", "強度比"};
+inline constexpr Phrase k_anchor_broke{"breaks at {0} s", "{0}秒で破断"};
+inline constexpr Phrase k_anchor_frame{"wall, floor or ceiling", "壁・床・天井"};
+inline constexpr Phrase k_assumed_fixings{
+    "Fixings by name have the stiffness and strength that the scene gives; where it gives none, assumed ones "
+    "that stand "
+    "for no product.",
+    "名称で指定した固定具の剛性と強度は、入力にあればその値、なければ仮定値であり、特定の製品を表すものではな"
+    "い。"};
 inline constexpr Phrase k_with{"with anchors", "固定あり"};
 inline constexpr Phrase k_without{"without anchors", "固定なし"};
 inline constexpr Phrase k_without_failed{"The run without anchors failed: {0}",

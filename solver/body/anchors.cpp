@@ -11,43 +11,61 @@
 namespace topple {
 namespace {
 
+// The bodies on which it acts.
+void mark(const Model& model, int k, std::vector<char>& changed) {
+  for (const int body : {model.anchors[k].body, model.anchors[k].other.body})
+    if (body >= 0) changed[body] = true;
+}
+
 // What it held is gone.
 void release(const Model& model, int k, AnchorHold hold, State& state, std::vector<char>& changed) {
-  const double held =
-      anchor_force(model.anchors[k], state.anchors[k], anchor_point(model, state, k).at).energy;
+  const double held = anchor_force_at(model, state, k, state.anchors[k]).energy;
   state.energy.anchor -= held;
   state.energy.released += held;
   state.anchors[k].hold = hold;
-  changed[model.anchors[k].body] = true;
+  mark(model, k, changed);
 }
 
-}  // namespace
-
-AnchorPoint anchor_point(const Model& model, const State& state, int k) {
-  const Anchor& anchor = model.anchors[k];
-  const int g = anchor.node;
-  const BodyState& s = state.bodies[anchor.body];
+AnchorPoint place_of(const Model& model, const State& state, const AnchorEnd& end) {
+  const int g = end.node;
+  const BodyState& s = state.bodies[end.body];
   if (s.level == ModelLevel::frame) {
-    const Vec3 arm = state.rotation[g] * anchor.arm;
+    const Vec3 arm = state.rotation[g] * end.arm;
     return {state.position[g] + arm,
-            state.velocity[g] + state.rotation[g] * state.angular_velocity[g].cross(anchor.arm)};
+            state.velocity[g] + state.rotation[g] * state.angular_velocity[g].cross(end.arm)};
   }
-  const Body& body = model.bodies[anchor.body];
-  Vec3 arm = model.node_position[g] - body.centre_of_gravity + anchor.arm, rate = Vec3::Zero();
+  const Body& body = model.bodies[end.body];
+  Vec3 arm = model.node_position[g] - body.centre_of_gravity + end.arm, rate = Vec3::Zero();
   if (s.level == ModelLevel::elastic)
     for (int m = 0; m < body.elastic->modes; ++m) {
-      const Vec3 shape = anchor_shape(model, anchor, m);
+      const Vec3 shape = anchor_shape(model, end, m);
       arm += s.amplitude[m] * shape;
       rate += s.rate[m] * shape;
     }
   return {s.position + s.rotation * arm, s.velocity + s.rotation * (s.angular_velocity.cross(arm) + rate)};
 }
 
+}  // namespace
+
+AnchorPoint anchor_point(const Model& model, const State& state, int k) {
+  return place_of(model, state, model.anchors[k].own());
+}
+
+AnchorPoint anchor_target(const Model& model, const State& state, int k) {
+  const Anchor& anchor = model.anchors[k];
+  return anchor.other.body < 0 ? AnchorPoint{anchor.to, Vec3::Zero()} : place_of(model, state, anchor.other);
+}
+
+AnchorForce anchor_force_at(const Model& model, const State& state, int k, const AnchorState& held) {
+  return anchor_force(model.anchors[k], held, anchor_point(model, state, k).at,
+                      anchor_target(model, state, k).at);
+}
+
 std::vector<AnchorForce> anchor_forces(const Model& model, const State& state) {
   std::vector<AnchorForce> forces;
   forces.reserve(model.anchors.size());
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k)
-    forces.push_back(anchor_force(model.anchors[k], state.anchors[k], anchor_point(model, state, k).at));
+    forces.push_back(anchor_force_at(model, state, k, state.anchors[k]));
   return forces;
 }
 
@@ -63,9 +81,9 @@ bool switch_anchors(const Model& model, const Parameters& parameters, State& sta
       release(model, k, AnchorHold::away, state, changed);
       continue;
     }
-    now.length = (anchor_point(model, state, k).at - model.anchors[k].to).norm();
+    now.length = (anchor_point(model, state, k).at - anchor_target(model, state, k).at).norm();
     now.hold = AnchorHold::in_place;
-    changed[model.anchors[k].body] = true;
+    mark(model, k, changed);
   }
   return any;
 }
@@ -73,9 +91,8 @@ bool switch_anchors(const Model& model, const Parameters& parameters, State& sta
 bool break_anchors(const Model& model, State& state, std::vector<char>& changed) {
   bool any = false;
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
-    const Anchor& anchor = model.anchors[k];
-    const Vec3 at = anchor_point(model, state, k).at;
-    if (!(std::abs(anchor_force(anchor, state.anchors[k], at).tension) > anchor.strength)) continue;
+    const double tension = anchor_force_at(model, state, k, state.anchors[k]).tension;
+    if (!(std::abs(tension) > model.anchors[k].strength)) continue;
     any = true;
     release(model, k, AnchorHold::broken, state, changed);
   }
@@ -88,15 +105,17 @@ double anchor_look_ahead(const Model& model, const State& state) {
     const Anchor& anchor = model.anchors[k];
     const AnchorState& now = state.anchors[k];
     if (now.hold != AnchorHold::in_place) continue;
-    const double part = bounce_limit(model.bodies[anchor.body].mass, anchor.stiffness);
-    const AnchorPoint point = anchor_point(model, state, k);
-    const Vec3 d = point.at - anchor.to;
+    double inverse_mass = 1 / model.bodies[anchor.body].mass;
+    if (anchor.other.body >= 0) inverse_mass += 1 / model.bodies[anchor.other.body].mass;
+    const double part = bounce_limit(1 / inverse_mass, anchor.stiffness);
+    const AnchorPoint point = anchor_point(model, state, k), target = anchor_target(model, state, k);
+    const Vec3 d = point.at - target.at;
     const double length = d.norm(), gap = std::abs(length - now.length);
     if (holds(anchor, now, length) || !(length > 0)) {
       limit = std::min(limit, part);
       continue;
     }
-    const double rate = d.dot(point.velocity) / length,
+    const double rate = d.dot(point.velocity - target.velocity) / length,
                  closing = anchor.type == Anchor::Type::strap ? rate : -rate;
     if (closing * k_longest_step > gap) limit = std::min(limit, std::max(gap / closing, part));
   }

@@ -15,6 +15,11 @@ struct AnchorPoint {
   Vec3 at, velocity;
 };
 AnchorPoint anchor_point(const Model& model, const State& state, int anchor);
+/// Its other end likewise.
+AnchorPoint anchor_target(const Model& model, const State& state, int anchor);
+
+/// Force of an anchor as its ends stand at `state`; `held`: its own part of the state.
+AnchorForce anchor_force_at(const Model& model, const State& state, int anchor, const AnchorState& held);
 
 /// One per anchor of the model, at `state`.
 std::vector<AnchorForce> anchor_forces(const Model& model, const State& state);

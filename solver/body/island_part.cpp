@@ -38,6 +38,7 @@ IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
       coupling_(model, indices(bodies_), candidate_pairs, states) {}
 
 void IslandPart::place(const State& state) {
+  coupling_.ties().remember(state.anchors);
   coupling_.place_held(state);
   for (int b = 0; b < static_cast<int>(bodies_.size()); ++b)
     coupling_.place(b, state.bodies[bodies_[b].index]);
@@ -80,6 +81,7 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
     held += body->balance(parameters, now, s, state.stick);
     add_load(loads[b], s);
   }
+  held.anchor += coupling_.ties().energy();
   held.contact += stored_energy(now.law, now_, coupling_.pairs());
   return held;
 }
@@ -87,6 +89,7 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
 BodyEnergy IslandPart::energy(const StepInputs& now, const State& state) {
   BodyEnergy held = ReducedPart::energy(now, state);
   find(now, state);
+  held.anchor += coupling_.ties().energy();
   held.contact += stored_energy(now.law, now_, coupling_.pairs());
   return held;
 }
@@ -152,6 +155,7 @@ void IslandPart::advance_once(const StepSpan& span, State& next, PartScratch& sc
     const auto [a, b] = coupling_.bodies_of(pairs[p]);
     if (a >= 0 && b >= 0) sets.join(a, b);
   }
+  coupling_.ties().each_in_place([&](int a, int b) { sets.join(a, b); });
   for (int b = 0; b < count; ++b) which[sets.first_of(b)].push_back(b);
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const auto [a, b] = coupling_.bodies_of(pairs[p]);
@@ -164,7 +168,7 @@ void IslandPart::advance_once(const StepSpan& span, State& next, PartScratch& sc
     const auto& [index, body] = bodies_[b];
     for (const int own : which[b])
       bodies_[own].body->find_contacts(span.start, next.bodies[bodies_[own].index], next.stick);
-    if (own_pairs[b].empty()) {
+    if (own_pairs[b].empty() && which[b].size() == 1) {
       status.kind = body->advance(span.parameters, span.start, span.end, span.h, next.bodies[index],
                                   next.stick, outcome.exchanged, scratch.reduced);
     } else {
@@ -217,6 +221,7 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
   }
   sticks_.store(now_.touches, coupling_.pairs(), next);
   for (const auto& [index, body] : bodies_) outcome.held += body->energy(span.end.law, next.bodies[index]);
+  outcome.held.anchor += coupling_.ties().energy();
   outcome.held.contact += stored_energy(span.end.law, now_, coupling_.pairs());
 }
 
@@ -252,6 +257,10 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
     push(a, force.elements.a, force.s, 0, force.force);
     push(b, force.elements.b, force.t, force.u, -force.force);
   }
+  coupling_.ties().each_force([&](int node, const Vec3& force) {
+    const int body = model_.node_body[node];
+    std::ranges::find(bodies_, body, &ModelBody::index)->body->add_member_force(node, force);
+  });
 }
 
 void IslandPart::list_forces(const Parameters& parameters, const StepInputs& now, const State& state,

@@ -1,4 +1,4 @@
-// Rigid and elastic bodies of which each is near another, or near a floor or wall made of members.
+// Rigid and elastic bodies of which each is near another or tied to it, or near a floor or wall of members.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace topple {
 
-/// Bodies that candidate pairs connect. Those that may touch another within a step are advanced together, the
-/// others each alone.
+/// Bodies that candidate pairs or anchors connect. Those that may touch another within a step, or are tied to
+/// it, are advanced together, the others each alone.
 class IslandPart final : public ReducedPart {
  public:
   /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs` and

@@ -9,13 +9,23 @@ namespace topple {
 Islands::Islands(const Model& model)
     : model_(model), held_(held_bodies(model)), alone_(model.bodies.size()) {}
 
-std::vector<Island> Islands::divide(const std::vector<ElementPair>& candidate_pairs) const {
+std::vector<TiedBodies> tied_bodies(const Model& model, const State& state) {
+  std::vector<TiedBodies> tied;
+  for (std::size_t k = 0; k < model.anchors.size(); ++k)
+    if (model.anchors[k].other.body >= 0 && state.anchors[k].hold == AnchorHold::in_place)
+      tied.push_back({model.anchors[k].body, model.anchors[k].other.body});
+  return tied;
+}
+
+std::vector<Island> Islands::divide(const std::vector<ElementPair>& candidate_pairs,
+                                    const std::vector<TiedBodies>& tied) const {
   const int count = static_cast<int>(model_.bodies.size());
   DisjointSets sets(count);
   for (const ElementPair& pair : candidate_pairs) {
     const int a = body_of(model_, pair.a), b = body_of(model_, pair.b);
     if (!held_[a] && !held_[b]) sets.join(a, b);
   }
+  for (const auto& [a, b] : tied) sets.join(a, b);
   std::vector<Island> islands(count);
   for (int b = 0; b < count; ++b)
     if (!held_[b]) islands[sets.first_of(b)].bodies.push_back(b);
@@ -33,7 +43,7 @@ BodySystem* Islands::alone(int body) {
 }
 
 BodySystem* Islands::system(const Island& island, const std::vector<int>& rigid) {
-  if (island.candidate_pairs.empty()) return alone(island.bodies.front());
+  if (island.is_alone()) return alone(island.bodies.front());
   const auto same = std::ranges::find_if(joined_, [&](const auto& system) {
     return system->bodies == island.bodies && system->candidate_pairs == island.candidate_pairs &&
            std::ranges::equal(system->rigid, rigid, {}, &RigidInSystem::body);

@@ -79,7 +79,7 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, const Param
       by_itself =
           by_itself || (choice_[b].level == ModelLevel::frame && choice_[b].reason != LevelReason::near);
     }
-    if (!frame || island.candidate_pairs.empty()) continue;
+    if (!frame || island.is_alone()) continue;
     for (const int b : island.bodies) {
       LevelChoice& choice = choice_[b];
       if (choice.level == ModelLevel::frame && choice.reason != LevelReason::near) continue;
@@ -93,7 +93,7 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, const Param
 void ModelSwitch::find_near(const std::vector<Island>& islands) {
   near_.assign(base_.size(), false);
   for (const Island& island : islands)
-    if (!island.candidate_pairs.empty())
+    if (!island.is_alone())
       for (const int b : island.bodies) near_[b] = true;
 }
 

@@ -24,13 +24,15 @@ Parts::Parts(const Model& model)
       islands_(model),
       reduced_(model.bodies.size()),
       planar_(model.bodies.size()),
-      divided_(islands_.divide({})),
+      divided_(islands_.divide({}, {})),
       all_bodies_(model.bodies.size(), true) {}
 
 const std::vector<Island>& Parts::islands(const State& state) {
-  if (state.candidate_pairs == pairs_) return divided_;
+  std::vector<TiedBodies> tied = tied_bodies(model_, state);
+  if (state.candidate_pairs == pairs_ && tied == tied_) return divided_;
   pairs_ = state.candidate_pairs;
-  divided_ = islands_.divide(pairs_);
+  tied_ = std::move(tied);
+  divided_ = islands_.divide(pairs_, tied_);
   levels_.clear();
   return divided_;
 }
@@ -49,7 +51,10 @@ std::vector<Island> Parts::without_mixed(const Island& island) const {
         free.push_back(body);
     if (is_elastic(free.front()) == is_elastic(free.back())) kept.push_back(pair);
   }
-  std::vector<Island> parts = islands_.divide(kept);
+  std::vector<TiedBodies> tied;
+  for (const TiedBodies& two : tied_)
+    if (is_elastic(two[0]) == is_elastic(two[1])) tied.push_back(two);
+  std::vector<Island> parts = islands_.divide(kept, tied);
   std::erase_if(parts, [&](const Island& part) {
     return !std::ranges::binary_search(island.bodies, part.bodies.front());
   });
@@ -93,10 +98,10 @@ void Parts::arrange(const State& state) {
           if (!traits(levels_[own]).moves_nodes) rigid.push_back(own);
         }
         systems.push_back(islands_.system(part, rigid));
-      } else if (part.candidate_pairs.empty() && traits(levels_[b]).has_block) {
+      } else if (part.is_alone() && traits(levels_[b]).has_block) {
         blocks.push_back({b, &planar(b)});
         if (blocks.size() == k_bodies_per_part) close_part();
-      } else if (part.candidate_pairs.empty()) {
+      } else if (part.is_alone()) {
         some.push_back({b, &reduced(state, b)});
         if (some.size() == k_bodies_per_part) close_part();
       } else {

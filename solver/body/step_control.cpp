@@ -102,6 +102,7 @@ double next_kink(const Model& model, const Parameters& parameters, double t) {
   for (const Shake& shake : parameters.shakes) {
     consider(shake.start);
     consider(shake_end(shake));
+    consider(ground_end(shake));
     if (traits(shake.kind).has_shape)
       for (const double kink : traits(shake.shape).kinks) consider(shake.start + kink * shake.duration);
   }

@@ -10,8 +10,8 @@ bool holds(const Anchor& anchor, const AnchorState& state, double length) {
          (anchor.type == Anchor::Type::strap ? length > state.length : length < state.length);
 }
 
-AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at) {
-  const Vec3 d = at - anchor.to;
+AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at, const Vec3& to) {
+  const Vec3 d = at - to;
   const double length = d.norm();
   if (!holds(anchor, state, length)) return {};
   const double stretch = length - state.length, tension = anchor.stiffness * stretch;
@@ -20,10 +20,12 @@ AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const V
   return out;
 }
 
-Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at) {
-  const Vec3 d = at - anchor.to;
+Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at, const Vec3& to) {
+  const Vec3 d = at - to;
   const double length = d.norm();
-  if (!(length > 0) || !holds(anchor, state, length)) return Mat3::Zero();
+  if (!holds(anchor, state, length)) return Mat3::Zero();
+  if (state.length == 0) return -anchor.stiffness * Mat3::Identity();
+  if (!(length > 0)) return Mat3::Zero();
   const Mat3 along = d * d.transpose() / (length * length);
   const double across = anchor.stiffness * (length - state.length) / length;
   return -anchor.stiffness * along - across * (Mat3::Identity() - along);

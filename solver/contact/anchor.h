@@ -1,11 +1,12 @@
-// Anchors: springs between a point that is fixed to the floor's frame and a point of a body.
+// Anchors: springs between a point of a body and one that is fixed to the floor's frame or to another body.
 //
 //   d = at - to,  l = |d|,  N = k (l - l0),  F = -N d/l on the body at `at`,  U = k/2 (l - l0)^2
 //
-// N > 0 pulls. A strap holds where l > l0 only, a pole where l < l0 only, a bracket always. An anchor breaks
-// for good at the end of the first step that leaves |N| above its strength. The energy that it holds when it
-// breaks or is taken away is booked as EnergyLedger::released. Putting it in place sets l0 to the present l,
-// so that it starts without force; a broken one is taken away first.
+// and -F on the other body at `to`. With l0 = 0 it is a pin, F = -k d. N > 0 pulls. A strap holds where l >
+// l0 only, a pole where l < l0 only, a bracket always. An anchor breaks for good at the end of the first step
+// that leaves |N| above its strength. The energy that it holds when it breaks or is taken away is booked as
+// EnergyLedger::released. Putting it in place sets l0 to the present l, so that it starts without force; a
+// broken one is taken away first.
 #pragma once
 
 #include <cstdint>
@@ -31,11 +32,19 @@ struct AnchorForce {
   Vec3 force = Vec3::Zero();  ///< N, on the body
 };
 
-/// Force of an anchor whose attached point is at `at`, m; zero where it does not hold.
-AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at);
+/// Force of an anchor whose attached point is at `at` and whose other end at `to`, m; zero where it does not
+/// hold.
+AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at, const Vec3& to);
+/// Of one to the floor's frame.
+inline AnchorForce anchor_force(const Anchor& anchor, const AnchorState& state, const Vec3& at) {
+  return anchor_force(anchor, state, at, anchor.to);
+}
 
-/// d(force)/d(at), N/m; zero where it does not hold.
-Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at);
+/// d(force)/d(at) = -d(force)/d(to), N/m; zero where it does not hold.
+Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at, const Vec3& to);
+inline Mat3 anchor_tangent(const Anchor& anchor, const AnchorState& state, const Vec3& at) {
+  return anchor_tangent(anchor, state, at, anchor.to);
+}
 
 /// Derivative of a force at node + arm, and of its moment about the node, by displacement and spatial spin of
 /// the node; `tangent`: that of the force by the position at which it acts.

@@ -78,17 +78,45 @@ void BodySystem::take_forces() {
   }
 }
 
+// Where both ends of an anchor are.
+std::array<Vec3, 2> BodySystem::ends(const OwnAnchor& one, const BodyMotion& motion) const {
+  const auto at = [&](const EndOfAnchor& end) {
+    return end.node < 0 ? model.anchors[one.index].to : Vec3(motion.position[end.node] + end.arm(motion));
+  };
+  return {at(one.own), at(one.other)};
+}
+
 template <bool with_tangent>
 void BodySystem::add_anchors(const BodyMotion& motion) {
-  for (const OwnAnchor& own : anchors) {
-    const Anchor& anchor = model.anchors[own.index];
-    const Vec3 arm = own.arm(motion), at = motion.position[own.node] + arm;
-    const AnchorForce now = anchor_force(anchor, own.state, at);
-    force[own.node] += now.force;
-    moment[own.node] += arm.cross(now.force);
+  for (const OwnAnchor& one : anchors) {
+    const Anchor& anchor = model.anchors[one.index];
+    const auto [at, to] = ends(one, motion);
+    const AnchorForce now = anchor_force(anchor, one.state, at, to);
+    const auto push = [&](const EndOfAnchor& end, const Vec3& by) {
+      if (end.node < 0) return;
+      force[end.node] += by;
+      moment[end.node] += end.arm(motion).cross(by);
+    };
+    push(one.own, now.force);
+    push(one.other, -now.force);
     if constexpr (with_tangent) {
-      const Mat6 slope = -anchor_slope(anchor_tangent(anchor, own.state, at), arm, now.force);
-      lu.add(own.node, own.node, slope);
+      const Mat3 tangent = anchor_tangent(anchor, one.state, at, to);
+      const auto add_own = [&](const EndOfAnchor& end, const Vec3& by) {
+        if (end.node < 0) return;
+        const Mat6 slope = -anchor_slope(tangent, end.arm(motion), by);
+        lu.add(end.node, end.node, slope);
+      };
+      const auto add_across = [&](const EndOfAnchor& end, const EndOfAnchor& far) {
+        if (end.node < 0 || far.node < 0) return;
+        const Mat3 lever = skew(end.arm(motion)), across = -tangent * skew(far.arm(motion));
+        Mat6 slope;
+        slope << tangent, across, lever * tangent, lever * across;
+        lu.add(end.node, far.node, slope);
+      };
+      add_own(one.own, now.force);
+      add_own(one.other, -now.force);
+      add_across(one.own, one.other);
+      add_across(one.other, one.own);
     }
   }
 }
@@ -225,9 +253,10 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
     sum.contact += pair.out.stick_energy;
   }
   sum.contact += stored_energy(law, now.members, member_pairs_);
-  for (const OwnAnchor& own : anchors)
-    sum.anchor +=
-        anchor_force(model.anchors[own.index], own.state, motion.position[own.node] + own.arm(motion)).energy;
+  for (const OwnAnchor& own : anchors) {
+    const auto [at, to] = ends(own, motion);
+    sum.anchor += anchor_force(model.anchors[own.index], own.state, at, to).energy;
+  }
   return sum;
 }
 

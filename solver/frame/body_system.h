@@ -166,13 +166,18 @@ class BodySystem {
     const Load* load;
     int node;  ///< numbered within the system
   };
-  struct OwnAnchor {
-    int index;       ///< into Model::anchors
-    int node;        ///< numbered within the system; of a rigid body its own
-    Vec3 reference;  ///< m, from the node to the attached point, reference axes
-    AnchorState state;
+  /// An end of an anchor that is on a body of the system.
+  struct EndOfAnchor {
+    int node = -1;                  ///< numbered within the system; of a rigid body its own; -1: not in it
+    Vec3 reference = Vec3::Zero();  ///< m, from the node to the end, reference axes
     /// The same in the floor's frame.
     Vec3 arm(const BodyMotion& motion) const { return motion.rotation[node] * reference; }
+  };
+  /// Of one whose other body is not in the system nothing acts: it is not in place.
+  struct OwnAnchor {
+    int index;  ///< into Model::anchors
+    EndOfAnchor own, other;
+    AnchorState state;
   };
 
   const Model& model;
@@ -222,9 +227,12 @@ class BodySystem {
   void add_node_packs();
   void add_point_packs();
   void add_what_bears_on_nodes();
+  void add_own_anchors();
   void damp(const Parameters& parameters);
   void start_forces(const Parameters& parameters, const StepInputs& now);
   void take_forces();
+  EndOfAnchor end_of_anchor(const AnchorEnd& end) const;
+  std::array<Vec3, 2> ends(const OwnAnchor& own, const BodyMotion& motion) const;
   template <bool with_tangent>
   void add_anchors(const BodyMotion& motion);
   template <bool with_tangent>

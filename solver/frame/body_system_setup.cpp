@@ -38,6 +38,9 @@ BodySystem::BodySystem(const Model& whole, std::vector<int> which, std::vector<E
       for (int j = 0; j < i; ++j)
         if (const int a = moves_with_[pair.node[i]], b = moves_with_[pair.node[j]]; a != b)
           couplings.emplace_back(a, b);
+  add_own_anchors();
+  for (const OwnAnchor& one : anchors)
+    if (one.other.node >= 0) couplings.emplace_back(one.own.node, one.other.node);
   lu = BlockLu(count, couplings);
   add_node_packs();
   add_point_packs();
@@ -184,15 +187,23 @@ void BodySystem::add_what_bears_on_nodes() {
   for (const Load& load : model.loads)
     if (std::ranges::find(bodies, model.node_body[load.node]) != bodies.end())
       loads.push_back({&load, local(load.node)});
+}
+
+// Those with an end on a body of the system; that is the first one.
+void BodySystem::add_own_anchors() {
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
     const Anchor& anchor = model.anchors[k];
-    if (std::ranges::find(bodies, anchor.body) == bodies.end()) continue;
-    const int node_of = local(anchor.node), own = moves_with_[node_of];
-    Vec3 reference = anchor.arm;
-    if (own != node_of)
-      reference += model.node_position[anchor.node] - model.bodies[anchor.body].centre_of_gravity;
-    anchors.push_back({k, own, reference, {}});
+    OwnAnchor one{k, end_of_anchor(anchor.own()), end_of_anchor(anchor.other), {}};
+    if (one.own.node < 0) std::swap(one.own, one.other);
+    if (one.own.node >= 0) anchors.push_back(one);
   }
+}
+
+BodySystem::EndOfAnchor BodySystem::end_of_anchor(const AnchorEnd& end) const {
+  if (std::ranges::find(bodies, end.body) == bodies.end()) return {};
+  const int node_of = local(end.node), own = moves_with_[node_of];
+  if (own == node_of) return {own, end.arm};
+  return {own, end.arm + model.node_position[end.node] - model.bodies[end.body].centre_of_gravity};
 }
 
 }  // namespace topple

@@ -256,11 +256,14 @@ double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int*
       kv.segment<6>(6 * i) += f.head<6>();
       kv.segment<6>(6 * j) += f.tail<6>();
     }
-    for (const BodySystem::OwnAnchor& own : s.anchors) {
-      const Vec3 shift = v.segment<3>(6 * own.node), spin = v.segment<3>(6 * own.node + 3);
-      const Vec3 pull = s.model.anchors[own.index].stiffness * (shift + spin.cross(own.reference));
-      kv.segment<3>(6 * own.node) += pull;
-      kv.segment<3>(6 * own.node + 3) += own.reference.cross(pull);
+    for (const BodySystem::OwnAnchor& one : s.anchors) {
+      // k (u - u')^2 <= 2 k (u^2 + u'^2): the limits of both bodies alone hold for them together
+      const Anchor& anchor = s.model.anchors[one.index];
+      const auto& [node, reference] = one.own;
+      const Vec3 shift = v.segment<3>(6 * node), spin = v.segment<3>(6 * node + 3);
+      const Vec3 pull = (anchor.other.body < 0 ? 1 : 2) * anchor.stiffness * (shift + spin.cross(reference));
+      kv.segment<3>(6 * node) += pull;
+      kv.segment<3>(6 * node + 3) += reference.cross(pull);
     }
     for (int i = 0; i < n; ++i) {
       Vec3 translation =

@@ -42,8 +42,11 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_entry.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_file.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_fittings.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_fixings.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_fittings.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_planar.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp

@@ -12,15 +12,6 @@ double end(const AccelerogramComponent& component) {
   return static_cast<double>(component.samples.size() - 1) * component.interval;
 }
 
-double value(const AccelerogramComponent& component, double tau) {
-  const double place = tau / component.interval;
-  const std::size_t last = component.samples.size() - 1;
-  if (!(place >= 0) || place > static_cast<double>(last)) return 0;
-  const auto i = std::min(static_cast<std::size_t>(place), last - 1);
-  const double share = place - static_cast<double>(i);
-  return (1 - share) * component.samples[i] + share * component.samples[i + 1];
-}
-
 double largest(const AccelerogramComponent& component) {
   double size = 0;
   for (const double a : component.samples) size = std::max(size, std::abs(a));
@@ -49,10 +40,19 @@ std::shared_ptr<const Accelerogram> make_accelerogram(std::vector<AccelerogramCo
   return record;
 }
 
+double acceleration(const AccelerogramComponent& component, double tau) {
+  const double place = tau / component.interval;
+  const std::size_t last = component.samples.size() - 1;
+  if (!(place >= 0) || place > static_cast<double>(last)) return 0;
+  const auto i = std::min(static_cast<std::size_t>(place), last - 1);
+  const double share = place - static_cast<double>(i);
+  return (1 - share) * component.samples[i] + share * component.samples[i + 1];
+}
+
 Vec3 acceleration(const Accelerogram& record, double tau) {
   Vec3 sum = Vec3::Zero();
   for (const AccelerogramComponent& component : record.components)
-    sum += value(component, tau) * component.direction;
+    sum += acceleration(component, tau) * component.direction;
   return sum;
 }
 

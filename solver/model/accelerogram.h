@@ -28,6 +28,9 @@ struct Accelerogram {
 /// A record of one or more components; finds the other numbers.
 std::shared_ptr<const Accelerogram> make_accelerogram(std::vector<AccelerogramComponent> components);
 
+/// That of one component along its direction.
+double acceleration(const AccelerogramComponent& component, double tau);
+
 /// Acceleration `tau` seconds after the first sample, m/s^2, world axes. Takes the same time for every tau.
 Vec3 acceleration(const Accelerogram& record, double tau);
 

@@ -176,8 +176,42 @@ double shake_frequency(const Shake& shake, double t) {
   return shake.frequency * elementary::pow(shake.last_frequency / shake.frequency, share);
 }
 
-double shake_end(const Shake& shake) {
+double ground_end(const Shake& shake) {
   return traits(shake.kind).end(shake);
+}
+
+double shake_end(const Shake& shake) {
+  return shake.building ? shake.start + shake.building->duration : ground_end(shake);
+}
+
+bool put_in_building(std::vector<BuildingMode> modes, int storey, int of, Shake& shake) {
+  const ShakeTraits& uses = traits(shake.kind);
+  std::vector<GroundSignal> ground;
+  if (uses.has_record) {
+    for (const AccelerogramComponent& component : shake.record->components)
+      ground.push_back({.acceleration = [&](double tau) { return acceleration(component, tau); },
+                        .grid = component.interval,
+                        .shortest = std::numeric_limits<double>::infinity(),
+                        .duration = component.interval * static_cast<double>(component.samples.size() - 1)});
+  } else {
+    Shake unit = shake;
+    unit.amplitude = 1, unit.direction = Vec3::UnitX(), unit.start = 0, unit.on = true;
+    const double end = uses.end(unit);
+    const bool goes_on = !std::isfinite(end);
+    GroundSignal& signal = ground.emplace_back();
+    signal.acceleration = [unit](double tau) { return traits(unit.kind).acceleration(unit, tau).x(); };
+    signal.duration = signal.grid = goes_on ? 1 / unit.frequency : end;
+    signal.shortest = std::min(uses.period(unit, 0), uses.period(unit, goes_on ? 0 : end));
+    signal.goes_on = goes_on;
+    signal.steady = uses.has_frequency ? unit.taper / unit.frequency : 0;
+    if (uses.steady && unit.initial_velocity == Shake::Start::jump)
+      signal.jump = -1 / (2 * k_pi * unit.frequency);
+  }
+  const std::shared_ptr<FloorResponse> response = floor_response(std::move(modes), ground);
+  if (!response) return false;
+  response->storey = storey, response->of = of;
+  shake.building = response;
+  return true;
 }
 
 double sample_interval(const std::vector<Shake>& shakes, double t) {
@@ -189,7 +223,17 @@ double sample_interval(const std::vector<Shake>& shakes, double t) {
 }
 
 Vec3 shake_acceleration(const Shake& shake, double t) {
-  return t < shake.start ? Vec3(Vec3::Zero()) : traits(shake.kind).acceleration(shake, t);
+  if (t < shake.start) return Vec3::Zero();
+  Vec3 sum = traits(shake.kind).acceleration(shake, t);
+  if (!shake.building) return sum;
+  const FloorResponse& building = *shake.building;
+  sum.head<2>() *= building.ground;
+  for (std::size_t k = 0; k < building.components.size(); ++k) {
+    const Vec3 along = shake.record ? Vec3(shake_scale(shake, t) * shake.record->components[k].direction)
+                                    : shake_amplitude(shake, t);
+    sum.head<2>() += floor_response_at(building.components[k], t - shake.start) * along.head<2>();
+  }
+  return sum;
 }
 
 Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t) {
@@ -202,8 +246,11 @@ double greatest_acceleration(const std::vector<Shake>& shakes) {
   double greatest = 0;
   for (const Shake& shake : shakes) {
     if (!shake.on) continue;
-    greatest += traits(shake.kind).has_record ? std::abs(shake.scale) * shake.record->peak
-                                              : std::abs(shake.amplitude) * shake.direction.norm();
+    const double own = traits(shake.kind).has_record ? shake.record->peak : shake.direction.norm(),
+                 scale = traits(shake.kind).has_record ? shake.scale : shake.amplitude;
+    greatest +=
+        std::abs(scale) *
+        (shake.building ? std::max(1., std::abs(shake.building->ground)) * own + shake.building->peak : own);
   }
   return greatest;
 }
@@ -212,8 +259,11 @@ Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1)
   Vec3 sum = Vec3::Zero();
   for (const Shake& shake : shakes)
     if (shake.on && traits(shake.kind).steady && shake.initial_velocity == Shake::Start::jump &&
-        shake.start >= t0 && shake.start < t1)
-      sum -= shake.amplitude / (2 * k_pi * shake.frequency) * shake.direction;
+        shake.start >= t0 && shake.start < t1) {
+      const double passed = shake.building ? shake.building->ground : 1;
+      sum -= shake.amplitude / (2 * k_pi * shake.frequency) *
+             shake.direction.cwiseProduct(Vec3(passed, passed, 1));
+    }
   return sum;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "solver/math/types.h"
+#include "solver/model/building.h"
 #include "solver/model/parameters.h"
 #include "solver/model/table.h"
 
@@ -44,8 +45,19 @@ inline const ShakeTraits& traits(Shake::Kind kind) {
   return row_of(shake_kinds(), kind);
 }
 
-/// Acceleration of one shake at time t, m/s^2, world axes: A sin(2 pi n) times a smooth taper, n =
-/// shake_turns; a pulse; or scale times a record (accelerogram.h). Allocates nothing.
+/// The floor becomes one of a building with these modes (`storey`, `of`: see FloorResponse), which the shake
+/// moves at its ground (building.h): along it horizontally, by the same modes in every direction; vertically
+/// it moves with the ground. Kind, frequency, duration, shape and record stay as they are from then on;
+/// amplitude, direction, scale, on and off, with their ramps, are factors on the floor's motion. False: it
+/// takes more than k_most_floor_intervals.
+bool put_in_building(std::vector<BuildingMode> modes, int storey, int of, Shake& shake);
+
+/// Time from which on the ground of a building is still, s; of a shake without one shake_end.
+double ground_end(const Shake& shake);
+
+/// Acceleration of one shake at time t, m/s^2, world axes: in a building that of its floor, else A sin(2 pi
+/// n) times a smooth taper, n = shake_turns; a pulse; or scale times a record (accelerogram.h). Allocates
+/// nothing.
 Vec3 shake_acceleration(const Shake& shake, double t);
 
 /// Amplitude times direction at time t, m/s^2; 0 when off. After an edit it goes from the old to the new
@@ -76,7 +88,7 @@ Vec3 floor_acceleration(const std::vector<Shake>& shakes, double t);
 double greatest_acceleration(const std::vector<Shake>& shakes);
 
 /// Velocity jump of the floor of the shakes that start in [t0, t1): -A/(2 pi f) along the direction for each
-/// with `initial_velocity = jump`, m/s.
+/// with `initial_velocity = jump`, m/s; in a building the share that passes its modes by.
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1);
 
 /// Corner frequency of the causal high-pass that turns the acceleration into the displayed displacement, Hz.

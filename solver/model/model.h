@@ -143,18 +143,33 @@ constexpr const SchemeTraits& traits(Scheme scheme) {
   return row_of(k_schemes, scheme);
 }
 
-/// A spring along the line from a point fixed to the floor's frame to a point of a body (anchor.h).
+/// A point of a body, rigidly joined to a node of it.
+struct AnchorEnd {
+  int body = -1;            ///< -1: none, the floor's frame
+  int node = -1;            ///< of the body, the nearest to the point
+  Vec3 arm = Vec3::Zero();  ///< m, from the node to the point, reference axes
+};
+
+/// A spring along the line from a point fixed to the floor's frame, or to another body, to a point of a body
+/// (anchor.h).
 struct Anchor {
   enum class Type { strap, bracket, pole };
   std::string name;
   int body;
   int node;          ///< of the body, the nearest to the attached point, which is rigidly joined to it
   Vec3 arm;          ///< m, from the node to the attached point, reference axes
-  Vec3 to;           ///< m, floor's frame
+  Vec3 to;           ///< m, floor's frame; of an anchor to another body where the point starts
+  AnchorEnd other;   ///< the other body's point
   Type type;         ///< strap: pulls only; bracket: both ways; pole: pushes only
   double stiffness;  ///< N/m
   double strength = std::numeric_limits<double>::infinity();  ///< N, |tension| above which it breaks
-  double length;                                              ///< m, natural: that at the start, > 0
+  /// m, natural: that at the start, less what preload stretches it by; 0: a pin, which holds in all
+  /// directions
+  double length;
+  /// Of a [[fixing]], that it stands for: its kind and its number, from 1; else empty and 0.
+  std::string fixing = {};
+  int fixing_number = 0;
+  AnchorEnd own() const { return {body, node, arm}; }
 };
 
 /// Everything that stays as built. Reference pose: the stress-free bodies in their starting place,

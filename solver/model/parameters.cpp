@@ -32,7 +32,7 @@ double sum_of(const ParameterRamp& ramp) {
 
 double sum_of(const Shake& shake) {
   const auto& [kind, amplitude, frequency, last_frequency, direction, start, on, cycles, taper,
-               initial_velocity, shape, duration, record, scale, turned, turns, amplitude_before,
+               initial_velocity, shape, duration, record, scale, building, turned, turns, amplitude_before,
                scale_before, ramp] = shake;
   return sum(amplitude, frequency, last_frequency, start, cycles, taper, duration, scale, turned, turns,
              scale_before) +

@@ -9,6 +9,7 @@
 namespace topple {
 
 struct Accelerogram;
+struct FloorResponse;
 
 /// Contact laws (method and traits: contact_law.h). Checkpoints and recorded edits hold these numbers.
 enum class ContactLawKind { coulomb = 0, paper = 1, printed = 2 };
@@ -60,6 +61,9 @@ struct Shake {
   double duration = 1;                         ///< s, pulse, sweep
   std::shared_ptr<const Accelerogram> record;  ///< record: not null
   double scale = 1;                            ///< record: factor
+  /// The shake is the ground's, and the floor is one of this building; null: the floor is the ground. What
+  /// says when and in which shape the ground moves stays as it was when this was made.
+  std::shared_ptr<const FloorResponse> building;
 
   // Left by edits during a run (edit.h).
   double turned = 0;                     ///< s after `start`, of the latest change of `frequency`

@@ -166,43 +166,85 @@ constexpr Kind k_kinds[] = {{Shake::Kind::sine, periodic},
                             {Shake::Kind::pulse, pulse},
                             {Shake::Kind::record, nullptr}};
 
+/// What an edit's ramp makes of the amplitude or scale.
+struct Share {
+  Share(const Shake& shake, double t, Part& part)
+      : now(share(shake.ramp, t, part)), whole(now.degree == 0 && now[0] == 1) {}
+  Line ramped(double before, double after) const {
+    Line of(before);
+    add(of, after - before, now);
+    return of;
+  }
+  Line now;
+  bool whole;  ///< no ramp, or it is over
+};
+
+/// What the modes of a building add to its ground's motion.
+void add_floor_of_building(const Shake& shake, const Vec3& along, double t, const Share& share, Part& part,
+                           Line& horizontal) {
+  const auto& components = shake.building->components;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    const double interval = components[k].interval;
+    // a time that rounding puts just before an interval's end belongs to the next one
+    double place = (t - shake.start) / interval, u = 0;
+    if (const double next = std::round(place); shake.start + next * interval <= t)
+      place = std::max(place, next);
+    const double first = std::floor(place);
+    const FloorResponse::Cubic* const c = floor_curve(components[k], (first + 0.5) * interval, u);
+    if (!c) continue;
+    part.ends_at(shake.start + (first + 1) * interval, t);
+    u = place - first;
+    Line of((*c)[0] + u * ((*c)[1] + u * ((*c)[2] + u * (*c)[3])));
+    of.degree = 3;
+    of[1] = ((*c)[1] + u * (2 * (*c)[2] + 3 * u * (*c)[3])) / interval;
+    of[2] = ((*c)[2] + 3 * u * (*c)[3]) / (interval * interval);
+    of[3] = (*c)[3] / (interval * interval * interval);
+    const auto level = [&](const Vec3& v) { return v.x() * along.x() + v.y() * along.y(); };
+    const bool recorded = traits(shake.kind).has_record;
+    const double direction = recorded ? level(shake.record->components[k].direction) : 1,
+                 before = recorded ? shake.scale_before : level(shake.amplitude_before),
+                 now = !shake.on  ? 0
+                       : recorded ? shake.scale
+                                  : level(shake.amplitude * shake.direction);
+    add(horizontal, direction, share.whole ? product(Line(now), of) : product(share.ramped(before, now), of));
+  }
+}
+
 /// Returns how long it holds.
 double add_shake(const Shake& shake, const Vec3& along, double t, Line& horizontal, Line& vertical) {
   Part part;
   part.ends_at(shake.start, t);
   part.ends_at(shake_end(shake), t);
-  if (t >= shake.start && t < shake_end(shake)) {
-    const Line share_now = share(shake.ramp, t, part);
-    const bool whole = share_now.degree == 0 && share_now[0] == 1;  // no ramp, or it is over
-    const auto ramped = [&](double before, double now) {
-      Line of(before);
-      add(of, now - before, share_now);
-      return of;
-    };
+  part.ends_at(ground_end(shake), t);
+  if (t < shake.start || t >= shake_end(shake)) return part.end;
+  const Share share_now{shake, t, part};
+  if (t < ground_end(shake)) {
+    const double level = shake.building ? shake.building->ground : 1;
     const auto add_along = [&](const Vec3& direction, const Line& of) {
-      if (direction.dot(along) != 0) add(horizontal, direction.dot(along), of);
+      if (level * direction.dot(along) != 0) add(horizontal, level * direction.dot(along), of);
       if (direction.z() != 0) add(vertical, direction.z(), of);
     };
     if (const auto shape = row_of(k_kinds, shake.kind).shape) {
       const Line of = shape(shake, t, part);
       const Vec3 now = shake.on ? Vec3(shake.amplitude * shake.direction) : Vec3(Vec3::Zero());
-      if (whole)
+      if (share_now.whole)
         add_along(now, of);
       else
         for (const Vec3& axis : {along, Vec3(Vec3::UnitZ())})
-          add_along(axis, product(of, ramped(shake.amplitude_before.dot(axis), now.dot(axis))));
+          add_along(axis, product(of, share_now.ramped(shake.amplitude_before.dot(axis), now.dot(axis))));
     } else {
       const double before = shake.scale_before, now = shake.on ? shake.scale : 0;
       for (const AccelerogramComponent& component : shake.record->components) {
         Line of = recorded(component, shake.start, t, part);
-        if (whole)
+        if (share_now.whole)
           for (int i = 0; i <= of.degree; ++i) of[i] *= before + (now - before);
         else
-          of = product(ramped(before, now), of);
+          of = product(share_now.ramped(before, now), of);
         add_along(component.direction, of);
       }
     }
   }
+  if (shake.building) add_floor_of_building(shake, along, t, share_now, part, horizontal);
   return part.end;
 }
 
@@ -214,7 +256,7 @@ namespace {
 double quiet(const ShakenPlane& plane, double t, double until, std::span<const FloorSign> signs) {
   if (plane.shakes.size() != 1) return t;
   const Shake& shake = plane.shakes.front();
-  if (!traits(shake.kind).has_record || !shake.on || t < shake.start ||
+  if (!traits(shake.kind).has_record || shake.building || !shake.on || t < shake.start ||
       (shake.ramp.over > 0 && t < shake.ramp.since + shake.ramp.over))
     return t;
   const std::vector<AccelerogramComponent>& components = shake.record->components;

@@ -61,7 +61,8 @@ bool is_held(Candidate& c) {
       any(c.model.loads, [&](const Load& one) { return on_body(one.node); }))
     return true;
   for (std::size_t k = 0; k < c.model.anchors.size(); ++k)
-    if (c.model.anchors[k].body == c.index && (c.parameters.anchors.empty() || c.parameters.anchors[k]))
+    if ((c.model.anchors[k].body == c.index || c.model.anchors[k].other.body == c.index) &&
+        (c.parameters.anchors.empty() || c.parameters.anchors[k]))
       return true;
   return false;
 }

@@ -64,6 +64,11 @@ class RestOfBodies {
         for (int i = 0; a >= 0 && b >= 0 && i < groups(a); ++i)
           for (int j = 0; j < groups(b); ++j) coupled.emplace_back(row_[a] + i, row_[b] + j);
       }
+      coupling->ties().each_in_place([&](int a, int b) {
+        balanced += rounding * (size + origin_[a].norm()) * coupling->ties().greatest_stiffness();
+        for (int i = 0; i < groups(a); ++i)
+          for (int j = 0; j < groups(b); ++j) coupled.emplace_back(row_[a] + i, row_[b] + j);
+      });
     }
     matrix_ = BlockLu(rows_, coupled);
     load_.resize(6 * rows_);

@@ -21,14 +21,14 @@ BodyAnchors::BodyAnchors(const Model& model, int index)
   const Body& body = model.bodies[index];
   for (int k = 0; k < static_cast<int>(model.anchors.size()); ++k) {
     const Anchor& anchor = model.anchors[k];
-    if (anchor.body != index) continue;
+    if (anchor.body != index || anchor.other.body >= 0) continue;  // BodyTies has those
     Tie tie;
     tie.index = k;
     tie.node = anchor.node - body.first_node;
     tie.place = model.node_position[anchor.node] - body.centre_of_gravity + anchor.arm;
     tie.arm = tie.place;
     for (int mode = 0; body.elastic && mode < body.elastic->modes; ++mode)
-      tie.shape.push_back(anchor_shape(model, anchor, mode));
+      tie.shape.push_back(anchor_shape(model, anchor.own(), mode));
     ties_.push_back(tie);
   }
 }

@@ -1,4 +1,5 @@
-// Anchors of a rigid or elastic body (anchor.h). Vectors are in the floor's axes where nothing else is said.
+// Anchors of a rigid or elastic body to the floor's frame (anchor.h). Vectors are in the floor's axes where
+// nothing else is said.
 #pragma once
 
 #include <cstdint>

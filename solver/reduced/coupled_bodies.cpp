@@ -43,6 +43,9 @@ void CoupledBodies::shape_matrices() {
     const auto [a, b] = coupling_.bodies_of(pair);
     if (a >= 0 && b >= 0) couple(place_[a], place_[b]);
   }
+  coupling_.ties().each_in_place([&](int a, int b) {
+    if (place_[a] >= 0 && place_[b] >= 0) couple(place_[a], place_[b]);
+  });
   std::ranges::sort(coupled);
   coupled.erase(std::unique(coupled.begin(), coupled.end()), coupled.end());
   side_.assign(6 * row.back(), 0);
@@ -54,7 +57,7 @@ void CoupledBodies::shape_matrices() {
 }
 
 double CoupledBodies::first(const ContactLaw& law) const {
-  double least = first_substep(law, pairs_);
+  double least = std::min(first_substep(law, pairs_), coupling_.ties().first_substep());
   for (const ModelBody& b : bodies_) least = std::min(least, b.body->first_substep(law));
   return least;
 }
@@ -115,6 +118,7 @@ void CoupledBodies::factor(const SubstepSpan& span, const ContactLaw& law) {
   }
   const double square = span.gamma_dt * span.gamma_dt;
   const auto add = [&](int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick) {
+    if (place_[a] < 0) return;  // anchors of other bodies of the coupling
     const int row = row_[place_[a]] + i, column = row_[place_[b]] + j;
     matrix_.add(row, column, Mat6(square * block));
     sticks_.add(row, column, Mat6(square * of_stick));

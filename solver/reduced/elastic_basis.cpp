@@ -144,10 +144,10 @@ double first_frequency(const Model& model, int body) {
   return first == modes.end() ? 0 : 2 * k_pi * first->frequency;
 }
 
-Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode) {
-  const Body& body = model.bodies[anchor.body];
-  const auto of_node = body.elastic->shape.col(mode).segment<6>(6 * (anchor.node - body.first_node));
-  return of_node.head<3>() + of_node.tail<3>().cross(anchor.arm);
+Vec3 anchor_shape(const Model& model, const AnchorEnd& end, int mode) {
+  const Body& body = model.bodies[end.body];
+  const auto of_node = body.elastic->shape.col(mode).segment<6>(6 * (end.node - body.first_node));
+  return of_node.head<3>() + of_node.tail<3>().cross(end.arm);
 }
 
 }  // namespace topple

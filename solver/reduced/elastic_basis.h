@@ -25,8 +25,8 @@ struct ElasticBasis {
 /// None when the body has supports, or nodes without mass or inertia.
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int body);
 
-/// Displacement of the point that an anchor is attached to in a mode of its body, reference axes, 1/sqrt(kg).
-Vec3 anchor_shape(const Model& model, const Anchor& anchor, int mode);
+/// Displacement of an anchor's end in a mode of its body, reference axes, 1/sqrt(kg).
+Vec3 anchor_shape(const Model& model, const AnchorEnd& end, int mode);
 
 /// Angular frequency of the first elastic mode of a body with its supports, rad/s; 0 when it has none.
 double first_frequency(const Model& model, int body);

@@ -27,6 +27,7 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
     : model_(model),
       bodies_(std::move(bodies)),
       nodes_of_(bodies_.size()),
+      ties_(model, bodies_),
       modes_(bodies_.size(), 0),
       loads_(bodies_.size()),
       acceleration_(bodies_.size()) {
@@ -145,6 +146,7 @@ void MemberCoupling::place(int body, const BodyState& pose, const PackMat3& r, c
   const Vec3 linear = unpacked(u.linear), angular = unpacked(u.angular);
   const bool bends = traits(pose.level).has_modes;
   modes_[body] = bends ? model_.bodies[bodies_[body]].elastic->modes : 0;
+  ties_.place(body, pose, r);
   for (const int k : nodes_of_[body]) {
     const Node& node = nodes_[k];
     Vec3 arm = unpacked(r * packed(node.place)), relative = Vec3::Zero();
@@ -242,6 +244,7 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
       for (int mode = 0; mode < modes_[body]; ++mode)
         load.rate[mode] += shape_[node * k_modes + mode].dot(force);
     }
+  ties_.add_loads(loads_);
   return loads_;
 }
 
@@ -338,6 +341,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
   }
   add_blends(std::numeric_limits<int>::max());
   hand_on();
+  ties_.each_block(add);
 }
 
 }  // namespace topple

@@ -12,6 +12,7 @@
 #include "solver/math/types.h"
 #include "solver/model/model.h"
 #include "solver/reduced/body_contacts.h"
+#include "solver/reduced/body_ties.h"
 #include "solver/state/state.h"
 #include "solver/state/step_result.h"
 
@@ -44,6 +45,9 @@ class MemberCoupling {
     for (int k = 0; k < static_cast<int>(nodes_.size()); ++k) f(k, nodes_[k].body);
   }
 
+  /// Anchors between the bodies; place() places them too.
+  BodyTies& ties() { return ties_; }
+
   /// pairs() start where the nodes are; their gaps there are known from here on.
   void start();
   /// The same for copies of pairs that moved little since they started; gaps of some millimetres are lower
@@ -62,11 +66,12 @@ class MemberCoupling {
   /// pairs start; infinite: not within `within`.
   double next_touch(std::span<const MemberPair> pairs, double within) const;
 
-  /// Of the forces on nodes, per body: N, N m about the centre of gravity, N/sqrt(kg).
+  /// Of the forces on nodes and of anchors between the bodies, per body: N, N m about the centre of gravity,
+  /// N/sqrt(kg).
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
-  /// Calls add with the parts of J^T t J, t: PairTangent of all that touches. Block (i, j) of six unknowns
-  /// belongs to group i of body a and j of b.
-  using AddBlock = std::function<void(int a, int i, int b, int j, const Mat6& block, const Mat6& of_stick)>;
+  /// Calls add with the parts of J^T t J, t: PairTangent of all that touches, and with those of anchors.
+  /// Block (i, j) of six unknowns belongs to group i of body a and j of b.
+  using AddBlock = BodyTies::AddBlock;
   void each_block(const ContactLaw& law, const MemberContacts& contacts, std::span<const MemberPair> pairs,
                   double velocity_factor, const AddBlock& add) const;
 
@@ -90,6 +95,7 @@ class MemberCoupling {
   std::vector<Node> nodes_;
   std::vector<std::vector<int>> nodes_of_;  // per body
   std::vector<MemberPair> pairs_;
+  BodyTies ties_;
   std::vector<int> modes_;  // per body
   std::vector<Vec3> position_, velocity_, arm_;
   std::vector<Vec3> shape_;  // k_modes per node, floor's axes

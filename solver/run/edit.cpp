@@ -67,6 +67,12 @@ bool of_shakes_with(const Model&, const Parameters& p, int index) {
   return traits(p.shakes[index].kind).*has;
 }
 
+// A building's floor follows the ground as it was when the building was made.
+template <bool ShakeTraits::*has>
+bool of_ground_with(const Model& model, const Parameters& p, int index) {
+  return !p.shakes[index].building && of_shakes_with<has>(model, p, index);
+}
+
 template <auto value>
 Vec3 of_shake(const Parameters& p, int index) {
   return number(p.shakes[index].*value);
@@ -144,15 +150,15 @@ constexpr EditTraits k_edits[] = {
        start_ramp(p.shakes[edit.index], t);
        p.shakes[edit.index].on = edit.value.x() != 0;
      }},
-    {K::type, Of::shake, "type", false, of_shakes_with<&ShakeTraits::has_amplitude>,
+    {K::type, Of::shake, "type", false, of_ground_with<&ShakeTraits::has_amplitude>,
      [](const Parameters& p, int index) { return number_of(p.shakes[index].kind); }, set_type},
-    {K::frequency, Of::shake, "frequency", false, of_shakes_with<&ShakeTraits::has_frequency>, frequencies,
+    {K::frequency, Of::shake, "frequency", false, of_ground_with<&ShakeTraits::has_frequency>, frequencies,
      set_frequency},
     {K::amplitude, Of::shake, "amplitude", false, of_shakes_with<&ShakeTraits::has_amplitude>,
      of_shake<&Shake::amplitude>, set_through_ramp<&Shake::amplitude>},
     {K::direction, Of::shake, "direction", false, of_shakes_with<&ShakeTraits::has_amplitude>,
      [](const Parameters& p, int index) { return p.shakes[index].direction; }, set_direction},
-    {K::duration, Of::shake, "duration", false, of_shakes_with<&ShakeTraits::has_duration>,
+    {K::duration, Of::shake, "duration", false, of_ground_with<&ShakeTraits::has_duration>,
      of_shake<&Shake::duration>,
      [](const Edit& edit, const Model&, double, Parameters& p) {
        p.shakes[edit.index].duration = edit.value.x();

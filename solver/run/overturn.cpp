@@ -272,7 +272,7 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
     const bool first = !o.hold && state.step > 0;  // goes on from a checkpoint
     const bool breaks = whole.hold == AnchorHold::broken && o.hold != AnchorHold::broken && !first;
     if (breaks) whole.hold = AnchorHold::in_place;  // as it was when it broke
-    const double tension = anchor_force(anchor, whole, anchor_point(model, state, k).at).tension;
+    const double tension = anchor_force_at(model, state, k, whole).tension;
     o.hold = state.anchors[k].hold;
     o.tension = breaks ? 0 : tension;
     o.peak_force = std::max(o.peak_force, std::abs(tension));

@@ -60,7 +60,12 @@ void apply_events(StepInProgress& s) {
   State& next = s.w.next;
   if (!s.model.anchors.empty()) {
     s.w.changed.assign(s.model.bodies.size(), false);
-    if (switch_anchors(s.model, s.parameters, next, s.w.changed)) balance_changed(s);
+    if (switch_anchors(s.model, s.parameters, next, s.w.changed)) {
+      // what ties bodies to each other decides which are stepped together
+      const auto ties = [](const Anchor& anchor) { return anchor.other.body >= 0; };
+      if (std::ranges::any_of(s.model.anchors, ties)) switch_models(s);
+      balance_changed(s);
+    }
   }
   if (next.law != s.parameters.contact.kind) change_law(s);
   if (s.parameters.adaptive) change_step(next, s.h);

@@ -14,9 +14,9 @@ void start_models(const Model& model, const Parameters& parameters, State& state
   place_nodes(model, state);
   state.candidate_margin = 0;
   update_candidates(model, w.search, state, 0);
-  w.models.start(model, parameters, state, w.parts);
   w.changed.assign(model.bodies.size(), false);
   switch_anchors(model, parameters, state, w.changed);
+  w.models.start(model, parameters, state, w.parts);
 }
 
 }  // namespace

@@ -71,6 +71,13 @@ void check_frequency(const Edit& edit, const Parameters& parameters, const Model
     check_edit_value({edit.key, edit.index, Vec3(edit.value.y(), 0, 0)});
 }
 
+void check_ground(const Edit& edit, const Parameters& parameters, const Model&) {
+  if (parameters.shakes[edit.index].building)
+    fail(edit,
+         "the shake moves the ground of a building, whose floor was computed from it; change the scene and "
+         "run it again");
+}
+
 void check_model(const Edit& edit, const Parameters&, const Model& model) {
   const auto asked = static_cast<BodyModel>(static_cast<int>(edit.value.x()));
   if (!traits(asked).by_edit)
@@ -104,11 +111,11 @@ struct EditCheck {
   Edit::Key key;
   void (*check)(const Edit&, const Parameters&, const Model&);
 };
-constexpr EditCheck k_checks[] = {{Edit::Key::type, check_type},
-                                  {Edit::Key::frequency, check_frequency},
-                                  {Edit::Key::model, check_model},
-                                  {Edit::Key::integrator, check_integrator},
-                                  {Edit::Key::damping, check_damping}};
+constexpr EditCheck k_checks[] = {
+    {Edit::Key::type, check_ground},           {Edit::Key::frequency, check_ground},
+    {Edit::Key::duration, check_ground},       {Edit::Key::type, check_type},
+    {Edit::Key::frequency, check_frequency},   {Edit::Key::model, check_model},
+    {Edit::Key::integrator, check_integrator}, {Edit::Key::damping, check_damping}};
 
 }  // namespace
 

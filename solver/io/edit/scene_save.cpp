@@ -90,10 +90,23 @@ class Rewriting {
       return;
     }
     const Key& key = key_of(edit.key);
+    if (of == Edit::Of::anchor && !model_.anchors[static_cast<std::size_t>(edit.index)].fixing.empty())
+      return change_fixing(edit, value);
     if (traits(of).numbered)
       add({std::string(key.table), std::to_string(edit.index + 1), std::string(key.name)}, value);
     else
       add({std::string(key.table), std::string(key.name)}, value);
+  }
+
+  /// An anchor that a [[fixing]] stands for, with all others of it.
+  void change_fixing(const Edit& edit, const std::string& value) {
+    const auto index = static_cast<std::size_t>(edit.index);
+    const int number = model_.anchors[index].fixing_number;
+    for (std::size_t k = 0; k < model_.anchors.size(); ++k)
+      if (model_.anchors[k].fixing_number == number && now_.anchors[k] != now_.anchors[index])
+        throw InputError(edit_key(edit) + ": \"" + model_.anchors[k].name +
+                         "\" is of the same [[fixing]] and not " + value + "; its points go together");
+    add({"fixing", std::to_string(number), "on"}, value);
   }
 
   /// Takes out keys that belong to another choice than the one made now.

@@ -195,6 +195,11 @@ void write_anchors(hid_t group, const Model& model) {
   anchors.number("stiffness", [&](std::size_t i) { return list[i].stiffness; });
   anchors.number("strength", [&](std::size_t i) { return list[i].strength; });
   anchors.number("length", [&](std::size_t i) { return list[i].length; });
+  if (std::ranges::any_of(list, [](const Anchor& anchor) { return anchor.other.body >= 0; })) {
+    anchors.integer("to_body", [&](std::size_t i) { return list[i].other.body; });
+    anchors.integer("to_node", [&](std::size_t i) { return list[i].other.node; });
+    anchors.vector("to_arm", [&](std::size_t i) { return list[i].other.arm; });
+  }
   anchors.write(group, "anchors");
 }
 

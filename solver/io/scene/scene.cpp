@@ -64,6 +64,7 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::v
   read_materials_and_sections(entry, scene.setup);
   read_bodies(entry, scene.setup);
   read_anchors(entry, scene.setup);
+  read_fixings(entry, scene.setup);
   choose_alpha(entry, scene.setup);
   check_planar(entry, scene.setup);
   read_probes(entry, scene.setup);

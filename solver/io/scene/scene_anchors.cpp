@@ -1,10 +1,9 @@
 // Anchors of a scene.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "solver/contact/proximity.h"
 #include "solver/io/common/units.h"
+#include "solver/io/scene/scene_fittings.h"
 #include "solver/io/scene/scene_read.h"
 
 namespace topple::io {
@@ -12,46 +11,6 @@ namespace {
 
 // Of the body's reach, from the nearest member: what a fitting may bridge.
 constexpr double k_nowhere = 0.1;
-
-std::string millimetres(double metres) {
-  return short_number(std::round(1e4 * metres) / 10) + " mm";
-}
-
-/// Nearest member of a body to a point, and how far it is, m.
-struct NearestMember {
-  int member = -1;
-  double distance = 0;
-};
-
-NearestMember nearest_member(const Model& model, const Body& body, const State& start, const Vec3& point) {
-  NearestMember nearest;
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-    const Element& element = model.elements[e];
-    const Vec3 &a = start.position[element.node[0]], &b = start.position[element.node[1]];
-    const double distance = nearest_points(point, a, b).between.norm();
-    if (nearest.member >= 0 && distance >= nearest.distance) continue;
-    nearest = {element.member, distance};
-  }
-  return nearest;
-}
-
-/// Whether a point lies within `margin`, m, of a triangle's plane and over the triangle.
-bool lies_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point, double margin) {
-  const Vec3 normal = (b - a).cross(c - a), p = point - a;
-  const double area2 = normal.squaredNorm();
-  if (!(area2 > 0) || std::abs(p.dot(normal)) > margin * std::sqrt(area2)) return false;
-  const double u = p.cross(c - a).dot(normal) / area2, v = (b - a).cross(p).dot(normal) / area2;
-  return u >= 0 && v >= 0 && u + v <= 1;
-}
-
-/// A sheet of a cabinet carries what is screwed to it.
-bool lies_on_panel(const Model& model, int body, const State& start, const Vec3& point, double margin) {
-  return std::ranges::any_of(model.panels, [&](const Panel& panel) {
-    if (panel.body != body) return false;
-    const auto x = [&](int k) -> const Vec3& { return start.position[panel.node[k]]; };
-    return lies_on(x(0), x(1), x(2), point, margin) || lies_on(x(0), x(2), x(3), point, margin);
-  });
-}
 
 // What pulls may not lead through the face of a floor or wall. `width`: contact width of the member there.
 void check_faces(const Entry& root, const Entry& entry, const Anchor& anchor, const Vec3& point,
@@ -72,6 +31,18 @@ void check_faces(const Entry& root, const Entry& entry, const Anchor& anchor, co
   }
 }
 
+// What is attached there must be near the body's members. Returns their contact width there, m.
+double check_point(const Entry& entry, const char* key, const Model& model, const State& start, int index,
+                   const Vec3& point) {
+  const Body& body = model.bodies[index];
+  const auto [member, distance] = nearest_member(model, index, start, point);
+  const double width = width_of(model, member);
+  if (distance > std::max(k_nowhere * body.reach, width))
+    entry.fail(key, "an anchor to nowhere: the nearest member of \"" + body.name + "\", \"" +
+                        model.members[member].name + "\", is " + millimetres(distance) + " away");
+  return width;
+}
+
 }  // namespace
 
 void read_anchors(const Entry& root, Setup& setup) {
@@ -88,25 +59,15 @@ void read_anchors(const Entry& root, Setup& setup) {
     anchor.type = entry.chosen("type", k_anchor_types);
     anchor.stiffness = entry.number("stiffness");
     if (entry.has("strength")) anchor.strength = entry.number("strength");
-    anchor.length = (point - anchor.to).norm();
-
-    const auto [member, distance] = nearest_member(model, body, start, point);
-    const double width = model.sections[model.members[member].section].width;
-    if (distance > std::max(k_nowhere * body.reach, width) &&
-        !lies_on_panel(model, anchor.body, start, point, width))
-      entry.fail("point", "an anchor to nowhere: the nearest member of \"" + body.name + "\", \"" +
-                              model.members[member].name + "\", is " + millimetres(distance) + " away");
-    if (!(anchor.length > 1e-6)) entry.fail("to", "is where `point` is: the anchor has no length");
-    check_faces(root, entry, anchor, point, width);
-
-    const auto first = start.position.begin() + body.first_node;
-    const auto node = std::min_element(first, first + body.node_count, [&](const Vec3& a, const Vec3& b) {
-      return (a - point).squaredNorm() < (b - point).squaredNorm();
-    });
-    anchor.node = static_cast<int>(node - start.position.begin());
-    anchor.arm = start.rotation[anchor.node].conjugate() * (point - *node);
-    model.anchors.push_back(anchor);
-    setup.parameters.anchors.push_back(entry.flag("on"));
+    const double width = check_point(entry, "point", model, start, anchor.body, point);
+    if (entry.has("to_body")) {
+      anchor.other.body = find_body(entry, "to_body", model);
+      if (anchor.other.body == anchor.body) entry.fail("to_body", "is the anchor's own body");
+      check_point(entry, "to", model, start, anchor.other.body, anchor.to);
+    } else {
+      check_faces(root, entry, anchor, point, width);
+    }
+    add_anchor(entry, start, point, entry.number("preload"), std::move(anchor), setup);
   }
 }
 

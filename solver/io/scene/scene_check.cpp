@@ -355,7 +355,7 @@ void check_scene(const Node& root, const std::string& origin) {
   check_names(root, origin, {"material"}, {});
   check_names(root, origin, {"section"}, {});
   check_names(root, origin, {"cabinet", "frame", "block"}, {});
-  check_names(root, origin, {"anchor"}, {});
+  check_names(root, origin, {"anchor", "fixing"}, {});
   check_names(root, origin, {"probe"}, {});
   check_names(root, origin, {"expect"}, {});
 }

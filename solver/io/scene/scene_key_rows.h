@@ -118,4 +118,7 @@ class Rows {
 /// [[cabinet]], [[frame]] and its parts, [[block]], [[furniture]] and its kinds.
 void add_body_keys(std::vector<Key>& keys);
 
+/// [[anchor]], [ceiling], [[fixing]].
+void add_fitting_keys(std::vector<Key>& keys);
+
 }  // namespace topple::io

@@ -56,6 +56,10 @@ void add_top(std::vector<Key>& keys) {
              "be given beside its own");
   rows.plain("kind", T::table, "makes a file of one body a kind of [[furniture]]");
   rows.plain("anchor", T::tables, "ties a body to a wall or floor").only_in({"dynamic", "static"});
+  rows.plain("ceiling", T::table, "a plane above, to which poles reach; nothing touches it")
+      .absent_means("none");
+  rows.plain("fixing", T::tables, "holds a body by a named piece of hardware, which finds its points")
+      .only_in({"dynamic"});
   rows.plain("probe", T::tables, "motion reported in the summary");
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
 }
@@ -150,6 +154,11 @@ void add_shake(std::vector<Key>& keys) {
               recorded = kinds_with(&ShakeTraits::has_record), steady = kinds_with(&ShakeTraits::steady);
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
   rows.word("type", shake_kinds(), shake.kind, "form of the acceleration");
+  rows.plain("building", T::table,
+             "the shake moves the ground of a uniform shear building, in which the floor is (building.h)")
+      .absent_means("the floor is the ground");
+  rows.plain("modes", T::tables, "likewise, of a building that these modes describe")
+      .absent_means("those of `building`");
   rows.numbers("frequency", 2, D::frequency, "Hz", 1e-3, 1e3,
                "frequency; of a sweep [first, last]: each octave takes as long")
       .or_one()
@@ -201,6 +210,22 @@ void add_shake(std::vector<Key>& keys) {
             "(Berg and Housner 1961; accelerogram.h)")
       .absent(0)
       .only("type", recorded);
+}
+
+// What the shake's ground carries.
+void add_building(std::vector<Key>& keys) {
+  constexpr double k_least_period = 0.01, k_most_period = 30;     // s
+  constexpr double k_least_damping = 1e-3, k_most_damping = 0.9;  // ratio
+  Rows building(keys, "shake.building");
+  building.integer("storey", 1, 200, "the floor so many storeys above the ground, up to `of`, the roof")
+      .required();
+  building.integer("of", 1, 200, "storeys of the building").required();
+  building.number("period", D::time, "s", k_least_period, k_most_period, "of its first mode").required();
+  building.number("damping", k_least_damping, k_most_damping, "ratio to critical, of every mode").required();
+  Rows modes(keys, "shake.modes");
+  modes.number("period", D::time, "s", k_least_period, k_most_period, "of the mode").required();
+  modes.number("damping", k_least_damping, k_most_damping, "ratio to critical").required();
+  modes.number("factor", -100, 100, "participation factor times the shape at the floor").required();
 }
 
 void add_contact(std::vector<Key>& keys) {
@@ -325,24 +350,6 @@ void add_section(std::vector<Key>& keys) {
       .only("shape", custom);
 }
 
-void add_anchor(std::vector<Key>& keys) {
-  Rows rows(keys, "anchor");
-  rows.plain("name", T::text, "name in the summary").absent_means("anchor-1, ...");
-  rows.plain("body", T::text, "a cabinet, a frame, or a copy").required();
-  rows.numbers("point", 3, D::length, "m", -k_far, k_far,
-               "on the body where it starts; rigidly joined to the nearest node")
-      .required();
-  rows.numbers("to", 3, D::length, "m", -k_far, k_far, "on a wall or the floor: fixed to the floor's frame")
-      .required();
-  rows.word("type", k_anchor_types, Anchor::Type::strap,
-            "strap: pulls only; bracket: both ways; pole: pushes only (anchor.h)");
-  rows.number("stiffness", D::stiffness, "kN/m", 1, 1e12, "along the line from `to` to `point`").required();
-  rows.number("strength", D::force, "kN", 1e-3, 1e12, "breaks above it")
-      .absent_means("never breaks")
-      .only_in({"dynamic"});
-  rows.plain("on", T::boolean, "in place; one that is put in place later starts without force").absent(1);
-}
-
 void add_probe(std::vector<Key>& keys) {
   Rows rows(keys, "probe");
   rows.plain("name", T::text, "name in the summary").absent_means("probe-1, ...");
@@ -369,13 +376,14 @@ std::vector<Key> build_table() {
   add_run(keys);
   add_control(keys);
   add_shake(keys);
+  add_building(keys);
   add_contact(keys);
   add_floor(keys);
   add_wall(keys);
   add_material(keys);
   add_section(keys);
   add_body_keys(keys);
-  add_anchor(keys);
+  add_fitting_keys(keys);
   add_probe(keys);
   add_expect(keys);
   return keys;

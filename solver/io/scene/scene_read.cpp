@@ -227,14 +227,18 @@ void read_materials_and_sections(const Entry& root, Setup& setup) {
   }
 }
 
-int find_body(const Entry& entry, const Model& model) {
-  const std::string name = entry.text("body");
+int find_body(const Entry& entry, const char* key, const Model& model) {
+  const std::string name = entry.text(key);
   const auto& bodies = model.bodies;
   const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == name; });
   if (body != bodies.end()) return static_cast<int>(body - bodies.begin());
   std::string known;
   for (const Body& b : bodies) known += (known.empty() ? "" : ", ") + b.name;
-  entry.fail("body", "there is no body \"" + name + "\"; known: " + known);
+  entry.fail(key, "there is no body \"" + name + "\"; known: " + known);
+}
+
+int find_body(const Entry& entry, const Model& model) {
+  return find_body(entry, "body", model);
 }
 
 void read_probes(const Entry& root, Setup& setup) {

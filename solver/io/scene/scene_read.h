@@ -42,9 +42,14 @@ void choose_alpha(const Entry& root, Setup& setup);
 
 /// Index of the body that the entry's key `body` names.
 int find_body(const Entry& entry, const Model& model);
+/// Likewise of another key.
+int find_body(const Entry& entry, const char* key, const Model& model);
 
 /// [[anchor]]; after the bodies.
 void read_anchors(const Entry& root, Setup& setup);
+
+/// [[fixing]]; after the anchors.
+void read_fixings(const Entry& root, Setup& setup);
 
 /// [[probe]]; after the bodies.
 void read_probes(const Entry& root, Setup& setup);

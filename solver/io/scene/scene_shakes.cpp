@@ -81,6 +81,27 @@ std::vector<AccelerogramComponent> read_components(const Entry& entry, const Rea
   return components;
 }
 
+// The floor of a building whose ground moves as the shake, which is read but for this.
+void read_building(const Entry& entry, Shake& shake) {
+  const Entry building = entry.entry("building");
+  std::vector<BuildingMode> modes;
+  int storey = 0, of = 0;
+  if (building.present()) {
+    storey = building.integer("storey"), of = building.integer("of");
+    if (storey > of)
+      building.fail("storey", std::to_string(storey) + " is above the roof, floor " + std::to_string(of));
+    if (entry.has("modes")) entry.fail("modes", "`building` says them; one of the two");
+    modes = shear_building(storey, of, building.number("period"), building.number("damping"));
+  }
+  for (const Entry& mode : entry.entries("modes"))
+    modes.push_back({mode.number("period"), mode.number("damping"), mode.number("factor")});
+  if (modes.empty()) return;
+  if (!put_in_building(std::move(modes), storey, of, shake))
+    entry.fail(building.present() ? "building" : "modes",
+               "its vibration takes more than " + std::to_string(k_most_floor_intervals) +
+                   " intervals of time; less time, more damping or longer periods");
+}
+
 void read_record(const Entry& entry, const ReadSceneFile& read, Scene& scene, Shake& shake) {
   std::vector<AccelerogramComponent> components = read_components(entry, read, scene.files);
   const std::size_t count = components.size();
@@ -122,6 +143,7 @@ void read_shakes(const Entry& root, const ReadSceneFile& read, Scene& scene) {
     if (uses.has_frequency) read_taper(entry, shake);
     if (uses.has_shape) shake.shape = entry.chosen("shape", pulse_shapes());
     if (uses.has_record) read_record(entry, read, scene, shake);
+    read_building(entry, shake);
     scene.setup.parameters.shakes.push_back(std::move(shake));
   }
 }

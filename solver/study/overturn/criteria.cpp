@@ -24,6 +24,7 @@ std::string why_none(const Setup& scene, const Axis& x, const Axis& y) {
       !(is_of_shake(x, "frequency") || is_of_shake(x, "duration")))
     return "the axes are not frequency or duration, and amplitude, of one shake";
   if (scene.parameters.shakes.size() != 1) return "there are several shakes";
+  if (scene.parameters.shakes[0].building) return "a building stands between the ground and the floor";
   if (std::abs(scene.parameters.shakes[0].direction.z()) > k_same) return "the shake is not level";
   const Vec3& g = scene.parameters.gravity;
   if (!(g.z() < 0) || g.head<2>().norm() > 0 || !floor_of(scene.model) || !scene.run.settle)

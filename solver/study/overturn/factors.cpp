@@ -47,6 +47,7 @@ const char* no_phase(const io::Scene& scene, int index) {
     if (index >= 0 && static_cast<std::size_t>(index) != k) continue;
     if (!traits(shakes[k].kind).steady) continue;
     any = true;
+    if (shakes[k].building) return "the floor of a building begins at rest, not anywhere in a cycle";
     if (shakes[k].taper > 0 || shakes[k].cycles > 0 || shakes[k].initial_velocity == Shake::Start::jump)
       return "a sine that begins anywhere in its cycle has no taper, no cycles and begins at rest";
   }

@@ -140,7 +140,8 @@ std::optional<std::vector<Shake>> edited_shakes(const OverturnPlan& plan, const 
   Parameters parameters = own.parameters;
   for (const auto& [axis, value] : {std::pair(&plan.x, x), std::pair(&plan.y, y)}) {
     std::optional<Edit> edit = io::parse_edit_key(axis->key);
-    if (axis->table != "shake" || !edit) return std::nullopt;
+    if (axis->table != "shake" || !edit || !traits(edit->key).exists(own.model, parameters, edit->index))
+      return std::nullopt;
     set_at_once(own.model, value, *edit, parameters);
   }
   for (std::size_t k = 0; k < parameters.shakes.size(); ++k)

@@ -1,0 +1,266 @@
+// [[fixing]] of a scene: anchors by name, which find their points.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "solver/io/scene/fixing_kinds.h"
+#include "solver/io/scene/scene_fittings.h"
+#include "solver/io/scene/scene_read.h"
+
+namespace topple::io {
+namespace {
+
+constexpr double k_off_body = 0.1;     // m, from `at` to the body
+constexpr double k_upper = 0.05;      // of a body's height: what counts as its top
+constexpr double k_same = 1e-3;       // m: nodes as near as that are equally near
+constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes
+constexpr double k_least_gap = 1e-6;  // m
+
+/// What a fixing leads to: a plane, or a body.
+struct Target {
+  std::string name;
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  // of a plane
+  int body = -1;
+  bool wall = false, floor = false, ceiling = false;
+
+  Vec3 on(const Vec3& x) const { return x - distance(x) * normal; }
+  double distance(const Vec3& x) const { return normal.dot(x - point); }
+};
+
+Target wall_of(const Entry& wall) {
+  const std::vector<double> at = wall.numbers("at");
+  Target target;
+  target.name = wall.name(), target.wall = true;
+  target.point = Vec3(at[0], at[1], 0), target.normal = wall.direction("normal");
+  return target;
+}
+
+class Fixing {
+ public:
+  Fixing(const Entry& root, const Entry& entry, const State& start, int number, Setup& setup)
+      : root_(root),
+        entry_(entry),
+        start_(start),
+        number_(number),
+        setup_(setup),
+        kind_(traits(entry.chosen("kind", k_fixings))),
+        body_(find_body(entry, setup.model)) {
+    if (body().ground) entry.fail("body", "\"" + body().name + "\" is no furniture");
+    target_ = find_target();
+    if (target_.body == body_) entry.fail("to", "is the fixing's own body");
+  }
+
+  void add() {
+    if (entry_.has("at")) {
+      if (kind_.place == FixingPlace::feet || kind_.place == FixingPlace::front)
+        entry_.fail("at", "a " + std::string(kind_.word) + " finds the corners of the base by itself");
+      return add_one(entry_.vector("at"), entry_.name());
+    }
+    const std::vector<int> nodes = find_nodes();
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      add_one(start_.position[nodes[k]],
+              entry_.name() + (nodes.size() > 1 ? "-" + std::to_string(k + 1) : ""));
+  }
+
+ private:
+  const Model& model() const { return setup_.model; }
+  const Body& body() const { return model().bodies[body_]; }
+  const Vec3& x(int node) const { return start_.position[node]; }
+
+  Target find_target() const {
+    const std::string name = entry_.text("to");
+    std::string known;
+    const auto is = [&](const std::string& other) {
+      known += (known.empty() ? "" : ", ") + other;
+      return name == other;
+    };
+    std::optional<Target> found;
+    if (root_.entry("floor").present() && is("floor")) {
+      found.emplace();
+      found->floor = true;
+    }
+    if (const Entry ceiling = root_.entry("ceiling"); ceiling.present() && is("ceiling")) {
+      found.emplace();
+      found->ceiling = true;
+      found->point.z() = ceiling.number("at"), found->normal = -Vec3::UnitZ();
+    }
+    for (const Entry& wall : root_.entries("wall"))
+      if (is(wall.name())) found = wall_of(wall);
+    for (int b = 0; b < model().furniture_total(); ++b)
+      if (is(model().bodies[b].name)) {
+        found.emplace();
+        found->body = b;
+      }
+    if (!found)
+      entry_.fail("to", "there is no wall, body, floor or ceiling \"" + name + "\"; known: " + known);
+    const bool goes = (found->wall && kind_.to_wall) || (found->floor && kind_.to_floor) ||
+                      (found->ceiling && kind_.to_ceiling) || (found->body >= 0 && kind_.to_body);
+    if (!goes)
+      entry_.fail("to", "a " + std::string(kind_.word) + " " + kind_.about + "; \"" + name +
+                            "\" is none of " + targets());
+    found->name = name;
+    return *found;
+  }
+
+  std::string targets() const {
+    std::string words;
+    for (const auto& [may, word] :
+         {std::pair(kind_.to_wall, "a wall"), std::pair(kind_.to_floor, "the floor"),
+          std::pair(kind_.to_ceiling, "the ceiling"), std::pair(kind_.to_body, "a body")})
+      if (may) words += (words.empty() ? "" : ", ") + std::string(word);
+    return words;
+  }
+
+  // The nodes for which `far` is least, of equally good ones that for which `then` is.
+  template <class Far, class Then>
+  int best(const std::vector<int>& of, Far far, Then then) const {
+    return *std::ranges::min_element(of, [&](int a, int b) {
+      const double fa = far(a), fb = far(b);
+      if (std::abs(fa - fb) > k_same) return fa < fb;
+      const double ta = then(a), tb = then(b);
+      return std::abs(ta - tb) > k_same ? ta < tb : a < b;
+    });
+  }
+
+  std::vector<int> nodes_of_body(int index, bool upper) const {
+    const Body& of = model().bodies[index];
+    double low = x(of.first_node).z(), high = low;
+    for (int i = of.first_node; i < of.first_node + of.node_count; ++i)
+      low = std::min(low, x(i).z()), high = std::max(high, x(i).z());
+    std::vector<int> nodes;
+    for (int i = of.first_node; i < of.first_node + of.node_count; ++i)
+      if (!upper || x(i).z() >= high - k_upper * (high - low)) nodes.push_back(i);
+    return nodes;
+  }
+
+  // Corners of the base.
+  std::vector<int> feet() const {
+    if (body().support_polygon.empty()) entry_.fail("body", "\"" + body().name + "\" has no base");
+    std::vector<int> nodes;
+    for (const Vec3& corner : body().support_polygon) {
+      int nearest = -1;
+      for (const int point : body().base_points) {
+        const int node = model().contact_points[point].node;
+        const auto far = [&](int other) { return (model().node_position[other] - corner).norm(); };
+        if (nearest < 0 || far(node) < far(nearest)) nearest = node;
+      }
+      if (std::ranges::find(nodes, nearest) == nodes.end()) nodes.push_back(nearest);
+    }
+    return nodes;
+  }
+
+  Target nearest_wall() const {
+    if (target_.wall) return target_;
+    std::optional<Target> nearest;
+    for (const Entry& entry : root_.entries("wall")) {
+      const Target wall = wall_of(entry);
+      if (!nearest || wall.distance(body().centre_of_gravity) < nearest->distance(body().centre_of_gravity))
+        nearest = wall;
+    }
+    if (!nearest) entry_.fail("kind", "a stopper leans its body towards a wall, and there is none");
+    return *nearest;
+  }
+
+  std::vector<int> find_nodes() const {
+    const auto from_middle = [&](int node) { return (x(node) - body().centre_of_gravity).head<2>().norm(); };
+    switch (kind_.place) {
+      case FixingPlace::feet:
+        return feet();
+      case FixingPlace::front: {
+        const Target wall = nearest_wall();
+        std::vector<int> nodes = feet();
+        double farthest = 0;
+        for (const int node : nodes) farthest = std::max(farthest, wall.distance(x(node)));
+        std::erase_if(nodes, [&](int node) { return wall.distance(x(node)) < farthest - k_same; });
+        return nodes;
+      }
+      case FixingPlace::top:
+        return {best(nodes_of_body(body_, true), from_middle, [](int node) { return node; })};
+      case FixingPlace::near:
+        break;
+    }
+    if (target_.body >= 0) {
+      const std::vector<int> others = nodes_of_body(target_.body, false);
+      const auto far = [&](int node) {
+        double least = (x(node) - x(others.front())).norm();
+        for (const int other : others) least = std::min(least, (x(node) - x(other)).norm());
+        return least;
+      };
+      return {best(nodes_of_body(body_, false), far, [&](int node) { return -x(node).z(); })};
+    }
+    return {best(
+        nodes_of_body(body_, target_.wall), [&](int node) { return target_.distance(x(node)); },
+        from_middle)};
+  }
+
+  // Of the other body: `point` itself where that is on it, else its nearest node.
+  Vec3 point_of_other(const Vec3& point) const {
+    if (kind_.pin && entry_.has("at")) return point;
+    const std::vector<int> others = nodes_of_body(target_.body, false);
+    return x(best(
+        others, [&](int node) { return (x(node) - point).norm(); }, [&](int node) { return -x(node).z(); }));
+  }
+
+  void check_reach(const char* key, int of, const Vec3& point) const {
+    const auto [member, distance] = nearest_member(model(), of, start_, point);
+    if (distance > k_off_body)
+      entry_.fail(key, "finds no point of \"" + model().bodies[of].name + "\" within " +
+                           millimetres(k_off_body) + ": the nearest member, \"" +
+                           model().members[member].name + "\", is " + millimetres(distance) + " away");
+  }
+
+  void add_one(Vec3 point, const std::string& name) {
+    Anchor anchor;
+    anchor.name = name;
+    anchor.fixing = kind_.word;
+    anchor.fixing_number = number_;
+    anchor.body = body_;
+    anchor.type = kind_.type;
+    anchor.stiffness = entry_.has("stiffness") ? entry_.number("stiffness") : kind_.stiffness;
+    anchor.strength = entry_.has("strength") ? entry_.number("strength") : kind_.strength;
+    double preload = entry_.has("preload") ? entry_.number("preload") : kind_.preload;
+    check_reach("at", body_, point);
+    if (target_.body >= 0) {
+      anchor.other.body = target_.body;
+      anchor.to = point_of_other(point);
+    } else if (kind_.place == FixingPlace::front) {
+      anchor.to = Vec3(point.x(), point.y(), -k_wedge);
+      preload += kind_.lift * anchor.stiffness;
+      if (!setup_.run.settle)
+        entry_.fail("kind",
+                    "a stopper lifts its body, which comes to rest on it: write settle = true in [run]");
+    } else {
+      anchor.to = target_.on(point);
+    }
+    const Vec3 foot = kind_.place == FixingPlace::front ? Vec3(point.x(), point.y(), 0) : anchor.to;
+    const double gap = (point - foot).norm();
+    if (gap > kind_.reach)
+      entry_.fail("to", "finds no point within " + millimetres(kind_.reach) + ": from \"" + body().name +
+                            "\" to \"" + target_.name + "\" it is " + millimetres(gap));
+    if (target_.body >= 0) check_reach("to", target_.body, anchor.to);
+    if (kind_.pin) point = anchor.to = target_.body >= 0 ? Vec3((point + anchor.to) / 2) : point;
+    if (!kind_.pin && kind_.type != Anchor::Type::bracket && !((point - anchor.to).norm() > k_least_gap))
+      entry_.fail("to", "\"" + target_.name + "\" is where its point is: a " + kind_.word + " has a length");
+    add_anchor(entry_, start_, point, preload, std::move(anchor), setup_);
+  }
+
+  const Entry &root_, &entry_;
+  const State& start_;
+  const int number_;
+  Setup& setup_;
+  const FixingTraits& kind_;
+  const int body_;
+  Target target_;
+};
+
+}  // namespace
+
+void read_fixings(const Entry& root, Setup& setup) {
+  const std::vector<Entry> entries = root.entries("fixing");
+  if (entries.empty()) return;
+  const State start = start_state(setup.model, setup.starts);
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    Fixing(root, entries[k], start, static_cast<int>(k) + 1, setup).add();
+}
+
+}  // namespace topple::io
