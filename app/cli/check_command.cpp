@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
+#include "app/batch/scene_warnings.h"
 #include "app/cli/command.h"
 #include "app/support/errors.h"
 #include "app/support/log.h"
-#include "solver/io/scene/scene.h"
+#include "solver/io/check/scene_errors.h"
 
 namespace topple::app {
 namespace {
@@ -16,7 +17,14 @@ int check_command(const CheckOptions& options) {
   int code = k_done;
   for (const std::string& scene : options.scenes) {
     try {
-      io::load_scene(scene, options.overrides);
+      const io::CheckedScene checked = io::check_whole_scene(io::find_scene(scene), options.overrides);
+      for (const std::string& error : checked.errors) log_message(error);
+      if (!checked.scene) {
+        code = k_bad_input;
+        continue;
+      }
+      for (const std::string& warning : scene_warnings(checked.scene->setup))
+        log_message("warning: " + scene + ": " + warning);
       fmt::print("{}: ok\n", scene);
     } catch (const io::InputError& error) {
       log_message(error.what());
@@ -30,7 +38,7 @@ int check_command(const CheckOptions& options) {
 
 void add_check(Commands& commands) {
   const auto [command, check] =
-      commands.add("check", "validate scenes without running them",
+      commands.add("check", "validate scenes without running them: all errors, and what will surprise",
                    "check my-office.toml --set shake.1.amplitude=\"0.2 g\"", check_command);
   command.add_option("SCENES", check.scenes, "paths or names")->required()->type_name("");
   add_set(command, check.overrides);

@@ -279,6 +279,8 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
         changed = true;
       }
   }
+  if (!inspection.picked)
+    for (const std::string& line : inspection.ways.of(player, row)) ImGui::TextWrapped("%s", line.c_str());
   std::size_t unpinned = inspection.pinned.size();
   for (std::size_t i = 0; i < inspection.pinned.size(); ++i) {
     if (inspection.pinned[i] == inspection.picked) continue;

@@ -33,6 +33,7 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_difference.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_entry.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/check/scene_errors.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
@@ -42,7 +43,8 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_rewrite.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_room.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_save.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_shakes.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/toml_precheck.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/common/toml_precheck.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

@@ -118,4 +118,7 @@ class Rows {
 /// [[cabinet]], [[frame]] and its parts, [[block]].
 void add_body_keys(std::vector<Key>& keys);
 
+/// [[door]] and [[place]].
+void add_room_keys(std::vector<Key>& keys);
+
 }  // namespace topple::io

@@ -53,6 +53,8 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("block", T::tables, "a rigid solid piece without members");
   rows.plain("anchor", T::tables, "ties a body to a wall or floor").only_in({"dynamic", "static"});
   rows.plain("probe", T::tables, "motion reported in the summary");
+  rows.plain("door", T::tables, "an opening in a wall by which people leave").only_in({"dynamic"});
+  rows.plain("place", T::tables, "where a person is when the run begins").only_in({"dynamic"});
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
 }
 
@@ -121,6 +123,9 @@ void add_run(std::vector<Key>& keys) {
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
   rows.word("stop_when", k_stops, run.stop_when,
             "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
+      .only_in({"dynamic"});
+  rows.number("person", D::length, "m", 0.1, 2, "width of the disc that a person is on the way to a [[door]]")
+      .absent(Room{}.person)
       .only_in({"dynamic"});
 }
 
@@ -373,6 +378,7 @@ std::vector<Key> build_table() {
   add_body_keys(keys);
   add_anchor(keys);
   add_probe(keys);
+  add_room_keys(keys);
   add_expect(keys);
   return keys;
 }

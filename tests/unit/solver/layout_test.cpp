@@ -58,6 +58,7 @@ const std::map<std::string, Rooms> k_parts = {
       {"solver/io/common", {"host"}},
       {"solver/io/accelerogram", {"common"}},
       {"solver/io/scene", {"accelerogram", "common"}},
+      {"solver/io/check", {"scene", "common"}},
       {"solver/io/recording", {"scene", "common", "host"}},
       {"solver/io/export", {"recording", "scene", "common", "host"}}}},
     {"solver/study",
