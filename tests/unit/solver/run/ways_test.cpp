@@ -169,8 +169,8 @@ TEST(Footprint, is_cut_at_a_height) {
   const CabinetSpec spec = tall_cabinet();
   const auto reach = [&](double height) {
     double most = -1;
-    for (const Vec2& corner : footprint(setup.model, start.position, 0, height)->core)
-      most = std::max(most, corner.x());
+    const Footprint print = footprint(setup.model, start.position, 0, height).value();
+    for (const Vec2& corner : print.core) most = std::max(most, corner.x());
     return most;
   };
   // the front leans by 0.25 rad from its lower edge
@@ -236,7 +236,9 @@ TEST(Ways, agree_with_a_grid_in_random_rooms) {
     }
     shut += !way.open;
     EXPECT_EQ(way.open, shortest_way(room, plan, 0, 0).has_value());
-    if (way.open) EXPECT_GE(shortest_way(room, plan, 0, 0)->length, 5 - 1e-9);
+    if (way.open) {
+      EXPECT_GE(shortest_way(room, plan, 0, 0)->length, 5 - 1e-9);
+    }
   }
   EXPECT_GT(narrow, 15);
   EXPECT_GT(shut, 3);
