@@ -102,6 +102,12 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
   }
 }
 
+/// To two digits.
+double rounded_up(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / unit) * unit;
+}
+
 void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   const Parameters& p = setup.parameters;
   const std::optional<double> early = early_uplift(setup.model, p.contact, p.gravity);
@@ -109,8 +115,9 @@ void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   if (!early || !rigid || *early <= k_early) return;
   list.push_back(fmt::format(
       "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
-      "acceleration than on a rigid floor; {:.3g} kgf, or no alpha at all, keeps that below 2 %",
-      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.), *rigid / k_standard_gravity));
+      "acceleration than on a rigid floor; {:.0f} kgf, or no alpha at all, keeps that below 2 %",
+      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
+      rounded_up(*rigid / k_standard_gravity)));
 }
 
 }  // namespace

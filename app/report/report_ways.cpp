@@ -13,6 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_width = 720, k_most_height = 620;  // px
+constexpr double k_bar = 22;                          // px, of the scale
 constexpr double k_margin = 0.35;                     // m, around all that is drawn
 constexpr double k_moved = 0.02;                      // m, from which on the start is drawn as well
 
@@ -140,7 +141,7 @@ std::string walls_and_doors(const View& view, const Room& room) {
 }
 
 std::string bodies(const View& view, const Plan& plan) {
-  std::string start, standing, fallen, names;
+  std::string start, standing, fallen;
   const auto shape = [&](const Footprint& print, const char* how) {
     return "<polygon points=\"" + view.points(outline(print)) + "\" " + how + "/>\n";
   };
@@ -148,14 +149,28 @@ std::string bodies(const View& view, const Plan& plan) {
     const int body = plan.after.body[k];
     const Footprint& print = plan.after.lying[k];
     (plan.fell(body) ? fallen : standing) += shape(print, plan.fell(body) ? k_fallen : k_standing);
-    if (plan.fell(body))
-      names += words_at(view, middle(print.core), 4, plan.model.bodies[static_cast<std::size_t>(body)].name);
     const auto was = std::ranges::find(plan.before.body, body);
     if (was == plan.before.body.end()) continue;
     const Footprint& then = plan.before.lying[static_cast<std::size_t>(was - plan.before.body.begin())];
     if ((middle(then.core) - middle(print.core)).norm() > k_moved) start += shape(then, k_start);
   }
-  return standing + fallen + start + names;
+  return standing + fallen + start;
+}
+
+/// Of what fell, beside the people on whom it lies.
+std::string names(const View& view, const Plan& plan) {
+  std::string out;
+  for (std::size_t k = 0; k < plan.after.lying.size(); ++k) {
+    if (!plan.fell(plan.after.body[k])) continue;
+    Vec2 at = middle(plan.after.lying[k].core);
+    const double clear = plan.room.person / 2 + 0.15;
+    if (std::ranges::any_of(plan.room.places, [&](const Room::Place& place) {
+          return (place.at - at).cwiseAbs().maxCoeff() < clear;
+        }))
+      at.y() += clear;
+    out += words_at(view, at, 4, plan.model.bodies[static_cast<std::size_t>(plan.after.body[k])].name);
+  }
+  return out;
 }
 
 std::string way(const View& view, const Plan& plan, const RoomPlan& lying, std::size_t place, const Way& of,
@@ -177,19 +192,19 @@ std::string person(const View& view, const Room& room, const Vec2& at, bool shut
          line(view, at + Vec2(-arm, arm), at + Vec2(arm, -arm), k_cross);
 }
 
+/// Below the plan.
 std::string scale_bar(const View& view) {
-  const Vec2 at = view.least + Vec2(0.15, 0.12);
-  return line(view, at, at + Vec2(1, 0), "stroke=\"#222\" stroke-width=\"2\"") +
-         line(view, at, at + Vec2(0, 0.06), "stroke=\"#222\" stroke-width=\"2\"") +
-         line(view, at + Vec2(1, 0), at + Vec2(1, 0.06), "stroke=\"#222\" stroke-width=\"2\"") +
-         words_at(view, at + Vec2(0.5, 0), -5, "1 m");
+  return fmt::format(
+      "<path d=\"M {0:.1f},{1:.1f} v 6 h {2:.1f} v -6\" fill=\"none\" stroke=\"#222\" stroke-width=\"2\"/>\n"
+      "<text x=\"{3:.1f}\" y=\"{4:.1f}\" font-size=\"11\">1 m</text>\n",
+      view.left + 8, view.height() + 8, view.scale, view.left + 14 + view.scale, view.height() + 16);
 }
 
 std::string drawing(const Plan& plan) {
   const View view = view_of(plan);
   std::string out = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" font-size=\"12\" fill=\"#222\">\n",
-      k_width, view.height());
+      k_width, view.height() + k_bar);
   out += bodies(view, plan) + walls_and_doors(view, plan.room);
   const std::size_t places = plan.room.places.size();
   for (std::size_t p = 0; p < places; ++p)
@@ -201,7 +216,7 @@ std::string drawing(const Plan& plan) {
     out += person(view, plan.room, place.at, shut, !plan.outcome(p)["hit_by"].empty());
     out += words_at(view, place.at, view.scale * plan.room.person / 2 + 13, place.name);
   }
-  return out + scale_bar(view) + "</svg>\n";
+  return out + names(view, plan) + scale_bar(view) + "</svg>\n";
 }
 
 std::string key(const std::string& drawn, const std::string& words) {
@@ -217,7 +232,7 @@ std::string keys(const ReportPage& page) {
   view.least = Vec2::Zero(), view.most = Vec2(46, 16);
   const Vec2 middle = view.most / 2;
   Room small;
-  small.person = 13;
+  small.person = 7;
   return "<div class=\"keys\">\n" + key(box(k_fallen), page.say(words::k_key_fallen)) +
          key(box(k_standing), page.say(words::k_key_standing)) +
          key(box(k_start), page.say(words::k_key_start)) +
@@ -227,7 +242,7 @@ std::string keys(const ReportPage& page) {
          key(person(view, small, middle, false, true), page.say(words::k_key_hit)) + "</div>\n";
 }
 
-std::string names(const ordered_json& list) {
+std::string listed(const ordered_json& list) {
   std::string out;
   for (const ordered_json& name : list) out += (out.empty() ? "" : ", ") + escaped(name.get<std::string>());
   return out.empty() ? "\u2013" : out;
@@ -246,12 +261,14 @@ std::string table(const ReportPage& page, const ordered_json& ways) {
                     any ? escaped(way["door"].get<std::string>()) : "\u2013",
                     with_error(way["before"]["widest_m"], nullptr, 1, 2),
                     with_error(way["widest_m"], nullptr, 1, 2), with_error(way["length_m"], nullptr, 1, 1),
-                    any ? names(way["blocked_by"]) : "\u2013", hits.empty() ? "\u2013" : hits});
+                    any ? listed(way["blocked_by"]) : "\u2013", hits.empty() ? "\u2013" : hits});
   }
-  return page.table({page.say(words::k_place), page.say(words::k_way), page.say(words::k_door),
+  return "<div class=\"ways\">" +
+         page.table({page.say(words::k_place), page.say(words::k_way), page.say(words::k_door),
                      page.say(words::k_wide_before), page.say(words::k_wide), page.say(words::k_long),
                      page.say(words::k_blocked_by), page.say(words::k_hit_by)},
-                    rows, false);
+                    rows, false) +
+         "</div>\n";
 }
 
 }  // namespace

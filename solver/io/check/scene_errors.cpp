@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "solver/io/scene/scene_check.h"
 
@@ -10,6 +11,7 @@ namespace topple::io {
 namespace {
 
 constexpr int k_most_errors = 200;
+constexpr const char* k_there_is_no = "there is no ";
 
 bool same(const Place& a, const Place& b) {
   return a.line == b.line && a.column == b.column && a.override_text == b.override_text;
@@ -74,11 +76,13 @@ class Collector {
 
   /// False: it is not known where.
   bool leave_out(const SceneError& error) {
+    if (error.path.empty() && !names_.empty())
+      return stand_in();  // of the scene as a whole: no bodies are left
     Trail trail, as_written;
     const bool there = find_place(root_, error.place, trail);
     find_place(written_, error.place, as_written);
     if (!follows(error)) found_.push_back({error.place, line_of(error, trail, as_written)});
-    if (!there) return false;
+    if (!there || error.path.empty()) return false;
     while (!is_entry(trail.back()) && trail.back().first->kind != Node::Kind::table) trail.pop_back();
     Node& holder = *trail.back().first;
     const std::size_t index = trail.back().second;
@@ -95,7 +99,24 @@ class Collector {
     const std::string here = entry_path(now), there = entry_path(as_written);
     const bool moved = !here.empty() && error.path.starts_with(here);
     return error_line(source_.origin, error.place,
-                      moved ? there + error.path.substr(here.size()) : error.path, error.message);
+                      moved ? there + error.path.substr(here.size()) : error.path,
+                      without_known(error.message));
+  }
+
+  /// What else there is, is not known when some of it was left out.
+  std::string without_known(const std::string& message) const {
+    const std::size_t first = message.find('"'), last = message.find('"', first + 1);
+    const bool lists = message.starts_with(k_there_is_no) && last != message.npos && !names_.empty();
+    return lists ? message.substr(0, last + 1) : message;
+  }
+
+  /// A body, so that what follows the bodies is read too. False: there is one.
+  bool stand_in() {
+    if (std::exchange(stands_in_, true)) return false;
+    const Node block = parse_toml("[[block]]\nsize = [1, 1, 1]\nmass = 1\nat = [900, 900]", "");
+    std::erase_if(root_.items, [](const Item& item) { return item.key == "block"; });
+    root_.items.push_back(block.items.front());
+    return true;
   }
 
   bool follows(const SceneError& error) const {
@@ -105,7 +126,7 @@ class Collector {
       for (const char* how : {" is ", " = "})
         if (error.message.find("but " + key + how) != std::string::npos) return true;
     }
-    if (!error.message.starts_with("there is no ")) return false;
+    if (!error.message.starts_with(k_there_is_no)) return false;
     // copies of an entry are called after it
     return std::ranges::any_of(names_, [&](const std::string& name) {
       return error.message.find('"' + name + '"') != std::string::npos ||
@@ -117,6 +138,7 @@ class Collector {
   const SceneSource& source_;
   std::vector<Found> found_;
   std::set<std::string> keys_, names_;  // left out: paths of keys, names of entries
+  bool stands_in_ = false;
 };
 
 }  // namespace
