@@ -65,10 +65,12 @@ std::string ring(const View& view, const Vec2& at, double radius, const char* ho
                      view.scale * radius, how);
 }
 
+/// Within the drawing, as far as letters are no wider than most are.
 std::string words_at(const View& view, const Vec2& at, double down, const std::string& words) {
+  const double half = 3.4 * static_cast<double>(words.size());  // px
   return fmt::format(
       "<text class=\"halo\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" font-size=\"11\">{}</text>\n",
-      view.x(at), view.y(at) + down, escaped(words));
+      std::clamp(view.x(at), half, std::max(half, k_width - half)), view.y(at) + down, escaped(words));
 }
 
 /// The outline of a footprint: its core grown, with arcs of eight parts to a quarter.
