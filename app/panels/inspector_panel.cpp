@@ -279,8 +279,6 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
         changed = true;
       }
   }
-  if (!inspection.picked)
-    for (const std::string& line : inspection.ways.of(player, row)) ImGui::TextWrapped("%s", line.c_str());
   std::size_t unpinned = inspection.pinned.size();
   for (std::size_t i = 0; i < inspection.pinned.size(); ++i) {
     if (inspection.pinned[i] == inspection.picked) continue;
@@ -292,6 +290,9 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
   }
   if (unpinned < inspection.pinned.size())
     inspection.pinned.erase(inspection.pinned.begin() + static_cast<std::ptrdiff_t>(unpinned));
+  const std::vector<std::string>& ways = inspection.ways.of(player, row);
+  if (!ways.empty()) ImGui::Separator();
+  for (const std::string& line : ways) ImGui::TextWrapped("%s", line.c_str());
   ImGui::EndChild();
   return changed;
 }
