@@ -40,6 +40,15 @@ bool is_entry(const Trail::value_type& step) {
   return step.first->kind == Node::Kind::list && item_of(step).value.kind == Node::Kind::table;
 }
 
+/// "frame.desk.members": of a key or entry.
+std::string path_of(const Trail& trail) {
+  std::string path;
+  for (const auto& step : trail)
+    path += (path.empty() ? "" : ".") +
+            (is_entry(step) ? entry_label(*step.first, step.second) : item_of(step).key);
+  return path;
+}
+
 /// "cabinet.free": of the entry of a list that a trail leads into; else empty.
 std::string entry_path(const Trail& trail) {
   if (trail.size() < 2 || !is_entry(trail[1])) return "";
@@ -81,26 +90,33 @@ class Collector {
     Trail trail, as_written;
     const bool there = find_place(root_, error.place, trail);
     find_place(written_, error.place, as_written);
-    if (!follows(error)) found_.push_back({error.place, line_of(error, trail, as_written)});
-    if (!there || error.path.empty()) return false;
+    const std::string error_path = path_as_written(error, trail, as_written);
+    if (!follows(error.message, error_path))
+      found_.push_back(
+          {error.place, error_line(source_.origin, error.place, error_path, without_known(error.message))});
+    if (!there || error.path.empty() || as_written.size() != trail.size()) return false;
     while (!is_entry(trail.back()) && trail.back().first->kind != Node::Kind::table) trail.pop_back();
+    // one without a name would be another
+    if (item_of(trail.back()).key == "name" && trail.size() > 1) trail.pop_back();
+    as_written.resize(trail.size());
     Node& holder = *trail.back().first;
     const std::size_t index = trail.back().second;
-    if (is_entry(trail.back()))
-      names_.insert(entry_name(holder, item_of(trail[trail.size() - 2]).key, index));
-    else
-      keys_.insert(error.path);
+    if (!is_entry(trail.back())) {
+      keys_.insert(path_of(as_written));
+    } else {
+      const Trail list(as_written.begin(), as_written.end() - 1);
+      names_.insert(entry_name(*as_written.back().first, item_of(list.back()).key, as_written.back().second));
+      if (list.size() > 1) keys_.insert(path_of(list));
+    }
     holder.items.erase(holder.items.begin() + static_cast<std::ptrdiff_t>(index));
     return true;
   }
 
-  /// With the number that the entry has in the file.
-  std::string line_of(const SceneError& error, const Trail& now, const Trail& as_written) const {
+  /// The path with the number that the entry has in the file.
+  static std::string path_as_written(const SceneError& error, const Trail& now, const Trail& as_written) {
     const std::string here = entry_path(now), there = entry_path(as_written);
     const bool moved = !here.empty() && error.path.starts_with(here);
-    return error_line(source_.origin, error.place,
-                      moved ? there + error.path.substr(here.size()) : error.path,
-                      without_known(error.message));
+    return moved ? there + error.path.substr(here.size()) : error.path;
   }
 
   /// What else there is, is not known when some of it was left out.
@@ -119,18 +135,18 @@ class Collector {
     return true;
   }
 
-  bool follows(const SceneError& error) const {
+  bool follows(const std::string& message, const std::string& error_path) const {
     for (const std::string& path : keys_) {
-      if (path == error.path && error.message.starts_with("missing")) return true;
+      if (path == error_path) return true;
       const std::string key = path.substr(path.rfind('.') + 1);
       for (const char* how : {" is ", " = "})
-        if (error.message.find("but " + key + how) != std::string::npos) return true;
+        if (message.find("but " + key + how) != std::string::npos) return true;
     }
-    if (!error.message.starts_with(k_there_is_no)) return false;
+    if (!message.starts_with(k_there_is_no)) return false;
     // copies of an entry are called after it
     return std::ranges::any_of(names_, [&](const std::string& name) {
-      return error.message.find('"' + name + '"') != std::string::npos ||
-             error.message.find('"' + name + '-') != std::string::npos;
+      return message.find('"' + name + '"') != std::string::npos ||
+             message.find('"' + name + '-') != std::string::npos;
     });
   }
 

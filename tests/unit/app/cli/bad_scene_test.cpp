@@ -120,8 +120,8 @@ TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
 }
 
 TEST_F(BadSceneTest, all_errors_of_a_scene_are_told_at_once) {
-  write_bytes("s.toml",
-              changed("friction", "fiction") + "[[probe]]\nbody = \"no\"\n[[door]]\nwall = \"no\"\n");
+  write_bytes("s.toml", changed("restitution = 0.5", "restitution = 5") +
+                            "[[probe]]\nbody = \"no\"\n[[door]]\nwall = \"no\"\n");
   const Ended ended = topple({"check", "s.toml"});
   EXPECT_EQ(ended.code, 2);
   EXPECT_EQ(ended.out, "");
