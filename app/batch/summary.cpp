@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/run_warnings.h"
+#include "app/batch/ways_summary.h"
 #include "app/support/terms.h"
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
@@ -338,6 +339,10 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
            {"rotation_rad", vector_json(probe.rotation)}}},
          {"peak", {{"displacement_m", vector_json(probe.peak)}, {"time_s", vector_json(probe.peak_time)}}}});
   }
+  if (!run.setup().room.places.empty()) {
+    out["person_m"] = run.setup().room.person;
+    out["ways"] = ways_json(run);
+  }
   out["static"] = load_steps(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = run_warnings(run);
@@ -442,6 +447,7 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);
+  if (s.contains("ways")) out += ways_in_words(s["ways"], s["person_m"].get<double>());
   for (const auto& p : s["probes"]) {
     const auto& d = p["final"]["displacement_m"];
     out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),

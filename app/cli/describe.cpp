@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
+#include "app/batch/ways_summary.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
@@ -132,6 +133,10 @@ ordered_json scene_description(const io::Scene& scene) {
     out["anchors"].back()["length_m"] = anchor.length;
     out["anchors"].back()["on"] = setup.parameters.anchors[k];
   }
+  if (!setup.room.places.empty()) {
+    out["person_m"] = setup.room.person;
+    out["ways"] = ways_json(setup.room, setup.model, start_state(setup.model, setup.starts).position, {});
+  }
   return out;
 }
 
@@ -160,7 +165,9 @@ ordered_json recording_description(const io::Recording& recording) {
   out["events"] = ordered_json::array();
   for (const io::RecordedEvent& e : recording.events_on_way_to(newest))
     out["events"].push_back(describe(e, out["bodies"], out["anchors"]));
+  out.erase("ways");  // those of the end are in the summary
   if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());
+  if (out.contains("summary") && out["summary"].contains("ways")) out["ways"] = out["summary"]["ways"];
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
+#include "app/batch/ways_summary.h"
 #include "app/cli/command.h"
 #include "app/cli/describe.h"
 #include "app/support/errors.h"
@@ -77,6 +78,7 @@ std::string info_table(const ordered_json& d) {
                            ? "never breaks"
                            : fmt::format("breaks above {:.4g} kN", 1e-3 * a["strength_N"].get<double>()),
                        a["on"].get<bool>() ? "" : ", away at the start");
+  if (d.contains("ways")) out += ways_in_words(d["ways"], d["person_m"].get<double>());
   if (d["kind"] != "recording") return out;
   out += fmt::format("{}: {} frames to {}, {} checkpoints, last state {}\n", d["status"].get<std::string>(),
                      d["frames"].get<long>(),

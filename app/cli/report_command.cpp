@@ -173,6 +173,13 @@ void add_fragility(Report& report, const ReportOptions& options) {
   report.fragility_plan = plan;
 }
 
+std::vector<Vec3> nodes_of(const io::FrameRow& row) {
+  std::vector<Vec3> nodes;
+  for (int n = 0; 3 * static_cast<std::size_t>(n) < row.position.size(); ++n)
+    nodes.push_back(position(row, n));
+  return nodes;
+}
+
 int interrupted_report(const std::string& file) {
   log_message("interrupted; " + file + " is not written");
   return k_interrupted;
@@ -205,6 +212,8 @@ int report_command(const ReportOptions& options) {
                 .motion = {},
                 .tilts = {},
                 .pictures = {},
+                .nodes_at_start = {},
+                .nodes_at_end = {},
                 .spread = k_spread,
                 .trials = {},
                 .anchors = study::anchor_count(scene),
@@ -215,6 +224,8 @@ int report_command(const ReportOptions& options) {
   report.tilts = tilt_curves(replay, report.summary["bodies"]);
   report.pictures = key_instants(replay, report.tilts, report.summary["bodies"]);
   draw(scene, replay, report.pictures);
+  report.nodes_at_start = nodes_of(replay.frame(0));
+  report.nodes_at_end = nodes_of(replay.frame(replay.frame_count() - 1));
 
   if (!scene.setup.parameters.shakes.empty()) {
     Progress progress(scene.name + ", input varied", "runs", k_trials, options.quiet);

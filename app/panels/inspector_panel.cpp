@@ -290,6 +290,9 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
   }
   if (unpinned < inspection.pinned.size())
     inspection.pinned.erase(inspection.pinned.begin() + static_cast<std::ptrdiff_t>(unpinned));
+  const std::vector<std::string>& ways = inspection.ways.of(player, row);
+  if (!ways.empty()) ImGui::Separator();
+  for (const std::string& line : ways) ImGui::TextWrapped("%s", line.c_str());
   ImGui::EndChild();
   return changed;
 }

@@ -8,6 +8,7 @@
 #include "app/live/player.h"
 #include "app/panels/appearance.h"
 #include "app/panels/subject.h"
+#include "app/panels/ways_lines.h"
 #include "app/picture/picture_settings.h"
 #include "render/output/stage.h"
 #include "render/scene/font.h"
@@ -72,6 +73,7 @@ struct Inspection {
   std::vector<Subject> pinned;
   std::optional<std::size_t> component;  ///< as Diagram::component
   std::vector<PlottedValue> plots;
+  WaysLines ways;
 };
 
 /// Values of what is picked and pinned, at `row`. True when what the picture shows of it has changed.

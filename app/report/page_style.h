@@ -49,6 +49,8 @@ tr { break-inside: avoid; }
 .verdict-cell { display: inline-block; min-width: 6.2em; text-align: left; }
 .settings th { width: 42%; font-weight: 400; }
 .settings td { overflow-wrap: anywhere; }
+.ways th, .ways tbody th { width: auto; }
+.ways td { overflow-wrap: normal; }
 footer { margin-top: 26px; padding-top: 6px; border-top: 1px solid #b8c0c8; font-size: 12px; color: #444; overflow-wrap: anywhere; }
 @page { size: A4; margin: 14mm 14mm 16mm; }
 @media print { body { padding: 0; max-width: none; font-size: 9.5pt; } .wide { overflow: visible; } table { font-size: 8.5pt; }

@@ -41,14 +41,15 @@ struct KeyPicture {
 /// All that the page shows.
 struct Report {
   const io::Scene* scene = nullptr;
-  std::string command;                 ///< that made it
-  std::vector<std::string> overrides;  ///< KEY=VALUE
-  nlohmann::ordered_json summary;      ///< with "error_estimate"
-  study::Motion motion;                ///< of the floor, until the end of the run
-  std::vector<TiltCurve> tilts;        ///< one per body that is furniture
-  std::vector<KeyPicture> pictures;    ///< in the order of time
-  double spread = 0;                   ///< of the input of `trials`
-  std::vector<study::Trial> trials;    ///< empty: the floor does not shake
+  std::string command;                             ///< that made it
+  std::vector<std::string> overrides;              ///< KEY=VALUE
+  nlohmann::ordered_json summary;                  ///< with "error_estimate"
+  study::Motion motion;                            ///< of the floor, until the end of the run
+  std::vector<TiltCurve> tilts;                    ///< one per body that is furniture
+  std::vector<KeyPicture> pictures;                ///< in the order of time
+  std::vector<Vec3> nodes_at_start, nodes_at_end;  ///< m, floor's frame
+  double spread = 0;                               ///< of the input of `trials`
+  std::vector<study::Trial> trials;                ///< empty: the floor does not shake
   /// null: there is no fragility, as the scene is not run as planar blocks
   std::shared_ptr<const study::FragilityPlan> fragility_plan = {};
   study::FragilityResults fragility = {};

@@ -11,6 +11,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// How often the way from each place stays open; empty: there are no places.
+std::string ways_table(const ReportPage& page, int runs) {
+  const Room& room = page.report().scene->setup.room;
+  if (room.ways() == 0) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t p = 0; p < room.places.size(); ++p) {
+    const auto open = static_cast<int>(std::ranges::count_if(
+        page.report().trials, [&](const study::Trial& trial) { return trial.finished && trial.open[p]; }));
+    const study::Interval interval = study::wilson(open, runs);
+    rows.push_back(
+        {escaped(room.places[p].name), page.say(words::k_runs, open, runs),
+         shown(100. * open / runs, 0) + " %",
+         fmt::format("{}\u2013{} %", shown(100 * interval.low, 0), shown(100 * interval.high, 0))});
+  }
+  return page.table({page.say(words::k_place), page.say(words::k_open_in), page.say(words::k_share),
+                     page.say(words::k_interval)},
+                    rows);
+}
+
 std::string probability(ReportPage& page) {
   const Report& report = page.report();
   const auto failed = std::ranges::count_if(report.trials, [](const study::Trial& t) { return !t.finished; });
@@ -43,7 +62,7 @@ std::string probability(ReportPage& page) {
                      page.say(words::k_interval)},
                     rows);
   out += page.figure(svg_dots(chart), page.say(words::k_dots, page.next_figure()));
-  return out + page.paragraph(page.say(words::k_interval_note), "note");
+  return out + ways_table(page, runs) + page.paragraph(page.say(words::k_interval_note), "note");
 }
 
 std::string disagreements(const ReportPage& page, const ordered_json& estimate) {

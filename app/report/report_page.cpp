@@ -175,6 +175,7 @@ std::string report_page(const Report& report, Language language) {
       page.say(words::k_result), result(page));
   out += floor_section(page);
   out += falling_section(page);
+  if (page.shows_ways()) out += ways_section(page);
   if (report.without_anchors) out += anchors_section(page);
   out += certain_section(page);
   out += assumptions_section(page);

@@ -34,7 +34,8 @@ class ReportPage {
 
   /// Sections are numbered in the order in which they stand.
   int falling_section() const { return 2; }
-  int certain_section() const { return report_.without_anchors ? 4 : 3; }
+  int certain_section() const { return 3 + report_.without_anchors.has_value() + shows_ways(); }
+  bool shows_ways() const { return report_.summary.contains("ways"); }
   int next_section() { return ++section_; }
   int next_figure() { return ++figure_; }
 
@@ -63,6 +64,7 @@ std::string with_error(const nlohmann::ordered_json& value, const nlohmann::orde
 
 std::string floor_section(ReportPage& page);
 std::string falling_section(ReportPage& page);
+std::string ways_section(ReportPage& page);
 std::string anchors_section(ReportPage& page);
 std::string certain_section(ReportPage& page);
 /// Of the certain_section(); empty: there is no fragility.

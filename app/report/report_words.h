@@ -141,6 +141,46 @@ inline constexpr Phrase k_at_fall{"{0} s: “{1}” is falling, tilt {2}°", "{0
 inline constexpr Phrase k_at_most{"{0} s: “{1}” tilts most, {2}°", "{0}秒：「{1}」の傾斜角が最大、{2}°"};
 inline constexpr Phrase k_at_end{"End, {0} s", "終了 {0}秒"};
 
+// ways out
+inline constexpr Phrase k_ways{"The way out", "避難経路"};
+inline constexpr Phrase k_ways_text{
+    "For each place whether a person, a disc {0} m wide, still reaches a door at the end of the run. What "
+    "lies "
+    "higher than {1} m is walked under; pieces are taken as their convex outline in plan. The width is that "
+    "of "
+    "the widest disc that passes, at most the door's; the length is that of the shortest way of a person. "
+    "Hit "
+    "is who has a piece overlap the disc below {2} m, even if only for a moment.",
+    "各位置の人（直径{0} "
+    "mの円で表す）が計算終了時に出口まで到達できるかを示す。高さ{1} "
+    "mより上にある物の下は通れるものとし、家具は平面上の凸包で表す。通路幅は通過できる最大の円の直径（扉の幅"
+    "以下）、長さは人の最短経路の長さである。高さ{2} "
+    "mより下で家具が一度でも円に重なった人を「家具が当たる」とする。"};
+inline constexpr Phrase k_place{"place", "位置"};
+inline constexpr Phrase k_way{"way", "経路"};
+inline constexpr Phrase k_door{"door", "扉"};
+inline constexpr Phrase k_wide_before{"width before, m", "揺れる前の幅 [m]"};
+inline constexpr Phrase k_wide{"width after, m", "揺れた後の幅 [m]"};
+inline constexpr Phrase k_long{"length, m", "長さ [m]"};
+inline constexpr Phrase k_blocked_by{"blocked by", "塞ぐ家具"};
+inline constexpr Phrase k_hit_by{"hit by", "当たる家具"};
+inline constexpr Phrase k_hit_at{"{0} ({1} s)", "{0}（{1}秒）"};
+inline constexpr Phrase k_open_way{"open", "通れる"};
+inline constexpr Phrase k_no_way{"closed", "通れない"};
+inline constexpr Phrase k_open_in{"way out open in", "出口まで通れる"};
+inline constexpr Phrase k_plan_figure{"Figure {0}: the room in plan at the end of the run, to scale.",
+                                      "図{0}：計算終了時の部屋の平面図（縮尺どおり）。"};
+inline constexpr Phrase k_key_fallen{"overturned, as it lies", "転倒した家具"};
+inline constexpr Phrase k_key_standing{"standing, at the end", "立っている家具（終了時）"};
+inline constexpr Phrase k_key_start{"where it stood before", "揺れる前の位置"};
+inline constexpr Phrase k_key_way_before{"way before", "揺れる前の経路"};
+inline constexpr Phrase k_key_way{"way after", "揺れた後の経路"};
+inline constexpr Phrase k_key_shut{"no way out", "出られない人"};
+inline constexpr Phrase k_key_hit{"hit", "家具が当たる人"};
+inline constexpr Phrase k_open_sides{
+    "Where the scene has no wall the room is open: people walk there, but leave by doors only.",
+    "壁のない側は開いているものとする。そこを歩くことはできるが、出るのは扉からに限る。"};
+
 // anchors
 inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有無による違い"};
 inline constexpr Phrase k_anchors_text{

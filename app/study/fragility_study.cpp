@@ -14,9 +14,8 @@ std::string between(const study::Interval& interval) {
   return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
 }
 
-std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurve& curve,
-                    const study::StateTraits& state) {
-  std::string out = fmt::format("  {:<9}", state.word);
+std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurve& curve, const char* state) {
+  std::string out = fmt::format("  {:<9}", state);
   if (!curve.fit.fit) return out + "no curve: " + curve.fit.why_not + "\n";
   const study::Lognormal& fit = *curve.fit.fit;
   const std::string unit = plan.levels.unit.empty() ? "" : " " + plan.levels.unit;
@@ -28,6 +27,21 @@ std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurv
     out += fmt::format("; among records {}, beta {}", between(*curve.median_of_records),
                        between(*curve.beta_of_records));
   return out + "\n";
+}
+
+/// At the greatest level that was run.
+std::string open_share(const study::FragilityPlan& plan, const study::FragilityCurve& closed) {
+  for (std::size_t i = closed.levels.size(); i-- > 0;) {
+    const study::Level& level = closed.levels[i];
+    if (level.runs == 0) continue;
+    const int open = level.runs - level.hits;
+    const study::Interval bounds = study::wilson(open, level.runs);
+    return fmt::format(
+        "  open      in {} of {} runs at {:.4g}{}: probability {:.3g} (95 %: {:.3g} to {:.3g})\n", open,
+        level.runs, level.intensity, plan.levels.unit.empty() ? "" : " " + plan.levels.unit,
+        static_cast<double>(open) / level.runs, bounds.low, bounds.high);
+  }
+  return "";
 }
 
 std::string criteria_in_words(const study::FragilityPlan& plan, const study::FragilityResults& results,
@@ -46,9 +60,12 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
   for (std::size_t b = 0; b < results.bodies.size(); ++b) {
     text += results.bodies[b] + "\n";
     for (std::size_t s = 0; s < study::k_states; ++s)
-      text += line_of(plan, results.curves[b][s], study::damage_states()[s]);
+      text += line_of(plan, results.curves[b][s], study::damage_states()[s].word);
     text += criteria_in_words(plan, results, b);
   }
+  for (std::size_t p = 0; p < results.closed.size(); ++p)
+    text += "way out from " + plan.scene.setup.room.places[p].name + "\n" +
+            open_share(plan, results.closed[p]) + line_of(plan, results.closed[p], "closed");
   if (results.failed > 0)
     text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
   const bool all = results.planar == results.runs;

@@ -10,8 +10,8 @@
 
 #include "app/panels/shell_words.h"
 #include "app/window/opening.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene.h"
-#include "solver/io/scene/scene_document.h"
 
 namespace topple::app {
 namespace {

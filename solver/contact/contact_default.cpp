@@ -77,6 +77,14 @@ std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, con
   return greatest_alpha(model, law, gravity, on_floor);
 }
 
+std::optional<double> early_uplift(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  const auto needed = greatest_alpha(model, law, gravity, [](const Edge& edge, double height) {
+    return 2 * k_early_uplift * edge.distance * edge.distance / height;
+  });
+  if (!needed) return std::nullopt;
+  return k_early_uplift * elementary::pow(*needed / law.alpha, 1 / law.q);
+}
+
 std::optional<double> member_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity) {
   return greatest_alpha(model, law, gravity, on_members);
 }

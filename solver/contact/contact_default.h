@@ -29,4 +29,8 @@ std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, con
 /// - The depth is at most a hundredth of L.
 std::optional<double> member_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity);
 
+/// Share by which a side of some body lifts at less acceleration than on a rigid floor, d h/2b^2 as above at
+/// the alpha of `law`: the greatest of all edges. None as above.
+std::optional<double> early_uplift(const Model& model, const ContactLaw& law, const Vec3& gravity);
+
 }  // namespace topple

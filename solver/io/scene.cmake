@@ -39,20 +39,22 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_anchors.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_check.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_document.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/document/scene_document.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_entry.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/check/scene_errors.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_file.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_fittings.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_fixings.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_fittings.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_override.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/document/scene_override.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_planar.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/common/nearest_name.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/document/toml_precheck.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_room.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_shakes.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/stock.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/toml_precheck.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/common/nearest_name.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

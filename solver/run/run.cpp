@@ -24,7 +24,8 @@ Run::Run(const Setup& setup)
       now_{.state = start_state(setup.model, setup.starts),
            .parameters = setup.parameters,
            .outcome = Outcome(setup.model),
-           .probes = std::vector<ProbeOutcome>(setup.probes.size())},
+           .probes = std::vector<ProbeOutcome>(setup.probes.size()),
+           .places = std::vector<PlaceOutcome>(setup.room.places.size())},
       workspace_(setup.model) {
   if (is_static()) {
     path_.emplace(setup.model, setup.run.statics);
@@ -47,7 +48,8 @@ Run::Run(const Setup& setup, State state, Parameters parameters)
     : Run(setup, {.state = std::move(state),
                   .parameters = std::move(parameters),
                   .outcome = Outcome(setup.model),
-                  .probes = std::vector<ProbeOutcome>(setup.probes.size())}) {
+                  .probes = std::vector<ProbeOutcome>(setup.probes.size()),
+                  .places = std::vector<PlaceOutcome>(setup.room.places.size())}) {
   if (!status_.ok()) return;
   observe();
   events_.clear();
@@ -130,7 +132,7 @@ void Run::observe() {
   const Model& model = setup_->model;
   const State& state = now_.state;
   find_acting(now_.state, now_acting_);
-  if (!setup_->probes.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
+  if (!setup_->probes.empty() || !now_.places.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
   now_.outcome.observe(model, now_.parameters, state, contacts(), member_contacts(), sections(), events_);
 
   for (std::size_t k = 0; k < now_.probes.size(); ++k) {
@@ -151,6 +153,7 @@ void Run::observe() {
       }
   }
 
+  if (!now_.places.empty()) observe_hits(setup_->room, model, state.position, state.time, now_.places);
   if (is_static()) return;
   if (setup_->run.stop_when == StopWhen::all_overturned)
     now_.stopped_early = now_.outcome.all_overturned(state.time);

@@ -6,8 +6,10 @@
 
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
+#include "solver/model/room.h"
 #include "solver/run/edit.h"
 #include "solver/run/overturn.h"
+#include "solver/run/place_hits.h"
 #include "solver/state/state.h"
 #include "solver/step/statics.h"
 #include "solver/step/step.h"
@@ -41,6 +43,7 @@ struct Setup {
   std::vector<BodyStart> starts;  ///< one per body
   RunSettings run;
   std::vector<Probe> probes;
+  Room room = {};
 };
 
 /// Motion of one probe so far. Displacements from the reference pose, m, floor's frame; rotation vector, rad.
@@ -61,6 +64,7 @@ struct RunPoint {
   std::optional<double> rest_since = {};  ///< s
   bool stopped_early = false;
   std::vector<LoadStep> load_steps = {};  ///< statics
+  std::vector<PlaceOutcome> places = {};  ///< one per place of the room
 };
 
 /// A state of a run, and what acts there.
@@ -104,6 +108,7 @@ class Run {
   const StepStatus& status() const { return status_; }
   const Outcome& outcome() const { return now_.outcome; }
   const std::vector<ProbeOutcome>& probes() const { return now_.probes; }
+  const std::vector<PlaceOutcome>& places() const { return now_.places; }
   const std::vector<Event>& events() const { return events_; }
   const std::vector<LoadStep>& load_steps() const { return now_.load_steps; }
   const std::vector<ContactForce>& contacts() const { return now_acting_.contacts; }

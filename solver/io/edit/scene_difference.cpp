@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {

@@ -1,7 +1,7 @@
 #include "solver/io/edit/scene_number.h"
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_check.h"
-#include "solver/io/scene/scene_document.h"
 
 namespace topple::io {
 namespace {

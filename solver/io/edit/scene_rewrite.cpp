@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 
 namespace topple::io {
 namespace {

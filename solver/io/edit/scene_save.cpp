@@ -5,10 +5,10 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/edit/edit_text.h"
 #include "solver/io/edit/scene_rewrite.h"
 #include "solver/io/scene/furniture.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/model/excitation.h"
 

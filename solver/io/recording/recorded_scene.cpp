@@ -1,10 +1,10 @@
 #include <algorithm>
 
 #include "solver/io/common/errors.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/recording_format.h"
 #include "solver/io/scene/scene.h"
-#include "solver/io/scene/scene_document.h"
 
 namespace topple::io {
 namespace {

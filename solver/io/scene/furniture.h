@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_content.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/math/types.h"
 
 namespace topple::io {

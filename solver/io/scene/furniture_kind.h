@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/furniture_piece.h"
 #include "solver/io/scene/scene_content.h"
-#include "solver/io/scene/scene_document.h"
 
 namespace topple::io {
 

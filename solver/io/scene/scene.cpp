@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_check.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/io/scene/stock.h"
@@ -44,21 +44,25 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::v
   refuse_large(text.size(), origin);
   Node root = parse_toml(text, origin);
   for (const std::string& change : overrides) apply_override(root, change);
-  check_scene(root, origin);
+  return understand(root, {std::string(text), origin, read ? read : files_beside(origin)},
+                    overrides.empty() ? std::string(text) : write_toml(root));
+}
 
+Scene understand(Node root, const SceneSource& source, std::string text) {
+  const std::string& origin = source.origin;
+  check_scene(root, origin);
   Scene scene;
-  const ReadSceneFile read_file = read ? read : files_beside(origin);
   scene.name = fs::path(origin).stem().string();
-  scene.text = overrides.empty() ? std::string(text) : write_toml(root);
   if (root.find("furniture")) {
-    expand_furniture(root, origin, read_file, scene.files);
+    expand_furniture(root, origin, source.read, scene.files);
     check_scene(root, origin);
   }
   add_stock(root);
   const Entry entry(origin, "", "", &root, root.place);
   scene.title = entry.has("title") ? entry.text("title") : scene.name;
+  scene.text = std::move(text);
   read_run(entry, scene.setup);
-  read_shakes(entry, read_file, scene);
+  read_shakes(entry, source.read, scene);
   read_contact(entry, scene.setup);
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);
@@ -68,26 +72,33 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::v
   choose_alpha(entry, scene.setup);
   check_planar(entry, scene.setup);
   read_probes(entry, scene.setup);
+  read_room(entry, scene.setup);
   read_control(entry, scene.setup);
   read_expectations(entry, scene);
   return scene;
 }
 
-Scene load_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+SceneSource find_scene(const std::string& path_or_name) {
   if (path_or_name.empty()) throw InputError("the name of the scene is empty");
   std::error_code status;
   if (fs::is_directory(path_or_name, status)) throw InputError(path_or_name + ": is a folder");
-  if (fs::exists(path_or_name, status)) return parse_scene(read_text(path_or_name), path_or_name, overrides);
+  if (fs::exists(path_or_name, status))
+    return {read_text(path_or_name), path_or_name, files_beside(path_or_name)};
+  const std::string origin = path_or_name + ".toml";
   std::string names;
   for (const BuiltinScene& scene : builtin_scenes()) {
-    if (scene.name == path_or_name)
-      return parse_scene(scene.text, path_or_name + ".toml", overrides, builtin_files());
+    if (scene.name == path_or_name) return {std::string(scene.text), origin, builtin_files()};
     names += (names.empty() ? "" : ", ") + std::string(scene.name);
   }
   for (const auto* scenes : {&verification_scenes(), &study_scenes()})
     for (const BuiltinScene& scene : *scenes)
-      if (scene.name == path_or_name) return parse_scene(scene.text, path_or_name + ".toml", overrides);
+      if (scene.name == path_or_name) return {std::string(scene.text), origin, files_beside(origin)};
   throw InputError(path_or_name + ": no such file or built-in scene; built-in: " + names);
+}
+
+Scene load_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+  const SceneSource source = find_scene(path_or_name);
+  return parse_scene(source.text, source.origin, overrides, source.read);
 }
 
 }  // namespace topple::io

@@ -357,6 +357,8 @@ void check_scene(const Node& root, const std::string& origin) {
   check_names(root, origin, {"cabinet", "frame", "block"}, {});
   check_names(root, origin, {"anchor", "fixing"}, {});
   check_names(root, origin, {"probe"}, {});
+  check_names(root, origin, {"door"}, {});
+  check_names(root, origin, {"place"}, {});
   check_names(root, origin, {"expect"}, {});
 }
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 
 namespace topple::io {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/math/types.h"
 
 namespace topple::io {

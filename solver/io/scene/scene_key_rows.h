@@ -121,4 +121,7 @@ void add_body_keys(std::vector<Key>& keys);
 /// [[anchor]], [ceiling], [[fixing]].
 void add_fitting_keys(std::vector<Key>& keys);
 
+/// [[door]] and [[place]].
+void add_room_keys(std::vector<Key>& keys);
+
 }  // namespace topple::io

@@ -61,6 +61,8 @@ void add_top(std::vector<Key>& keys) {
   rows.plain("fixing", T::tables, "holds a body by a named piece of hardware, which finds its points")
       .only_in({"dynamic"});
   rows.plain("probe", T::tables, "motion reported in the summary");
+  rows.plain("door", T::tables, "an opening in a wall by which people leave").only_in({"dynamic"});
+  rows.plain("place", T::tables, "where a person is when the run begins").only_in({"dynamic"});
   rows.plain("expect", T::tables, "number of the summary that is known, for `topple verify`");
 }
 
@@ -129,6 +131,9 @@ void add_run(std::vector<Key>& keys) {
   rows.numbers("gravity", 3, D::acceleration, "m/s^2", -1e3, 1e3, "gravity").absent(parameters.gravity);
   rows.word("stop_when", k_stops, run.stop_when,
             "ends the run early; all-overturned: tilt over 60 deg for 0.5 s")
+      .only_in({"dynamic"});
+  rows.number("person", D::length, "m", 0.1, 2, "width of the disc that a person is on the way to a [[door]]")
+      .absent(Room{}.person)
       .only_in({"dynamic"});
 }
 
@@ -385,6 +390,7 @@ std::vector<Key> build_table() {
   add_body_keys(keys);
   add_fitting_keys(keys);
   add_probe(keys);
+  add_room_keys(keys);
   add_expect(keys);
   return keys;
 }

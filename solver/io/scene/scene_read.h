@@ -54,6 +54,9 @@ void read_fixings(const Entry& root, Setup& setup);
 /// [[probe]]; after the bodies.
 void read_probes(const Entry& root, Setup& setup);
 
+/// [[door]] and [[place]]; after the bodies.
+void read_room(const Entry& root, Setup& setup);
+
 /// run.control; after the bodies.
 void read_control(const Entry& root, Setup& setup);
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 
 namespace topple::io {
 

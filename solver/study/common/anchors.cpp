@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 
 namespace topple::study {

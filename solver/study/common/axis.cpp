@@ -8,9 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/edit/scene_number.h"
 #include "solver/io/scene/scene_check.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/math/elementary.h"
 #include "solver/study/common/kept_rows.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/run/ways.h"
 #include "solver/study/common/parallel.h"
 
 namespace topple::study {
@@ -53,6 +54,7 @@ std::vector<Trial> try_factors(const Setup& setup, const std::vector<double>& fa
         for (int b = 0; b < setup.model.furniture_total(); ++b)
           trial.overturned.push_back(
               run.outcome().bodies()[static_cast<std::size_t>(b)].beyond_since.has_value());
+        trial.open = open_ways(run);
       },
       go_on);
   return trials;

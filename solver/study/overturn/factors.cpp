@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "solver/io/common/units.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/io/edit/scene_number.h"
 #include "solver/io/edit/scene_save.h"
 #include "solver/io/scene/furniture.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"

@@ -44,25 +44,31 @@ ordered_json rows_as_json(const FragilityPlan& plan, const FragilityResults& res
   ordered_json rows = ordered_json::array();
   const std::string level_name =
       plan.levels.unit.empty() ? plan.levels.key : plan.levels.key + "_" + plan.levels.unit;
-  for (std::size_t b = 0; b < results.bodies.size(); ++b)
-    for (std::size_t s = 0; s < k_states; ++s) {
-      const FragilityCurve& curve = results.curves[b][s];
-      for (const Level& level : curve.levels) {
-        ordered_json row{{"body", results.bodies[b]}, {"state", damage_states()[s].word}};
-        row[level_name] = level.intensity;
-        const bool any = level.runs > 0;
-        const Interval bounds = any ? wilson(level.hits, level.runs) : Interval{};
-        const auto or_none = [&](double value) { return any ? ordered_json(value) : ordered_json(nullptr); };
-        row.update({{"runs", level.runs},
-                    {"hits", level.hits},
-                    {"probability", or_none(any ? static_cast<double>(level.hits) / level.runs : 0)},
-                    {"low", or_none(bounds.low)},
-                    {"high", or_none(bounds.high)},
-                    {"fit", curve.fit.fit ? ordered_json(curve.probability(plan, level.intensity))
-                                          : ordered_json(nullptr)}});
-        rows.push_back(std::move(row));
-      }
+  const auto add = [&](const std::string& of, const char* state, const FragilityCurve& curve, bool reverse) {
+    for (const Level& level : curve.levels) {
+      ordered_json row{{"body", of}, {"state", state}};
+      row[level_name] = level.intensity;
+      const bool any = level.runs > 0;
+      const int hits = reverse ? level.runs - level.hits : level.hits;
+      const Interval bounds = any ? wilson(hits, level.runs) : Interval{};
+      const auto or_none = [](bool there, double value) {
+        return there ? ordered_json(value) : ordered_json(nullptr);
+      };
+      const double fit = curve.fit.fit ? curve.probability(plan, level.intensity) : 0;
+      row.update({{"runs", level.runs},
+                  {"hits", hits},
+                  {"probability", or_none(any, any ? static_cast<double>(hits) / level.runs : 0)},
+                  {"low", or_none(any, bounds.low)},
+                  {"high", or_none(any, bounds.high)},
+                  {"fit", or_none(curve.fit.fit.has_value(), reverse ? 1 - fit : fit)}});
+      rows.push_back(std::move(row));
     }
+  };
+  for (std::size_t b = 0; b < results.bodies.size(); ++b)
+    for (std::size_t s = 0; s < k_states; ++s)
+      add(results.bodies[b], damage_states()[s].word, results.curves[b][s], false);
+  for (std::size_t p = 0; p < results.closed.size(); ++p)
+    add(plan.scene.setup.room.places[p].name, "way-open", results.closed[p], true);
   return rows;
 }
 
@@ -75,11 +81,16 @@ ordered_json curves_as_json(const FragilityPlan& plan, const FragilityResults& r
     if (b < results.criteria.size()) body["criteria"] = criteria_json(results.criteria[b]);
     bodies.push_back(std::move(body));
   }
+  ordered_json ways = ordered_json::array();
+  for (std::size_t p = 0; p < results.closed.size(); ++p)
+    ways.push_back(
+        {{"place", plan.scene.setup.room.places[p].name}, {"closed", curve_json(results.closed[p])}});
   return {
       {"measure", {{"name", plan.levels.key}, {"title", plan.measure->title}, {"unit", plan.levels.unit}}},
       {"levels", plan.levels.values},
       {"motion_frequency_Hz", results.frequency},
-      {"bodies", bodies}};
+      {"bodies", bodies},
+      {"ways", ways}};
 }
 
 }  // namespace topple::study

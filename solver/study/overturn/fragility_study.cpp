@@ -253,6 +253,7 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
   int runs = 0, failed = 0, planar = 0;
   std::string status = "completed";
   std::vector<std::array<int, k_states>> hits;
+  std::vector<int> closed(plan_->scene.setup.room.ways(), 0);
   bool gave_up = false;
   const double cpu = cpu_time_of(
       [&] {
@@ -276,6 +277,7 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
           }
           ++runs;
           planar += end.planar;
+          for (std::size_t p = 0; p < end.open.size(); ++p) closed[p] += !end.open[p];
           for (std::size_t s = 0; s < k_states; ++s) {
             bool any = false;
             for (std::size_t b = 0; b < bodies; ++b) {
@@ -289,8 +291,8 @@ std::string FragilityRunner::run(int k, const std::function<bool()>& give_up) {
       },
       0);
   if (gave_up) return "";
-  const ordered_json row{{"runs", runs},     {"failed", failed}, {"planar", planar},
-                         {"status", status}, {"hits", hits},     {"cpu_s", cpu}};
+  const ordered_json row{{"runs", runs}, {"failed", failed}, {"planar", planar}, {"status", status},
+                         {"hits", hits}, {"closed", closed}, {"cpu_s", cpu}};
   return row.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -318,6 +320,7 @@ FragilityResults gather(const FragilityPlan& plan, const std::vector<std::string
   const LevelsOfRecords empty(static_cast<std::size_t>(plan.records()), none);
   std::vector<std::array<LevelsOfRecords, k_states>> counts(out.bodies.size());
   for (auto& body : counts) body.fill(empty);
+  std::vector<LevelsOfRecords> closed(plan.scene.setup.room.ways(), empty);
   out.of = static_cast<long>(plan.levels.count()) * plan.records() * plan.runs;
   for (int k = 0; k < plan.cases(); ++k) {
     if (rows[static_cast<std::size_t>(k)].empty()) continue;
@@ -335,12 +338,17 @@ FragilityResults gather(const FragilityPlan& plan, const std::vector<std::string
         at.runs += runs;
         at.hits += row["hits"][b][s].get<int>();
       }
+    for (std::size_t p = 0; p < closed.size(); ++p) {
+      closed[p][record][level].runs += runs;
+      closed[p][record][level].hits += row["closed"][p].get<int>();
+    }
   }
   for (const auto& body : counts) {
     std::array<FragilityCurve, k_states> curves;
     for (std::size_t s = 0; s < k_states; ++s) curves[s] = curve_of(plan, body[s], k_damage_states[s].verb);
     out.curves.push_back(std::move(curves));
   }
+  for (const LevelsOfRecords& place : closed) out.closed.push_back(curve_of(plan, place, "closes the way"));
   out.frequency = median_frequency(plan);
   for (int b = 0; b < bodies; ++b) out.criteria.push_back(criteria_of(plan, b, out.frequency));
   planar_cases(read_setup(plan.scene, plan.set), &out.why_not_planar);

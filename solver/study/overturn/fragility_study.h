@@ -56,8 +56,8 @@ class FragilityRunner {
  public:
   explicit FragilityRunner(const FragilityPlan& plan) : plan_(&plan) {}
   /// A row of JSON in one line: "runs" (that did not fail), "failed", "planar", "status" (of the first that
-  /// failed), "hits" (per piece of furniture, then of any: runs in which it came to each state), "cpu_s".
-  /// Empty: give_up() came true.
+  /// failed), "hits" (per piece of furniture, then of any: runs in which it came to each state), "closed"
+  /// (per place of the room: runs that left it no way out), "cpu_s". Empty: give_up() came true.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
@@ -101,6 +101,7 @@ struct BodyCriteria {
 struct FragilityResults {
   std::vector<std::string> bodies;                           ///< furniture; "any body" behind several
   std::vector<std::array<FragilityCurve, k_states>> curves;  ///< one per name
+  std::vector<FragilityCurve> closed;                        ///< one per one of Room::ways(): it is not open
   std::vector<BodyCriteria> criteria;                        ///< one per piece of furniture
   double frequency = 0;                                      ///< Hz, PGA/(2 pi PGV), median of the records
   long runs = 0, of = 0, failed = 0, planar = 0;

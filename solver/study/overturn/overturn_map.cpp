@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solver/io/document/scene_document.h"
 #include "solver/io/edit/edit_text.h"
-#include "solver/io/scene/scene_document.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/rows.h"

@@ -14,6 +14,7 @@ constexpr double k_softer = 1 - 1e-6;  // alpha over rigid_alpha
 std::string setting_against(const Setup& setup) {
   const Parameters& p = setup.parameters;
   if (p.want_stress) return "stresses are asked for";
+  if (setup.room.ways() > 0) return "the way out depends on where bodies come to lie";
   if (p.contact.restitution > 0) return "contacts bounce";
   const std::optional<double> alpha = rigid_alpha(setup.model, p.contact, p.gravity);
   if (!alpha || p.contact.alpha < k_softer * *alpha) return "contacts are soft";

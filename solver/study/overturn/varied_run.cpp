@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
+#include "solver/run/ways.h"
 
 namespace topple::study {
 namespace {
@@ -40,6 +41,7 @@ RunEnd run_rigid(const Setup& setup, const std::function<bool()>& give_up) {
     of_bodies[b].lifted = body.first_uplift.has_value();
   }
   end.of_bodies = std::move(of_bodies);
+  end.open = open_ways(run);
   return end;
 }
 
@@ -89,7 +91,8 @@ std::vector<std::string> overturn_settings(const io::Scene& scene) {
   const io::Node* run = root.find("run");
   std::vector<std::string> out;
   if (!run || !run->find("want")) out.push_back("run.want=[\"motion\"]");
-  if (!run || !run->find("stop_when")) out.push_back("run.stop_when=all-overturned");
+  // where bodies lie at the end is asked for where there are places
+  if (!root.find("place") && (!run || !run->find("stop_when"))) out.push_back("run.stop_when=all-overturned");
   return out;
 }
 

@@ -15,6 +15,7 @@ namespace topple::study {
 struct RunEnd {
   std::string status = "completed";     ///< or why it failed
   std::vector<BodyEnd> of_bodies = {};  ///< per piece of furniture; empty where it failed
+  std::vector<bool> open = {};          ///< per one of Room::ways()
   bool planar = false;                  ///< as planar blocks, else with the rigid model
   bool gave_up = false;                 ///< give_up() came true
 };

@@ -14,10 +14,11 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
       "normal_speed, q, restitution, slip_speed, surfaces");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
             "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
-  EXPECT_EQ(error_of("tople = 1\n" + k_scene),
-            "s.toml:1:1: tople: unknown key; known: anchor, block, cabinet, ceiling, contact, expect, "
-            "fixing, floor, frame, "
-            "furniture, kind, material, probe, run, section, shake, title, topple, wall");
+  EXPECT_EQ(
+      error_of("tople = 1\n" + k_scene),
+      "s.toml:1:1: tople: unknown key; known: anchor, block, cabinet, ceiling, contact, door, expect, "
+      "fixing, floor, frame, furniture, kind, material, place, probe, run, section, shake, title, topple, "
+      "wall");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
 }

@@ -1,5 +1,6 @@
 add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/accelerogram_file_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/check_whole_scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/checked_in_scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/contents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/edit_text_test.cpp
@@ -13,6 +14,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/scene_panel_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_robustness_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_record_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/scene_room_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_save_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/toml_precheck_test.cpp)

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene_samples.h"
-#include "solver/io/scene/toml_precheck.h"
+#include "solver/io/document/toml_precheck.h"
 
 namespace topple::io {
 namespace {

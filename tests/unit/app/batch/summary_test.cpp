@@ -189,6 +189,43 @@ TEST_F(SummaryTest, text_that_is_not_utf_8_does_not_spoil_the_json) {
   EXPECT_EQ(Json::parse(text)["scene"], "a\xef\xbf\xbd");
 }
 
+TEST(Summary, says_who_gets_out_before_and_after) {
+  const auto ways_past = [](const char* gap) {
+    // two solid pieces across a room of 4 m by 2 m; their surfaces lie 10 mm outside
+    const std::string text = std::string("topple = 1\n[run]\nduration = 0.02\n[floor]\n") +
+                             "[[wall]]\nname = \"right\"\nat = [0, -1]\nnormal = [0, 1, 0]\n"
+                             "[[wall]]\nname = \"left\"\nat = [0, 1]\nnormal = [0, -1, 0]\n"
+                             "[[wall]]\nname = \"front\"\nat = [2, 0]\nnormal = [-1, 0, 0]\n"
+                             "[[block]]\nname = \"a\"\nsize = [0.3, 0.7, 0.5]\nmass = 30\nwidth = 0.02\n"
+                             "at = [0, -0.6]\n[[block]]\nname = \"b\"\nsize = [0.3, 0.7, 0.5]\nmass = 30\n"
+                             "width = 0.02\nat = [0, " +
+                             gap +
+                             "]\n[[door]]\nname = \"door\"\nwall = \"front\"\nat = 0\nwidth = 0.8\n"
+                             "[[place]]\nname = \"desk\"\nat = [-1, 0]\n";
+    const io::Scene scene = io::parse_scene(text, "s.toml");
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return summary(scene, run, "completed", 1);
+  };
+  // a ends at -0.24, b begins 0.36 before its middle
+  const Json open = ways_past("0.63"), closed = ways_past("0.61");
+  EXPECT_EQ(open["ways"][0]["open"], true);
+  EXPECT_NEAR(open["ways"][0]["widest_m"].get<double>(), 0.51, 1e-5);  // blocks settle by less
+  EXPECT_NEAR(open["ways"][0]["length_m"].get<double>(), 3, 1e-3);
+  EXPECT_EQ(closed["ways"][0]["open"], false);
+  EXPECT_NEAR(closed["ways"][0]["before"]["widest_m"].get<double>(), 0.49, 1e-12);
+  EXPECT_EQ(closed["ways"][0]["length_m"], nullptr);
+  EXPECT_EQ(closed["ways"][0]["blocked_by"], (Json{"a", "b"}));
+  EXPECT_NE(
+      summary_table(closed).find("place desk: no way to door for a person of 0.5 m, 0.49 m left, blocked "
+                                 "by a, b\n"),
+      std::string::npos)
+      << summary_table(closed);
+  EXPECT_NE(summary_table(open).find("place desk: way to door open, 0.51 m wide, 3.0 m long\n"),
+            std::string::npos)
+      << summary_table(open);
+}
+
 TEST(Letters, a_letter_of_several_bytes_is_one_and_so_is_a_byte_that_is_none) {
   EXPECT_EQ(letters(""), 0u);
   EXPECT_EQ(letters("caf\xc3\xa9"), 4u);

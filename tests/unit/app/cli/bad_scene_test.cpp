@@ -113,7 +113,36 @@ TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
   const Ended ended = topple({"check", "s.toml", "none.toml", "bad.toml"});
   EXPECT_EQ(ended.code, 2);
   EXPECT_EQ(ended.out, "s.toml: ok\n");
-  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 2) << ended.err;
+  // and the soft contacts of the good one
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 3) << ended.err;
+  EXPECT_NE(ended.err.find("warning: s.toml: contact.alpha = 50 kgf is soft"), std::string::npos)
+      << ended.err;
+}
+
+TEST_F(BadSceneTest, all_errors_of_a_scene_are_told_at_once) {
+  write_bytes("s.toml", changed("restitution = 0.5", "restitution = 5") +
+                            "[[probe]]\nbody = \"no\"\n[[door]]\nwall = \"no\"\n");
+  const Ended ended = topple({"check", "s.toml"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_NE(ended.err.find("probe.2.body: there is no body \"no\""), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("door.1.at: missing"), std::string::npos) << ended.err;
+}
+
+TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
+  const std::string hangs = "[[block]]\nname = \"box\"\nsize = [0.2, 0.2, 0.2]\nmass = 1\nat = [2, 0, 0.3]\n";
+  const std::string bracket =
+      "[[anchor]]\nname = \"bracket\"\nbody = \"free\"\npoint = [-0.19, 0, 1.79]\nto = [-0.25, 0, 1.79]\n"
+      "type = \"bracket\"\nstiffness = \"1000 kN/m\"\n";
+  write_bytes("s.toml", changed("alpha = \"50 kgf\"\n", "") + hangs + bracket);
+  const Ended ended = topple({"check", "s.toml"});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_NE(ended.err.find("\"box\" stands on nothing: it hangs 300 mm above the floor"), std::string::npos)
+      << ended.err;
+  EXPECT_NE(ended.err.find("anchor \"bracket\" holds \"free\" in the middle of its member"),
+            std::string::npos)
+      << ended.err;
+  EXPECT_EQ(ended.err.find("is soft"), std::string::npos) << ended.err;
 }
 
 TEST_F(BadSceneTest, the_built_in_scenes_are_good_and_listed) {

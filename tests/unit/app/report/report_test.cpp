@@ -67,7 +67,8 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
 
 TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
   for (int k = 0; k < 21; ++k)
-    report_.trials.push_back({.factor = 0.95 + 0.005 * k, .finished = true, .overturned = {k >= 13}});
+    report_.trials.push_back(
+        {.factor = 0.95 + 0.005 * k, .finished = true, .overturned = {k >= 13}, .open = {}});
   const std::string html = page();
   EXPECT_TRUE(holds(html, "8 of 21 runs"));
   EXPECT_TRUE(holds(html, "<td>38 %</td><td>21\u201359 %</td>"));  // Wilson: 0.2075 to 0.5912

@@ -1,4 +1,4 @@
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 
 #include <utf8.h>
 
@@ -20,7 +20,7 @@ static constexpr void toml_assert(bool holds) {
 #include <toml++/toml.h>
 
 #include "solver/io/common/errors.h"
-#include "solver/io/scene/toml_precheck.h"
+#include "solver/io/document/toml_precheck.h"
 
 namespace topple::io {
 namespace {
@@ -231,7 +231,7 @@ std::string error_line(const std::string& origin, const Place& place, const std:
 
 void fail(const std::string& origin, const Place& place, const std::string& path,
           const std::string& message) {
-  throw InputError(error_line(origin, place, path, message));
+  throw SceneError(origin, place, path, message);
 }
 
 namespace {

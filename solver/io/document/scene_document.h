@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "solver/io/common/errors.h"
+
 namespace topple::io {
 
 /// Where a key or value was written: a line and column from 1, or an override.
@@ -67,7 +69,18 @@ void set_place(Node& node, const Place& place);
 std::string error_line(const std::string& origin, const Place& place, const std::string& path,
                        const std::string& message);
 
-/// Throws InputError with error_line().
+/// What is wrong at a place of the scene; what() is the error_line().
+struct SceneError : InputError {
+  SceneError(const std::string& origin, Place at, std::string key_path, std::string text)
+      : InputError(error_line(origin, at, key_path, text)),
+        place(std::move(at)),
+        path(std::move(key_path)),
+        message(std::move(text)) {}
+  Place place;
+  std::string path, message;
+};
+
+/// Throws SceneError.
 [[noreturn]] void fail(const std::string& origin, const Place& place, const std::string& path,
                        const std::string& message);
 

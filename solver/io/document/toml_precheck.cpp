@@ -1,4 +1,4 @@
-#include "solver/io/scene/toml_precheck.h"
+#include "solver/io/document/toml_precheck.h"
 
 #include <utf8.h>
 

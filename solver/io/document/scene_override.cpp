@@ -2,7 +2,7 @@
 #include <utf8.h>
 
 #include "solver/io/common/errors.h"
-#include "solver/io/scene/scene_document.h"
+#include "solver/io/document/scene_document.h"
 
 namespace topple::io {
 namespace {

@@ -1,0 +1,135 @@
+#include "app/batch/scene_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/body/model_level.h"
+#include "solver/contact/contact_default.h"
+#include "solver/contact/proximity.h"
+#include "solver/run/footprint.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
+constexpr double k_hangs = 1e-3;   // m, above what might bear it
+constexpr double k_early = 0.05;   // of the acceleration that lifts a side
+constexpr double k_upright = 0.7;  // of the normal of a floor
+
+/// Of the member of a body that is nearest to a point, and where along it, 0..1.
+struct Place {
+  int member = -1;
+  double along = 0, distance = std::numeric_limits<double>::infinity();
+};
+Place nearest_member(const Model& model, const State& start, const Body& body, const Vec3& point) {
+  Place nearest;
+  for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
+    const Member& member = model.members[m];
+    const Vec3& a = start.position[model.elements[member.first_element].node[0]];
+    const Vec3& b = start.position[model.elements[member.first_element + member.element_count - 1].node[1]];
+    const NearestPoints found = nearest_points(point, a, b);
+    if (found.between.norm() < nearest.distance) nearest = {m, found.t, found.between.norm()};
+  }
+  return nearest;
+}
+
+void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::string>& list) {
+  const Model& model = setup.model;
+  for (const Anchor& anchor : model.anchors) {
+    const ModelLevel level = base_level(model, setup.parameters, anchor.body).level;
+    if (level != ModelLevel::elastic && level != ModelLevel::frame) continue;
+    const Vec3 point = start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+    const Body& body = model.bodies[anchor.body];
+    const Place at = nearest_member(model, start, body, point);
+    if (at.along < k_corner || at.along > 1 - k_corner) continue;
+    list.push_back(
+        fmt::format("anchor \"{}\" holds \"{}\" in the middle of its member \"{}\", which bends there and "
+                    "gives way before the anchor does; at a corner it is stiffer",
+                    anchor.name, body.name, model.members[at.member].name));
+  }
+}
+
+/// Between which heights a body lies, m.
+struct Heights {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+};
+Heights heights(const Model& model, const State& start, const Body& body) {
+  Heights found;
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const double half = model.sections[model.members[model.elements[e].member].section].width / 2;
+    for (const int node : model.elements[e].node) {
+      found.low = std::min(found.low, start.position[node].z() - half);
+      found.high = std::max(found.high, start.position[node].z() + half);
+    }
+  }
+  return found;
+}
+
+/// Another body lies below it in plan and reaches up to its bottom.
+bool is_borne(const Model& model, const State& start, int index, double bottom) {
+  constexpr double k_any_height = std::numeric_limits<double>::max();
+  const auto print = footprint(model, start.position, index, k_any_height);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const Heights of = heights(model, start, model.bodies[b]);
+    if (b == index || of.low > bottom || of.high < bottom - k_hangs) continue;
+    const auto other = footprint(model, start.position, b, k_any_height);
+    if (nearest_points(print->core, other->core).distance <= print->radius + other->radius) return true;
+  }
+  return false;
+}
+
+void warn_of_falls(const Setup& setup, const State& start, std::vector<std::string>& list) {
+  const Model& model = setup.model;
+  if (setup.parameters.gravity.isZero(0)) return;
+  const bool floor =
+      std::ranges::any_of(model.planes, [](const Plane& plane) { return plane.normal.z() > k_upright; });
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const Body& body = model.bodies[b];
+    const bool held =
+        std::ranges::any_of(model.supports,
+                            [&](const Support& support) { return model.node_body[support.node] == b; }) ||
+        std::ranges::any_of(model.anchors, [&](const Anchor& anchor) { return anchor.body == b; });
+    const double bottom = heights(model, start, body).low;
+    if (held || (floor && bottom <= k_hangs) || is_borne(model, start, b, bottom)) continue;
+    list.push_back(
+        floor ? fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above the floor and falls "
+                            "when the run begins",
+                            body.name, 1e3 * bottom)
+              : fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
+  }
+}
+
+/// To two digits.
+double rounded_up(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / unit) * unit;
+}
+
+void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
+  const Parameters& p = setup.parameters;
+  const std::optional<double> early = early_uplift(setup.model, p.contact, p.gravity);
+  const std::optional<double> rigid = rigid_alpha(setup.model, p.contact, p.gravity);
+  if (!early || !rigid || *early <= k_early) return;
+  list.push_back(fmt::format(
+      "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
+      "acceleration than on a rigid floor; {:.0f} kgf, or no alpha at all, keeps that below 2 %",
+      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
+      rounded_up(*rigid / k_standard_gravity)));
+}
+
+}  // namespace
+
+std::vector<std::string> scene_warnings(const Setup& setup) {
+  std::vector<std::string> list;
+  if (setup.run.analysis != Analysis::dynamic) return list;
+  const State start = start_state(setup.model, setup.starts);
+  warn_of_anchors(setup, start, list);
+  warn_of_falls(setup, start, list);
+  warn_of_alpha(setup, list);
+  return list;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,17 @@
+// What of a scene will surprise, though nothing is wrong with it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/run/run.h"
+
+namespace topple::app {
+
+/// One sentence each: what will happen, where, and what to try.
+/// - An anchor in the middle of an edge that bends: it gives with the edge.
+/// - A body that nothing bears when the run begins.
+/// - Contacts so soft that a side lifts at less than 95 % of the acceleration that lifts it on a rigid floor.
+std::vector<std::string> scene_warnings(const Setup& setup);
+
+}  // namespace topple::app

@@ -1,0 +1,102 @@
+// All errors of a scene at once.
+#include "scene_samples.h"
+#include "solver/io/check/scene_errors.h"
+
+namespace topple::io {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+CheckedScene checked(const std::string& text, const Lines& overrides = {}) {
+  return check_whole_scene({text, "s.toml", files_beside("s.toml")}, overrides);
+}
+
+TEST(CheckWholeScene, eight_errors_of_eight_kinds_are_told_in_the_order_of_the_file) {
+  const std::string text =
+      "topple = 1\n"
+      "[run]\n"
+      "duration = \"-3 s\"\n"     // 3: out of range
+      "integrator = \"magic\"\n"  // 4: no word of the choice; beta below follows from it
+      "beta = 0.3\n"
+      "[[shake]]\n"
+      "amplitude = \"190 kg\"\n"  // 7: another dimension; the shake needs it, but that follows
+      "frequency = \"0.5 Hz\"\n"
+      "[floor]\n"
+      "[[wall]]\n"
+      "name = \"back\"\n"
+      "at = [-3, 0]\n"
+      "normal = [0, 0, 0]\n"  // 13: found by the reader
+      "[[material]]\n"
+      "name = \"steel\"\n"
+      "young = \"205 GPa\"\n"
+      "poisson = 0.7\n"  // 17: required; whoever is made of steel is not blamed
+      "density = \"7850 kg/m^3\"\n"
+      "[[section]]\n"
+      "name = \"post\"\n"
+      "shape = \"box\"\n"
+      "size = [\"30 mm\", \"30 mm\"]\n"
+      "thickness = \"20 mm\"\n"  // 23: found by the reader
+      "[[cabinet]]\n"
+      "name = \"free\"\n"
+      "section = \"post\"\n"
+      "material = \"steel\"\n"
+      "colour = \"red\"\n"  // 28: unknown
+      "[[probe]]\n"
+      "body = \"free\"\n"
+      "[[probe]]\n"
+      "body = \"nobody\"\n";  // 32: a name that nothing has
+  const CheckedScene found = checked(text);
+  EXPECT_FALSE(found.scene);
+  ASSERT_EQ(found.errors.size(), 8u) << testing::PrintToString(found.errors);
+  const Lines begins = {"s.toml:3:12: run.duration: ",
+                        "s.toml:4:14: run.integrator: ",
+                        "s.toml:7:13: shake.1.amplitude: ",
+                        "s.toml:13:10: wall.back.normal: ",
+                        "s.toml:17:11: material.steel.poisson: ",
+                        "s.toml:23:13: section.post.thickness: ",
+                        "s.toml:28:1: cabinet.free.colour: ",
+                        "s.toml:32:8: probe.2.body: "};
+  for (std::size_t k = 0; k < begins.size(); ++k)
+    EXPECT_TRUE(found.errors[k].starts_with(begins[k])) << found.errors[k];
+}
+
+TEST(CheckWholeScene, first_error_is_that_which_a_run_is_refused_for) {
+  for (const char* lines :
+       {"[contact]\nfriction = 2\n", "[[probe]]\nbody = \"no\"\n", "[[cabinet]]\n", "x = \"\n"})
+    EXPECT_EQ(checked(k_scene + lines).errors, Lines{after_beam(lines)});
+}
+
+TEST(CheckWholeScene, what_is_right_is_a_scene) {
+  const CheckedScene found = checked(k_scene);
+  EXPECT_TRUE(found.scene);
+  EXPECT_EQ(found.errors, Lines{});
+  EXPECT_EQ(found.scene->text, k_scene);
+}
+
+TEST(CheckWholeScene, copies_and_fittings_of_what_is_wrong_are_not_blamed) {
+  const std::string text = k_cabinet_scene + "copies = [[0, 0, 0], [1, 0, 0]]\nmass = \"no\"\n" +
+                           "size = [1, 2]\n[[probe]]\nbody = \"free-2\"\n[[probe]]\nbody = \"free-3\"\n";
+  const CheckedScene found = checked(text);
+  ASSERT_EQ(found.errors.size(), 3u) << testing::PrintToString(found.errors);
+  EXPECT_TRUE(found.errors[0].starts_with("s.toml:17:8: cabinet.free.mass: "));
+  EXPECT_TRUE(found.errors[1].starts_with("s.toml:18:8: cabinet.free.size: "));
+  EXPECT_TRUE(found.errors[2].starts_with("s.toml:22:8: probe.2.body: "));
+}
+
+TEST(CheckWholeScene, entries_keep_their_numbers_behind_one_that_is_left_out) {
+  const CheckedScene found = checked(k_scene + "[[probe]]\n[[probe]]\nbody = \"beam\"\nnode = 7\n");
+  ASSERT_EQ(found.errors.size(), 2u);
+  EXPECT_TRUE(found.errors[0].starts_with("s.toml:17:1: probe.1.body: missing")) << found.errors[0];
+  EXPECT_TRUE(found.errors[1].starts_with("s.toml:20:8: probe.2.node: 7 is not a node")) << found.errors[1];
+}
+
+TEST(CheckWholeScene, overrides_are_blamed_by_their_text) {
+  const CheckedScene found = checked(k_scene, {"contact.friction=9", "nonsense", "run.tolerance=7"});
+  EXPECT_FALSE(found.scene);
+  ASSERT_EQ(found.errors.size(), 3u) << testing::PrintToString(found.errors);
+  EXPECT_TRUE(found.errors[0].starts_with("--set nonsense: "));
+  for (const std::size_t k : {1u, 2u}) EXPECT_TRUE(found.errors[k].starts_with("--set ")) << found.errors[k];
+}
+
+}  // namespace
+}  // namespace topple::io
