@@ -176,7 +176,6 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   if (travel) way.emplace(s, controlled_direction(), *travel);
   const std::vector<double> growth = growing_loads(s);
   std::vector<double> x(6 * s.count);
-  HingeStep hinges;
   s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
   double last = 0;
@@ -201,7 +200,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     const double tolerance = k_convergence * s.size;
     if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
-      if (update_hinges(s, trial, hinges)) {
+      if (break_sections(s, trial)) {
         iteration = 0;
         last = 0;
         continue;

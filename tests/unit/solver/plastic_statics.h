@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <set>
 
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
@@ -22,25 +23,35 @@ class PlasticPath {
   /// Moves degree of freedom `direction` of a node by `step` under the model's loads times `factor`. False
   /// when Newton does not converge.
   bool move(int node, int direction, double step) {
-    system.load_memory(state, motion_);
-    const BodyMotion start = motion_;
-    const double reached = displacement(node, direction) + step;
-    HingeStep hinges;
-    do {
-      if (!solve(6 * node + direction, reached)) return false;
-    } while (update_hinges(system, motion_, hinges));
-    redos += hinges.redos;
-    dissipated += commit_hinges(system, start, motion_, state);
-    return true;
+    return move(Eigen::VectorXd::Unit(6 * system.count, 6 * node + direction), step);
+  }
+  /// The same along what the loads move, of a greatest share of one.
+  bool follow(double step) {
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(6 * system.count);
+    for (const Load& load : model.loads) along.segment<3>(6 * load.node) += load.force;
+    return move(along / along.cwiseAbs().maxCoeff(), step);
+  }
+  /// f at a place of an element.
+  double loading(std::size_t e, double xi) const {
+    const Element& element = model.elements[e];
+    const SectionForces forces =
+        section_forces(element, elastic_strain(state.elements[e], beam_strain(element, ends(e))));
+    return yield_function(element, forces_along(forces, element.length, element.s, xi));
   }
 
   double displacement(int node, int direction) const {
     if (direction < 3) return (motion_.position[node] - model.node_position[node])[direction];
     return log_quaternion(motion_.rotation[node])[direction - 3];
   }
+  /// Nodes beside which a section flows; of elements that flow in their middle these.
   int hinge_count() const {
-    return static_cast<int>(std::count_if(state.elements.begin(), state.elements.end(),
-                                          [](const ElementState& e) { return e.hinge != Hinge::none; }));
+    std::set<std::pair<int, int>> places;
+    for (std::size_t e = 0; e < state.elements.size(); ++e)
+      for (int end = 0; end < 2; ++end)
+        if (has_hinge(state.elements[e].hinge, end))
+          places.insert(state.elements[e].hinge == Hinge::middle ? std::pair(static_cast<int>(e), -1)
+                                                                 : std::pair(model.elements[e].node[end], 0));
+    return static_cast<int>(places.size());
   }
   Hinge hinge(int element) const { return state.elements[element].hinge; }
   double stored() const {
@@ -55,7 +66,6 @@ class PlasticPath {
   BodySystem system;
   State state;
   double factor = 0, dissipated = 0;
-  int redos = 0;
 
  private:
   BeamEnds ends(std::size_t e) const {
@@ -63,10 +73,28 @@ class PlasticPath {
     return beam_ends(motion_.position[i], motion_.rotation[i], motion_.position[j], motion_.rotation[j]);
   }
 
+  bool move(const Eigen::VectorXd& along, double step) {
+    system.load_memory(state, motion_);
+    const BodyMotion start = motion_;
+    const double reached = displacement(along) + step;
+    do {
+      if (!solve(along, reached)) return false;
+    } while (break_sections(system, motion_));
+    dissipated += commit_hinges(system, start, motion_, state);
+    return true;
+  }
+
+  double displacement(const Eigen::VectorXd& along) const {
+    double sum = 0;
+    for (int k = 0; k < along.size(); ++k)
+      if (along[k] != 0) sum += along[k] * displacement(k / 6, k % 6);
+    return sum;
+  }
+
   // Newton on (unknowns, factor) with the prescribed displacement as the last equation: regular at collapse.
-  bool solve(int control, double reached) {
+  bool solve(const Eigen::VectorXd& along, double reached) {
     const int n = 6 * system.count;
-    const double at_start = displacement(control / 6, control % 6);
+    const double at_start = displacement(along);
     double last = 1e300;
     for (int iteration = 0; iteration < 40; ++iteration) {
       Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -87,8 +115,8 @@ class PlasticPath {
             k(6 * i + d, 6 * i + d) = 1;
             r[6 * i + d] = 0;
           }
-      k(n, control) = 1;
-      r[n] = reached - displacement(control / 6, control % 6);
+      k.row(n).head(n) = along.transpose();
+      r[n] = reached - displacement(along);
       // rows and columns to one size
       Eigen::VectorXd rows = k.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
       k = rows.asDiagonal() * k;
