@@ -110,23 +110,23 @@ TEST(CollapseLoad, pinned_portal_of_one_section_comes_to_that_of_plastic_theory)
   }
 }
 
-double uniform(std::mt19937& rng, double least, double most) {
+double between(std::mt19937& rng, double least, double most) {
   return std::uniform_real_distribution<double>(least, most)(rng);
 }
 
 /// One or two storeys; beams have a node in the middle, where they are loaded.
 StrengthFrame random_frame(std::mt19937& rng, int storeys) {
   StrengthFrame of;
-  const double span = uniform(rng, 3, 6);
+  const double span = between(rng, 3, 6);
   const double strengths[] = {1, 1, 2};  // often the same on both sides of a joint
   const auto strength = [&] { return strengths[std::uniform_int_distribution<int>(0, 2)(rng)]; };
   double height = 0;
   of.frame.nodes = {{0, 0, 0}, {span, 0, 0}};
-  const unsigned foot = uniform(rng, 0, 1) < 0.5 ? k_pinned : k_clamped;
+  const unsigned foot = between(rng, 0, 1) < 0.5 ? k_pinned : k_clamped;
   of.frame.supports = {{0, foot}, {1, foot}};
   int left = 0, right = 1;
   for (int storey = 0; storey < storeys; ++storey) {
-    height += uniform(rng, 2.5, 4);
+    height += between(rng, 2.5, 4);
     const int first = static_cast<int>(of.frame.nodes.size());
     for (const double x : {0., span / 2, span}) of.frame.nodes.emplace_back(x, 0, height);
     const double column = strength(), beam = strength();
@@ -136,8 +136,8 @@ StrengthFrame random_frame(std::mt19937& rng, int storeys) {
       of.frame.members.emplace_back(i, j);
       of.strength.push_back(mp);
     }
-    of.frame.loads.push_back({first, {k_mp * uniform(rng, 0.1, 1), 0, 0}, Vec3::Zero(), {}});
-    of.frame.loads.push_back({first + 1, {0, 0, -k_mp * uniform(rng, 0.1, 2)}, Vec3::Zero(), {}});
+    of.frame.loads.push_back({first, {k_mp * between(rng, 0.1, 1), 0, 0}, Vec3::Zero(), {}});
+    of.frame.loads.push_back({first + 1, {0, 0, -k_mp * between(rng, 0.1, 2)}, Vec3::Zero(), {}});
     left = first, right = first + 2;
   }
   return of;
