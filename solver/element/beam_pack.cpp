@@ -9,10 +9,6 @@
 namespace topple {
 namespace {
 
-// Of the tangent along a flow; Newton's corrections are off by as much, and no rotation that flow leaves
-// undetermined takes up the rounding of forces.
-constexpr double k_kept = 1e-4;
-
 [[gnu::always_inline]] inline PackEnds<Four> ends_of(std::span<const Vec3> position,
                                                      std::span<const Quat> rotation,
                                                      const std::array<int, 4>& i,

@@ -41,8 +41,9 @@ SectionResponse respond(const Element& element, const ElementState& state, const
 struct SectionTangent {
   Mat3 normal_gamma, normal_kappa, moment_kappa;
 };
-/// `kept`: part of the stiffness along the flow that stays. Two sides of a joint that flow leave its rotation
-/// undetermined; forces that balance there do not move it, whatever is kept.
+/// `kept`: part of the stiffness along the flow that stays. Newton's corrections are off by as much; two sides
+/// of a joint that flow leave its rotation undetermined, which must not take up the rounding of forces.
+inline constexpr double k_kept = 1e-2;
 SectionTangent section_tangent(const Element& element, const SectionResponse& response, double kept);
 
 /// Adds the flow of `response` to the offset.
