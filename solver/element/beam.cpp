@@ -63,7 +63,7 @@ double beam_energy(const Element& element, const BeamStrain& elastic) {
 }
 
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
-                  BeamGradient& gradient, Mat12& tangent, double kept) {
+                  BeamGradient& gradient, Mat12& tangent) {
   if (state.hinge == Hinge::broken) {
     gradient = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     tangent.setZero();
@@ -77,7 +77,7 @@ void beam_tangent(const Element& element, const ElementState& state, const BeamE
   gradient = {unpacked(-g.force2), unpacked(g.moment1), unpacked(g.force2), unpacked(g.moment2)};
   const PackAngleSlope<double> slope = angle_slopes(strain.angle.x, beam.t);
   if (response.flows()) {
-    const SectionTangent flowing = section_tangent(element, response, kept);
+    const SectionTangent flowing = section_tangent(element, response);
     tangent =
         whole(pack_tangent(beam, strain, section, g, slope,
                            PackFlowing<double>{packed(flowing.normal_gamma), packed(flowing.normal_kappa),

@@ -35,9 +35,8 @@ struct BeamGradient {
 /// Rows and columns: x1, spin1, x2, spin2.
 using Mat12 = Eigen::Matrix<double, 12, 12, Eigen::RowMajor>;
 /// The gradient and its derivative, which is not symmetric away from equilibrium; both zero when broken.
-/// `kept`: of section_tangent (plasticity.h).
 void beam_tangent(const Element& element, const ElementState& state, const BeamEnds& ends,
-                  BeamGradient& gradient, Mat12& tangent, double kept = 0);
+                  BeamGradient& gradient, Mat12& tangent);
 /// The elastic tangent in the reference pose, where it is symmetric.
 Mat12 beam_stiffness(const Model& model, const Element& element);
 

@@ -209,7 +209,7 @@ PackFlowing<Four> BeamPacks::flowing_stiffness(std::size_t n, const Responses& r
                         diagonal(elastic.moment_kappa)};
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
     if (!responses[k].flows()) continue;
-    const SectionTangent one = section_tangent(model_->elements[pack.element[k]], responses[k], k_kept);
+    const SectionTangent one = section_tangent(model_->elements[pack.element[k]], responses[k]);
     set_lane(all.normal_gamma, k, one.normal_gamma);
     set_lane(all.normal_kappa, k, one.normal_kappa);
     set_lane(all.moment_kappa, k, one.moment_kappa);

@@ -21,7 +21,7 @@ struct SectionForces {
 
 /// Where an element has plastic hinges, at which its section flows (plasticity.h): at its ends, or in the
 /// middle with the midpoint scheme. broken: it carries nothing. Recordings hold these numbers.
-enum class Hinge : std::int64_t { none = 0, first = 1, second = 2, broken = 3, middle = 4, both = 7 };
+enum class Hinge : std::int32_t { none = 0, first = 1, second = 2, broken = 3, middle = 4, both = 7 };
 
 /// Whether there is one at Element::hinge_place[place].
 inline bool has_hinge(Hinge hinge, int place) {
@@ -32,6 +32,9 @@ inline bool has_hinge(Hinge hinge, int place) {
 /// Part of State, one per element.
 struct ElementState {
   Hinge hinge = Hinge::none;
+  /// Bit k: Element::hinge_place[k] is held, it stays elastic; bit 2 + k: it was, and is let flow. Of statics
+  /// while an equilibrium is sought (hold_joints); 0 in a State.
+  std::int32_t held = 0;
   /// Strain at the elastic stress point at which the section forces vanish: what flowed so far.
   BeamStrain offset{Vec3::Zero(), Vec3::Zero()};
 };

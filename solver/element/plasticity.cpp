@@ -34,12 +34,14 @@ constexpr int k_straight[] = {0, 3};  // what has no arm: N, Mx
 // The yield surfaces of an element at its hinge places, of six section forces.
 class Surfaces {
  public:
-  explicit Surfaces(const Element& element)
+  explicit Surfaces(const Element& element, unsigned held = 0)
       : stiffness(stacked({element.normal_stiffness, element.bending_stiffness})),
         softening_(2 * element.capacity.cwiseAbs2().cwiseInverse()) {
     const double* const xi = element.hinge_place;
-    count = xi[0] == xi[1] ? 1 : 2;
-    for (int k = 0; k < 2; ++k) arm[k] = element.length / 2 * (xi[k] + element.s);
+    for (int k = 0; k < 2; ++k) {
+      arm[k] = element.length / 2 * (xi[k] + element.s);
+      there[k] = !(held >> k & 1) && (k == 0 || xi[1] != xi[0]);
+    }
   }
 
   double loading(const Vec6& g, int k) const { return std::sqrt(g.dot(normal(g, k)) / 2); }
@@ -75,7 +77,7 @@ class Surfaces {
     return x;
   }
 
-  int count;
+  bool there[2];
   Vec6 stiffness;
   std::array<double, 2> arm;
 
@@ -104,7 +106,8 @@ Projection project(const Surfaces& surfaces, const Vec6& trial) {
     Mat62 normals = Mat62::Zero();
     Vec2 wanted = Vec2::Zero();
     bool free[2] = {}, done = true;
-    for (int k = 0; k < surfaces.count; ++k) {
+    for (int k = 0; k < 2; ++k) {
+      if (!surfaces.there[k]) continue;
       const double size = surfaces.loading(at.forces, k);
       free[k] = at.lambda[k] > 0 || size > 1;
       if (!free[k]) continue;
@@ -131,7 +134,7 @@ Projection project(const Surfaces& surfaces, const Vec6& trial) {
 Vec6 flow_of(const Surfaces& surfaces, const SectionResponse& response) {
   const Vec6 g = stacked(response.forces);
   Vec6 flow = Vec6::Zero();
-  for (int k = 0; k < surfaces.count; ++k)
+  for (int k = 0; k < 2; ++k)
     if (response.multiplier[k] > 0) flow += response.multiplier[k] * surfaces.normal(g, k);
   return flow;
 }
@@ -154,10 +157,11 @@ SectionResponse respond(const Element& element, const ElementState& state, const
     return out;
   }
   if (!std::isfinite(element.capacity[0])) return out;
-  const Surfaces surfaces(element);
+  const Surfaces surfaces(element, state.held);
   const Vec6 trial = stacked(out.forces);
   double most = 0;
-  for (int k = 0; k < surfaces.count; ++k) most = std::max(most, surfaces.loading(trial, k));
+  for (int k = 0; k < 2; ++k)
+    if (surfaces.there[k]) most = std::max(most, surfaces.loading(trial, k));
   if (!(most * most > 1 + k_on_surface)) return out;
   const Projection on = project(surfaces, trial);
   out.forces = {on.forces.head<3>(), on.forces.tail<3>()};
@@ -165,19 +169,19 @@ SectionResponse respond(const Element& element, const ElementState& state, const
   return out;
 }
 
-SectionTangent section_tangent(const Element& element, const SectionResponse& response, double kept) {
+SectionTangent section_tangent(const Element& element, const SectionResponse& response) {
   const Surfaces surfaces(element);
   const Vec6 g = stacked(response.forces);
   Mat6 x = surfaces.softened({response.multiplier[0], response.multiplier[1]});
   Mat62 along = Mat62::Zero();
   Mat2 curvature = Mat2::Identity();
-  for (int k = 0; k < surfaces.count; ++k)
+  for (int k = 0; k < 2; ++k)
     if (response.multiplier[k] > 0) along.col(k) = surfaces.normal(g, k);
   const Mat62 pushed = x * along;
   const Mat2 square = along.transpose() * pushed;
   for (int k = 0; k < 2; ++k) {
     if (!(response.multiplier[k] > 0)) continue;
-    curvature(k, k) = (1 + kept + k_distinct) * square(k, k);
+    curvature(k, k) = (1 + k_distinct) * square(k, k);
     if (response.multiplier[1 - k] > 0) curvature(k, 1 - k) = square(k, 1 - k);
   }
   x -= pushed * curvature.inverse() * pushed.transpose();

@@ -15,7 +15,7 @@ double yield_function(const Element& element, const SectionForces& forces);
 
 /// Below this f a section is elastic: a state that a step before left on the surface starts the next one so,
 /// or Newton's first correction would be that of a mechanism.
-inline constexpr double k_on_surface = 1e-12;
+inline constexpr double k_on_surface = 1e-10;
 
 /// Shifted integration: elastic strain is integrated at the scheme's s; an element flows at its hinge places
 /// xi_k, its ends (midpoint: the middle). With T_k, equilibrium along it,
@@ -41,10 +41,7 @@ SectionResponse respond(const Element& element, const ElementState& state, const
 struct SectionTangent {
   Mat3 normal_gamma, normal_kappa, moment_kappa;
 };
-/// `kept`: part of the stiffness along the flow that stays. Newton's corrections are off by as much; two sides
-/// of a joint that flow leave its rotation undetermined, which must not take up the rounding of forces.
-inline constexpr double k_kept = 1e-2;
-SectionTangent section_tangent(const Element& element, const SectionResponse& response, double kept);
+SectionTangent section_tangent(const Element& element, const SectionResponse& response);
 
 /// Adds the flow of `response` to the offset.
 void take_flow(const Element& element, const SectionResponse& response, ElementState& state);

@@ -64,6 +64,64 @@ bool break_sections(BodySystem& s, const BodyMotion& trial) {
   return any;
 }
 
+void hold_joints(BodySystem& s, const BodyMotion& trial) {
+  if (!s.yields) return;
+  struct Joint {
+    bool all_flow = true, held = false;
+    int ends = 0, element = -1, place = 0;
+    std::pair<bool, double> least;
+  };
+  std::vector<Joint> joints(s.count);
+  for (std::size_t k = 0; k < s.elements.size(); ++k) {
+    const auto [e, i, j] = s.own_elements[k];
+    const Element& element = s.model.elements[e];
+    const ElementState& state = s.elements[k];
+    if (state.hinge == Hinge::broken) continue;
+    const SectionResponse response = respond(element, state, strain_at(s, k, trial));
+    for (int place = 0; place < 2; ++place) {
+      Joint& joint = joints[place == 0 ? i : j];
+      const bool at_end = element.hinge_place[0] != element.hinge_place[1];
+      ++joint.ends;
+      joint.held = joint.held || state.held >> place & 1;
+      joint.all_flow = joint.all_flow && at_end && response.multiplier[place] > 0;
+      const std::pair<bool, double> flow{has_hinge(state.hinge, place), response.multiplier[place]};
+      if (!joint.all_flow || state.held >> (2 + place) & 1 || (joint.element >= 0 && !(flow < joint.least)))
+        continue;
+      joint.element = static_cast<int>(k);
+      joint.place = place;
+      joint.least = flow;
+    }
+  }
+  constexpr unsigned k_turns = 0b111000;
+  for (int i = 0; i < s.count; ++i) {
+    const Joint& joint = joints[i];
+    if (joint.ends > 1 && joint.all_flow && !joint.held && joint.element >= 0 &&
+        (s.fixed[i] & k_turns) != k_turns)
+      s.elements[joint.element].held |= 1 << joint.place;
+  }
+}
+
+bool release_joints(BodySystem& s, const BodyMotion& trial) {
+  if (!s.yields) return false;
+  bool any = false;
+  for (std::size_t k = 0; k < s.elements.size(); ++k) {
+    ElementState& state = s.elements[k];
+    if (!(state.held & 3)) continue;
+    const Element& element = s.model.elements[s.own_elements[k].element];
+    const SectionForces forces = respond(element, state, strain_at(s, k, trial)).forces;
+    for (int place = 0; place < 2; ++place) {
+      if (!(state.held >> place & 1) ||
+          yield_function(element,
+                         forces_along(forces, element.length, element.s, element.hinge_place[place])) <=
+              k_on_surface)
+        continue;
+      state.held ^= 5 << place;
+      any = true;
+    }
+  }
+  return any;
+}
+
 double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& end, State& state) {
   if (!s.yields) return 0;
   double taken = 0;
@@ -74,6 +132,7 @@ double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& e
     if (before.hinge == Hinge::broken || !std::isfinite(element.capacity[0])) continue;
     const BeamStrain strain1 = strain_at(s, k, end);
     const SectionResponse response = respond(element, now, strain1);
+    now.held = 0;
     if (!response.flows() && now.hinge == Hinge::none) continue;
     const BeamStrain strain0 = strain_at(s, k, start);
     const BeamStrain elastic0 = elastic_strain(before, strain0);

@@ -88,7 +88,7 @@ void Run::advance_load() {
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (now_.state.load_factor != factor || status_.ok()) {
-    now_.load_steps.push_back({now_.state.load_factor, true});
+    now_.load_steps.push_back({now_.state.load_factor, true, path_->stability()});
     resume(setup_->model, now_.state, workspace_);
     observe();
   }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
+#include "solver/frame/start_vector.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -19,8 +21,7 @@ constexpr double k_furthest = 1;         // of the body's size, travel within a 
 constexpr double k_most_turn = 1.5;      // rad, within a load step: more is another equilibrium
 constexpr double k_least_part = 1. / 1024;  // of a load step
 
-// Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
-// does the tangent tell whether an equilibrium is stable.
+// Of a tangent that has no potential nothing is told.
 bool is_conservative(const BodySystem& s) {
   return std::all_of(s.loads.begin(), s.loads.end(),
                      [](const auto& own) { return own.load->moment.isZero(0); });
@@ -57,40 +58,97 @@ double control_spring(const BodySystem& s) {
   return element.normal_stiffness[0] / element.length;
 }
 
-// The way of a controlled direction, 6 times its node and which of six. A spring keeps a mechanism from being
-// singular. What it would hold is put on as a load: so it does nothing to the solution, which moves the
-// direction by what is left of the way.
+// `along` times the increments of the unknowns, six numbers per node, is to come to `travel`. A spring on the
+// greatest entry of `along` keeps a mechanism from being singular. What it would hold is put on as a load: so
+// it does nothing to the solution.
 class ControlledWay {
  public:
-  ControlledWay(const BodySystem& s, int direction, double travel)
-      : direction_(direction), travel_(travel), spring_(control_spring(s)) {}
+  ControlledWay(const BodySystem& s, std::vector<double> along, double travel)
+      : along_(std::move(along)), left_(travel), spring_(control_spring(s)) {
+    for (std::size_t i = 0; i < along_.size(); ++i)
+      if (std::abs(along_[i]) > std::abs(along_[held_])) held_ = i;
+  }
 
   void add_spring(BodySystem& s) const {
+    const int node = static_cast<int>(held_ / 6), k = static_cast<int>(held_ % 6);
     Mat6 block = Mat6::Zero();
-    block(direction_ % 6, direction_ % 6) = spring_;
-    s.lu.add(direction_ / 6, direction_ / 6, block);
+    block(k, k) = spring_;
+    s.lu.add(node, node, block);
   }
   // `x`, the correction under constant loads, becomes that which goes what is left; `growth`: growing_loads.
   // Returns the change of the load factor.
   double go(BodySystem& s, const std::vector<double>& growth, std::vector<double>& x) {
     by_factor_ = growth;
     by_spring_.assign(x.size(), 0.);
-    by_spring_[direction_] = spring_ * left();
+    by_spring_[held_] = spring_;
     s.lu.solve(by_factor_.data());
     s.lu.solve(by_spring_.data());
-    const double change = (left() - x[direction_] - by_spring_[direction_]) / by_factor_[direction_];
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + by_spring_[i];
-    moved_ += x[direction_];
+    // of change and the spring's shift:  shift = x + change by_factor + shift by_spring  where it is held,
+    //                                    left = along . (x + change by_factor + shift by_spring)
+    const double way_factor = way(by_factor_), way_spring = way(by_spring_), rest = left_ - way(x);
+    const double here = x[held_], by_factor = by_factor_[held_], soft = 1 - by_spring_[held_];
+    const double determinant = soft * way_factor + by_factor * way_spring;
+    const double change = (soft * rest - way_spring * here) / determinant,
+                 shift = (way_factor * here + by_factor * rest) / determinant;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + shift * by_spring_[i];
+    left_ -= way(x);
     return change;
   }
 
  private:
-  double left() const { return travel_ - moved_; }
+  double way(const std::vector<double>& x) const {
+    return std::inner_product(x.begin(), x.end(), along_.begin(), 0.);
+  }
 
-  int direction_;
-  double travel_, moved_ = 0, spring_;
+  std::vector<double> along_;
+  std::size_t held_ = 0;
+  double left_, spring_;
   std::vector<double> by_factor_, by_spring_;
 };
+
+// Completes `out` by the mode of the tangent last factored, K, that is its softest or, with negative pivots,
+// the softest of those in which it runs away: inverse iteration, beside those found before. K is symmetric.
+void look_at_mode(BodySystem& s, const std::vector<double>& growth, Stability& out) {
+  constexpr int k_rounds = 50, k_most_modes = 8;
+  constexpr double k_beside = 1e-3;  // of the loads' work: less is none
+  using Unknowns = Eigen::VectorXd;
+  std::vector<Unknowns> found;
+  const auto n = static_cast<Eigen::Index>(growth.size());
+  for (int m = 0; m < k_most_modes; ++m) {
+    Unknowns mode(n);
+    double softness = 0;
+    for (Eigen::Index i = 0; i < n; ++i) mode[i] = start_entry(static_cast<int>(i));
+    for (int round = 0; round < k_rounds; ++round) {
+      for (int i = 0; i < s.count; ++i) {
+        Eigen::Map<Vec3> shift(&mode[6 * i]), spin(&mode[6 * i + 3]);
+        s.clear_fixed(i, shift, spin);
+      }
+      for (const Unknowns& other : found) mode -= other.dot(mode) * other;
+      mode.normalize();
+      const Unknowns before = mode;
+      s.lu.solve(mode.data());
+      softness = before.dot(mode);
+    }
+    found.push_back(mode.normalized());
+    if (softness < 0 || out.negative_pivots <= 0) break;
+  }
+  const Unknowns& mode = found.back();
+  double greatest = 0;
+  for (int i = 0; i < s.count; ++i)
+    if (const Vec3 shift = mode.segment<3>(6 * i); shift.norm() > greatest) {
+      greatest = shift.norm();
+      out.node = s.first + i;
+      out.direction = shift / greatest;
+    }
+  const Eigen::Map<const Unknowns> loads(growth.data(), n);
+  double share = 0;
+  for (int i = 0; i < s.count; ++i) share += mode.segment<3>(6 * i).dot(loads.segment<3>(6 * i));
+  const bool hinged = std::ranges::any_of(
+      s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
+  out.loss = hinged                                             ? Stability::Loss::mechanism
+             : std::abs(share) > k_beside * loads.norm() * greatest ? Stability::Loss::limit_point
+                                                                    : Stability::Loss::buckling;
+}
 
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
 struct Correction {
@@ -136,9 +194,20 @@ int LoadPath::controlled_body() const {
   return settings_.control ? model_->node_body[settings_.control->node] : -1;
 }
 
-// Of six per node of that body.
-int LoadPath::controlled_direction() const {
-  return 6 * (settings_.control->node - systems_[controlled_body()]->first) + settings_.control->direction;
+// What a load step goes along, six numbers per node of the controlled body.
+std::vector<double> LoadPath::controlled_way(const BodySystem& s, const State& state) const {
+  std::vector<double> along(6 * s.count, 0.);
+  const PathControl& control = *settings_.control;
+  if (!control.arc_length) {
+    along[6 * (control.node - s.first) + control.direction] = 1;
+    return along;
+  }
+  double square = 0;
+  for (int i = 0; i < s.count; ++i) square += state.algorithmic_acceleration[s.first + i].squaredNorm();
+  for (int i = 0; i < s.count; ++i)
+    for (int k = 0; k < 3; ++k)
+      along[6 * i + k] = state.algorithmic_acceleration[s.first + i][k] / std::sqrt(square * s.count);
+  return along;
 }
 
 // Forces and tangent of the trial motion; fixed directions are out.
@@ -173,7 +242,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   status.kind = StepStatus::Kind::no_equilibrium;
   status.body = s.index;
   std::optional<ControlledWay> way;
-  if (travel) way.emplace(s, controlled_direction(), *travel);
+  if (travel) way.emplace(s, controlled_way(s, state), *travel);
   const std::vector<double> growth = growing_loads(s);
   std::vector<double> x(6 * s.count);
   s.load_memory(state, start);
@@ -187,6 +256,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   };
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
+    if (iteration > 1) hold_joints(s, trial);
     evaluate(s, still, state, factor);
     if (way) way->add_spring(s);
     if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
@@ -200,15 +270,14 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     const double tolerance = k_convergence * s.size;
     if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
-      if (break_sections(s, trial)) {
+      if (release_joints(s, trial) || break_sections(s, trial)) {
         iteration = 0;
         last = 0;
         continue;
       }
       evaluate(s, still, state, factor);
-      // directions in which it would run away: Newton stepped over a limit or a branching
-      if (!travel && is_conservative(s) && (s.lu.factor(true) >= 0 || s.lu.negative() > 0))
-        return blame(node);
+      status.stability = look_at_stability(s, growth);
+      if (settings_.stop_at_instability && !status.stability.stable()) return blame(node);
       status.kind = StepStatus::Kind::ok;
       return status;
     }
@@ -218,22 +287,54 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   return blame(status.node);
 }
 
+// Of the tangent last evaluated.
+Stability LoadPath::look_at_stability(BodySystem& s, const std::vector<double>& growth) {
+  Stability out;
+  if (!is_conservative(s)) return out;
+  const int singular = s.lu.factor(true);
+  out.negative_pivots = s.lu.negative();
+  if (singular >= 0) {
+    ++out.negative_pivots;
+    out.loss = Stability::Loss::mechanism;
+    out.node = s.first + singular;
+  } else if (out.negative_pivots > 0) {
+    look_at_mode(s, growth, out);
+  }
+  return out;
+}
+
+// By the softest mode of a body's last equilibrium, when there is none beyond it.
+Stability LoadPath::what_is_lost(const Parameters& parameters, const State& state, int body) {
+  BodySystem& s = *systems_[body];
+  s.load(state, start_[body]);
+  s.load_memory(state, start_[body]);
+  trial_[body] = start_[body];
+  evaluate(s, at_rest(parameters), state, state.load_factor);
+  const std::vector<double> growth = growing_loads(s);
+  Stability out = look_at_stability(s, growth);
+  if (out.negative_pivots == 0) look_at_mode(s, growth, out);
+  return out;
+}
+
 StepStatus LoadPath::balance(const Parameters& parameters, State& state, Target target) {
   StepStatus status = look_at_numbers(*model_, parameters, state, true);
   if (!status.ok()) return status;
   const Parameters still = at_rest(parameters);
   double factor = target.factor;
   int iterations = 0;
+  Stability worst;
   const int first = controlled_body();
   const auto solve = [&](BodySystem& system) {
     status = balance_body(system, still, state, system.index == first ? target.travel : std::nullopt, factor);
     status.newton_iterations = iterations += status.newton_iterations;
+    if (status.stability.negative_pivots > worst.negative_pivots) worst = status.stability;
     return status.ok();
   };
   if (first >= 0 && !solve(*systems_[first])) return status;
   for (auto& system : systems_)
     if (system->index != first && !solve(*system)) return status;
   accept(still, factor, state);
+  stability_ = worst;
   return status;
 }
 
@@ -255,6 +356,8 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
     energy.plastic += commit_hinges(*system, start, trial, state);
     for (int i = 0; i < s.count; ++i) {
       const int g = s.first + i;
+      if (settings_.control && settings_.control->arc_length)
+        state.algorithmic_acceleration[g] = trial.position[i] - start.position[i];
       energy.gravity -= s.model.node_mass[g] * still.gravity.dot(trial.position[i] - start.position[i]);
       state.position[g] = trial.position[i];
       state.rotation[g] = trial.rotation[i];
@@ -270,8 +373,9 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
   state.load_factor = factor;
 }
 
-// How far a load step's share of the loads moves the controlled direction from here.
-std::optional<double> LoadPath::first_travel(const Parameters& parameters, const State& state) {
+// How far a load step's share of the loads moves what is controlled from here. With arc length it is the way
+// of the first load step.
+std::optional<double> LoadPath::first_travel(const Parameters& parameters, State& state) {
   BodySystem& s = *systems_[controlled_body()];
   s.load(state, start_[s.index]);
   trial_[s.index] = start_[s.index];
@@ -279,7 +383,11 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
   if (s.lu.factor() >= 0) return std::nullopt;
   std::vector<double> by_factor = growing_loads(s);
   s.lu.solve(by_factor.data());
-  const double travel = by_factor[controlled_direction()] / settings_.load_steps;
+  if (settings_.control->arc_length)
+    for (int i = 0; i < s.count; ++i) state.algorithmic_acceleration[s.first + i] = Vec3(&by_factor[6 * i]);
+  const std::vector<double> along = controlled_way(s, state);
+  const double travel =
+      std::inner_product(along.begin(), along.end(), by_factor.begin(), 0.) / settings_.load_steps;
   if (!(std::abs(travel) > k_convergence * s.size)) return std::nullopt;
   return travel;
 }
@@ -294,14 +402,16 @@ StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& st
   if (!status.ok()) return status;
   status = balance(parameters, state, {0});
   if (!status.ok() || !settings_.control) return status;
-  const std::optional<double> travel =
-      settings_.control->to ? *settings_.control->to / settings_.load_steps : first_travel(parameters, state);
+  const PathControl& control = *settings_.control;
+  std::optional<double> travel;
+  if (control.arc_length || !control.to) travel = first_travel(parameters, state);
+  if (control.to && (travel || !control.arc_length)) travel = *control.to / settings_.load_steps;
   if (travel) {
     state.step_size = *travel;
   } else {
     status.kind = StepStatus::Kind::uncontrolled;
     status.body = controlled_body();
-    status.node = settings_.control->node;
+    status.node = control.node;
   }
   return status;
 }
@@ -329,6 +439,8 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
     }
   }
   if (done > 0) ++state.step;
+  if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
+    status.stability = what_is_lost(parameters, state, status.body);
   status.time = state.time;
   status.newton_iterations = iterations;
   status.rejected = rejected;

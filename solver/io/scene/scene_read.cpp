@@ -253,7 +253,7 @@ void read_control(const Entry& root, Setup& setup) {
   const Model& model = setup.model;
   const int body = entry.has("body") ? find_body(entry, model) : cabinet_total(root);
   if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
-  DisplacementControl control;
+  PathControl control;
   control.node = find_node(root, entry, model, body, "; control takes a frame");
   control.direction = static_cast<int>(k_directions.find(entry.word("dof")));
   for (const Support& support : model.supports) {

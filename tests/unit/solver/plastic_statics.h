@@ -143,7 +143,7 @@ class PlasticPath {
     const Element& element = model.elements[e];
     BeamGradient g;
     Mat12 tangent;
-    beam_tangent(element, system.elements[e], ends(e), g, tangent, k_kept);
+    beam_tangent(element, system.elements[e], ends(e), g, tangent);
     const int at[2] = {6 * element.node[0], 6 * element.node[1]};
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b) k.block<6, 6>(at[a], at[b]) += tangent.block<6, 6>(6 * a, 6 * b);

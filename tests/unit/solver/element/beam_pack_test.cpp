@@ -73,7 +73,7 @@ Scalar element_by_element(const MemberPose& pose) {
     const BeamEnds ends = beam_ends(m.position[i], m.rotation[i], m.position[j], m.rotation[j]);
     BeamGradient g;
     Mat12 k;
-    beam_tangent(element, pose.memory[e], ends, g, k, k_kept);
+    beam_tangent(element, pose.memory[e], ends, g, k);
     const int at[2] = {6 * i, 6 * j};
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b) out.tangent.block<6, 6>(at[a], at[b]) += k.block<6, 6>(6 * a, 6 * b);

@@ -164,7 +164,7 @@ TEST(Plasticity, beam_tangent_is_the_derivative_of_the_gradient_while_hinges_flo
   for (int sample = 0; sample < 200; ++sample) {
     Element e = element_that_yields(rng, k_point_places[sample % 3]);
     if (sample % 4 == 0) e.hinge_place[0] = e.hinge_place[1] = 0;
-    const ElementState state{Hinge::none, random_strain(rng, 0.1)};
+    const ElementState state{Hinge::none, 0, random_strain(rng, 0.1)};
     const Pose pose = random_pose(rng, e.length);
     const SectionResponse response = respond(e, state, beam_strain(e, ends_of(pose)));
     ++flowing[(response.multiplier[0] > 0) + (response.multiplier[1] > 0)];
@@ -189,7 +189,7 @@ TEST(Plasticity, forces_are_the_gradient_of_the_energy_with_offsets) {
   for (int sample = 0; sample < 50; ++sample) {
     Element e = element_that_yields(rng, k_point_places[sample % 3]);
     e.capacity.setConstant(std::numeric_limits<double>::infinity());
-    const ElementState state{Hinge::none, random_strain(rng, 0.3)};
+    const ElementState state{Hinge::none, 0, random_strain(rng, 0.3)};
     const Pose pose = random_pose(rng, e.length);
     const auto energy = [&](const Pose& p) {
       return beam_energy(e, elastic_strain(state, beam_strain(e, ends_of(p))));
@@ -206,7 +206,7 @@ TEST(Plasticity, flow_takes_energy_and_leaves_the_elastic_law_with_the_new_offse
   std::mt19937 rng(9);
   for (int sample = 0; sample < 300; ++sample) {
     const Element e = random_element(rng, sample);
-    ElementState state{Hinge::none, random_strain(rng, 0.1)};
+    ElementState state{Hinge::none, 0, random_strain(rng, 0.1)};
     const BeamStrain strain = random_strain(rng, 1);
     const SectionResponse response = respond(e, state, strain);
     if (!response.flows()) continue;

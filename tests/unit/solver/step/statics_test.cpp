@@ -158,7 +158,7 @@ TEST(Statics, displacement_control_passes_the_limit_load_of_lees_frame) {
     const int members = 20 << k;
     topple::Setup setup = lees_frame(members);
     const int node = members + members / 5;
-    setup.run.statics = {.load_steps = 240, .control = DisplacementControl{node, 2, -60.}};
+    setup.run.statics = {.load_steps = 240, .control = PathControl{node, 2, -60.}};
     topple::Run run(setup);
     limit[k] = 0;
     double at = 0;
@@ -275,7 +275,7 @@ TEST(Statics, loads_with_a_history_follow_it_over_the_load_steps) {
 
 TEST(Statics, continuing_from_a_checkpoint_gives_the_same_hashes) {
   topple::Setup setup = lees_frame(10);
-  setup.run.statics = {.load_steps = 20, .control = DisplacementControl{12, 2, std::nullopt}};
+  setup.run.statics = {.load_steps = 20, .control = PathControl{12, 2, std::nullopt}};
   topple::Run run(setup);
   ASSERT_TRUE(run.status().ok());
   for (int i = 0; i < 7; ++i) ASSERT_TRUE(run.advance().ok());
