@@ -15,7 +15,8 @@ constexpr int k_most_iterations = 60;
 constexpr double k_converged = 1e-14;  // of the loading
 // of the dual's curvature: surfaces with one and the same normal leave open how they share the flow
 constexpr double k_distinct = 1e-10;
-constexpr double k_rounding = 1e-13;  // of the elastic energy
+constexpr double k_rounding = 1e-13;   // of the elastic energy
+constexpr double k_least_part = 1e-6;  // of a step of Newton's
 
 // N, Vy, Vz, Mx, My, Mz.
 Vec6 stacked(const SectionForces& g) {
@@ -95,40 +96,51 @@ double dual(const Vec6& strain, const Vec6& trial, const Projection& at) {
   return strain.dot(trial - at.forces) / 2 - at.lambda.sum();
 }
 
-// Projected Newton on the dual, with 1 - (f_k + 1)^(-1/2) in place of f_k, which is nearly linear in lambda.
-// One surface alone needs no look back: the way is monotonic there.
-Projection project(const Surfaces& surfaces, const Vec6& trial) {
+// Newton on the dual for the multipliers of the surfaces `free`, with 1 - (f_k + 1)^(-1/2) in place of f_k,
+// which is nearly linear in lambda; of one surface alone its way is monotonic. Multipliers stay positive:
+// none loses more than nine tenths at once.
+void flow_on(const Surfaces& surfaces, const std::array<bool, 2>& free, const Vec6& trial, Projection& at) {
   const Vec6 strain = trial.cwiseQuotient(surfaces.stiffness);
-  Projection at{Vec2::Zero(), trial};
-  double grown = 0;
+  double grown = dual(strain, trial, at);
   for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
-    const Mat6 x = surfaces.softened(at.lambda);
     Mat62 normals = Mat62::Zero();
     Vec2 wanted = Vec2::Zero();
-    bool free[2] = {}, done = true;
+    bool done = true;
     for (int k = 0; k < 2; ++k) {
-      if (!surfaces.there[k]) continue;
-      const double size = surfaces.loading(at.forces, k);
-      free[k] = at.lambda[k] > 0 || size > 1;
       if (!free[k]) continue;
+      const double size = surfaces.loading(at.forces, k);
       normals.col(k) = surfaces.normal(at.forces, k);
       wanted[k] = 2 * size * size * (size - 1);
       done = done && std::abs(size - 1) <= k_converged;
     }
-    if (done) break;
-    Mat2 curvature = normals.transpose() * x * normals;
+    if (done) return;
+    Mat2 curvature = normals.transpose() * surfaces.softened(at.lambda) * normals;
     for (int k = 0; k < 2; ++k) curvature(k, k) = free[k] ? (1 + k_distinct) * curvature(k, k) : 1;
     const Vec2 step = curvature.inverse() * wanted;
     Projection next;
-    for (double part = 1; part > 1e-6; part /= 2) {
-      next.lambda = (at.lambda + part * step).cwiseMax(0);
+    for (double part = 1; part > k_least_part; part /= 2) {
+      next.lambda = (at.lambda + part * step).cwiseMax(0.1 * at.lambda);
       next.forces = surfaces.softened(next.lambda) * strain;
       if (dual(strain, trial, next) >= grown - k_rounding * strain.dot(trial)) break;
     }
     at = next;
     grown = dual(strain, trial, at);
   }
-  return at;
+}
+
+// One surface alone where the other is not beyond it, else both: the problem is convex, so that only one of
+// these is so.
+Projection project(const Surfaces& surfaces, const Vec6& trial) {
+  Projection both{Vec2::Zero(), trial};
+  for (int k = 0; k < 2; ++k) {
+    if (!surfaces.there[k] || surfaces.loading(trial, k) <= 1) continue;
+    Projection one{Vec2::Zero(), trial};
+    flow_on(surfaces, {k == 0, k == 1}, trial, one);
+    if (!surfaces.there[1 - k] || surfaces.loading(one.forces, 1 - k) <= 1 + k_converged) return one;
+    both = one;
+  }
+  flow_on(surfaces, {true, true}, trial, both);
+  return both;
 }
 
 Vec6 flow_of(const Surfaces& surfaces, const SectionResponse& response) {

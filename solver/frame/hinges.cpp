@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
@@ -103,17 +104,22 @@ void hold_joints(BodySystem& s, const BodyMotion& trial) {
 
 bool release_joints(BodySystem& s, const BodyMotion& trial) {
   if (!s.yields) return false;
+  double reach = s.size;
+  for (const Vec3& x : trial.position) reach = std::max(reach, x.norm());
   bool any = false;
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
     ElementState& state = s.elements[k];
     if (!(state.held & 3)) continue;
     const Element& element = s.model.elements[s.own_elements[k].element];
     const SectionForces forces = respond(element, state, strain_at(s, k, trial)).forces;
+    // what rounding of the positions makes of f, where it is more
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * reach *
+                            element.normal_stiffness.maxCoeff() / element.capacity.tail<3>().minCoeff();
     for (int place = 0; place < 2; ++place) {
       if (!(state.held >> place & 1) ||
           yield_function(element,
                          forces_along(forces, element.length, element.s, element.hinge_place[place])) <=
-              k_on_surface)
+              std::max(k_on_surface, rounding))
         continue;
       state.held ^= 5 << place;
       any = true;
@@ -132,7 +138,6 @@ double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& e
     if (before.hinge == Hinge::broken || !std::isfinite(element.capacity[0])) continue;
     const BeamStrain strain1 = strain_at(s, k, end);
     const SectionResponse response = respond(element, now, strain1);
-    now.held = 0;
     if (!response.flows() && now.hinge == Hinge::none) continue;
     const BeamStrain strain0 = strain_at(s, k, start);
     const BeamStrain elastic0 = elastic_strain(before, strain0);

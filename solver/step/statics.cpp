@@ -20,6 +20,8 @@ constexpr double k_quadratic = 1e-8;     // of the body's size: the correction a
 constexpr double k_furthest = 1;         // of the body's size, travel within a load step
 constexpr double k_most_turn = 1.5;      // rad, within a load step: more is another equilibrium
 constexpr double k_least_part = 1. / 1024;  // of a load step
+constexpr double k_left = 0.5;              // of the work along a correction: a line search ends with less
+constexpr int k_most_searches = 30;
 
 // Of a tangent that has no potential nothing is told.
 bool is_conservative(const BodySystem& s) {
@@ -50,6 +52,10 @@ void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec
       hold(b);
     }
   }
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
 }
 
 /// Of the order of what holds a node of the body, N/m.
@@ -85,21 +91,18 @@ class ControlledWay {
     s.lu.solve(by_spring_.data());
     // of change and the spring's shift:  shift = x + change by_factor + shift by_spring  where it is held,
     //                                    left = along . (x + change by_factor + shift by_spring)
-    const double way_factor = way(by_factor_), way_spring = way(by_spring_), rest = left_ - way(x);
+    const double way_factor = dot(along_, by_factor_), way_spring = dot(along_, by_spring_),
+                 rest = left_ - dot(along_, x);
     const double here = x[held_], by_factor = by_factor_[held_], soft = 1 - by_spring_[held_];
     const double determinant = soft * way_factor + by_factor * way_spring;
     const double change = (soft * rest - way_spring * here) / determinant,
                  shift = (way_factor * here + by_factor * rest) / determinant;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + shift * by_spring_[i];
-    left_ -= way(x);
+    left_ -= dot(along_, x);
     return change;
   }
 
  private:
-  double way(const std::vector<double>& x) const {
-    return std::inner_product(x.begin(), x.end(), along_.begin(), 0.);
-  }
-
   std::vector<double> along_;
   std::size_t held_ = 0;
   double left_, spring_;
@@ -143,11 +146,17 @@ void look_at_mode(BodySystem& s, const std::vector<double>& growth, Stability& o
   const Eigen::Map<const Unknowns> loads(growth.data(), n);
   double share = 0;
   for (int i = 0; i < s.count; ++i) share += mode.segment<3>(6 * i).dot(loads.segment<3>(6 * i));
-  const bool hinged = std::ranges::any_of(
-      s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
-  out.loss = hinged                                             ? Stability::Loss::mechanism
+  const bool hinged =
+      std::ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
+  out.loss = hinged                                                 ? Stability::Loss::mechanism
              : std::abs(share) > k_beside * loads.norm() * greatest ? Stability::Loss::limit_point
                                                                     : Stability::Loss::buckling;
+}
+
+// Six numbers per node, of the last evaluation.
+void unbalance(const BodySystem& s, std::vector<double>& forces) {
+  for (int i = 0; i < s.count; ++i)
+    for (int k = 0; k < 6; ++k) forces[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
 }
 
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
@@ -233,6 +242,43 @@ std::vector<double> LoadPath::growing_loads(const BodySystem& s) const {
   return loads;
 }
 
+// Part of a correction that is taken. Where sections begin or cease to flow Newton's way may overshoot: to
+// where little is left of the `work` with which the forces begin along it (Matthies and Strang 1979).
+double LoadPath::search_line(BodySystem& s, const Parameters& still, const State& state, double factor,
+                             const std::vector<double>& x, double work) {
+  BodyMotion& trial = trial_[s.index];
+  const BodyMotion from = trial;
+  std::vector<double> way(x.size()), forces(x.size());
+  std::vector<Vec3> turn(s.count);
+  const auto work_at = [&](double part) {
+    for (std::size_t i = 0; i < x.size(); ++i) way[i] = part * x[i];
+    correct(s, from, way, trial, turn);
+    evaluate(s, still, state, factor);
+    unbalance(s, forces);
+    trial = from;
+    return dot(forces, x);
+  };
+  if (!(work > 0)) return 1;
+  double at = 1, left = work_at(at);
+  if (left >= -k_left * work) return 1;
+  // between parts with work along and against it by the Illinois rule
+  double less = 0, less_work = work, more = at, more_work = left;
+  for (int k = 0; k < k_most_searches && std::abs(left) > k_left * work; ++k) {
+    at = less + (more - less) * less_work / (less_work - more_work);
+    left = work_at(at);
+    if (left > 0) {
+      less = at;
+      less_work = left;
+      more_work /= 2;
+    } else {
+      more = at;
+      more_work = left;
+      less_work /= 2;
+    }
+  }
+  return at;
+}
+
 StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const State& state,
                                   std::optional<double> travel, double& factor) {
   BodyMotion &start = start_[s.index], &trial = trial_[s.index];
@@ -260,16 +306,23 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     evaluate(s, still, state, factor);
     if (way) way->add_spring(s);
     if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
-    for (int i = 0; i < s.count; ++i)
-      for (int k = 0; k < 6; ++k) x[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
+    unbalance(s, x);
+    std::vector<double> forces = x;
     s.lu.solve(x.data());
-    if (way) factor += way->go(s, growth, x);
+    const double change = way ? way->go(s, growth, x) : 0;
+    for (std::size_t i = 0; i < x.size(); ++i) forces[i] += change * growth[i];
+    const double part =
+        iteration > 1 && s.yields ? search_line(s, still, state, factor + change, x, dot(forces, x)) : 1;
+    factor += part * change;
+    for (double& value : x) value *= part;
     const auto [greatest, node, too_far] = correct(s, start, x, trial, turn);
     if (too_far || !std::isfinite(greatest + factor)) return blame(node);
     const double rate = iteration > 1 ? greatest / last : 1;
     const double tolerance = k_convergence * s.size;
-    if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
-        (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
+    if (part < 1) {
+      last = 0;
+    } else if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
+               (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
       if (release_joints(s, trial) || break_sections(s, trial)) {
         iteration = 0;
         last = 0;
@@ -281,7 +334,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
       status.kind = StepStatus::Kind::ok;
       return status;
     }
-    last = greatest;
+    if (part == 1) last = greatest;
     status.node = node;
   }
   return blame(status.node);
@@ -386,8 +439,7 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, State
   if (settings_.control->arc_length)
     for (int i = 0; i < s.count; ++i) state.algorithmic_acceleration[s.first + i] = Vec3(&by_factor[6 * i]);
   const std::vector<double> along = controlled_way(s, state);
-  const double travel =
-      std::inner_product(along.begin(), along.end(), by_factor.begin(), 0.) / settings_.load_steps;
+  const double travel = dot(along, by_factor) / settings_.load_steps;
   if (!(std::abs(travel) > k_convergence * s.size)) return std::nullopt;
   return travel;
 }

@@ -47,10 +47,10 @@ class LoadPath {
   /// Balances the weight, without the loads that grow: load factor 0. `settled`: after settle().
   /// uncontrolled: the loads do not move the controlled direction.
   StepStatus start(const Parameters& parameters, bool settled, State& state);
-  /// The next load step. It is halved where Newton finds no equilibrium or, with stop_at_instability, one that
-  /// is not stable. no_equilibrium: not even 1/1024 of the step has one;
-  /// `state` is then the last equilibrium found, and State::step counts it when it is new. State::time
-  /// becomes the load factor, with displacement control the share of the load steps.
+  /// The next load step. It is halved where Newton finds no equilibrium or, with stop_at_instability, one
+  /// that is not stable. no_equilibrium: not even 1/1024 of the step has one; `state` is then the last
+  /// equilibrium found, and State::step counts it when it is new. State::time becomes the load factor, with
+  /// displacement control the share of the load steps.
   StepStatus advance(const Parameters& parameters, State& state);
   /// Of the last equilibrium found, the least stable body's.
   const Stability& stability() const { return stability_; }
@@ -63,6 +63,8 @@ class LoadPath {
   StepStatus balance(const Parameters& parameters, State& state, Target target);
   StepStatus balance_body(BodySystem& system, const Parameters& parameters, const State& state,
                           std::optional<double> travel, double& factor);
+  double search_line(BodySystem& system, const Parameters& parameters, const State& state, double factor,
+                     const std::vector<double>& x, double work);
   void evaluate(BodySystem& system, const Parameters& parameters, const State& state, double factor);
   std::vector<double> growing_loads(const BodySystem& system) const;
   std::vector<double> controlled_way(const BodySystem& system, const State& state) const;
