@@ -137,6 +137,7 @@ double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& e
     ElementState &now = s.elements[k], &before = state.elements[e];
     if (before.hinge == Hinge::broken || !std::isfinite(element.capacity[0])) continue;
     const BeamStrain strain1 = strain_at(s, k, end);
+    now.held = 0;
     const SectionResponse response = respond(element, now, strain1);
     if (!response.flows() && now.hinge == Hinge::none) continue;
     const BeamStrain strain0 = strain_at(s, k, start);

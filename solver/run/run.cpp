@@ -92,7 +92,7 @@ void Run::advance_load() {
     resume(setup_->model, now_.state, workspace_);
     observe();
   }
-  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false});
+  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false, status_.stability});
 }
 
 void Run::edit(const Edit& edit) {

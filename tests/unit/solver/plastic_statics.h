@@ -23,20 +23,14 @@ class PlasticPath {
   /// Moves degree of freedom `direction` of a node by `step` under the model's loads times `factor`. False
   /// when Newton does not converge.
   bool move(int node, int direction, double step) {
-    return move(Eigen::VectorXd::Unit(6 * system.count, 6 * node + direction), step);
-  }
-  /// The same along what the loads move, of a greatest share of one.
-  bool follow(double step) {
-    Eigen::VectorXd along = Eigen::VectorXd::Zero(6 * system.count);
-    for (const Load& load : model.loads) along.segment<3>(6 * load.node) += load.force;
-    return move(along / along.cwiseAbs().maxCoeff(), step);
-  }
-  /// f at a place of an element.
-  double loading(std::size_t e, double xi) const {
-    const Element& element = model.elements[e];
-    const SectionForces forces =
-        section_forces(element, elastic_strain(state.elements[e], beam_strain(element, ends(e))));
-    return yield_function(element, forces_along(forces, element.length, element.s, xi));
+    system.load_memory(state, motion_);
+    const BodyMotion start = motion_;
+    const double reached = displacement(node, direction) + step;
+    do {
+      if (!solve(6 * node + direction, reached)) return false;
+    } while (break_sections(system, motion_));
+    dissipated += commit_hinges(system, start, motion_, state);
+    return true;
   }
 
   double displacement(int node, int direction) const {
@@ -73,28 +67,10 @@ class PlasticPath {
     return beam_ends(motion_.position[i], motion_.rotation[i], motion_.position[j], motion_.rotation[j]);
   }
 
-  bool move(const Eigen::VectorXd& along, double step) {
-    system.load_memory(state, motion_);
-    const BodyMotion start = motion_;
-    const double reached = displacement(along) + step;
-    do {
-      if (!solve(along, reached)) return false;
-    } while (break_sections(system, motion_));
-    dissipated += commit_hinges(system, start, motion_, state);
-    return true;
-  }
-
-  double displacement(const Eigen::VectorXd& along) const {
-    double sum = 0;
-    for (int k = 0; k < along.size(); ++k)
-      if (along[k] != 0) sum += along[k] * displacement(k / 6, k % 6);
-    return sum;
-  }
-
   // Newton on (unknowns, factor) with the prescribed displacement as the last equation: regular at collapse.
-  bool solve(const Eigen::VectorXd& along, double reached) {
+  bool solve(int control, double reached) {
     const int n = 6 * system.count;
-    const double at_start = displacement(along);
+    const double at_start = displacement(control / 6, control % 6);
     double last = 1e300;
     for (int iteration = 0; iteration < 40; ++iteration) {
       Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -115,8 +91,8 @@ class PlasticPath {
             k(6 * i + d, 6 * i + d) = 1;
             r[6 * i + d] = 0;
           }
-      k.row(n).head(n) = along.transpose();
-      r[n] = reached - displacement(along);
+      k(n, control) = 1;
+      r[n] = reached - displacement(control / 6, control % 6);
       // rows and columns to one size
       Eigen::VectorXd rows = k.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
       k = rows.asDiagonal() * k;

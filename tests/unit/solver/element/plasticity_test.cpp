@@ -122,7 +122,7 @@ TEST(Plasticity, section_tangent_is_the_derivative_and_has_no_stiffness_along_th
     const auto far = [&](int k) { return response.multiplier[k] == 0 || response.multiplier[k] > 0.05; };
     if (!response.flows() || !far(0) || !far(1)) continue;  // no kink nearby
     if (response.multiplier[0] > 0 && response.multiplier[1] > 0) ++both;
-    const SectionTangent t = section_tangent(e, response, 0);
+    const SectionTangent t = section_tangent(e, response);
     Eigen::Matrix<double, 6, 6> tangent, difference;
     tangent << t.normal_gamma, t.normal_kappa, t.normal_kappa.transpose(), t.moment_kappa;
     constexpr double k_step = 1e-6;

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "solver/run/run.h"
 #include "unit/solver/plastic_statics.h"
 #include "unit/solver/simplex.h"
 
@@ -79,17 +80,36 @@ double limit_of_equilibrium(const StrengthFrame& of) {
   return greatest(a(kept, Eigen::all), b(kept), gain).value_or(-1);
 }
 
-/// Greatest factor on a path that goes on along what the loads move; displacements stay at 1e-5 of the size.
+/// Greatest load factor of a path by arc length; displacements stay at 1e-5 of the size.
 double collapse(const StrengthFrame& of) {
-  PlasticPath path(of.build());
-  double greatest = 0;
+  topple::Setup setup;
+  setup.model = of.build();
+  setup.starts.resize(1);
+  setup.parameters.gravity.setZero();
+  constexpr int k_steps = 150;
   constexpr double k_step = k_mp / (205e9 * 5e-6) / 10;
-  for (int i = 0; i < 150; ++i) {
-    if (!path.follow(k_step)) return -1;
-    greatest = std::max(greatest, path.factor);
-    for (std::size_t e = 0; e < path.model.elements.size(); ++e)
-      for (const double xi : {-1., 1.}) EXPECT_LT(path.loading(e, xi), 1e-9);
+  setup.run = {
+      .analysis = Analysis::statics,
+      .statics = {.load_steps = k_steps, .control = PathControl{.to = k_steps * k_step, .arc_length = true}},
+      .settle = false};
+  topple::Run run(setup);
+  double greatest = 0;
+  while (!run.over()) {
+    run.advance();
+    greatest = std::max(greatest, run.state().load_factor);
+    for (std::size_t e = 0; e < setup.model.elements.size(); ++e) {
+      const Element& element = setup.model.elements[e];
+      const auto [i, j] = element.node;
+      const State& now = run.state();
+      const SectionForces forces = section_forces(
+          element,
+          elastic_strain(now.elements[e], beam_strain(element, beam_ends(now.position[i], now.rotation[i],
+                                                                         now.position[j], now.rotation[j]))));
+      for (const double xi : {-1., 1.})
+        EXPECT_LT(yield_function(element, forces_along(forces, element.length, element.s, xi)), 1e-9);
+    }
   }
+  EXPECT_TRUE(run.status().ok()) << run.status().message(setup.model);
   return greatest;
 }
 
