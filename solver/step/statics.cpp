@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "solver/body/anchors.h"
@@ -22,6 +23,9 @@ constexpr double k_most_turn = 1.5;      // rad, within a load step: more is ano
 constexpr double k_least_part = 1. / 1024;  // of a load step
 constexpr double k_left = 0.5;              // of the work along a correction: a line search ends with less
 constexpr int k_most_searches = 30;
+constexpr double k_least_damping = 1e-6, k_damped_more = 10;  // of add_levenberg, 1 at most
+constexpr double k_further = 4;  // of the first correction: no later one of a frame that yields goes further
+constexpr double k_no_reach = std::numeric_limits<double>::infinity();
 
 // Of a tangent that has no potential nothing is told.
 bool is_conservative(const BodySystem& s) {
@@ -98,9 +102,10 @@ class ControlledWay {
     const double change = (soft * rest - way_spring * here) / determinant,
                  shift = (way_factor * here + by_factor * rest) / determinant;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + shift * by_spring_[i];
-    left_ -= dot(along_, x);
     return change;
   }
+  /// `x` was taken.
+  void take(const std::vector<double>& x) { left_ -= dot(along_, x); }
 
  private:
   std::vector<double> along_;
@@ -165,6 +170,27 @@ struct Correction {
   int node = 0;
   bool too_far = false;
 };
+
+double greatest_of(const BodySystem& s, const std::vector<double>& x) {
+  double greatest = 0;
+  for (int i = 0; i < s.count; ++i)
+    greatest = std::max({greatest, Vec3(&x[6 * i]).norm(), s.size * Vec3(&x[6 * i + 3]).norm()});
+  return greatest;
+}
+
+// Levenberg's: `share` of what bending holds the nodes with, so that what hinges leave open does not leap.
+void add_levenberg(BodySystem& s, double share) {
+  if (share == 0) return;
+  for (const auto& [e, i, j] : s.own_elements) {
+    const Element& element = s.model.elements[e];
+    const double turn = share * element.bending_stiffness.minCoeff() / element.length;
+    Mat6 block = Mat6::Zero();
+    block.diagonal().head<3>().setConstant(turn / (element.length * element.length));
+    block.diagonal().tail<3>().setConstant(turn);
+    s.lu.add(i, i, block);
+    s.lu.add(j, j, block);
+  }
+}
 
 // Six numbers of `x` per node, onto the trial motion and the turns from the start.
 Correction correct(const BodySystem& s, const BodyMotion& start, const std::vector<double>& x,
@@ -293,7 +319,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   std::vector<double> x(6 * s.count);
   s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
-  double last = 0;
+  double last = 0, damping = 0, reach = k_no_reach;
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -303,23 +329,38 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
     if (iteration > 1) hold_joints(s, trial);
-    evaluate(s, still, state, factor);
-    if (way) way->add_spring(s);
-    if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
-    unbalance(s, x);
-    std::vector<double> forces = x;
-    s.lu.solve(x.data());
-    const double change = way ? way->go(s, growth, x) : 0;
+    damping = damping > k_least_damping ? damping / k_damped_more : 0;
+    std::vector<double> forces(x.size());
+    double change = 0;
+    while (true) {
+      evaluate(s, still, state, factor);
+      if (way) way->add_spring(s);
+      add_levenberg(s, damping);
+      const int singular = s.lu.factor();
+      unbalance(s, x);
+      forces = x;
+      if (singular < 0) {
+        s.lu.solve(x.data());
+        change = way ? way->go(s, growth, x) : 0;
+        if (!s.yields || greatest_of(s, x) <= reach) break;
+      } else if (!s.yields) {
+        return blame(singular);
+      }
+      if (damping >= 1) return blame(singular >= 0 ? singular : status.node);
+      damping = damping > 0 ? k_damped_more * damping : k_least_damping;
+    }
+    if (reach == k_no_reach) reach = k_further * greatest_of(s, x);
     for (std::size_t i = 0; i < x.size(); ++i) forces[i] += change * growth[i];
     const double part =
         iteration > 1 && s.yields ? search_line(s, still, state, factor + change, x, dot(forces, x)) : 1;
     factor += part * change;
     for (double& value : x) value *= part;
+    if (way) way->take(x);
     const auto [greatest, node, too_far] = correct(s, start, x, trial, turn);
     if (too_far || !std::isfinite(greatest + factor)) return blame(node);
     const double rate = iteration > 1 ? greatest / last : 1;
     const double tolerance = k_convergence * s.size;
-    if (part < 1) {
+    if (part < 1 || damping > 0) {
       last = 0;
     } else if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
                (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
@@ -334,7 +375,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
       status.kind = StepStatus::Kind::ok;
       return status;
     }
-    if (part == 1) last = greatest;
+    if (part == 1 && damping == 0) last = greatest;
     status.node = node;
   }
   return blame(status.node);
