@@ -65,12 +65,12 @@ bool break_sections(BodySystem& s, const BodyMotion& trial) {
   return any;
 }
 
-void hold_joints(BodySystem& s, const BodyMotion& trial) {
+void hold_joints(BodySystem& s, const BodyMotion& start, const BodyMotion& trial) {
   if (!s.yields) return;
   struct Joint {
     bool all_flow = true, held = false;
     int ends = 0, element = -1, place = 0;
-    std::pair<bool, double> least;
+    std::pair<double, double> least;
   };
   std::vector<Joint> joints(s.count);
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
@@ -79,13 +79,17 @@ void hold_joints(BodySystem& s, const BodyMotion& trial) {
     const ElementState& state = s.elements[k];
     if (state.hinge == Hinge::broken) continue;
     const SectionResponse response = respond(element, state, strain_at(s, k, trial));
+    SectionForces before{Vec3::Zero(), Vec3::Zero()};
+    if (response.flows()) before = section_forces(element, elastic_strain(state, strain_at(s, k, start)));
     for (int place = 0; place < 2; ++place) {
       Joint& joint = joints[place == 0 ? i : j];
       const bool at_end = element.hinge_place[0] != element.hinge_place[1];
       ++joint.ends;
       joint.held = joint.held || state.held >> place & 1;
       joint.all_flow = joint.all_flow && at_end && response.multiplier[place] > 0;
-      const std::pair<bool, double> flow{has_hinge(state.hinge, place), response.multiplier[place]};
+      const double f = yield_function(
+          element, forces_along(before, element.length, element.s, element.hinge_place[place]));
+      const std::pair<double, double> flow{std::min(f, -k_on_surface), response.multiplier[place]};
       if (!joint.all_flow || state.held >> (2 + place) & 1 || (joint.element >= 0 && !(flow < joint.least)))
         continue;
       joint.element = static_cast<int>(k);

@@ -328,7 +328,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   };
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
-    if (iteration > 1) hold_joints(s, trial);
+    if (iteration > 1) hold_joints(s, start, trial);
     damping = damping > k_least_damping ? damping / k_damped_more : 0;
     std::vector<double> forces(x.size());
     double change = 0;
