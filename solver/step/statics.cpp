@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
-#include "solver/frame/start_vector.h"
 #include "solver/math/rotation.h"
+#include "solver/step/controlled_way.h"
+#include "solver/step/stability_of.h"
 
 namespace topple {
 namespace {
@@ -25,13 +24,6 @@ constexpr double k_left = 0.5;              // of the work along a correction: a
 constexpr int k_most_searches = 30;
 constexpr double k_least_damping = 1e-6, k_damped_more = 10;  // of add_levenberg, 1 at most
 constexpr double k_further = 4;  // of the first correction: no later one of a frame that yields goes further
-constexpr double k_no_reach = std::numeric_limits<double>::infinity();
-
-// Of a tangent that has no potential nothing is told.
-bool is_conservative(const BodySystem& s) {
-  return std::all_of(s.loads.begin(), s.loads.end(),
-                     [](const auto& own) { return own.load->moment.isZero(0); });
-}
 
 // Weight of two elements of a member, held at its ends: half of it on each with the moments +-W L/12. The mid
 // node's 2/3 stand for the whole, and L is taken on either side of it, so that every derivative has a place.
@@ -58,106 +50,6 @@ void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec
   }
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
-}
-
-/// Of the order of what holds a node of the body, N/m.
-double control_spring(const BodySystem& s) {
-  const Element& element = s.model.elements[s.model.bodies[s.index].first_element];
-  return element.normal_stiffness[0] / element.length;
-}
-
-// `along` times the increments of the unknowns, six numbers per node, is to come to `travel`. A spring on the
-// greatest entry of `along` keeps a mechanism from being singular. What it would hold is put on as a load: so
-// it does nothing to the solution.
-class ControlledWay {
- public:
-  ControlledWay(const BodySystem& s, std::vector<double> along, double travel)
-      : along_(std::move(along)), left_(travel), spring_(control_spring(s)) {
-    for (std::size_t i = 0; i < along_.size(); ++i)
-      if (std::abs(along_[i]) > std::abs(along_[held_])) held_ = i;
-  }
-
-  void add_spring(BodySystem& s) const {
-    const int node = static_cast<int>(held_ / 6), k = static_cast<int>(held_ % 6);
-    Mat6 block = Mat6::Zero();
-    block(k, k) = spring_;
-    s.lu.add(node, node, block);
-  }
-  // `x`, the correction under constant loads, becomes that which goes what is left; `growth`: growing_loads.
-  // Returns the change of the load factor.
-  double go(BodySystem& s, const std::vector<double>& growth, std::vector<double>& x) {
-    by_factor_ = growth;
-    by_spring_.assign(x.size(), 0.);
-    by_spring_[held_] = spring_;
-    s.lu.solve(by_factor_.data());
-    s.lu.solve(by_spring_.data());
-    // of change and the spring's shift:  shift = x + change by_factor + shift by_spring  where it is held,
-    //                                    left = along . (x + change by_factor + shift by_spring)
-    const double way_factor = dot(along_, by_factor_), way_spring = dot(along_, by_spring_),
-                 rest = left_ - dot(along_, x);
-    const double here = x[held_], by_factor = by_factor_[held_], soft = 1 - by_spring_[held_];
-    const double determinant = soft * way_factor + by_factor * way_spring;
-    const double change = (soft * rest - way_spring * here) / determinant,
-                 shift = (way_factor * here + by_factor * rest) / determinant;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + shift * by_spring_[i];
-    return change;
-  }
-  /// `x` was taken.
-  void take(const std::vector<double>& x) { left_ -= dot(along_, x); }
-
- private:
-  std::vector<double> along_;
-  std::size_t held_ = 0;
-  double left_, spring_;
-  std::vector<double> by_factor_, by_spring_;
-};
-
-// Completes `out` by the mode of the tangent last factored, K, that is its softest or, with negative pivots,
-// the softest of those in which it runs away: inverse iteration, beside those found before. K is symmetric.
-void look_at_mode(BodySystem& s, const std::vector<double>& growth, Stability& out) {
-  constexpr int k_rounds = 50, k_most_modes = 8;
-  constexpr double k_beside = 1e-3;  // of the loads' work: less is none
-  using Unknowns = Eigen::VectorXd;
-  std::vector<Unknowns> found;
-  const auto n = static_cast<Eigen::Index>(growth.size());
-  for (int m = 0; m < k_most_modes; ++m) {
-    Unknowns mode(n);
-    double softness = 0;
-    for (Eigen::Index i = 0; i < n; ++i) mode[i] = start_entry(static_cast<int>(i));
-    for (int round = 0; round < k_rounds; ++round) {
-      for (int i = 0; i < s.count; ++i) {
-        Eigen::Map<Vec3> shift(&mode[6 * i]), spin(&mode[6 * i + 3]);
-        s.clear_fixed(i, shift, spin);
-      }
-      for (const Unknowns& other : found) mode -= other.dot(mode) * other;
-      mode.normalize();
-      const Unknowns before = mode;
-      s.lu.solve(mode.data());
-      softness = before.dot(mode);
-    }
-    found.push_back(mode.normalized());
-    if (softness < 0 || out.negative_pivots <= 0) break;
-  }
-  const Unknowns& mode = found.back();
-  double greatest = 0;
-  for (int i = 0; i < s.count; ++i)
-    if (const Vec3 shift = mode.segment<3>(6 * i); shift.norm() > greatest) {
-      greatest = shift.norm();
-      out.node = s.first + i;
-      out.direction = shift / greatest;
-    }
-  const Eigen::Map<const Unknowns> loads(growth.data(), n);
-  double share = 0;
-  for (int i = 0; i < s.count; ++i) share += mode.segment<3>(6 * i).dot(loads.segment<3>(6 * i));
-  const bool hinged =
-      std::ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
-  out.loss = hinged                                                 ? Stability::Loss::mechanism
-             : std::abs(share) > k_beside * loads.norm() * greatest ? Stability::Loss::limit_point
-                                                                    : Stability::Loss::buckling;
-}
-
 // Six numbers per node, of the last evaluation.
 void unbalance(const BodySystem& s, std::vector<double>& forces) {
   for (int i = 0; i < s.count; ++i)
@@ -171,11 +63,17 @@ struct Correction {
   bool too_far = false;
 };
 
-double greatest_of(const BodySystem& s, const std::vector<double>& x) {
-  double greatest = 0;
-  for (int i = 0; i < s.count; ++i)
-    greatest = std::max({greatest, Vec3(&x[6 * i]).norm(), s.size * Vec3(&x[6 * i + 3]).norm()});
-  return greatest;
+struct Furthest {
+  double way = 0;  ///< m
+  int node = 0;
+};
+Furthest furthest_of(const BodySystem& s, const std::vector<double>& x) {
+  Furthest out;
+  for (int i = 0; i < s.count; ++i) {
+    const double way = std::max(Vec3(&x[6 * i]).norm(), s.size * Vec3(&x[6 * i + 3]).norm());
+    if (!(way <= out.way)) out = {way, i};
+  }
+  return out;
 }
 
 // Levenberg's: `share` of what bending holds the nodes with, so that what hinges leave open does not leap.
@@ -271,15 +169,17 @@ std::vector<double> LoadPath::growing_loads(const BodySystem& s) const {
 // Part of a correction that is taken. Where sections begin or cease to flow Newton's way may overshoot: to
 // where little is left of the `work` with which the forces begin along it (Matthies and Strang 1979).
 double LoadPath::search_line(BodySystem& s, const Parameters& still, const State& state, double factor,
-                             const std::vector<double>& x, double work) {
+                             const NewtonStep& step) {
   BodyMotion& trial = trial_[s.index];
   const BodyMotion from = trial;
+  const std::vector<double>& x = step.x;
   std::vector<double> way(x.size()), forces(x.size());
   std::vector<Vec3> turn(s.count);
+  const double work = dot(step.forces, x) + step.change * dot(step.growth, x);
   const auto work_at = [&](double part) {
     for (std::size_t i = 0; i < x.size(); ++i) way[i] = part * x[i];
     correct(s, from, way, trial, turn);
-    evaluate(s, still, state, factor);
+    evaluate(s, still, state, factor + step.change);
     unbalance(s, forces);
     trial = from;
     return dot(forces, x);
@@ -305,6 +205,34 @@ double LoadPath::search_line(BodySystem& s, const Parameters& still, const State
   return at;
 }
 
+// Newton's correction of the trial, damped while it would go further than it may. The node whose tangent is
+// singular, or that leaps however it is damped; -1: found.
+int LoadPath::find_correction(BodySystem& s, const Parameters& still, const State& state, double factor,
+                              ControlledWay* way, NewtonStep& step) {
+  step.damping = step.damping > k_least_damping ? step.damping / k_damped_more : 0;
+  while (true) {
+    evaluate(s, still, state, factor);
+    if (way) way->add_spring(s);
+    add_levenberg(s, step.damping);
+    const int singular = s.lu.factor();
+    unbalance(s, step.x);
+    step.forces = step.x;
+    int leaps = singular;
+    if (singular < 0) {
+      s.lu.solve(step.x.data());
+      step.change = way ? way->go(s, step.growth, step.x) : 0;
+      const Furthest furthest = furthest_of(s, step.x);
+      if (!s.yields || furthest.way <= step.reach) {
+        if (!std::isfinite(step.reach)) step.reach = k_further * furthest.way;
+        return -1;
+      }
+      leaps = furthest.node;
+    }
+    if (!s.yields || step.damping >= 1) return leaps;
+    step.damping = step.damping > 0 ? k_damped_more * step.damping : k_least_damping;
+  }
+}
+
 StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const State& state,
                                   std::optional<double> travel, double& factor) {
   BodyMotion &start = start_[s.index], &trial = trial_[s.index];
@@ -315,11 +243,11 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   status.body = s.index;
   std::optional<ControlledWay> way;
   if (travel) way.emplace(s, controlled_way(s, state), *travel);
-  const std::vector<double> growth = growing_loads(s);
-  std::vector<double> x(6 * s.count);
+  NewtonStep step(growing_loads(s));
   s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
-  double last = 0, damping = 0, reach = k_no_reach;
+  constexpr double k_none = std::numeric_limits<double>::infinity();
+  double last = k_none;  // whole correction
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -329,72 +257,36 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
     if (iteration > 1) hold_joints(s, start, trial);
-    damping = damping > k_least_damping ? damping / k_damped_more : 0;
-    std::vector<double> forces(x.size());
-    double change = 0;
-    while (true) {
-      evaluate(s, still, state, factor);
-      if (way) way->add_spring(s);
-      add_levenberg(s, damping);
-      const int singular = s.lu.factor();
-      unbalance(s, x);
-      forces = x;
-      if (singular < 0) {
-        s.lu.solve(x.data());
-        change = way ? way->go(s, growth, x) : 0;
-        if (!s.yields || greatest_of(s, x) <= reach) break;
-      } else if (!s.yields) {
-        return blame(singular);
-      }
-      if (damping >= 1) return blame(singular >= 0 ? singular : status.node);
-      damping = damping > 0 ? k_damped_more * damping : k_least_damping;
-    }
-    if (reach == k_no_reach) reach = k_further * greatest_of(s, x);
-    for (std::size_t i = 0; i < x.size(); ++i) forces[i] += change * growth[i];
-    const double part =
-        iteration > 1 && s.yields ? search_line(s, still, state, factor + change, x, dot(forces, x)) : 1;
-    factor += part * change;
-    for (double& value : x) value *= part;
-    if (way) way->take(x);
-    const auto [greatest, node, too_far] = correct(s, start, x, trial, turn);
+    if (const int node = find_correction(s, still, state, factor, way ? &*way : nullptr, step); node >= 0)
+      return blame(node);
+    const double part = iteration > 1 && s.yields ? search_line(s, still, state, factor, step) : 1;
+    factor += part * step.change;
+    for (double& value : step.x) value *= part;
+    if (way) way->take(step.x);
+    const auto [greatest, node, too_far] = correct(s, start, step.x, trial, turn);
     if (too_far || !std::isfinite(greatest + factor)) return blame(node);
-    const double rate = iteration > 1 ? greatest / last : 1;
-    const double tolerance = k_convergence * s.size;
-    if (part < 1 || damping > 0) {
-      last = 0;
-    } else if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
-               (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
+    status.node = node;
+    if (part < 1 || step.damping > 0) {
+      last = k_none;
+      continue;
+    }
+    const double rate = std::isfinite(last) ? greatest / last : 1, tolerance = k_convergence * s.size;
+    if (greatest < tolerance || last < k_quadratic * s.size ||
+        (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
       if (release_joints(s, trial) || break_sections(s, trial)) {
         iteration = 0;
-        last = 0;
+        last = k_none;
         continue;
       }
       evaluate(s, still, state, factor);
-      status.stability = look_at_stability(s, growth);
+      status.stability = stability_of(s, step.growth);
       if (settings_.stop_at_instability && !status.stability.stable()) return blame(node);
       status.kind = StepStatus::Kind::ok;
       return status;
     }
-    if (part == 1 && damping == 0) last = greatest;
-    status.node = node;
+    last = greatest;
   }
   return blame(status.node);
-}
-
-// Of the tangent last evaluated.
-Stability LoadPath::look_at_stability(BodySystem& s, const std::vector<double>& growth) {
-  Stability out;
-  if (!is_conservative(s)) return out;
-  const int singular = s.lu.factor(true);
-  out.negative_pivots = s.lu.negative();
-  if (singular >= 0) {
-    ++out.negative_pivots;
-    out.loss = Stability::Loss::mechanism;
-    out.node = s.first + singular;
-  } else if (out.negative_pivots > 0) {
-    look_at_mode(s, growth, out);
-  }
-  return out;
 }
 
 // By the softest mode of a body's last equilibrium, when there is none beyond it.
@@ -405,8 +297,8 @@ Stability LoadPath::what_is_lost(const Parameters& parameters, const State& stat
   trial_[body] = start_[body];
   evaluate(s, at_rest(parameters), state, state.load_factor);
   const std::vector<double> growth = growing_loads(s);
-  Stability out = look_at_stability(s, growth);
-  if (out.negative_pivots == 0) look_at_mode(s, growth, out);
+  Stability out = stability_of(s, growth);
+  if (out.negative_pivots == 0) add_softest_mode(s, growth, out);
   return out;
 }
 

@@ -1,12 +1,14 @@
 // Equilibrium under loads that grow step by step.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "solver/frame/body_system.h"
 #include "solver/state/step_result.h"
+#include "solver/step/controlled_way.h"
 
 namespace topple {
 
@@ -56,6 +58,15 @@ class LoadPath {
   const Stability& stability() const { return stability_; }
 
  private:
+  /// Six numbers per node.
+  struct NewtonStep {
+    explicit NewtonStep(std::vector<double> growing) : growth(std::move(growing)), x(growth.size()) {}
+    std::vector<double> growth;                              ///< derivative of the loads by the load factor
+    std::vector<double> x, forces;                           ///< correction; unbalanced forces at the trial
+    double change = 0;                                       ///< of the load factor
+    double damping = 0;                                      ///< share of add_levenberg
+    double reach = std::numeric_limits<double>::infinity();  ///< m, no correction goes further
+  };
   struct Target {
     double factor;                      ///< load control
     std::optional<double> travel = {};  ///< path control
@@ -64,11 +75,12 @@ class LoadPath {
   StepStatus balance_body(BodySystem& system, const Parameters& parameters, const State& state,
                           std::optional<double> travel, double& factor);
   double search_line(BodySystem& system, const Parameters& parameters, const State& state, double factor,
-                     const std::vector<double>& x, double work);
+                     const NewtonStep& step);
+  int find_correction(BodySystem& system, const Parameters& parameters, const State& state, double factor,
+                      ControlledWay* way, NewtonStep& step);
   void evaluate(BodySystem& system, const Parameters& parameters, const State& state, double factor);
   std::vector<double> growing_loads(const BodySystem& system) const;
   std::vector<double> controlled_way(const BodySystem& system, const State& state) const;
-  static Stability look_at_stability(BodySystem& system, const std::vector<double>& growth);
   Stability what_is_lost(const Parameters& parameters, const State& state, int body);
   std::optional<double> first_travel(const Parameters& parameters, State& state);
   void accept(const Parameters& parameters, double factor, State& state);

@@ -86,7 +86,7 @@ double collapse(const StrengthFrame& of) {
   setup.model = of.build();
   setup.starts.resize(1);
   setup.parameters.gravity.setZero();
-  constexpr int k_steps = 150;
+  constexpr int k_steps = 500;
   constexpr double k_step = k_mp / (205e9 * 5e-6) / 10;
   setup.run = {
       .analysis = Analysis::statics,
