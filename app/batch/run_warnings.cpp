@@ -73,17 +73,6 @@ void warn_of_stress(const Run& run, Warnings& list) {
   }
 }
 
-void warn_of_hinges(const Run& run, Warnings& list) {
-  const Model& model = run.setup().model;
-  std::string names;
-  for (const int member : run.outcome().crowded_members())
-    names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", model.bodies[model.members[member].body].name,
-                         model.members[member].name);
-  if (!names.empty())
-    list.push_back("both ends of an element pass yield, which holds one hinge, in " + names +
-                   "; more elements or divisions show it");
-}
-
 // Of fixed steps; adaptive ones follow what happens.
 void warn_of_step(const Run& run, Warnings& list) {
   const Parameters& p = run.parameters();
@@ -144,7 +133,6 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_depth(run, list);
   warn_of_shakes(run, list);
   warn_of_stress(run, list);
-  warn_of_hinges(run, list);
   if (is_static(run.setup())) return list;
   if (!run.parameters().adaptive) warn_of_step(run, list);
   warn_of_law(run, list);

@@ -124,11 +124,53 @@ ordered_json safe_closing_speed(const Run& run) {
   return number(least / 2 / p.time_step);
 }
 
+/// Words of a loss of stability: in summaries, and for people.
+struct LossWords {
+  Stability::Loss loss;
+  const char *word, *words;
+};
+constexpr LossWords k_losses[] = {{Stability::Loss::limit_point, "limit-point", "past a limit point"},
+                                  {Stability::Loss::buckling, "buckling", "buckles, sideways to its loads"},
+                                  {Stability::Loss::mechanism, "mechanism", "a mechanism"}};
+
 ordered_json load_steps(const Run& run) {
   ordered_json list = ordered_json::array();
-  for (const LoadStep& step : run.load_steps())
-    list.push_back({{"factor", number(step.factor)}, {"converged", step.converged}});
+  const Model& model = run.setup().model;
+  for (const LoadStep& step : run.load_steps()) {
+    const Stability& s = step.stability;
+    const bool known = s.negative_pivots >= 0;
+    ordered_json one{{"factor", number(step.factor)},
+                     {"converged", step.converged},
+                     {"stable", known ? ordered_json(s.stable()) : nullptr},
+                     {"negative_pivots", known ? ordered_json(s.negative_pivots) : nullptr},
+                     {"loss", nullptr},
+                     {"mode", nullptr}};
+    const auto* const words = std::ranges::find(k_losses, s.loss, &LossWords::loss);
+    if (words != std::end(k_losses)) one["loss"] = words->word;
+    if (s.node >= 0) {
+      const int body = model.node_body[s.node];
+      one["mode"] = {{"body", model.bodies[body].name},
+                     {"node", s.node - model.bodies[body].first_node},
+                     {"direction", {number(s.direction.x()), number(s.direction.y()), number(s.direction.z())}}};
+    }
+    list.push_back(one);
+  }
   return list;
+}
+
+/// ", unstable in 1 direction: buckles ...; node 5 of "portal" moves most, along (0.00, 1.00, 0.00)".
+std::string loss_in_words(const ordered_json& step) {
+  if (step["loss"].is_null()) return "";
+  const std::string word = step["loss"].get<std::string>();
+  const LossWords& loss = *std::ranges::find(k_losses, word, [](const LossWords& w) { return std::string(w.word); });
+  const int pivots = step["negative_pivots"].is_null() ? 0 : step["negative_pivots"].get<int>();
+  std::string out = pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
+  out += std::string(": ") + loss.words;
+  if (const ordered_json& mode = step["mode"]; !mode.is_null())
+    out += fmt::format("; node {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", mode["node"].get<int>(),
+                       mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
+                       mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
+  return out;
 }
 
 /// Of the balances found: a limit load, where the path goes beyond it.
@@ -170,8 +212,8 @@ std::string static_head(const ordered_json& s) {
       s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
       s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
   for (const auto& step : s["static"])
-    out += fmt::format("load factor {}: {}\n", text(step["factor"], "{:.6g}"),
-                       step["converged"].get<bool>() ? "converged" : "no equilibrium");
+    out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
+                       step["converged"].get<bool>() ? "converged" : "no equilibrium", loss_in_words(step));
   return out + "\n";
 }
 

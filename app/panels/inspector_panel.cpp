@@ -171,9 +171,10 @@ void draw_integration_points(const Inspected& at, const Member& member) {
       continue;
     }
     diamond(x(k, at.row.s[e]), y);
-    const bool flows = code == 1 || code == 2 || code == 4;
-    if (flows) list.AddCircleFilled({x(k, -at.row.s[e]), y}, r, theme().hinge, 16);
-    circle(x(k, -at.row.s[e]), y, flows ? theme().hinge : theme().text);
+    circle(x(k, -at.row.s[e]), y, theme().text);
+    for (int place = 0; place < 2; ++place)
+      if (io::flows_now(code) && has_hinge(static_cast<Hinge>(code), place))
+        list.AddCircleFilled({x(k, at.model.elements[e].hinge_place[place]), y}, r, theme().hinge, 16);
   }
   const float words = y + 0.65f * line;
   diamond(left + r, words + line / 2);

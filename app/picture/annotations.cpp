@@ -89,19 +89,21 @@ void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame&
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const std::uint8_t code = row.hinge[e];
     if (code == 0 || code == k_broken) continue;
-    const bool flowed = code == io::k_flowed_first || code == io::k_flowed_second;
-    const double t = code == 1 || code == io::k_flowed_first            ? 0.
-                     : code == static_cast<std::uint8_t>(Hinge::middle) ? 0.5
-                                                                        : 1.;
-    const Section& section = model.sections[model.members[model.elements[e].member].section];
-    const ElementCurve curve = element_curve(model, row, e);
-    const SectionForces forces = forces_at(model, row, e, 2 * t - 1);
-    const double sense = t == 1 ? -1 : 1;  // sections turn with the moment from the first end to the second
+    const bool flows = io::flows_now(code);
+    const Element& element = model.elements[e];
+    const Section& section = model.sections[model.members[element.member].section];
     const double size = std::max({section.size_y, section.size_z, k_least_section});
-    out.rings.push_back(
-        {to_float(curve.place(t)),
-         to_float(curve.axes(t) * Vec3(0, sense * forces.moment.y(), sense * forces.moment.z())),
-         static_cast<float>(k_ring * size), flowed ? k_flowed_colour : k_hinge_colour, !flowed});
+    const ElementCurve curve = element_curve(model, row, e);
+    for (int place = 0; place < 2; ++place) {
+      if (!has_hinge(io::hinge_of(code), place)) continue;
+      const double xi = element.hinge_place[place], t = (1 + xi) / 2;
+      const SectionForces forces = forces_at(model, row, e, xi);
+      const double sense = t == 1 ? -1 : 1;  // sections turn with the moment from the first end to the second
+      out.rings.push_back(
+          {to_float(curve.place(t)),
+           to_float(curve.axes(t) * Vec3(0, sense * forces.moment.y(), sense * forces.moment.z())),
+           static_cast<float>(k_ring * size), flows ? k_hinge_colour : k_flowed_colour, flows});
+    }
   }
 }
 

@@ -76,8 +76,8 @@ void beam_tangent(const Element& element, const ElementState& state, const BeamE
   const PackGradient<double> g = pack_gradient(beam, strain, section);
   gradient = {unpacked(-g.force2), unpacked(g.moment1), unpacked(g.force2), unpacked(g.moment2)};
   const PackAngleSlope<double> slope = angle_slopes(strain.angle.x, beam.t);
-  if (response.flows) {
-    const SectionTangent flowing = section_tangent(element, state.hinge, response);
+  if (response.flows()) {
+    const SectionTangent flowing = section_tangent(element, response);
     tangent =
         whole(pack_tangent(beam, strain, section, g, slope,
                            PackFlowing<double>{packed(flowing.normal_gamma), packed(flowing.normal_kappa),

@@ -1,10 +1,10 @@
 #include "solver/element/beam_pack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "solver/element/beam.h"
-#include "solver/element/plasticity.h"
 
 namespace topple {
 namespace {
@@ -86,7 +86,10 @@ BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const 
     pack.block[2][k] = lu.index(from.j, from.i);
     pack.block[3][k] = lu.index(from.j, from.j);
     pack.element[k] = real ? from.element : -1;
+    pack.yields = (k > 0 && pack.yields) || std::isfinite(element.capacity[0]);
     pack.hinged = false;
+    for (int c = 0; c < 4; ++c) pack.inverse_square[c].set(k, real ? std::pow(element.capacity[c], -2) : 0);
+    for (int p = 0; p < 2; ++p) pack.arm[p].set(k, element.length / 2 * (element.hinge_place[p] + element.s));
     pack.damping.set(k, 0);
     set_element(pack.beam, k, pack_beam(element));
     if (!real) set_stiffness(pack.beam, k, Vec3::Zero(), Vec3::Zero());
@@ -109,16 +112,26 @@ void BeamPacks::remember(std::span<const ElementState> elements) {
   }
 }
 
-void BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n,
-                           const PackStrain<Four>& strain, PackSection<Four>& section) const {
+bool BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n,
+                           const PackStrain<Four>& strain, PackSection<Four>& section,
+                           Responses& responses) const {
   const Pack& pack = packs_[n];
+  if (!pack.yields) return false;
+  const auto& [normal, twist, bending_y, bending_z] = pack.inverse_square;
+  const PackVector<Four>&g = section.normal, &m = section.moment;
+  const Four straight = normal * g.x * g.x + twist * m.x * m.x;
+  const auto beyond = [&](Four arm) {
+    const Four my = m.y + arm * g.z, mz = m.z - arm * g.y;
+    return any_above(straight + bending_y * my * my + bending_z * mz * mz, 1 + k_on_surface);
+  };
+  if (!beyond(pack.arm[0]) && !beyond(pack.arm[1])) return false;
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-    const SectionForces forces = respond(model_->elements[pack.element[k]], elements[4 * n + k],
-                                         {lane(strain.gamma, k), lane(strain.kappa, k)})
-                                     .forces;
-    set_lane(section.normal, k, forces.normal);
-    set_lane(section.moment, k, forces.moment);
+    responses[k] = respond(model_->elements[pack.element[k]], elements[4 * n + k],
+                           {lane(strain.gamma, k), lane(strain.kappa, k)});
+    set_lane(section.normal, k, responses[k].forces.normal);
+    set_lane(section.moment, k, responses[k].forces.moment);
   }
+  return true;
 }
 
 void BeamPacks::damp(std::size_t first, std::size_t last, double time) {
@@ -143,11 +156,12 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const 
     new (&strains_[n]) PackStrain<Four>(
         pack_strain(packs_[n].beam, ends_of(motion.position, motion.rotation, packs_[n].i, packs_[n].j)));
   Four total(0);
+  Responses responses;
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];
     const PackStrain<Four>& strain = strains_[n];
     PackSection<Four> section = elastic_section(pack.beam, strain);
-    if (pack.hinged) respond_to(elements, n, strain, section);
+    respond_to(elements, n, strain, section, responses);
     total = total + pack_energy(pack.beam, strain, section);
     pack.section = section;
     if (damped_) section = sum_of(section, viscous(elements, motion, n, strain));
@@ -165,12 +179,13 @@ PackSection<Four> BeamPacks::viscous(std::span<const ElementState> elements, con
 
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                                   double velocity_factor, std::span<NodeForce> forces, BlockLu& lu) {
+  Responses responses;
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     const Pack& pack = packs_[n];
     const PackStrain<Four> strain =
         pack_strain(pack.beam, ends_of(motion.position, motion.rotation, pack.i, pack.j));
     PackSection<Four> section = elastic_section(pack.beam, strain);
-    if (pack.hinged) respond_to(elements, n, strain, section);
+    const bool flows = respond_to(elements, n, strain, section, responses);
     PackStiffness<Four> stiffness{pack.beam.normal_stiffness, pack.beam.bending_stiffness};
     if (damped_) {
       section = sum_of(section, viscous(elements, motion, n, strain));
@@ -180,32 +195,26 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const 
     const PackGradient<Four> gradient = pack_gradient(pack.beam, strain, section);
     subtract(gradient, pack.i, pack.j, forces);
     const PackAngleSlope<Four> slope = angle_slopes(strain.angle.x, pack.beam.t);
-    if (pack.hinged)
-      add_hinged_tangent(elements, n, strain, section, gradient, slope, stiffness, lu);
-    else
-      add(pack_tangent(pack.beam, strain, section, gradient, slope, stiffness), pack.block, lu);
+    add(flows ? pack_tangent(pack.beam, strain, section, gradient, slope,
+                             flowing_stiffness(n, responses, stiffness))
+              : pack_tangent(pack.beam, strain, section, gradient, slope, stiffness),
+        pack.block, lu);
   }
 }
 
-// `stiffness` of those that do not flow.
-void BeamPacks::add_hinged_tangent(std::span<const ElementState> elements, std::size_t n,
-                                   const PackStrain<Four>& strain, const PackSection<Four>& section,
-                                   const PackGradient<Four>& gradient, const PackAngleSlope<Four>& slope,
-                                   const PackStiffness<Four>& stiffness, BlockLu& lu) const {
+PackFlowing<Four> BeamPacks::flowing_stiffness(std::size_t n, const Responses& responses,
+                                               const PackStiffness<Four>& elastic) const {
   const Pack& pack = packs_[n];
-  PackFlowing<Four> all{diagonal(stiffness.normal_gamma), in_all_lanes(packed(Mat3(Mat3::Zero()))),
-                        diagonal(stiffness.moment_kappa)};
+  PackFlowing<Four> all{diagonal(elastic.normal_gamma), in_all_lanes(packed(Mat3(Mat3::Zero()))),
+                        diagonal(elastic.moment_kappa)};
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
-    const Element& element = model_->elements[pack.element[k]];
-    const ElementState& state = elements[4 * n + k];
-    const SectionResponse response = respond(element, state, {lane(strain.gamma, k), lane(strain.kappa, k)});
-    if (!response.flows) continue;
-    const SectionTangent one = section_tangent(element, state.hinge, response);
+    if (!responses[k].flows()) continue;
+    const SectionTangent one = section_tangent(model_->elements[pack.element[k]], responses[k]);
     set_lane(all.normal_gamma, k, one.normal_gamma);
     set_lane(all.normal_kappa, k, one.normal_kappa);
     set_lane(all.moment_kappa, k, one.moment_kappa);
   }
-  add(pack_tangent(pack.beam, strain, section, gradient, slope, all), pack.block, lu);
+  return all;
 }
 
 double BeamPacks::viscous_work(std::span<const ElementState> elements, const NodeMotion& start,

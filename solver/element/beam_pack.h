@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/element/beam_kernel.h"
+#include "solver/element/plasticity.h"
 #include "solver/element/section_forces.h"
 #include "solver/math/block_lu.h"
 #include "solver/model/model.h"
@@ -50,7 +51,7 @@ class BeamPacks {
   /// Work that viscous forces take from one motion to another, by the trapezoidal rule, J.
   double viscous_work(std::span<const ElementState> elements, const NodeMotion& start,
                       const NodeMotion& end) const;
-  /// As energy(), from the latest subtract_gradient without tangent; only where no element has a hinge.
+  /// As energy(), from the latest subtract_gradient without tangent; only where no element can yield.
   double latest_energy(std::vector<SectionForces>& sections) const;
   /// Elastic energy, J; also fills the elements' part of `sections`, one per element of the model.
   double energy(std::span<const Vec3> position, std::span<const Quat> rotation,
@@ -62,20 +63,23 @@ class BeamPacks {
     std::array<int, 4> i, j;                  ///< nodes, numbered within the system
     std::array<std::array<int, 4>, 4> block;  ///< numbers of (i, i), (i, j), (j, i), (j, j)
     std::array<int, 4> element;               ///< index into Model::elements; -1: none
+    bool yields;                              ///< some of them can
     bool hinged;                              ///< some of them have a hinge or are broken
+    std::array<Four, 4> inverse_square;       ///< of Element::capacity
+    std::array<Four, 2> arm;                  ///< m, from the stress points to the hinge places
     Four damping;                             ///< s, damping_time
     PackSection<Four> section;                ///< of the latest gradient
   };
 
-  void respond_to(std::span<const ElementState> elements, std::size_t pack, const PackStrain<Four>& strain,
-                  PackSection<Four>& section) const;
+  using Responses = std::array<SectionResponse, 4>;
+  /// False where all are elastic; else takes the forces that sections bear for those of `section`.
+  bool respond_to(std::span<const ElementState> elements, std::size_t pack, const PackStrain<Four>& strain,
+                  PackSection<Four>& section, Responses& responses) const;
   PackSection<Four> viscous(std::span<const ElementState> elements, const NodeMotion& motion,
                             std::size_t pack, const PackStrain<Four>& strain) const;
   Four damping(std::span<const ElementState> elements, std::size_t pack) const;
-  void add_hinged_tangent(std::span<const ElementState> elements, std::size_t pack,
-                          const PackStrain<Four>& strain, const PackSection<Four>& section,
-                          const PackGradient<Four>& gradient, const PackAngleSlope<Four>& slope,
-                          const PackStiffness<Four>& stiffness, BlockLu& lu) const;
+  PackFlowing<Four> flowing_stiffness(std::size_t pack, const Responses& responses,
+                                      const PackStiffness<Four>& elastic) const;
   static void store_sections(const Pack& pack, const PackSection<Four>& section,
                              std::vector<SectionForces>& sections);
 

@@ -19,14 +19,22 @@ struct SectionForces {
   Vec3 moment;  ///< Mx, My, Mz, N m
 };
 
-/// Where an element has its plastic hinge, at which its section flows (plasticity.h): at an end, or in the
-/// middle with the midpoint scheme. broken: it carries nothing. Recordings hold these
-/// numbers.
-enum class Hinge : std::int64_t { none = 0, first = 1, second = 2, broken = 3, middle = 4 };
+/// Where an element has plastic hinges, at which its section flows (plasticity.h): at its ends, or in the
+/// middle with the midpoint scheme. broken: it carries nothing. Recordings hold these numbers.
+enum class Hinge : std::int32_t { none = 0, first = 1, second = 2, broken = 3, middle = 4, both = 7 };
+
+/// Whether there is one at Element::hinge_place[place].
+inline bool has_hinge(Hinge hinge, int place) {
+  return hinge == Hinge::both ||
+         (place == 0 ? hinge == Hinge::first || hinge == Hinge::middle : hinge == Hinge::second);
+}
 
 /// Part of State, one per element.
 struct ElementState {
   Hinge hinge = Hinge::none;
+  /// Bit k: Element::hinge_place[k] is held, it stays elastic; bit 2 + k: it was, and is let flow. Of statics
+  /// while an equilibrium is sought (hold_joints); 0 in a State.
+  std::int32_t held = 0;
   /// Strain at the elastic stress point at which the section forces vanish: what flowed so far.
   BeamStrain offset{Vec3::Zero(), Vec3::Zero()};
 };

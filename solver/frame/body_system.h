@@ -203,8 +203,6 @@ class BodySystem {
   std::vector<OwnAnchor> anchors;  ///< as they were loaded
   bool yields;                     ///< some element can
   bool ends_here = false;          ///< the latest evaluation was at the end of the step: energy() uses it
-  /// Per node, when it yields: own elements that end there and at which end (0, 1).
-  std::vector<std::vector<std::pair<int, int>>> joints;
 
  private:
   int held_nodes() const {

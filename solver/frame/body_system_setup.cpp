@@ -109,12 +109,6 @@ void BodySystem::add_elements() {
     }
   }
   elements.resize(own_elements.size());
-  if (!yields) return;
-  joints.resize(count);
-  for (int k = 0; k < static_cast<int>(own_elements.size()); ++k) {
-    joints[own_elements[k].i].emplace_back(k, 0);
-    joints[own_elements[k].j].emplace_back(k, 1);
-  }
 }
 
 void BodySystem::add_member_pairs() {

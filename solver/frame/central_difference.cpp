@@ -212,9 +212,8 @@ StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State
   const ContactLaw& law = span.end.law;
   s.find_contacts(span.start.law, w.start, stick, w.start.position, w.contacts_start);
   half_step(s, state, span.h, w);
-  w.hinges.clear();
   do s.evaluate_free(span.parameters, span.end, w.trial);
-  while (update_hinges(s, w.trial, w.hinges));
+  while (break_sections(s, w.trial));
   s.ends_here = true;
   s.find_plane_contacts(w.trial, s.contacts.planes);
   if (!s.candidate_pairs.empty()) add_member_contacts(s, law, span.h, w);

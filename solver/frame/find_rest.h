@@ -8,9 +8,9 @@ namespace topple {
 
 inline constexpr double k_balance = 1e-10;  ///< greatest unbalanced force at rest over the weight
 
-/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section yields; none
+/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section breaks; none
 /// was found.
-enum class Balance { rest, tips_over, yields, none };
+enum class Balance { rest, tips_over, breaks, none };
 
 /// Greatest displacement of a node, m.
 struct RestStep {
@@ -23,7 +23,7 @@ struct RestStep {
 ///   double size            m
 ///   double balanced        N, greatest unbalanced force that counts as balance
 ///   double unbalance()     N, the unbalanced force; finds forces and tangent
-///   Balance look()         judges a balance: rest, tips_over or yields
+///   Balance look()         judges a balance: rest, tips_over or breaks
 ///   optional<RestStep> step(sigma)    solves for a step; null: singular or not finite
 ///   void follow()          takes the step, stick springs included
 template <class Body>
@@ -36,7 +36,7 @@ Balance find_rest(Body& body) {
   for (int round = 0; round < k_most_rounds; ++round) {
     if (body.unbalance() < body.balanced && sigma > 1) {
       const Balance balance = body.look();
-      if (balance != Balance::yields) return balance;
+      if (balance != Balance::breaks) return balance;
       sigma = k_first_sigma;
       continue;
     }

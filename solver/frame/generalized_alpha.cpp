@@ -61,8 +61,8 @@ class ImplicitStep {
         w_(scratch) {}
 
   Attempt solve();
-  /// Solves again until the hinges agree with the solution.
-  Attempt solve_with_hinges();
+  /// Solves again until no section breaks.
+  Attempt solve_with_fracture();
   void accept(StepEnergy& energy);
 
  private:
@@ -300,11 +300,10 @@ double ImplicitStep::share_of_correction() {
   return share;
 }
 
-Attempt ImplicitStep::solve_with_hinges() {
+Attempt ImplicitStep::solve_with_fracture() {
   predict();
   Attempt attempt = solve();
-  w_.hinges.clear();
-  while (attempt.outcome == Outcome::converged && update_hinges(s_, w_.trial, w_.hinges)) {
+  while (attempt.outcome == Outcome::converged && break_sections(s_, w_.trial)) {
     const int before = attempt.iterations;
     attempt = solve();
     attempt.iterations += before;
@@ -434,7 +433,7 @@ StepStatus advance_generalized_alpha(BodySystem& system, const StepSpan& span, c
   StepStatus status;
   status.time = span.end.time;
   ImplicitStep implicit(system, span, c, state, scratch);
-  const Attempt attempt = implicit.solve_with_hinges();
+  const Attempt attempt = implicit.solve_with_fracture();
   status.newton_iterations = attempt.iterations;
   if (attempt.outcome == Outcome::converged) {
     implicit.accept(energy);

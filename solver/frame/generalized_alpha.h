@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "solver/frame/body_system.h"
-#include "solver/frame/hinges.h"
 #include "solver/state/energy.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_result.h"
@@ -39,7 +38,6 @@ struct IntegratorScratch {
   std::vector<Vec3> kept_travel, kept_turn;
   Contacts contacts_start;
   Profile* profile = nullptr;
-  HingeStep hinges;
 };
 
 /// Advances the bodies of `system` in `state` with the balance of forces taken at the end of the step (Brüls

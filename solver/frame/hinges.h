@@ -1,62 +1,34 @@
-// Plastic hinges of a system: where they form, move and break. For dynamics and statics alike:
+// Plastic hinges and fracture of a system. Sections flow within each evaluation (plasticity.h); for dynamics
+// and statics alike:
 //
 //   system.load_memory(state);                       // once per step
-//   HingeStep hinges;
 //   do solve(trial);                                 // to convergence, evaluate_with_tangent
-//   while (update_hinges(system, trial, hinges));
+//   while (break_sections(system, trial));
 //   energy = commit_hinges(system, start, trial, state);
-//
-// Both ends of an element are checked by equilibrium. Where f > 0 the element gets a hinge there and the step
-// is solved again with its flow (plasticity.h). A hinge that unloads goes when the step is accepted.
 #pragma once
-
-#include <vector>
 
 #include "solver/frame/body_system.h"
 
 namespace topple {
 
-// Of f, yield_function:
-inline constexpr double k_yielding = 1e-8;   ///< above it a section is fully plastic
-inline constexpr double k_unloading = 1e-3;  ///< below minus this a hinge goes: hysteresis against chatter
-inline constexpr double k_beside = 1e-3;     ///< joint rule of update_hinges
-inline constexpr double k_crowded = 1e-2;    ///< rule of one hinge per element of update_hinges
+/// Of f, yield_function: below minus this a hinge goes. Hysteresis against chatter.
+inline constexpr double k_unloading = 1e-3;
 
-inline constexpr int k_most_redos = 60;  ///< repeated solutions of one step for its hinges
+/// Sections that at a converged solution flow beyond their limits break (breaks). True: the step must be
+/// solved again.
+bool break_sections(BodySystem& system, const BodyMotion& trial);
 
-/// What the solutions of one step changed so far.
-struct HingeStep {
-  /// An end of an element loaded beyond yield. f is rounded so that symmetric sections compare as equal.
-  struct Candidate {
-    long long f;
-    int element, end;
-  };
-  std::vector<bool> formed;  ///< per element of the system: its hinge was formed or moved, once per step
-  int redos = 0;
-  std::vector<Candidate> candidates;  ///< scratch, as `nodes`
-  std::vector<int> nodes;
-  std::vector<SectionForces> sections;  ///< one per element of the model
+/// Statics alone: where every end at a joint flows, their moments leave the joint's turn undetermined, within
+/// what flowed; unlike forces in them leave a moment that only one which stays elastic can balance. So one end
+/// of each such joint is held (ElementState::held): that furthest below its surface at `start`, as a step before
+/// left it, then that of least flow. release_joints: lets those flow again that end up beyond their surface, in favour of another one;
+/// true: solve again. Where each was released all flow.
+void hold_joints(BodySystem& system, const BodyMotion& start, const BodyMotion& trial);
+bool release_joints(BodySystem& system, const BodyMotion& trial);
 
-  void clear() {
-    formed.clear();
-    redos = 0;
-  }
-};
-
-/// Looks at a converged solution `trial` of a step and changes system.elements. True: the step must be solved
-/// again. In this order, each followed by a new solution:
-/// - Sections that flow beyond their limits break (breaks).
-/// - The section with the greatest f gets a hinge, and with it those nearly as far (symmetric ones). The last
-///   end at a joint that is not held stays elastic: hinges at all ends leave the joint's rotation
-///   undetermined. It yields all the same once loaded k_beside beyond its surface while the others lie on
-///   theirs: then the directions of flow differ.
-/// - An element holds one hinge. When its other end is loaded k_crowded beyond yield the hinge moves there:
-///   then both flow in turns, each a step late (warning: Outcome::crowded_members, overturn.h).
-/// False too after k_most_redos: the next step goes on from there.
-bool update_hinges(BodySystem& system, const BodyMotion& trial, HingeStep& step);
-
-/// Takes the flow of the accepted solution into system.elements and `state`; hinges loaded k_unloading below
-/// yield go. Returns the energy that flow and fracture took, J, by the trapezoidal rule like all work.
+/// Takes the flow of the accepted solution into system.elements and `state`; hinges are where it flowed, and
+/// go when loaded k_unloading below yield. Returns the energy that flow and fracture took, J, by the
+/// trapezoidal rule like all work.
 double commit_hinges(BodySystem& system, const BodyMotion& start, const BodyMotion& end, State& state);
 
 /// Whether a fully plastic section breaks: one of

@@ -114,7 +114,7 @@ class FrameRest {
   }
 
   Balance look() {
-    if (!s_.loads_grow && update_hinges(s_, w_.start, hinges_)) return Balance::yields;
+    if (!s_.loads_grow && break_sections(s_, w_.start)) return Balance::breaks;
     return tips_over(s_, still_, now_, state_, w_) ? Balance::tips_over : Balance::rest;
   }
 
@@ -182,7 +182,6 @@ class FrameRest {
   State& state_;
   IntegratorScratch& w_;
   BodyMotion before_;
-  HingeStep hinges_;
   StepStatus status_;
 };
 

@@ -104,6 +104,7 @@ std::vector<int> BodyBuilder::line(const std::string& name, const Vec3& from, co
                               shear * profile.area * profile.kz};
   element.bending_stiffness = {shear * profile.j, stuff.young * profile.iy, stuff.young * profile.iz};
   if (stuff.yield > 0) element.capacity = capacity(profile, stuff);
+  if (!traits(model_.scheme).hinges_at_ends) element.hinge_place[0] = element.hinge_place[1] = 0;
   std::vector<int> nodes;
   for (int i = 0; i <= total; ++i)
     nodes.push_back(node(from + (to - from) * (static_cast<double>(i) / total)));

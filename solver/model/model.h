@@ -25,6 +25,8 @@ struct Element {
   Vec3 bending_stiffness;  ///< GJ, EIy, EIz, N m^2
   /// N0, N, and Mx0, My0, Mz0, N m, of the fully plastic section; infinite: elastic.
   Eigen::Vector4d capacity = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity());
+  /// Where its section may flow, -1..1 along it; the same twice: there alone.
+  double hinge_place[2] = {-1, 1};
 };
 
 /// A straight member: an even number of elements of one section and one material. Each two of them place

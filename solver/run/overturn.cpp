@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/body/anchors.h"
 #include "solver/body/model_level.h"
 #include "solver/element/plasticity.h"
-#include "solver/frame/hinges.h"
+#include "solver/element/section_forces.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
 
@@ -95,7 +96,10 @@ double slide(const Model& model, int index, const BodyPose& pose) {
 }
 
 Outcome::Outcome(const Model& model)
-    : anchors_(model.anchors.size()), formed_(model.elements.size(), 0), furniture_(model.furniture_total()) {
+    : anchors_(model.anchors.size()),
+      broke_(model.elements.size()),
+      flowed_(model.node_position.size()),
+      furniture_(model.furniture_total()) {
   for (const Section& section : model.sections) {
     const auto of = [&](const Vec3& normal, const Vec3& moment) {
       return equivalent_stress(section, {normal, moment});
@@ -305,25 +309,29 @@ void Outcome::observe_sections(const Model& model, const State& state,
       const double shear = forces.moment.x() * stress[1];
       greatest = std::max(greatest, normal * normal + shear * shear);
       if (!yields) continue;
-      const double f = yield_function(element, forces);
-      o.peak_yield_ratio = std::max(o.peak_yield_ratio.value_or(0), std::sqrt(f + 1));
-      const Hinge there = end == 0 ? Hinge::first : Hinge::second;
-      if (f > k_beside && now.hinge != Hinge::none && now.hinge != there && now.hinge != Hinge::middle &&
-          std::find(crowded_.begin(), crowded_.end(), element.member) == crowded_.end())
-        crowded_.push_back(element.member);
+      o.peak_yield_ratio =
+          std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
     }
     if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
-    const auto bit = static_cast<std::uint8_t>(1u << static_cast<unsigned>(now.hinge));
-    if (now.hinge == Hinge::none || (formed_[e] & bit) != 0) continue;
-    formed_[e] |= bit;
-    const bool broke = now.hinge == Hinge::broken;
-    ++(broke ? o.fractures : o.hinges);
-    events.push_back({.kind = broke ? Event::Kind::fracture : Event::Kind::hinge,
-                      .step = state.step,
-                      .time = state.time,
-                      .body = member.body,
-                      .value = static_cast<double>(now.hinge),
-                      .element = static_cast<int>(e)});
+    if (now.hinge == Hinge::none) continue;
+    const auto tell = [&](Event::Kind kind, Hinge hinge, int& count) {
+      ++count;
+      events.push_back({.kind = kind,
+                        .step = state.step,
+                        .time = state.time,
+                        .body = member.body,
+                        .value = static_cast<double>(hinge),
+                        .element = static_cast<int>(e)});
+    };
+    if (now.hinge == Hinge::broken && !std::exchange(broke_[e], true))
+      tell(Event::Kind::fracture, now.hinge, o.fractures);
+    for (int place = 0; place < 2; ++place)
+      if (has_hinge(now.hinge, place) && !std::exchange(flowed_[element.node[place]], true))
+        tell(Event::Kind::hinge,
+             now.hinge != Hinge::both ? now.hinge
+             : place == 0             ? Hinge::first
+                                      : Hinge::second,
+             o.hinges);
   }
 }
 

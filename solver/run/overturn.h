@@ -79,12 +79,12 @@ struct BodyOutcome {
   bool always_rigid = true;  ///< nothing is known of its stresses
   /// Greatest sqrt(f + 1) (plasticity.h) at the ends of elements; absent: nothing can yield.
   std::optional<double> peak_yield_ratio;
-  int hinges = 0;                       ///< places where hinges formed so far, whether they still flow or not
-  int fractures = 0;                    ///< elements that broke
-  double peak_penetration = 0;          ///< greatest 1 - l/L at planes
-  double peak_pinch = 0;                ///< likewise between members, where 1 would be one through the other
-  std::optional<double> over_60_since;  ///< tilt over 60 degrees without a break since
-  std::optional<ModelLevel> level;      ///< at this observation
+  int hinges = 0;               ///< nodes at which hinges formed so far, whether they still flow or not
+  int fractures = 0;            ///< elements that broke
+  double peak_penetration = 0;  ///< greatest 1 - l/L at planes
+  double peak_pinch = 0;        ///< likewise between members, where 1 would be one through the other
+  std::optional<double> over_60_since;     ///< tilt over 60 degrees without a break since
+  std::optional<ModelLevel> level;         ///< at this observation
   std::vector<LevelChange> level_changes;  ///< the first one where BodyModelTraits::lists_start; at most
                                            ///< k_kept_impacts
   std::vector<bool> lifted;                ///< per side of the support polygon
@@ -109,9 +109,6 @@ class Outcome {
                const std::vector<SectionForces>& sections, std::vector<Event>& events);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
   const std::vector<AnchorOutcome>& anchors() const { return anchors_; }
-  /// Members of which an element holds a hinge while its other end passes yield too, by
-  /// k_beside (hinges.h): more elements would show both.
-  const std::vector<int>& crowded_members() const { return crowded_; }
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
@@ -131,10 +128,10 @@ class Outcome {
 
   std::vector<BodyOutcome> bodies_;
   std::vector<AnchorOutcome> anchors_;
-  std::vector<std::uint8_t> formed_;          ///< per element, bit 1 << Hinge: seen with it
-  int furniture_;                             ///< bodies
-  std::vector<Eigen::Vector4d> unit_stress_;  ///< per section: Pa by N, Mx, My and Mz of one
-  std::vector<int> crowded_;
+  std::vector<char> broke_;                             ///< per element
+  std::vector<char> flowed_;                            ///< per node: a section beside it has flowed
+  int furniture_;                                       ///< bodies
+  std::vector<Eigen::Vector4d> unit_stress_;            ///< per section: Pa by N, Mx, My and Mz of one
   std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
   std::vector<double> total_force_;                     ///< per body, N
   std::vector<std::vector<std::vector<int>>> side_of_;  ///< per body: contact point (from 0) to its sides

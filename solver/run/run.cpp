@@ -90,11 +90,11 @@ void Run::advance_load() {
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (now_.state.load_factor != factor || status_.ok()) {
-    now_.load_steps.push_back({now_.state.load_factor, true});
+    now_.load_steps.push_back({now_.state.load_factor, true, path_->stability()});
     resume(setup_->model, now_.state, workspace_);
     observe();
   }
-  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false});
+  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false, status_.stability});
 }
 
 void Run::edit(const Edit& edit) {

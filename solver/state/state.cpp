@@ -40,8 +40,8 @@ constexpr Stored<planar::Mode> k_block_modes[] = {{planar::Mode::rest, 0},
 constexpr Stored<planar::Side> k_sides[] = {{planar::Side::left, 0}, {planar::Side::right, 1}};
 constexpr Stored<int> k_slips[] = {{0, 0}, {1, 1}, {-1, -1}};
 constexpr Stored<bool> k_flags[] = {{false, 0}, {true, 1}};
-constexpr Stored<Hinge> k_hinges[] = {
-    {Hinge::none, 0}, {Hinge::first, 1}, {Hinge::second, 2}, {Hinge::broken, 3}, {Hinge::middle, 4}};
+constexpr Stored<Hinge> k_hinges[] = {{Hinge::none, 0},   {Hinge::first, 1},  {Hinge::second, 2},
+                                      {Hinge::broken, 3}, {Hinge::middle, 4}, {Hinge::both, 7}};
 constexpr Stored<AnchorHold> k_holds[] = {
     {AnchorHold::in_place, 0}, {AnchorHold::away, 1}, {AnchorHold::broken, 2}};
 

@@ -12,6 +12,21 @@ std::string format(const char* pattern, double a) {
   return text;
 }
 
+const char* loss_in_words(Stability::Loss loss) {
+  using Loss = Stability::Loss;
+  switch (loss) {
+    case Loss::limit_point:
+      return " carries no more there, a limit point; run.control follows a path that turns down";
+    case Loss::buckling:
+      return " buckles there, sideways to its loads";
+    case Loss::mechanism:
+      return " is a mechanism there; run.control follows a path that goes on or turns down";
+    case Loss::none:
+      break;
+  }
+  return " has no neighbouring equilibrium; try more load_steps";
+}
+
 }  // namespace
 
 StepStatus look_at_numbers(const Model& model, const Parameters& parameters, const State& state, bool nodes) {
@@ -66,9 +81,8 @@ std::string StepStatus::message(const Model& model) const {
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
              when + "; try a smaller one, or generalized-alpha";
     case Kind::no_equilibrium:
-      return format("no stable equilibrium was found at load factor %.6g: ", load_factor) + where +
-             " gives way; a mechanism, or a load beyond what it carries (control = { node, dof } follows a "
-             "path that turns down)";
+      return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
+             loss_in_words(stability.loss);
     case Kind::passed_through:
       return "members would pass through each other unseen in the step " + when + ": " + where + finer;
     case Kind::energy_lost:

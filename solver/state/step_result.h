@@ -13,6 +13,23 @@ namespace topple {
 /// that of the model.
 inline constexpr double k_lost_balance = 0.1;
 
+/// Whether an equilibrium is stable under constant loads: whether its tangent is positive definite. Of forces
+/// that keep their direction; moments about fixed axes have no potential.
+struct Stability {
+  enum class Loss {
+    none,
+    limit_point,  ///< the loads do work along the mode: the path has passed a greatest load
+    buckling,     ///< they do none: the body leaves the path sideways
+    mechanism     ///< as limit_point, while hinges flow
+  };
+  Loss loss = Loss::none;
+  int negative_pivots = -1;        ///< of the tangent: directions in which it runs away; -1: not known
+  int node = -1;                   ///< index into the model: moves most in the mode of the first of them,
+  Vec3 direction = Vec3::Zero();   ///< along this unit vector, world axes
+
+  bool stable() const { return negative_pivots <= 0; }
+};
+
 /// What became of a step: ok, or the first thing that went wrong, when and where.
 struct StepStatus {
   enum class Kind {
@@ -23,7 +40,7 @@ struct StepStatus {
     singular,         ///< tangent; a part may be free to move
     not_settled,      ///< a body finds no rest under gravity
     step_too_long,    ///< above `limit`, for an explicit method
-    no_equilibrium,   ///< statics: no stable one at `load_factor`
+    no_equilibrium,   ///< statics: none at `load_factor`, or no stable one where that is asked for
     uncontrolled,     ///< statics: the loads do not move the controlled direction
     passed_through,   ///< members would pass through each other unseen
     energy_lost,      ///< k_lost_balance is exceeded
@@ -38,6 +55,7 @@ struct StepStatus {
   int rejected = 0;           ///< trial steps thrown away within this step
   double limit = 0;           ///< s, step_too_long: the greatest stable step
   double load_factor = 0;     ///< no_equilibrium: at which none was found
+  Stability stability = {};   ///< statics: of the equilibrium
   bool by_tolerance = false;  ///< the tolerance, not time_step, is what makes steps shorter
 
   bool ok() const { return kind == Kind::ok; }

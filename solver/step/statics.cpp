@@ -8,6 +8,8 @@
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
 #include "solver/math/rotation.h"
+#include "solver/step/controlled_way.h"
+#include "solver/step/stability_of.h"
 
 namespace topple {
 namespace {
@@ -18,13 +20,10 @@ constexpr double k_quadratic = 1e-8;     // of the body's size: the correction a
 constexpr double k_furthest = 1;         // of the body's size, travel within a load step
 constexpr double k_most_turn = 1.5;      // rad, within a load step: more is another equilibrium
 constexpr double k_least_part = 1. / 1024;  // of a load step
-
-// Forces that keep their direction have a potential, moments about fixed axes have none: only with the former
-// does the tangent tell whether an equilibrium is stable.
-bool is_conservative(const BodySystem& s) {
-  return std::all_of(s.loads.begin(), s.loads.end(),
-                     [](const auto& own) { return own.load->moment.isZero(0); });
-}
+constexpr double k_left = 0.5;              // of the work along a correction: a line search ends with less
+constexpr int k_most_searches = 30;
+constexpr double k_least_damping = 1e-6, k_damped_more = 10;  // of add_levenberg, 1 at most
+constexpr double k_further = 4;  // of the first correction: no later one of a frame that yields goes further
 
 // Weight of two elements of a member, held at its ends: half of it on each with the moments +-W L/12. The mid
 // node's 2/3 stand for the whole, and L is taken on either side of it, so that every derivative has a place.
@@ -51,46 +50,11 @@ void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec
   }
 }
 
-/// Of the order of what holds a node of the body, N/m.
-double control_spring(const BodySystem& s) {
-  const Element& element = s.model.elements[s.model.bodies[s.index].first_element];
-  return element.normal_stiffness[0] / element.length;
+// Six numbers per node, of the last evaluation.
+void unbalance(const BodySystem& s, std::vector<double>& forces) {
+  for (int i = 0; i < s.count; ++i)
+    for (int k = 0; k < 6; ++k) forces[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
 }
-
-// The way of a controlled direction, 6 times its node and which of six. A spring keeps a mechanism from being
-// singular. What it would hold is put on as a load: so it does nothing to the solution, which moves the
-// direction by what is left of the way.
-class ControlledWay {
- public:
-  ControlledWay(const BodySystem& s, int direction, double travel)
-      : direction_(direction), travel_(travel), spring_(control_spring(s)) {}
-
-  void add_spring(BodySystem& s) const {
-    Mat6 block = Mat6::Zero();
-    block(direction_ % 6, direction_ % 6) = spring_;
-    s.lu.add(direction_ / 6, direction_ / 6, block);
-  }
-  // `x`, the correction under constant loads, becomes that which goes what is left; `growth`: growing_loads.
-  // Returns the change of the load factor.
-  double go(BodySystem& s, const std::vector<double>& growth, std::vector<double>& x) {
-    by_factor_ = growth;
-    by_spring_.assign(x.size(), 0.);
-    by_spring_[direction_] = spring_ * left();
-    s.lu.solve(by_factor_.data());
-    s.lu.solve(by_spring_.data());
-    const double change = (left() - x[direction_] - by_spring_[direction_]) / by_factor_[direction_];
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += change * by_factor_[i] + by_spring_[i];
-    moved_ += x[direction_];
-    return change;
-  }
-
- private:
-  double left() const { return travel_ - moved_; }
-
-  int direction_;
-  double travel_, moved_ = 0, spring_;
-  std::vector<double> by_factor_, by_spring_;
-};
 
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
 struct Correction {
@@ -98,6 +62,33 @@ struct Correction {
   int node = 0;
   bool too_far = false;
 };
+
+struct Furthest {
+  double way = 0;  ///< m
+  int node = 0;
+};
+Furthest furthest_of(const BodySystem& s, const std::vector<double>& x) {
+  Furthest out;
+  for (int i = 0; i < s.count; ++i) {
+    const double way = std::max(Vec3(&x[6 * i]).norm(), s.size * Vec3(&x[6 * i + 3]).norm());
+    if (!(way <= out.way)) out = {way, i};
+  }
+  return out;
+}
+
+// Levenberg's: `share` of what bending holds the nodes with, so that what hinges leave open does not leap.
+void add_levenberg(BodySystem& s, double share) {
+  if (share == 0) return;
+  for (const auto& [e, i, j] : s.own_elements) {
+    const Element& element = s.model.elements[e];
+    const double turn = share * element.bending_stiffness.minCoeff() / element.length;
+    Mat6 block = Mat6::Zero();
+    block.diagonal().head<3>().setConstant(turn / (element.length * element.length));
+    block.diagonal().tail<3>().setConstant(turn);
+    s.lu.add(i, i, block);
+    s.lu.add(j, j, block);
+  }
+}
 
 // Six numbers of `x` per node, onto the trial motion and the turns from the start.
 Correction correct(const BodySystem& s, const BodyMotion& start, const std::vector<double>& x,
@@ -136,9 +127,20 @@ int LoadPath::controlled_body() const {
   return settings_.control ? model_->node_body[settings_.control->node] : -1;
 }
 
-// Of six per node of that body.
-int LoadPath::controlled_direction() const {
-  return 6 * (settings_.control->node - systems_[controlled_body()]->first) + settings_.control->direction;
+// What a load step goes along, six numbers per node of the controlled body.
+std::vector<double> LoadPath::controlled_way(const BodySystem& s, const State& state) const {
+  std::vector<double> along(6 * s.count, 0.);
+  const PathControl& control = *settings_.control;
+  if (!control.arc_length) {
+    along[6 * (control.node - s.first) + control.direction] = 1;
+    return along;
+  }
+  double square = 0;
+  for (int i = 0; i < s.count; ++i) square += state.algorithmic_acceleration[s.first + i].squaredNorm();
+  for (int i = 0; i < s.count; ++i)
+    for (int k = 0; k < 3; ++k)
+      along[6 * i + k] = state.algorithmic_acceleration[s.first + i][k] / std::sqrt(square * s.count);
+  return along;
 }
 
 // Forces and tangent of the trial motion; fixed directions are out.
@@ -164,6 +166,73 @@ std::vector<double> LoadPath::growing_loads(const BodySystem& s) const {
   return loads;
 }
 
+// Part of a correction that is taken. Where sections begin or cease to flow Newton's way may overshoot: to
+// where little is left of the `work` with which the forces begin along it (Matthies and Strang 1979).
+double LoadPath::search_line(BodySystem& s, const Parameters& still, const State& state, double factor,
+                             const NewtonStep& step) {
+  BodyMotion& trial = trial_[s.index];
+  const BodyMotion from = trial;
+  const std::vector<double>& x = step.x;
+  std::vector<double> way(x.size()), forces(x.size());
+  std::vector<Vec3> turn(s.count);
+  const double work = dot(step.forces, x) + step.change * dot(step.growth, x);
+  const auto work_at = [&](double part) {
+    for (std::size_t i = 0; i < x.size(); ++i) way[i] = part * x[i];
+    correct(s, from, way, trial, turn);
+    evaluate(s, still, state, factor + step.change);
+    unbalance(s, forces);
+    trial = from;
+    return dot(forces, x);
+  };
+  if (!(work > 0)) return 1;
+  double at = 1, left = work_at(at);
+  if (left >= -k_left * work) return 1;
+  // between parts with work along and against it by the Illinois rule
+  double less = 0, less_work = work, more = at, more_work = left;
+  for (int k = 0; k < k_most_searches && std::abs(left) > k_left * work; ++k) {
+    at = less + (more - less) * less_work / (less_work - more_work);
+    left = work_at(at);
+    if (left > 0) {
+      less = at;
+      less_work = left;
+      more_work /= 2;
+    } else {
+      more = at;
+      more_work = left;
+      less_work /= 2;
+    }
+  }
+  return at;
+}
+
+// Newton's correction of the trial, damped while it would go further than it may. The node whose tangent is
+// singular, or that leaps however it is damped; -1: found.
+int LoadPath::find_correction(BodySystem& s, const Parameters& still, const State& state, double factor,
+                              ControlledWay* way, NewtonStep& step) {
+  step.damping = step.damping > k_least_damping ? step.damping / k_damped_more : 0;
+  while (true) {
+    evaluate(s, still, state, factor);
+    if (way) way->add_spring(s);
+    add_levenberg(s, step.damping);
+    const int singular = s.lu.factor();
+    unbalance(s, step.x);
+    step.forces = step.x;
+    int leaps = singular;
+    if (singular < 0) {
+      s.lu.solve(step.x.data());
+      step.change = way ? way->go(s, step.growth, step.x) : 0;
+      const Furthest furthest = furthest_of(s, step.x);
+      if (!s.yields || furthest.way <= step.reach) {
+        if (!std::isfinite(step.reach)) step.reach = k_further * furthest.way;
+        return -1;
+      }
+      leaps = furthest.node;
+    }
+    if (!s.yields || step.damping >= 1) return leaps;
+    step.damping = step.damping > 0 ? k_damped_more * step.damping : k_least_damping;
+  }
+}
+
 StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const State& state,
                                   std::optional<double> travel, double& factor) {
   BodyMotion &start = start_[s.index], &trial = trial_[s.index];
@@ -173,13 +242,12 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   status.kind = StepStatus::Kind::no_equilibrium;
   status.body = s.index;
   std::optional<ControlledWay> way;
-  if (travel) way.emplace(s, controlled_direction(), *travel);
-  const std::vector<double> growth = growing_loads(s);
-  std::vector<double> x(6 * s.count);
-  HingeStep hinges;
+  if (travel) way.emplace(s, controlled_way(s, state), *travel);
+  NewtonStep step(growing_loads(s));
   s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
-  double last = 0;
+  constexpr double k_none = std::numeric_limits<double>::infinity();
+  double last = k_none;  // whole correction
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -188,35 +256,50 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   };
   for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
     status.newton_iterations = iteration;
-    evaluate(s, still, state, factor);
-    if (way) way->add_spring(s);
-    if (const int singular = s.lu.factor(); singular >= 0) return blame(singular);
-    for (int i = 0; i < s.count; ++i)
-      for (int k = 0; k < 6; ++k) x[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
-    s.lu.solve(x.data());
-    if (way) factor += way->go(s, growth, x);
-    const auto [greatest, node, too_far] = correct(s, start, x, trial, turn);
+    if (iteration > 1) hold_joints(s, start, trial);
+    if (const int node = find_correction(s, still, state, factor, way ? &*way : nullptr, step); node >= 0)
+      return blame(node);
+    const double part = iteration > 1 && s.yields ? search_line(s, still, state, factor, step) : 1;
+    factor += part * step.change;
+    for (double& value : step.x) value *= part;
+    if (way) way->take(step.x);
+    const auto [greatest, node, too_far] = correct(s, start, step.x, trial, turn);
     if (too_far || !std::isfinite(greatest + factor)) return blame(node);
-    const double rate = iteration > 1 ? greatest / last : 1;
-    const double tolerance = k_convergence * s.size;
-    if (greatest < tolerance || (iteration > 1 && last < k_quadratic * s.size) ||
+    status.node = node;
+    if (part < 1 || step.damping > 0) {
+      last = k_none;
+      continue;
+    }
+    const double rate = std::isfinite(last) ? greatest / last : 1, tolerance = k_convergence * s.size;
+    if (greatest < tolerance || last < k_quadratic * s.size ||
         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
-      if (update_hinges(s, trial, hinges)) {
+      if (release_joints(s, trial) || break_sections(s, trial)) {
         iteration = 0;
-        last = 0;
+        last = k_none;
         continue;
       }
       evaluate(s, still, state, factor);
-      // directions in which it would run away: Newton stepped over a limit or a branching
-      if (!travel && is_conservative(s) && (s.lu.factor(true) >= 0 || s.lu.negative() > 0))
-        return blame(node);
+      status.stability = stability_of(s, step.growth);
+      if (settings_.stop_at_instability && !status.stability.stable()) return blame(node);
       status.kind = StepStatus::Kind::ok;
       return status;
     }
     last = greatest;
-    status.node = node;
   }
   return blame(status.node);
+}
+
+// By the softest mode of a body's last equilibrium, when there is none beyond it.
+Stability LoadPath::what_is_lost(const Parameters& parameters, const State& state, int body) {
+  BodySystem& s = *systems_[body];
+  s.load(state, start_[body]);
+  s.load_memory(state, start_[body]);
+  trial_[body] = start_[body];
+  evaluate(s, at_rest(parameters), state, state.load_factor);
+  const std::vector<double> growth = growing_loads(s);
+  Stability out = stability_of(s, growth);
+  if (out.negative_pivots == 0) add_softest_mode(s, growth, out);
+  return out;
 }
 
 StepStatus LoadPath::balance(const Parameters& parameters, State& state, Target target) {
@@ -225,16 +308,19 @@ StepStatus LoadPath::balance(const Parameters& parameters, State& state, Target 
   const Parameters still = at_rest(parameters);
   double factor = target.factor;
   int iterations = 0;
+  Stability worst;
   const int first = controlled_body();
   const auto solve = [&](BodySystem& system) {
     status = balance_body(system, still, state, system.index == first ? target.travel : std::nullopt, factor);
     status.newton_iterations = iterations += status.newton_iterations;
+    if (status.stability.negative_pivots > worst.negative_pivots) worst = status.stability;
     return status.ok();
   };
   if (first >= 0 && !solve(*systems_[first])) return status;
   for (auto& system : systems_)
     if (system->index != first && !solve(*system)) return status;
   accept(still, factor, state);
+  stability_ = worst;
   return status;
 }
 
@@ -256,6 +342,8 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
     energy.plastic += commit_hinges(*system, start, trial, state);
     for (int i = 0; i < s.count; ++i) {
       const int g = s.first + i;
+      if (settings_.control && settings_.control->arc_length)
+        state.algorithmic_acceleration[g] = trial.position[i] - start.position[i];
       energy.gravity -= s.model.node_mass[g] * still.gravity.dot(trial.position[i] - start.position[i]);
       state.position[g] = trial.position[i];
       state.rotation[g] = trial.rotation[i];
@@ -271,8 +359,9 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
   state.load_factor = factor;
 }
 
-// How far a load step's share of the loads moves the controlled direction from here.
-std::optional<double> LoadPath::first_travel(const Parameters& parameters, const State& state) {
+// How far a load step's share of the loads moves what is controlled from here. With arc length it is the way
+// of the first load step.
+std::optional<double> LoadPath::first_travel(const Parameters& parameters, State& state) {
   BodySystem& s = *systems_[controlled_body()];
   s.load(state, start_[s.index]);
   trial_[s.index] = start_[s.index];
@@ -280,7 +369,10 @@ std::optional<double> LoadPath::first_travel(const Parameters& parameters, const
   if (s.lu.factor() >= 0) return std::nullopt;
   std::vector<double> by_factor = growing_loads(s);
   s.lu.solve(by_factor.data());
-  const double travel = by_factor[controlled_direction()] / settings_.load_steps;
+  if (settings_.control->arc_length)
+    for (int i = 0; i < s.count; ++i) state.algorithmic_acceleration[s.first + i] = Vec3(&by_factor[6 * i]);
+  const std::vector<double> along = controlled_way(s, state);
+  const double travel = dot(along, by_factor) / settings_.load_steps;
   if (!(std::abs(travel) > k_convergence * s.size)) return std::nullopt;
   return travel;
 }
@@ -295,14 +387,16 @@ StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& st
   if (!status.ok()) return status;
   status = balance(parameters, state, {0});
   if (!status.ok() || !settings_.control) return status;
-  const std::optional<double> travel =
-      settings_.control->to ? *settings_.control->to / settings_.load_steps : first_travel(parameters, state);
+  const PathControl& control = *settings_.control;
+  std::optional<double> travel;
+  if (control.arc_length || !control.to) travel = first_travel(parameters, state);
+  if (control.to && (travel || !control.arc_length)) travel = *control.to / settings_.load_steps;
   if (travel) {
     state.step_size = *travel;
   } else {
     status.kind = StepStatus::Kind::uncontrolled;
     status.body = controlled_body();
-    status.node = settings_.control->node;
+    status.node = control.node;
   }
   return status;
 }
@@ -330,6 +424,8 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
     }
   }
   if (done > 0) ++state.step;
+  if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
+    status.stability = what_is_lost(parameters, state, status.body);
   status.time = state.time;
   status.newton_iterations = iterations;
   status.rejected = rejected;

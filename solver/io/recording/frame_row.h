@@ -12,7 +12,18 @@
 
 namespace topple::io {
 
-inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6;  ///< of FrameRow::hinge
+inline constexpr std::uint8_t k_flowed_first = 5, k_flowed_second = 6,
+                              k_flowed_both = 8;  ///< of FrameRow::hinge
+/// The hinges that such a code tells of; whether they flow now: else they did before.
+inline Hinge hinge_of(std::uint8_t code) {
+  return code == k_flowed_first    ? Hinge::first
+         : code == k_flowed_second ? Hinge::second
+         : code == k_flowed_both   ? Hinge::both
+                                   : static_cast<Hinge>(code);
+}
+inline bool flows_now(std::uint8_t code) {
+  return static_cast<std::uint8_t>(hinge_of(code)) == code;
+}
 
 /// Values of AnchorNumbers::state. slack: in place, without force.
 inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
@@ -84,7 +95,8 @@ struct FrameRow {
   std::vector<float> section_force;   ///< e x 6: N, Vy, Vz, T, My, Mz at the stress point, N and N m
   std::vector<float> s;               ///< e, integration point, -r of Eq. 1
   std::vector<std::uint8_t> hinge;    ///< e: 0 none, 1 at the first end, 2 at the second, 3 broken,
-                                      ///< 4 in the middle; 5, 6: none now, flowed at the first, second end
+                                      ///< 4 in the middle, 7 at both ends; 5, 6, 8: none now, flowed at
+                                      ///< the first, the second, both
   std::vector<float> contact_depth;   ///< c, 1 - l/L; 0: open
   std::vector<float> contact_force;   ///< c x 3, N, on the point, floor's frame
   std::vector<float> member_contact;  ///< t x 4: resultant of what members of other bodies do to the element,

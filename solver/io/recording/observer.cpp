@@ -53,21 +53,31 @@ void fill_nodes(const State& state, FrameRow& row) {
   }
 }
 
-// The offset that a hinge left tells at which end: gamma = a kappa (plasticity.h), a > 0 at the second.
-std::uint8_t hinge_code(const ElementState& state) {
-  const Vec3 &gamma = state.offset.gamma, &kappa = state.offset.kappa;
+// The offset that hinges left tells at which ends they were; axial flow and twist alone: at both.
+std::uint8_t hinge_code(const Element& element, const ElementState& state) {
+  constexpr double k_beside = 1e-9;  // of the other end's turn: rounding
   if (state.hinge != Hinge::none) return static_cast<std::uint8_t>(state.hinge);
-  if (gamma.isZero(0) && kappa.isZero(0)) return 0;
-  return gamma.z() * kappa.y() - gamma.y() * kappa.z() > 0 ? k_flowed_second : k_flowed_first;
+  if (state.offset.gamma.isZero(0) && state.offset.kappa.isZero(0)) return 0;
+  const auto [first, second] = flowed_turns(element, state.offset);
+  return second < k_beside * first   ? k_flowed_first
+         : first < k_beside * second ? k_flowed_second
+                                     : k_flowed_both;
+}
+
+// Where the section forces of a row are told: at a hinge, else where they are integrated.
+double stress_place(const Element& element, Hinge hinge) {
+  return hinge == Hinge::first    ? element.hinge_place[0]
+         : hinge == Hinge::second ? element.hinge_place[1]
+                                  : -element.s;
 }
 
 void fill_elements(const Model& model, const Snapshot& at, FrameRow& row) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Element& element = model.elements[e];
     const Hinge hinge = at.state.elements[e].hinge;
-    const double place = hinge_place(element, hinge);
+    const double place = stress_place(element, hinge);
     row.s[e] = static_cast<float>(-place);
-    row.hinge[e] = hinge_code(at.state.elements[e]);
+    row.hinge[e] = hinge_code(element, at.state.elements[e]);
     const SectionForces forces = forces_along(at.sections[e], element.length, element.s, place);
     const double values[6] = {forces.normal[0], forces.normal[1], forces.normal[2],
                               forces.moment[0], forces.moment[1], forces.moment[2]};

@@ -179,7 +179,8 @@ std::array<FrameField, k_field_count> frame_fields(const RowShape& shape) {
        {"hinge",
         u8,
         {e},
-        "0 none, 1 first end, 2 second end, 3 broken, 4 middle; 5, 6 flowed at the first, second end",
+        "0 none, 1 first end, 2 second end, 3 broken, 4 middle, 7 both; 5, 6, 8 flowed at the first, second, "
+        "both",
         ""},
        {"contact_depth", f32, {c}, "1", ""},
        {"contact_force", f32, {c, 3}, "N", "x,y,z"},

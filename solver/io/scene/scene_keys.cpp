@@ -116,8 +116,11 @@ void add_run(std::vector<Key>& keys) {
   rows.integer("load_steps", 1, 1e5, "equal parts in which the loads grow")
       .absent(run.statics.load_steps)
       .only("analysis", {"static"});
-  rows.plain("control", T::table, "a node that moves in equal parts while the loads follow")
+  rows.plain("control", T::table, "a node that moves, or a path that goes on, in equal parts while the loads follow")
       .absent_means("the loads grow by themselves")
+      .only("analysis", {"static"});
+  rows.word("stop_at", {"instability"}, "ends the path at the first equilibrium that is not stable")
+      .absent_means("the path goes on; each load step tells whether it is stable")
       .only("analysis", {"static"});
   rows.word("elements", k_schemes, Scheme::asi_gauss,
             "where the integration points stand; asi: in the middle while elastic; midpoint: always");
@@ -140,9 +143,13 @@ void add_run(std::vector<Key>& keys) {
 void add_control(std::vector<Key>& keys) {
   Rows rows(keys, "run.control");
   rows.plain("body", T::text, "a frame, or a copy").absent_means("the first frame");
-  rows.integer("node", 0, 1e6, "node of the frame's list").required();
+  rows.integer("node", 0, 1e6, "node of the frame's list").absent_means("with `arc` none, else it is required");
   rows.word("dof", letters(k_directions), "its direction: lower case translations, upper case rotations")
-      .required();
+      .absent_means("as `node`");
+  rows.number("arc", D::length, "m", 0, k_far,
+              "arc length: way of the whole frame over all load steps, as root mean square of its nodes' "
+              "displacements in each; 0: each load step as far as its share of the loads moves it at first")
+      .absent_means("a node is controlled");
   rows.number("to", D::length, "m", -k_far, k_far, "travel over all load steps")
       .absent_means("each load step as far as its share of the loads moves it at first")
       .only("dof", letters(k_directions.substr(0, 3)));

@@ -103,6 +103,7 @@ void read_run(const Entry& root, Setup& setup) {
   setup.parameters.tolerance = run.number("tolerance");
   setup.run.analysis = run.chosen("analysis", k_analyses);
   setup.run.statics.load_steps = run.integer("load_steps");
+  setup.run.statics.stop_at_instability = run.has("stop_at");
   if (setup.run.analysis != Analysis::dynamic) {
     setup.run.duration = 1;
     setup.run.settle = setup.run.settle && !setup.parameters.gravity.isZero(0);
@@ -257,11 +258,21 @@ void read_control(const Entry& root, Setup& setup) {
   const Model& model = setup.model;
   const int body = entry.has("body") ? find_body(entry, model) : cabinet_total(root);
   if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
-  DisplacementControl control;
-  control.node = find_node(root, entry, model, body, "; control takes a frame");
-  control.direction = static_cast<int>(k_directions.find(entry.word("dof")));
+  PathControl control;
+  control.arc_length = entry.has("arc");
+  for (const char* const key : {"node", "dof"})
+    if (entry.has(key) == control.arc_length)
+      entry.fail(control.arc_length ? std::string(key) + " has no part in arc length"
+                                    : "needs " + std::string(key) + ", or arc");
+  if (control.arc_length) {
+    control.node = model.bodies[body].first_node;
+    if (entry.number("arc") > 0) control.to = entry.number("arc");
+  } else {
+    control.node = find_node(root, entry, model, body, "; control takes a frame");
+    control.direction = static_cast<int>(k_directions.find(entry.word("dof")));
+  }
   for (const Support& support : model.supports) {
-    if (support.node == control.node && support.fixed >> control.direction & 1)
+    if (!control.arc_length && support.node == control.node && support.fixed >> control.direction & 1)
       entry.fail("dof", "the node is supported in this direction");
   }
   bool loaded = false;

@@ -170,7 +170,8 @@ TEST_F(PlasticRecordingTest, element_tables_are_those_of_the_solver) {
       const bool flowed = !state.offset.kappa.isZero(0) || !state.offset.gamma.isZero(0);
       int hinge = static_cast<int>(state.hinge);
       if (state.hinge == Hinge::none && flowed) hinge = k_flowed_first;  // clamped at the first end
-      expected.push_back({run.state().time, std::sqrt(f + 1), -hinge_place(element, state.hinge), hinge});
+      const double s = state.hinge == Hinge::first ? 1 : state.hinge == Hinge::second ? -1 : element.s;
+      expected.push_back({run.state().time, std::sqrt(f + 1), s, hinge});
     }
   });
   export_csv(Recording(path("a.h5")), path("csv"));

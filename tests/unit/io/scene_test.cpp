@@ -157,11 +157,11 @@ TEST(Scene, displacement_control_names_a_node_of_a_frame_and_how_far_it_goes) {
     return *parse_scene(loaded + "[run]\nanalysis = \"static\"\ncontrol = { " + lines + " }\n", "s.toml")
                 .setup.run.statics.control;
   };
-  const DisplacementControl first = control("node = 1, dof = \"z\"");
+  const PathControl first = control("node = 1, dof = \"z\"");
   EXPECT_EQ(first.node, 1);
   EXPECT_EQ(first.direction, 2);
   EXPECT_FALSE(first.to);
-  const DisplacementControl second =
+  const PathControl second =
       control("body = \"beam-2\", node = 1, dof = \"Y\", to_angle = \"180 deg\"");
   EXPECT_EQ(second.node, 4);  // a member of two elements has a node of its own
   EXPECT_EQ(second.direction, 4);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <set>
 
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
@@ -25,11 +26,9 @@ class PlasticPath {
     system.load_memory(state, motion_);
     const BodyMotion start = motion_;
     const double reached = displacement(node, direction) + step;
-    HingeStep hinges;
     do {
       if (!solve(6 * node + direction, reached)) return false;
-    } while (update_hinges(system, motion_, hinges));
-    redos += hinges.redos;
+    } while (break_sections(system, motion_));
     dissipated += commit_hinges(system, start, motion_, state);
     return true;
   }
@@ -38,9 +37,15 @@ class PlasticPath {
     if (direction < 3) return (motion_.position[node] - model.node_position[node])[direction];
     return log_quaternion(motion_.rotation[node])[direction - 3];
   }
+  /// Nodes beside which a section flows; of elements that flow in their middle these.
   int hinge_count() const {
-    return static_cast<int>(std::count_if(state.elements.begin(), state.elements.end(),
-                                          [](const ElementState& e) { return e.hinge != Hinge::none; }));
+    std::set<std::pair<int, int>> places;
+    for (std::size_t e = 0; e < state.elements.size(); ++e)
+      for (int end = 0; end < 2; ++end)
+        if (has_hinge(state.elements[e].hinge, end))
+          places.insert(state.elements[e].hinge == Hinge::middle ? std::pair(static_cast<int>(e), -1)
+                                                                 : std::pair(model.elements[e].node[end], 0));
+    return static_cast<int>(places.size());
   }
   Hinge hinge(int element) const { return state.elements[element].hinge; }
   double stored() const {
@@ -55,7 +60,6 @@ class PlasticPath {
   BodySystem system;
   State state;
   double factor = 0, dissipated = 0;
-  int redos = 0;
 
  private:
   BeamEnds ends(std::size_t e) const {

@@ -4,6 +4,7 @@
 
 #include "solver/run/run.h"
 #include "unit/solver/fixtures.h"
+#include "unit/solver/step/lees_frame.h"
 
 namespace topple::test {
 namespace {
@@ -132,33 +133,13 @@ TEST(Statics, bend_of_45_degrees_under_a_load_out_of_its_plane) {
   EXPECT_LT((Vec3(half.y(), half.x(), half.z()) - Vec3(22.33, 58.84, 40.08)).cwiseAbs().maxCoeff(), 0.2);
 }
 
-// Two legs of 120, pinned; the load acts 24 from the corner.
-topple::Setup lees_frame(int members) {
-  topple::Setup setup;
-  Material material = steel();
-  material.young = 7.2e6;
-  setup.model.materials.push_back(material);
-  setup.model.sections.push_back(plain_section(6, 2, 4.5, 5, 1, 1));
-  FrameSpec spec;
-  spec.name = "lee";
-  for (int i = 0; i <= members; ++i) spec.nodes.push_back({0, 0, 120. * i / members});
-  for (int i = 1; i <= members; ++i) spec.nodes.push_back({120. * i / members, 0, 120});
-  for (int i = 0; i < 2 * members; ++i) spec.members.push_back({{i, i + 1}, 0, 0});
-  spec.supports = {{0, 0x2f}, {2 * members, 0x2f}};
-  spec.loads.push_back({members + members / 5, {0, 0, -1000}, Vec3::Zero(), {}});
-  setup.starts = add_frame(setup.model, spec);
-  setup.parameters.gravity.setZero();
-  setup.run = {.analysis = Analysis::statics, .settle = false};
-  return setup;
-}
-
 TEST(Statics, displacement_control_passes_the_limit_load_of_lees_frame) {
   double limit[2];
   for (int k = 0; k < 2; ++k) {
     const int members = 20 << k;
     topple::Setup setup = lees_frame(members);
     const int node = members + members / 5;
-    setup.run.statics = {.load_steps = 240, .control = DisplacementControl{node, 2, -60.}};
+    setup.run.statics = {.load_steps = 240, .control = PathControl{node, 2, -60.}};
     topple::Run run(setup);
     limit[k] = 0;
     double at = 0;
@@ -202,12 +183,14 @@ TEST(Statics, load_step_beyond_the_limit_keeps_what_converged_and_says_where_and
 }
 
 // Euler: pi^2 EI/(4 L^2) for a clamped column, in both directions at once.
-TEST(Statics, straight_column_is_not_followed_beyond_eulers_load) {
+TEST(Statics, straight_column_is_not_followed_beyond_eulers_load_where_that_is_asked_for) {
   const double euler = k_pi * k_pi * k_bending / 4;
   topple::Setup setup = chain(8, {-2 * euler, 0, 0}, Vec3::Zero(), 10);
+  setup.run.statics.stop_at_instability = true;
   topple::Run run(setup);
   while (!run.over()) run.advance();
   ASSERT_EQ(run.status().kind, StepStatus::Kind::no_equilibrium);
+  EXPECT_EQ(run.status().stability.loss, Stability::Loss::buckling);
   // 16 elements: second order in their length; 1/1024 of a load step
   EXPECT_NEAR(run.state().load_factor, 0.5, 0.002);
 }
@@ -275,7 +258,7 @@ TEST(Statics, loads_with_a_history_follow_it_over_the_load_steps) {
 
 TEST(Statics, continuing_from_a_checkpoint_gives_the_same_hashes) {
   topple::Setup setup = lees_frame(10);
-  setup.run.statics = {.load_steps = 20, .control = DisplacementControl{12, 2, std::nullopt}};
+  setup.run.statics = {.load_steps = 20, .control = PathControl{12, 2, std::nullopt}};
   topple::Run run(setup);
   ASSERT_TRUE(run.status().ok());
   for (int i = 0; i < 7; ++i) ASSERT_TRUE(run.advance().ok());

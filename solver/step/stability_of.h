@@ -1,0 +1,19 @@
+// Whether an equilibrium of a frame is stable, and what it loses when it is not.
+#pragma once
+
+#include <vector>
+
+#include "solver/frame/body_system.h"
+#include "solver/state/step_result.h"
+
+namespace topple {
+
+/// By the tangent in system.lu, not factored yet. `growth`: derivative of the loads by their factor, six
+/// numbers per node. Nothing is known with loads that have no potential.
+Stability stability_of(BodySystem& system, const std::vector<double>& growth);
+
+/// Completes `out`, which stability_of() gave, by the mode that is softest or, with negative pivots, the
+/// softest of those in which the system runs away: inverse iteration beside those found before.
+void add_softest_mode(BodySystem& system, const std::vector<double>& growth, Stability& out);
+
+}  // namespace topple
