@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-5";
+  return "topple-6";
 }
 
 }  // namespace topple
