@@ -55,6 +55,18 @@ void warn_of_shakes(const Run& run, Warnings& list) {
                       k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
 }
 
+// With run.control the loads follow the path, and a body stays on it.
+void warn_of_instability(const Run& run, Warnings& list) {
+  const std::vector<LoadStep>& steps = run.load_steps();
+  const auto unstable =
+      std::ranges::find_if(steps, [](const LoadStep& step) { return !step.stability.stable(); });
+  if (unstable == steps.end() || !unstable->converged || run.setup().run.statics.control) return;
+  list.push_back(fmt::format(
+      "from load factor {:.6g} on the equilibrium is not stable: under loads that stay it is left; "
+      "run.stop_at = \"instability\" ends the path there",
+      unstable->factor));
+}
+
 void warn_of_stress(const Run& run, Warnings& list) {
   const Model& model = run.setup().model;
   const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
@@ -133,6 +145,7 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_depth(run, list);
   warn_of_shakes(run, list);
   warn_of_stress(run, list);
+  warn_of_instability(run, list);
   if (is_static(run.setup())) return list;
   if (!run.parameters().adaptive) warn_of_step(run, list);
   warn_of_law(run, list);

@@ -386,6 +386,8 @@ StepStatus LoadPath::start(const Parameters& parameters, bool settled, State& st
     if (settled && status.ok()) status = settle_system(*system, parameters, state, scratch);
   if (!status.ok()) return status;
   status = balance(parameters, state, {0});
+  if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
+    status.stability = what_is_lost(parameters, state, status.body);
   if (!status.ok() || !settings_.control) return status;
   const PathControl& control = *settings_.control;
   std::optional<double> travel;
@@ -408,12 +410,23 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
   StepStatus status;
   std::vector<char> changed(model_->bodies.size());
   switch_anchors(*model_, parameters, state, changed);
+  // where a path bends off Newton may step over to an equilibrium that is not stable: closer before that
+  bool looks_closer = !settings_.control && stability_.stable();
   while (done < 1) {
+    const State from = looks_closer ? state : State{};
+    const Stability stable = stability_;
     const Target target = settings_.control ? Target{state.load_factor, part * state.step_size}
                                             : Target{(before + done + part) / steps};
     status = balance(parameters, state, target);
     iterations += status.newton_iterations;
-    if (status.ok()) {
+    const bool unstable = status.ok() && looks_closer && !stability_.stable();
+    if (unstable && part / 2 >= k_least_part) {
+      state = from;
+      stability_ = stable;
+      ++rejected;
+      part /= 2;
+    } else if (status.ok()) {
+      looks_closer = looks_closer && !unstable;
       done += part;
       part = std::min(2 * part, 1 - done);
       state.time = settings_.control ? (before + done) / steps : state.load_factor;

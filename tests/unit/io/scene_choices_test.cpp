@@ -89,9 +89,8 @@ TEST(SceneChoices, displacement_control_needs_a_loaded_node_that_can_move) {
     return error.substr(error.find("run"));
   };
   const std::string load = "loads = [{ node = 1, force = [0, 0, 1] }]\n";
-  EXPECT_EQ(control(load, "node = 1"),
-            "run.control.dof: missing (its direction: lower case translations, upper "
-            "case rotations)");
+  EXPECT_EQ(control(load, "node = 1"), "run.control: needs dof, or arc");
+  EXPECT_EQ(control(load, "arc = \"1 m\", node = 1"), "run.control: node has no part in arc length");
   EXPECT_EQ(control(load, "node = 2, dof = \"z\""),
             "run.control.node: 2 is not a node of \"beam\", which has 0..1");
   EXPECT_EQ(control(load, "node = 0, dof = \"z\""),

@@ -27,8 +27,8 @@ class PlasticPath {
     const BodyMotion start = motion_;
     const double reached = displacement(node, direction) + step;
     do {
-      if (!solve(6 * node + direction, reached)) return false;
-    } while (break_sections(system, motion_));
+      if (!solve(start, 6 * node + direction, reached)) return false;
+    } while (release_joints(system, motion_) || break_sections(system, motion_));
     dissipated += commit_hinges(system, start, motion_, state);
     return true;
   }
@@ -68,11 +68,12 @@ class PlasticPath {
   }
 
   // Newton on (unknowns, factor) with the prescribed displacement as the last equation: regular at collapse.
-  bool solve(int control, double reached) {
+  bool solve(const BodyMotion& start, int control, double reached) {
     const int n = 6 * system.count;
     const double at_start = displacement(control / 6, control % 6);
     double last = 1e300;
     for (int iteration = 0; iteration < 40; ++iteration) {
+      if (iteration > 0) hold_joints(system, start, motion_);
       Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n + 1, n + 1);
       Eigen::VectorXd r = Eigen::VectorXd::Zero(n + 1);
       for (std::size_t e = 0; e < model.elements.size(); ++e) add_element(e, k, r);

@@ -102,7 +102,7 @@ TEST_F(FullDiskTest, results_that_standard_output_does_not_take_are_a_failure) {
   for (const std::vector<std::string>& call : {std::vector<std::string>{"run", "s.toml"},
                                                {"run", "s.toml", "--json", "-"},
                                                {"info", "a.h5"},
-                                               {"check", "s.toml"},
+                                               {"check", "cantilever"},
                                                {"scenes"},
                                                {"furniture"},
                                                {"--help"}})

@@ -268,8 +268,8 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
       out[name + number] = [i, of](Parameters& p) -> double& { return p.shakes[i].*of; };
     };
     [[maybe_unused]] const auto& [kind, amplitude, frequency, last_frequency, direction, start, on, cycles,
-                                  taper, initial_velocity, shape, duration, record, scale, turned, turns,
-                                  amplitude_before, scale_before, ramp] = all.shakes[i];
+                                  taper, initial_velocity, shape, duration, record, scale, building, turned,
+                                  turns, amplitude_before, scale_before, ramp] = all.shakes[i];
     add("amplitude", &Shake::amplitude);
     add("frequency", &Shake::frequency);
     add("last_frequency", &Shake::last_frequency);

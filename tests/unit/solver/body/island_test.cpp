@@ -159,6 +159,7 @@ TEST(Island, tangent_of_a_rigid_body_among_frames_is_the_derivative_of_its_force
                            .node = model.bodies[1].first_node + 5,
                            .arm = Vec3(0.02, 0.01, -0.03),
                            .to = Vec3(2, 0.5, 1),
+                           .other = {},
                            .type = Anchor::Type::strap,
                            .stiffness = 1e5,
                            .length = 1});
@@ -458,6 +459,7 @@ TEST(Island, bracket_of_a_body_that_another_pushes_holds_what_a_frame_s_does) {
                          .node = top,
                          .arm = Vec3::Zero(),
                          .to = setup.model.node_position[top] + Vec3(3, 0, 0),
+                         .other = {},
                          .type = Anchor::Type::bracket,
                          .stiffness = 2e4,
                          .length = 3};

@@ -9,7 +9,7 @@
 namespace topple::test {
 namespace {
 
-constexpr double k_mass = 40, k_stiffness = 2e4, k_speed = 0.2;  // kg, N/m, m/s
+constexpr double k_tie_mass = 40, k_tie_stiffness = 2e4, k_tie_speed = 0.2;  // kg, N/m, m/s
 
 // A rigid body among frames takes another method than they do, so that what one step changes in their force
 // weighs differently in both: relative to the momentum, at these steps. Elsewhere it is rounding and Newton's
@@ -33,7 +33,7 @@ topple::Setup apart(const Pair& pair, const Vec3& from, const Vec3& to, Anchor::
   topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec spec = tall_cabinet();
-  spec.mass = k_mass;
+  spec.mass = k_tie_mass;
   for (int k = 0; k < 2; ++k) {
     spec.name = copy_name("cabinet", k);
     spec.at.x() = k * (spec.size.x() + 1);
@@ -62,7 +62,7 @@ topple::Setup apart(const Pair& pair, const Vec3& from, const Vec3& to, Anchor::
   a.to = other;
   a.other = end_at(1, other);
   a.type = type;
-  a.stiffness = k_stiffness;
+  a.stiffness = k_tie_stiffness;
   a.length = (at - other).norm();
   setup.model.anchors.push_back(a);
   setup.parameters.anchors = {true};
@@ -87,22 +87,23 @@ TEST(Tie, two_bodies_swing_as_their_reduced_mass_and_the_sum_of_their_momenta_st
   for (const Pair& pair : k_pairs) {
     SCOPED_TRACE(pair.name);
     topple::Setup setup = apart(pair, Vec3::Zero(), Vec3::Zero(), Anchor::Type::bracket);
-    setup.starts[0].velocity = Vec3(-k_speed, 0, 0);
+    setup.starts[0].velocity = Vec3(-k_tie_speed, 0, 0);
     Simulation sim = simulate(setup);
-    const double before = apart(sim), omega = std::sqrt(2 * k_stiffness / k_mass);
+    const double before = apart(sim), omega = std::sqrt(2 * k_tie_stiffness / k_tie_mass);
     const bool stiff = pair.first == BodyModel::rigid && pair.second == BodyModel::rigid;
     for (int i = 0; i < 5; ++i) {
       ASSERT_TRUE(sim.advance(30));
-      EXPECT_NEAR(apart(sim) - before, k_speed / omega * std::sin(omega * sim.state.time),
-                  (stiff ? 1e-3 : 0.05) * k_speed / omega);
-      EXPECT_LT((momentum(sim) + Vec3(k_mass * k_speed, 0, 0)).norm(), pair.kept * k_mass * k_speed);
+      EXPECT_NEAR(apart(sim) - before, k_tie_speed / omega * std::sin(omega * sim.state.time),
+                  (stiff ? 1e-3 : 0.05) * k_tie_speed / omega);
+      EXPECT_LT((momentum(sim) + Vec3(k_tie_mass * k_tie_speed, 0, 0)).norm(),
+                pair.kept * k_tie_mass * k_tie_speed);
       const AnchorForce now = anchor_forces(sim.model, sim.state)[0];
       EXPECT_NEAR(
           now.tension,
-          k_stiffness *
+          k_tie_stiffness *
               ((anchor_point(sim.model, sim.state, 0).at - anchor_target(sim.model, sim.state, 0).at).norm() -
                setup.model.anchors[0].length),
-          1e-9 * k_stiffness);
+          1e-9 * k_tie_stiffness);
     }
     EXPECT_LT(sim.state.energy.balance_error(), 1e-4);
   }
@@ -137,7 +138,7 @@ TEST(Tie, a_pin_holds_in_all_directions) {
     for (int i = 0; i < 20; ++i) {
       ASSERT_TRUE(sim.advance(15));
       EXPECT_LT((anchor_point(sim.model, sim.state, 0).at - anchor_target(sim.model, sim.state, 0).at).norm(),
-                0.3 * std::sqrt(k_mass / 1e6));
+                0.3 * std::sqrt(k_tie_mass / 1e6));
     }
     EXPECT_LT((momentum(sim) - before).norm(), pair.kept * before.norm());
     // work of a vibration of some substeps a period, by a quadrature of third order
@@ -149,8 +150,8 @@ TEST(Tie, what_it_breaks_at_lets_both_go) {
   for (const Pair& pair : k_pairs) {
     SCOPED_TRACE(pair.name);
     topple::Setup setup = apart(pair, Vec3::Zero(), Vec3::Zero(), Anchor::Type::strap);
-    setup.starts[0].velocity = Vec3(-k_speed, 0, 0);
-    const double peak = k_speed * std::sqrt(k_stiffness * k_mass / 2);
+    setup.starts[0].velocity = Vec3(-k_tie_speed, 0, 0);
+    const double peak = k_tie_speed * std::sqrt(k_tie_stiffness * k_tie_mass / 2);
     setup.model.anchors[0].strength = peak / 2;
     Simulation sim = simulate(setup);
     ASSERT_TRUE(sim.advance(100));
@@ -159,10 +160,11 @@ TEST(Tie, what_it_breaks_at_lets_both_go) {
         (body_momentum(sim.model, sim.state, 1).velocity - body_momentum(sim.model, sim.state, 0).velocity)
             .x();
     // half of the greatest force is a quarter of the energy of their motion; it is found to a step's stretch
-    EXPECT_NEAR(apart_speed, k_speed * std::sqrt(0.75), 0.02 * k_speed);
-    EXPECT_NEAR(sim.state.energy.released, k_mass / 4 * k_speed * k_speed / 4,
-                0.05 * k_mass / 16 * k_speed * k_speed);
-    EXPECT_LT((momentum(sim) + Vec3(k_mass * k_speed, 0, 0)).norm(), pair.kept * k_mass * k_speed);
+    EXPECT_NEAR(apart_speed, k_tie_speed * std::sqrt(0.75), 0.02 * k_tie_speed);
+    EXPECT_NEAR(sim.state.energy.released, k_tie_mass / 4 * k_tie_speed * k_tie_speed / 4,
+                0.05 * k_tie_mass / 16 * k_tie_speed * k_tie_speed);
+    EXPECT_LT((momentum(sim) + Vec3(k_tie_mass * k_tie_speed, 0, 0)).norm(),
+              pair.kept * k_tie_mass * k_tie_speed);
     EXPECT_LT(sim.state.energy.balance_error(), 1e-3);
   }
 }
@@ -172,20 +174,22 @@ TEST(Tie, is_switched_while_it_runs) {
   for (const Pair& pair : k_pairs) {
     SCOPED_TRACE(pair.name);
     topple::Setup setup = apart(pair, Vec3::Zero(), Vec3::Zero(), Anchor::Type::bracket);
-    setup.starts[0].velocity = Vec3(-k_speed, 0, 0);
+    setup.starts[0].velocity = Vec3(-k_tie_speed, 0, 0);
     setup.parameters.anchors = {false};
     Simulation sim = simulate(setup);
     ASSERT_TRUE(sim.advance(20));
     EXPECT_NEAR(body_momentum(sim.model, sim.state, 1).velocity.norm(), 0, 1e-12);
     sim.parameters.anchors = {true};
     ASSERT_TRUE(sim.advance(1));
-    const double before = apart(sim), omega = std::sqrt(2 * k_stiffness / k_mass), start = sim.state.time;
+    const double before = apart(sim), omega = std::sqrt(2 * k_tie_stiffness / k_tie_mass),
+                 start = sim.state.time;
     ASSERT_TRUE(sim.advance(50));
     const double after = omega * (sim.state.time - start);
-    EXPECT_NEAR(apart(sim) - before, k_speed / omega * std::sin(after), 0.05 * k_speed / omega);
+    EXPECT_NEAR(apart(sim) - before, k_tie_speed / omega * std::sin(after), 0.05 * k_tie_speed / omega);
     sim.parameters.anchors = {false};
     ASSERT_TRUE(sim.advance(20));
-    EXPECT_LT((momentum(sim) + Vec3(k_mass * k_speed, 0, 0)).norm(), pair.kept * k_mass * k_speed);
+    EXPECT_LT((momentum(sim) + Vec3(k_tie_mass * k_tie_speed, 0, 0)).norm(),
+              pair.kept * k_tie_mass * k_tie_speed);
     EXPECT_LT(sim.state.energy.balance_error(), 1e-3);
   }
 }
@@ -290,7 +294,7 @@ TEST(Tie, blocks_are_the_derivatives_of_the_loads) {
       for (int a = 0; a < 2; ++a)
         for (int i = 0; i < 6 + (a == 0 ? 0 : 4); ++i)
           EXPECT_NEAR(-(number(moved[1][a], i) - number(moved[0][a], i)) / (2 * k_step), block[a][b](i, k),
-                      1e-5 * k_stiffness)
+                      1e-5 * k_tie_stiffness)
               << a << i << b << k;
     }
 }

@@ -83,8 +83,8 @@ TEST(Islands, bodies_that_may_touch_are_one_system_and_others_stay_alone) {
   floor.to[0] = 11;
   add_grid(model, floor);
   Islands islands(model);
-  EXPECT_EQ(islands.divide({}).size(), 5u);
-  const std::vector<Island> divided = islands.divide(NearSearch(model).find(model.node_position, 0.02));
+  EXPECT_EQ(islands.divide({}, {}).size(), 5u);
+  const std::vector<Island> divided = islands.divide(NearSearch(model).find(model.node_position, 0.02), {});
   ASSERT_EQ(divided.size(), 3u);  // the floor holds them all and is in none
   EXPECT_EQ(divided[0].bodies, (std::vector<int>{0, 2, 4}));
   EXPECT_EQ(divided[1].bodies, (std::vector<int>{1}));

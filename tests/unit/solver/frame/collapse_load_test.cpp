@@ -11,18 +11,18 @@
 namespace topple::test {
 namespace {
 
-constexpr double k_yield = 1e5, k_mp = 1.25e-4 * k_yield;
+constexpr double k_weak = 1e5, k_moment = 1.25e-4 * k_weak;
 constexpr unsigned k_pinned = 0b101111;  // turns in the plane
 
-/// A plane frame and the plastic moment of each of its members, over k_mp.
+/// A plane frame and the plastic moment of each of its members, over k_moment.
 struct StrengthFrame {
   PlaneFrame frame;
   std::vector<double> strength;
 
   Model build() const {
-    Model model = frame.build(pure_bending_section(), weak_steel(k_yield));
+    Model model = frame.build(pure_bending_section(), weak_steel(k_weak));
     for (Element& element : model.elements)
-      element.capacity[2] = strength[static_cast<std::size_t>(element.member)] * k_mp;
+      element.capacity[2] = strength[static_cast<std::size_t>(element.member)] * k_moment;
     return model;
   }
 };
@@ -41,7 +41,7 @@ double limit_of_equilibrium(const StrengthFrame& of) {
     const Vec3 span = nodes[static_cast<std::size_t>(j)] - nodes[static_cast<std::size_t>(i)];
     const double length = span.norm(), c = span.x() / length, s = span.z() / length;
     const Eigen::Index n = per * at(m), row_i = 3 * i, row_j = 3 * j;
-    const double mp = of.strength[m] * k_mp;
+    const double mp = of.strength[m] * k_moment;
     const auto add = [&](Eigen::Index row, Eigen::Index column, double factor) { a(row, column) += factor; };
     for (const auto& [column, sign] : {std::pair(n, 1.), std::pair(n + 1, -1.)}) {  // tension on its nodes
       add(row_i, column, sign * c), add(row_i + 1, column, sign * s);
@@ -87,7 +87,7 @@ double collapse(const StrengthFrame& of) {
   setup.starts.resize(1);
   setup.parameters.gravity.setZero();
   constexpr int k_steps = 500;
-  constexpr double k_step = k_mp / (205e9 * 5e-6) / 10;
+  constexpr double k_step = k_moment / (205e9 * 5e-6) / 10;
   setup.run = {
       .analysis = Analysis::statics,
       .statics = {.load_steps = k_steps, .control = PathControl{.to = k_steps * k_step, .arc_length = true}},
@@ -122,7 +122,8 @@ TEST(CollapseLoad, pinned_portal_of_one_section_comes_to_that_of_plastic_theory)
         {.nodes = {{0, 0, 0}, {0, 0, k_height}, {2, 0, k_height}, {k_span, 0, k_height}, {k_span, 0, 0}},
          .members = {{0, 1}, {1, 2}, {2, 3}, {3, 4}},
          .supports = {{0, k_pinned}, {4, k_pinned}},
-         .loads = {{1, {k_mp, 0, 0}, Vec3::Zero(), {}}, {2, {0, 0, -share * k_mp}, Vec3::Zero(), {}}}},
+         .loads = {{1, {k_moment, 0, 0}, Vec3::Zero(), {}},
+                   {2, {0, 0, -share * k_moment}, Vec3::Zero(), {}}}},
         {1, 1, 1, 1}};
     const double exact = 4 / (k_height + share * k_span / 2);
     EXPECT_NEAR(limit_of_equilibrium(portal), exact, 1e-9);
@@ -156,8 +157,8 @@ StrengthFrame random_frame(std::mt19937& rng, int storeys) {
       of.frame.members.emplace_back(i, j);
       of.strength.push_back(mp);
     }
-    of.frame.loads.push_back({first, {k_mp * between(rng, 0.1, 1), 0, 0}, Vec3::Zero(), {}});
-    of.frame.loads.push_back({first + 1, {0, 0, -k_mp * between(rng, 0.1, 2)}, Vec3::Zero(), {}});
+    of.frame.loads.push_back({first, {k_moment * between(rng, 0.1, 1), 0, 0}, Vec3::Zero(), {}});
+    of.frame.loads.push_back({first + 1, {0, 0, -k_moment * between(rng, 0.1, 2)}, Vec3::Zero(), {}});
     left = first, right = first + 2;
   }
   return of;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/run/run.h"
 #include "unit/solver/plastic_statics.h"
 
 namespace topple::test {
@@ -104,13 +105,22 @@ class HingesOfPortal : public testing::TestWithParam<Portal> {
   }
   // Greatest factor on the way through collapse.
   static double collapse(const Portal& load, bool pure) {
-    PlasticPath path(model(load, pure));
+    topple::Setup setup;
+    setup.model = model(load, pure);
+    setup.starts.resize(1);
+    setup.parameters.gravity.setZero();
     const bool sways = load.sway > 0;
-    const double step = k_mp * k_height * k_height / k_ei / 40;
+    constexpr int k_steps = 80;
+    const double travel = k_steps * k_mp * k_height * k_height / k_ei / 40;
+    setup.run = {.analysis = Analysis::statics,
+                 .statics = {.load_steps = k_steps,
+                             .control = PathControl{sways ? 1 : 2, sways ? 0 : 2, sways ? travel : -travel}},
+                 .settle = false};
+    topple::Run run(setup);
     double greatest = 0;
-    for (int i = 0; i < 80; ++i) {
-      if (!path.move(sways ? 1 : 2, sways ? 0 : 2, sways ? step : -step)) return -1;
-      greatest = std::max(greatest, path.factor);
+    while (!run.over()) {
+      if (!run.advance().ok()) return -1;
+      greatest = std::max(greatest, run.state().load_factor);
     }
     return greatest;
   }

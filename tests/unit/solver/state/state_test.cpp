@@ -80,6 +80,7 @@ TEST(State, anchors_add_their_own_to_a_checkpoint_and_none_add_nothing) {
                            .node = 7,
                            .arm = Vec3::Zero(),
                            .to = Vec3(-1, 0, 2),
+                           .other = {},
                            .type = Anchor::Type::strap,
                            .stiffness = 1e4,
                            .length = 5});

@@ -141,6 +141,7 @@ TEST(Allocation, no_step_with_anchors_after_the_first_takes_memory) {
                     .node = 0,
                     .arm = Vec3(0, 0, 1.7),
                     .to = Vec3(side, 0, 1.7),
+                    .other = {},
                     .type = Anchor::Type::strap,
                     .stiffness = 1e4,
                     .length = 0};
