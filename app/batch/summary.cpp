@@ -149,9 +149,10 @@ ordered_json load_steps(const Run& run) {
     if (words != std::end(k_losses)) one["loss"] = words->word;
     if (s.node >= 0) {
       const int body = model.node_body[s.node];
-      one["mode"] = {{"body", model.bodies[body].name},
-                     {"node", s.node - model.bodies[body].first_node},
-                     {"direction", {number(s.direction.x()), number(s.direction.y()), number(s.direction.z())}}};
+      one["mode"] = {
+          {"body", model.bodies[body].name},
+          {"node", s.node - model.bodies[body].first_node},
+          {"direction", {number(s.direction.x()), number(s.direction.y()), number(s.direction.z())}}};
     }
     list.push_back(one);
   }
@@ -162,14 +163,17 @@ ordered_json load_steps(const Run& run) {
 std::string loss_in_words(const ordered_json& step) {
   if (step["loss"].is_null()) return "";
   const std::string word = step["loss"].get<std::string>();
-  const LossWords& loss = *std::ranges::find(k_losses, word, [](const LossWords& w) { return std::string(w.word); });
+  const LossWords& loss =
+      *std::ranges::find(k_losses, word, [](const LossWords& w) { return std::string(w.word); });
   const int pivots = step["negative_pivots"].is_null() ? 0 : step["negative_pivots"].get<int>();
-  std::string out = pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
+  std::string out =
+      pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
   out += std::string(": ") + loss.words;
   if (const ordered_json& mode = step["mode"]; !mode.is_null())
-    out += fmt::format("; node {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", mode["node"].get<int>(),
-                       mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
-                       mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
+    out +=
+        fmt::format("; node {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", mode["node"].get<int>(),
+                    mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
+                    mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
   return out;
 }
 

@@ -23,9 +23,9 @@ struct Stability {
     mechanism     ///< as limit_point, while hinges flow
   };
   Loss loss = Loss::none;
-  int negative_pivots = -1;        ///< of the tangent: directions in which it runs away; -1: not known
-  int node = -1;                   ///< index into the model: moves most in the mode of the first of them,
-  Vec3 direction = Vec3::Zero();   ///< along this unit vector, world axes
+  int negative_pivots = -1;       ///< of the tangent: directions in which it runs away; -1: not known
+  int node = -1;                  ///< index into the model: moves most in the mode of the first of them,
+  Vec3 direction = Vec3::Zero();  ///< along this unit vector, world axes
 
   bool stable() const { return negative_pivots <= 0; }
 };

@@ -10,7 +10,7 @@
 namespace topple::io {
 namespace {
 
-constexpr double k_off_body = 0.1;     // m, from `at` to the body
+constexpr double k_off_body = 0.1;    // m, from `at` to the body
 constexpr double k_upper = 0.05;      // of a body's height: what counts as its top
 constexpr double k_same = 1e-3;       // m: nodes as near as that are equally near
 constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes

@@ -116,7 +116,8 @@ void add_run(std::vector<Key>& keys) {
   rows.integer("load_steps", 1, 1e5, "equal parts in which the loads grow")
       .absent(run.statics.load_steps)
       .only("analysis", {"static"});
-  rows.plain("control", T::table, "a node that moves, or a path that goes on, in equal parts while the loads follow")
+  rows.plain("control", T::table,
+             "a node that moves, or a path that goes on, in equal parts while the loads follow")
       .absent_means("the loads grow by themselves")
       .only("analysis", {"static"});
   rows.word("stop_at", {"instability"}, "ends the path at the first equilibrium that is not stable")
@@ -143,7 +144,8 @@ void add_run(std::vector<Key>& keys) {
 void add_control(std::vector<Key>& keys) {
   Rows rows(keys, "run.control");
   rows.plain("body", T::text, "a frame, or a copy").absent_means("the first frame");
-  rows.integer("node", 0, 1e6, "node of the frame's list").absent_means("with `arc` none, else it is required");
+  rows.integer("node", 0, 1e6, "node of the frame's list")
+      .absent_means("with `arc` none, else it is required");
   rows.word("dof", letters(k_directions), "its direction: lower case translations, upper case rotations")
       .absent_means("as `node`");
   rows.number("arc", D::length, "m", 0, k_far,

@@ -161,8 +161,7 @@ TEST(Scene, displacement_control_names_a_node_of_a_frame_and_how_far_it_goes) {
   EXPECT_EQ(first.node, 1);
   EXPECT_EQ(first.direction, 2);
   EXPECT_FALSE(first.to);
-  const PathControl second =
-      control("body = \"beam-2\", node = 1, dof = \"Y\", to_angle = \"180 deg\"");
+  const PathControl second = control("body = \"beam-2\", node = 1, dof = \"Y\", to_angle = \"180 deg\"");
   EXPECT_EQ(second.node, 4);  // a member of two elements has a node of its own
   EXPECT_EQ(second.direction, 4);
   EXPECT_NEAR(second.to.value(), k_pi, 1e-15);

@@ -27,7 +27,8 @@ constexpr Failure k_failures[] = {
 };
 
 // What fails elsewhere and here does not.
-constexpr const char* k_avoided[] = {"double-hinge", "joint-hinges", "live-jump", "parallel-members", "unloading-hinge"};
+constexpr const char* k_avoided[] = {"double-hinge", "joint-hinges", "live-jump", "parallel-members",
+                                     "unloading-hinge"};
 
 const std::string k_folder = TOPPLE_SOURCE_DIR "/assets/scenes/failures";
 
