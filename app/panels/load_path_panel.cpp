@@ -22,7 +22,7 @@ namespace {
 using namespace window_words;
 
 constexpr float k_dash = 4;             // px, of unstable stretches
-constexpr double k_path_room = 0.06;    // of the range of an axis, on either side
+constexpr double k_path_room = 0.12;    // of the range of an axis, on either side
 constexpr double k_in_millimetres = 1;  // m: travels below it
 
 struct LossWord {
@@ -123,43 +123,59 @@ void draw_stretches(ImDrawList& list, const Player& player, const std::vector<Im
   }
 }
 
-/// Rings where stability is lost, with words beside them as far as they have room.
+/// First of the places beside a ring at which a word of that size has room; none: {0, 0, 0, 0}.
+ImVec4 room_for_word(const PathChart& chart, ImVec2 at, float away, ImVec2 size,
+                     const std::vector<ImVec4>& taken) {
+  const float middle =
+      std::clamp(at.x - size.x / 2, chart.left + 3, std::max(chart.left + 3, chart.right - size.x - 3));
+  const float above = at.y - away - size.y, below = at.y + away, beside = at.y - size.y / 2;
+  for (const ImVec2 low :
+       {ImVec2(middle, above), ImVec2(at.x - away - size.x, beside), ImVec2(at.x + away, beside),
+        ImVec2(middle, below), ImVec2(middle, below + size.y), ImVec2(middle, below + 2 * size.y)}) {
+    const ImVec4 room{low.x, low.y, low.x + size.x, low.y + size.y};
+    const bool inside =
+        room.x > chart.left && room.z < chart.right && room.y > chart.top && room.w < chart.bottom;
+    if (inside && std::ranges::none_of(taken, [&](const ImVec4& other) {
+          return room.x < other.z && other.x < room.z && room.y < other.w && other.y < room.w;
+        }))
+      return room;
+  }
+  return {0, 0, 0, 0};
+}
+
+/// Rings where stability is lost in a way that it was not since the path was last stable, with words beside
+/// them as far as they have room.
 void draw_losses(ImDrawList& list, const Player& player, const PathChart& chart,
                  const std::vector<ImVec2>& points) {
   const float line = ImGui::GetTextLineHeight(), radius = 0.36f * line;
   const Model& model = player.scene().setup.model;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::vector<ImVec4> taken;
-  Stability::Loss last = Stability::Loss::none;
+  std::vector<Stability::Loss> lost;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const io::FrameRow& row = *player.way()[i];
     const Stability* const told = player.stability(row);
-    const Stability::Loss loss = told ? told->loss : Stability::Loss::none;
-    if (std::exchange(last, loss) == loss || loss == Stability::Loss::none) continue;
-    const std::string words = say(row_of(k_loss_words, loss).words);
+    if (!told || told->loss == Stability::Loss::none) {
+      lost.clear();
+      continue;
+    }
+    if (std::ranges::find(lost, told->loss) != lost.end()) continue;
+    lost.push_back(told->loss);
+    const std::string words = say(row_of(k_loss_words, told->loss).words);
     const ImVec2 at = points[i];
     list.AddCircle(at, radius, theme().text, 16, 1.6f);
+    taken.push_back({at.x - radius, at.y - radius, at.x + radius, at.y + radius});
     if (std::hypot(mouse.x - at.x, mouse.y - at.y) < 1.5f * radius && told->node >= 0) {
       const Body& body = model.bodies[static_cast<std::size_t>(model.node_body[told->node])];
       ImGui::SetTooltip("%s", say(k_moves_most, instant_in_words(player.scene().setup, row), words,
                                   told->node - body.first_node, body.name)
                                   .c_str());
     }
-    const float width = text_width(words);
-    const float x =
-        std::clamp(at.x - width / 2, chart.left + 2, std::max(chart.left + 2, chart.right - width - 2));
-    for (const float y : {at.y - radius - line - 2, at.y + radius + 2}) {
-      const ImVec4 room{x, y, x + width, y + line};
-      const bool free =
-          y >= chart.top && y + line <= chart.bottom && std::ranges::none_of(taken, [&](const ImVec4& other) {
-            return room.x < other.z && other.x < room.z && room.y < other.w && other.y < room.w;
-          });
-      if (!free) continue;
-      list.AddRectFilled({room.x - 2, room.y}, {room.z + 2, room.w}, theme().veil);
-      add_text(list, x, y, theme().text, words);
-      taken.push_back(room);
-      break;
-    }
+    const ImVec4 room = room_for_word(chart, at, radius + 3, {text_width(words), line}, taken);
+    if (room.z == 0) continue;
+    list.AddRectFilled({room.x - 2, room.y}, {room.z + 2, room.w}, theme().veil);
+    add_text(list, room.x, room.y, theme().text, words);
+    taken.push_back(room);
   }
 }
 
