@@ -126,8 +126,7 @@ TEST_F(AnalysisTest, modes_of_a_free_cabinet_begin_with_six_rigid_ones) {
 }
 
 // Two halves of a cantilever, 1 m each, whose yield stresses are a million apart: it carries Mp/l of the
-// weaker at its own clamp. Bent down by 1 mm it is second order off, by less than 1e-6; its hinge ends 1e-6
-// before its place.
+// weaker at its own clamp. Bent down by 1 mm the arm is shorter by 1e-6.
 TEST_F(AnalysisTest, strengths_a_million_apart_side_by_side_come_to_the_collapse_load) {
   const auto material = [](const char* name, const char* yield) {
     return "[[material]]\nname = \"" + std::string(name) +
