@@ -123,57 +123,73 @@ void draw_stretches(ImDrawList& list, const Player& player, const std::vector<Im
   }
 }
 
-/// First of the places beside a ring at which a word of that size has room; none: {0, 0, 0, 0}.
+/// A place beside a ring for a word of that size, apart from what is `taken`, and from the path if there is
+/// one; none: {0, 0, 0, 0}.
 ImVec4 room_for_word(const PathChart& chart, ImVec2 at, float away, ImVec2 size,
-                     const std::vector<ImVec4>& taken) {
-  const float middle =
-      std::clamp(at.x - size.x / 2, chart.left + 3, std::max(chart.left + 3, chart.right - size.x - 3));
-  const float above = at.y - away - size.y, below = at.y + away, beside = at.y - size.y / 2;
-  for (const ImVec2 low :
-       {ImVec2(middle, above), ImVec2(at.x - away - size.x, beside), ImVec2(at.x + away, beside),
-        ImVec2(middle, below), ImVec2(middle, below + size.y), ImVec2(middle, below + 2 * size.y)}) {
-    const ImVec4 room{low.x, low.y, low.x + size.x, low.y + size.y};
-    const bool inside =
-        room.x > chart.left && room.z < chart.right && room.y > chart.top && room.w < chart.bottom;
-    if (inside && std::ranges::none_of(taken, [&](const ImVec4& other) {
-          return room.x < other.z && other.x < room.z && room.y < other.w && other.y < room.w;
-        }))
+                     const std::vector<ImVec4>& taken, const std::vector<ImVec2>& path) {
+  const float most = std::max(chart.left + 3, chart.right - size.x - 3);
+  const float middle = std::clamp(at.x - size.x / 2, chart.left + 3, most);
+  const float left = std::clamp(at.x - away - size.x, chart.left + 3, most),
+              right = std::min(at.x + away, most);
+  std::vector<ImVec4> apart;
+  for (const float y : {at.y - away - size.y, at.y - size.y / 2, at.y + away, at.y + away + size.y,
+                        at.y + away + 2 * size.y, at.y + away + 3 * size.y})
+    for (const float x : {middle, right, left}) {
+      const ImVec4 room{x, y, x + size.x, y + size.y};
+      const bool free = room.y > chart.top && room.w < chart.bottom &&
+                        std::ranges::none_of(taken, [&](const ImVec4& other) {
+                          return room.x < other.z && other.x < room.z && room.y < other.w && other.y < room.w;
+                        });
+      if (free) apart.push_back(room);
+    }
+  for (const ImVec4& room : apart)
+    if (std::ranges::none_of(
+            path, [&](ImVec2 p) { return p.x > room.x && p.x < room.z && p.y > room.y && p.y < room.w; }))
       return room;
-  }
-  return {0, 0, 0, 0};
+  return apart.empty() ? ImVec4{0, 0, 0, 0} : apart.front();
 }
 
-/// Rings where stability is lost in a way that it was not since the path was last stable, with words beside
-/// them as far as they have room.
+/// Load steps at which stability is lost in a way that it was not since the path was last stable.
+std::vector<std::size_t> losses(const Player& player) {
+  std::vector<std::size_t> out;
+  std::vector<Stability::Loss> lost;
+  for (std::size_t i = 0; i < player.way().size(); ++i) {
+    const Stability* const told = player.stability(*player.way()[i]);
+    if (!told || told->loss == Stability::Loss::none) {
+      lost.clear();
+    } else if (std::ranges::find(lost, told->loss) == lost.end()) {
+      lost.push_back(told->loss);
+      out.push_back(i);
+    }
+  }
+  return out;
+}
+
+/// Rings where stability is lost, with words beside them as far as they have room.
 void draw_losses(ImDrawList& list, const Player& player, const PathChart& chart,
                  const std::vector<ImVec2>& points) {
   const float line = ImGui::GetTextLineHeight(), radius = 0.36f * line;
   const Model& model = player.scene().setup.model;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const std::vector<std::size_t> lost = losses(player);
   std::vector<ImVec4> taken;
-  std::vector<Stability::Loss> lost;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (const std::size_t i : lost) {
+    list.AddCircle(points[i], radius, theme().text, 16, 1.6f);
+    taken.emplace_back(points[i].x - radius, points[i].y - radius, points[i].x + radius,
+                       points[i].y + radius);
+  }
+  for (const std::size_t i : lost) {
     const io::FrameRow& row = *player.way()[i];
-    const Stability* const told = player.stability(row);
-    if (!told || told->loss == Stability::Loss::none) {
-      lost.clear();
-      continue;
-    }
-    if (std::ranges::find(lost, told->loss) != lost.end()) continue;
-    lost.push_back(told->loss);
-    const std::string words = say(row_of(k_loss_words, told->loss).words);
-    const ImVec2 at = points[i];
-    list.AddCircle(at, radius, theme().text, 16, 1.6f);
-    taken.push_back({at.x - radius, at.y - radius, at.x + radius, at.y + radius});
-    if (std::hypot(mouse.x - at.x, mouse.y - at.y) < 1.5f * radius && told->node >= 0) {
-      const Body& body = model.bodies[static_cast<std::size_t>(model.node_body[told->node])];
+    const Stability& told = *player.stability(row);
+    const std::string words = say(row_of(k_loss_words, told.loss).words);
+    if (std::hypot(mouse.x - points[i].x, mouse.y - points[i].y) < 1.5f * radius && told.node >= 0) {
+      const Body& body = model.bodies[static_cast<std::size_t>(model.node_body[told.node])];
       ImGui::SetTooltip("%s", say(k_moves_most, instant_in_words(player.scene().setup, row), words,
-                                  told->node - body.first_node, body.name)
+                                  told.node - body.first_node, body.name)
                                   .c_str());
     }
-    const ImVec4 room = room_for_word(chart, at, radius + 3, {text_width(words), line}, taken);
+    const ImVec4 room = room_for_word(chart, points[i], radius + 3, {text_width(words), line}, taken, points);
     if (room.z == 0) continue;
-    list.AddRectFilled({room.x - 2, room.y}, {room.z + 2, room.w}, theme().veil);
     add_text(list, room.x, room.y, theme().text, words);
     taken.push_back(room);
   }

@@ -26,7 +26,7 @@ constexpr float k_falling_room = 0.25f;   // of the height, beside bodies that m
 constexpr float k_most_plots = 0.55f;     // of the height above the timeline
 constexpr float k_side_panel = 320;       // px at 720 lines
 constexpr float k_most_side = 0.45f;      // of the width
-constexpr float k_path_lines = 18;        // lines of text, the load path
+constexpr float k_path_lines = 22;        // lines of text, the load path
 constexpr float k_most_path = 0.5f;       // of the height of the side panel
 constexpr float k_least_letters = 12;     // px
 
