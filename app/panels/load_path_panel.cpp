@@ -190,6 +190,11 @@ void draw_losses(ImDrawList& list, const Player& player, const PathChart& chart,
     }
     const ImVec4 room = room_for_word(chart, points[i], radius + 3, {text_width(words), line}, taken, points);
     if (room.z == 0) continue;
+    const ImVec2 to(std::clamp(points[i].x, room.x, room.z), std::clamp(points[i].y, room.y, room.w));
+    const float way = std::hypot(to.x - points[i].x, to.y - points[i].y),
+                edge = radius / std::max(way, radius);
+    list.AddLine({points[i].x + edge * (to.x - points[i].x), points[i].y + edge * (to.y - points[i].y)}, to,
+                 theme().axis);
     add_text(list, room.x, room.y, theme().text, words);
     taken.push_back(room);
   }
