@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/batch/load_steps.h"
 #include "app/batch/run_warnings.h"
 #include "app/batch/ways_summary.h"
 #include "app/support/terms.h"
@@ -122,59 +123,6 @@ ordered_json safe_closing_speed(const Run& run) {
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e)
     least = std::min(least, contact_length(model, {e, e}));
   return number(least / 2 / p.time_step);
-}
-
-/// Words of a loss of stability: in summaries, and for people.
-struct LossWords {
-  Stability::Loss loss;
-  const char *word, *words;
-};
-constexpr LossWords k_losses[] = {{Stability::Loss::limit_point, "limit-point", "past a limit point"},
-                                  {Stability::Loss::buckling, "buckling", "buckles, sideways to its loads"},
-                                  {Stability::Loss::mechanism, "mechanism", "a mechanism"}};
-
-ordered_json load_steps(const Run& run) {
-  ordered_json list = ordered_json::array();
-  const Model& model = run.setup().model;
-  for (const LoadStep& step : run.load_steps()) {
-    const Stability& s = step.stability;
-    const bool known = s.negative_pivots >= 0;
-    ordered_json one{{"factor", number(step.factor)},
-                     {"converged", step.converged},
-                     {"stable", known ? ordered_json(s.stable()) : nullptr},
-                     {"negative_pivots", known ? ordered_json(s.negative_pivots) : nullptr},
-                     {"loss", nullptr},
-                     {"mode", nullptr}};
-    const auto* const words = std::ranges::find(k_losses, s.loss, &LossWords::loss);
-    if (words != std::end(k_losses)) one["loss"] = words->word;
-    if (s.node >= 0) {
-      const int body = model.node_body[s.node];
-      one["mode"] = {
-          {"body", model.bodies[body].name},
-          {"node", s.node - model.bodies[body].first_node},
-          {"direction", {number(s.direction.x()), number(s.direction.y()), number(s.direction.z())}}};
-    }
-    list.push_back(one);
-  }
-  return list;
-}
-
-/// ", unstable in 1 direction: buckles ...; node 5 of "portal" moves most, along (0.00, 1.00, 0.00)".
-std::string loss_in_words(const ordered_json& step) {
-  if (step["loss"].is_null()) return "";
-  const std::string word = step["loss"].get<std::string>();
-  const LossWords& loss =
-      *std::ranges::find(k_losses, word, [](const LossWords& w) { return std::string(w.word); });
-  const int pivots = step["negative_pivots"].is_null() ? 0 : step["negative_pivots"].get<int>();
-  std::string out =
-      pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
-  out += std::string(": ") + loss.words;
-  if (const ordered_json& mode = step["mode"]; !mode.is_null())
-    out +=
-        fmt::format("; node {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", mode["node"].get<int>(),
-                    mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
-                    mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
-  return out;
 }
 
 /// Of the balances found: a limit load, where the path goes beyond it.
@@ -389,7 +337,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
     out["person_m"] = run.setup().room.person;
     out["ways"] = ways_json(run);
   }
-  out["static"] = load_steps(run);
+  out["static"] = load_steps_json(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = run_warnings(run);
   return out;

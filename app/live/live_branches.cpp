@@ -1,6 +1,7 @@
 // What a live run reads of a recording, and how it returns to an instant of the past.
 #include <algorithm>
 
+#include "app/batch/load_steps.h"
 #include "app/live/live_worker.h"
 #include "solver/io/recording/rerun.h"
 
@@ -29,6 +30,14 @@ void LiveWorker::read_recording() {
       read_checkpoints_.push_back(from.checkpoint(static_cast<std::int64_t>(read_checkpoints_.size())));
   } catch (const io::InputError&) {  // a fork then goes back farther
   }
+  // A summary is of the newest branch, to its end.
+  const std::vector<Stability> told = stabilities(load_steps_in(from.summary_json(), setup_.model));
+  const std::int64_t last = from.frame_count() > 0 ? from.index().back().step : 0;
+  publish([&](LiveReport& report) {
+    for (std::size_t k = 0; k < told.size(); ++k)
+      report.stabilities.push_back(
+          {status_.branch, last - static_cast<std::int64_t>(told.size() - 1 - k), told[k]});
+  });
   const std::vector<io::RecordedEvent> events = from.events();
   publish([&](LiveReport& report) {
     for (; read_events_ < events.size(); ++read_events_) report.events.push_back(events[read_events_]);

@@ -38,13 +38,21 @@ struct LiveStatus {
   std::string record_failure;  ///< why the recording broke off; empty: it did not
 };
 
+/// Of the equilibrium at the end of a load step, with what was lost beyond it where the path ended there.
+struct StepStability {
+  std::int32_t branch;
+  std::int64_t step;
+  Stability stability;
+};
+
 /// What is new since the last report.
 struct LiveReport {
   std::vector<Branch> branches;
   std::vector<LoggedEdit> edits;
   std::vector<RowPtr> rows;  ///< as recorded, in order within a branch
   std::vector<io::RecordedEvent> events;
-  RowPtr head;  ///< the newest state of a live run; null: as before
+  std::vector<StepStability> stabilities;  ///< of static runs
+  RowPtr head;                             ///< the newest state of a live run; null: as before
   LiveStatus status;
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
 #include "app/picture/thinning.h"
 #include "app/support/clock.h"
@@ -133,6 +135,7 @@ void LiveWorker::step_once() {
   wall_ += seconds_since(start);
   if (!status.ok()) {
     fail(status);
+    if (!run_->load_steps().empty()) record(observer_.last(*run_));  // what converged of a load step
     return;
   }
   record(observer_.observe(*run_));
@@ -171,10 +174,13 @@ void LiveWorker::record(io::Observation observation) {
     if (points_.size() * observation.checkpoint->state.size() * sizeof(double) > k_most_point_bytes)
       thin_older_half(points_);
   }
-  publish([&observation](LiveReport& report) {
+  const std::span<const LoadStep> steps = run_->load_steps();
+  const std::vector<Stability> told = stabilities(steps.last(std::min<std::size_t>(2, steps.size())));
+  publish([&](LiveReport& report) {
     for (const io::FrameRow& frame : observation.frames)
       report.rows.push_back(std::make_shared<const io::FrameRow>(frame));
     report.events.insert(report.events.end(), observation.events.begin(), observation.events.end());
+    if (!told.empty()) report.stabilities.push_back({status_.branch, run_->step(), told.back()});
   });
   if (recorder_ && !observation.empty()) recorder_->post(std::move(observation));
 }

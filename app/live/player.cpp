@@ -49,7 +49,7 @@ bool Player::update(double wall_s) {
   const std::size_t rows_before = way_.size();
   LiveReport report = run_.take();
   bool news = report.head || !report.rows.empty() || !report.edits.empty() || !report.branches.empty() ||
-              !report.events.empty() || report.status.kind != status_.kind ||
+              !report.events.empty() || !report.stabilities.empty() || report.status.kind != status_.kind ||
               report.status.message != status_.message || report.status.achieved != status_.achieved ||
               report.status.record_failure != status_.record_failure;
   take(std::move(report));
@@ -100,6 +100,8 @@ void Player::take(LiveReport&& report) {
     if (!posted_.empty() && !replay()) posted_.erase(posted_.begin());
   }
   events_.insert(events_.end(), report.events.begin(), report.events.end());
+  for (const StepStability& told : report.stabilities)
+    stabilities_[{told.branch, told.step}] = told.stability;
   if (report.head) head_ = std::move(report.head);
   for (RowPtr& row : report.rows) {
     if (row->branch == shown_ && !rebuild) extend_way(row);
@@ -370,6 +372,11 @@ std::optional<io::FrameRow> Player::row() const {
 std::optional<io::FrameRow> Player::ghost() const {
   if (ghost_way_.empty() || cursor_ > ghost_way_.back()->time) return std::nullopt;
   return row_at(ghost_way_, cursor_);
+}
+
+const Stability* Player::stability(const io::FrameRow& row) const {
+  const auto at = stabilities_.find({row.branch, row.step});
+  return at == stabilities_.end() || at->second.negative_pivots < 0 ? nullptr : &at->second;
 }
 
 std::vector<io::RecordedEvent> Player::events() const {

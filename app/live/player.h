@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/live/live_run.h"
@@ -94,6 +95,8 @@ class Player {
   /// Recorded on the same branches.
   std::vector<io::RecordedEvent> events() const;
   std::vector<LoggedEdit> edits() const;
+  /// Of the load step that ends at a recorded frame; null: it is not known.
+  const Stability* stability(const io::FrameRow& row) const;
 
  private:
   struct Undo {
@@ -122,6 +125,7 @@ class Player {
   std::map<std::int32_t, std::vector<RowPtr>> rows_;  // by branch
   std::size_t row_count_ = 0, rows_since_thinned_ = 0;
   std::vector<io::RecordedEvent> events_;
+  std::map<std::pair<std::int32_t, std::int64_t>, Stability> stabilities_;  // by branch and step
   RowPtr head_;
   std::int32_t shown_ = 0;
   std::int32_t left_ = -1;  // branch that was left last; -1: none

@@ -72,12 +72,12 @@ LogChart chart_at_cursor(const LogAxis& x, const LogAxis& y, float height, const
   add_text(*ImGui::GetWindowDrawList(), low.x, low.y, theme().text, y_title);
   float numbers = 0;
   for (const Mark& mark : marks(y)) numbers = std::max(numbers, text_width(number(mark.value)));
-  return {.left = low.x + numbers + 8,
-          .right = low.x + ImGui::GetContentRegionAvail().x - 4,
-          .top = low.y + 1.3f * ImGui::GetTextLineHeight(),
-          .bottom = low.y + height,
-          .x = x,
-          .y = y};
+  return {{.left = low.x + numbers + 8,
+           .right = low.x + ImGui::GetContentRegionAvail().x - 4,
+           .top = low.y + 1.3f * ImGui::GetTextLineHeight(),
+           .bottom = low.y + height},
+          x,
+          y};
 }
 
 void draw_log_grid(ImDrawList& list, const LogChart& chart) {
@@ -141,7 +141,7 @@ void add_present(ImDrawList& list, ImVec2 at) {
   list.AddCircleFilled(at, 0.32f * line, theme().cursor, 20);
 }
 
-ChartKey::ChartKey(ImDrawList& list, const LogChart& chart, const std::string& x_title)
+ChartKey::ChartKey(ImDrawList& list, const ChartBox& chart, const std::string& x_title)
     : list_(list),
       chart_(chart),
       line_(ImGui::GetTextLineHeight()),

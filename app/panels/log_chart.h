@@ -1,4 +1,4 @@
-// Charts of Dear ImGui with two logarithmic axes.
+// Charts of Dear ImGui: two logarithmic axes, lines, and the key below a chart.
 #pragma once
 
 #include <imgui.h>
@@ -16,9 +16,13 @@ struct LogAxis {
   float part(double value) const;
 };
 
-/// Rectangle of a chart, px, and its axes.
-struct LogChart {
+/// Rectangle of a chart, px.
+struct ChartBox {
   float left, right, top, bottom;
+};
+
+/// With its axes.
+struct LogChart : ChartBox {
   LogAxis x, y;
   ImVec2 at(double x_value, double y_value) const;
   ImVec2 clamped(double x_value, double y_value) const;
@@ -48,7 +52,7 @@ struct LogCurve {
 /// The key below a chart: the x axis's title, then signs with words, in lines as long as the chart.
 class ChartKey {
  public:
-  ChartKey(ImDrawList& list, const LogChart& chart, const std::string& x_title);
+  ChartKey(ImDrawList& list, const ChartBox& chart, const std::string& x_title);
   void begin_line();
   /// Writes words with room for a sign before them. Returns the centre of the sign, px.
   ImVec2 entry(const std::string& words);
@@ -59,7 +63,7 @@ class ChartKey {
 
  private:
   ImDrawList& list_;
-  const LogChart chart_;
+  const ChartBox chart_;
   const float line_;
   float x_, y_;
 };

@@ -46,6 +46,10 @@ ShellRequest draw_transport_bar(Player& player, const Box& box, float& height);
 /// events, edits and forks; dragging scrubs.
 void draw_timeline(Player& player, const Box& box);
 
+/// Of a static run: load factor over the displacement of one place, with where stability is lost and the
+/// present step. A click goes to the load step nearest to it.
+void draw_load_path(Player& player, const Box& box);
+
 /// Sliders of what may be edited. What was refused, and why, is left in `refused`. True when the chart of
 /// error against cost is asked for.
 bool draw_parameters(Player& player, std::string& refused);

@@ -11,6 +11,7 @@
 #include "app/panels/shell_words.h"
 #include "app/panels/theme.h"
 #include "app/picture/row.h"
+#include "app/support/terms.h"
 
 namespace topple::app {
 namespace {
@@ -25,6 +26,8 @@ constexpr float k_falling_room = 0.25f;   // of the height, beside bodies that m
 constexpr float k_most_plots = 0.55f;     // of the height above the timeline
 constexpr float k_side_panel = 320;       // px at 720 lines
 constexpr float k_most_side = 0.45f;      // of the width
+constexpr float k_path_lines = 22;        // lines of text, the load path
+constexpr float k_most_path = 0.5f;       // of the height of the side panel
 constexpr float k_least_letters = 12;     // px
 
 /// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
@@ -143,7 +146,10 @@ void Viewer::lay_out() {
   const float scene = std::max(upper - plots, 16.f);
   scene_ = {0, 0, std::max(size.x - side, 16.f), scene};
   plots_ = {0, scene, scene_.width, plots};
-  side_ = {scene_.width, 0, side, upper + timeline};
+  const float path =
+      is_static(player_.scene().setup) ? std::min(k_path_lines * line, k_most_path * (upper + timeline)) : 0;
+  side_ = {scene_.width, 0, side, upper + timeline - path};
+  path_ = {scene_.width, side_.height, side, path};
   timeline_ = {0, upper, scene_.width, timeline};
   transport_ = {0, upper + timeline, size.x, bar};
   status_ = {0, upper + bar + timeline, size.x, status};
@@ -189,6 +195,7 @@ void Viewer::build(const std::function<void()>& over) {
   draw_side_panel(row_);
   asked_ = draw_transport_bar(player_, transport_, transport_height_);
   draw_timeline(player_, timeline_);
+  if (is_static(player_.scene().setup)) draw_load_path(player_, path_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
   if (precision_.open) draw_precision(player_, precision_, refused_);

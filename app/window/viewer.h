@@ -76,6 +76,7 @@ class Viewer {
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
   const Box& timeline_box() const { return timeline_; }
+  const Box& path_box() const { return path_; }
   const TeachingState& teaching() const { return teaching_; }
   const PrecisionState& precision() const { return precision_; }
   const Appearance& appearance() const { return appearance_; }
@@ -126,7 +127,7 @@ class Viewer {
   const Keep keep_;
   render::OverlayFonts fonts_;
   Bridge bridge_;
-  Box scene_, plots_, timeline_, transport_, side_, status_;
+  Box scene_, plots_, timeline_, transport_, side_, path_, status_;
   PictureSettings settings_;
   render::SceneFrame frame_;
   std::optional<io::FrameRow> row_;

@@ -137,7 +137,7 @@ void Viewer::resize(int direction) {
 
 // Dear ImGui's own way, Ctrl+Tab, shows its names of panels.
 void Viewer::focus_next_panel() {
-  static constexpr const char* k_panels[] = {"side",  "transport", "timeline",
+  static constexpr const char* k_panels[] = {"side",  "load path", "transport",   "timeline",
                                              "plots", "status",    "###precision"};
   const ImGuiWindow* const now = ImGui::GetCurrentContext()->NavWindow;
   std::size_t next = 0;

@@ -183,6 +183,8 @@ FrameSpec read_frame(const Entry& entry, const Library& library) {
   for (const Entry& load : entry.entries("loads")) {
     const int node = read_node(load, "node", load.integer("node"), spec);
     spec.loads.push_back({node, load.vector("force"), load.vector("moment"), load.history("history")});
+    if (spec.loads.back().force.isZero(0) && spec.loads.back().moment.isZero(0))
+      load.fail("has no direction: force and moment are zero; one of them is needed");
   }
   for (const Entry& mass : entry.entries("masses")) {
     const int node = read_node(mass, "node", mass.integer("node"), spec);

@@ -252,6 +252,14 @@ void read_probes(const Entry& root, Setup& setup) {
   }
 }
 
+/// "y, X", or "none".
+std::string free_directions(unsigned fixed) {
+  std::string out;
+  for (std::size_t k = 0; k < k_directions.size(); ++k)
+    if (!(fixed >> k & 1)) out += (out.empty() ? "" : ", ") + std::string(1, k_directions[k]);
+  return out.empty() ? "none" : out;
+}
+
 void read_control(const Entry& root, Setup& setup) {
   const Entry entry = root.entry("run").entry("control");
   if (!entry.present()) return;
@@ -260,10 +268,11 @@ void read_control(const Entry& root, Setup& setup) {
   if (body >= static_cast<int>(model.bodies.size())) entry.fail("body", "there is no frame to control");
   PathControl control;
   control.arc_length = entry.has("arc");
-  for (const char* const key : {"node", "dof"})
-    if (entry.has(key) == control.arc_length)
-      entry.fail(control.arc_length ? std::string(key) + " has no part in arc length"
-                                    : "needs " + std::string(key) + ", or arc");
+  for (const char* const key : {"node", "dof"}) {
+    if (entry.has(key) && control.arc_length)
+      entry.fail(key, "belongs to control of a node, but arc is given");
+    if (!entry.has(key) && !control.arc_length) entry.fail(key, "missing; give node and dof, or arc");
+  }
   if (control.arc_length) {
     control.node = model.bodies[body].first_node;
     if (entry.number("arc") > 0) control.to = entry.number("arc");
@@ -271,10 +280,10 @@ void read_control(const Entry& root, Setup& setup) {
     control.node = find_node(root, entry, model, body, "; control takes a frame");
     control.direction = static_cast<int>(k_directions.find(entry.word("dof")));
   }
-  for (const Support& support : model.supports) {
+  for (const Support& support : model.supports)
     if (!control.arc_length && support.node == control.node && support.fixed >> control.direction & 1)
-      entry.fail("dof", "the node is supported in this direction");
-  }
+      entry.fail("dof", "\"" + std::string(entry.word("dof")) +
+                            "\" is supported at the node; free are: " + free_directions(support.fixed));
   bool loaded = false;
   for (const Load& load : model.loads) {
     if (!load.history.empty()) entry.fail("with control loads have no history: the factor is sought");

@@ -27,6 +27,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/appearance_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/demo_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/panels/load_path_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/block_picture_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/bridge_test.cpp

@@ -82,28 +82,5 @@ TEST(SceneChoices, keys_of_a_choice_not_made_are_refused) {
             "s.toml:11:1: section.post.thickness: belongs to shape = box or pipe, but shape is solid");
 }
 
-TEST(SceneChoices, displacement_control_needs_a_loaded_node_that_can_move) {
-  const auto control = [](const std::string& beam, const std::string& entry) {
-    const std::string error =
-        after_beam(beam + "[run]\nanalysis = \"static\"\ncontrol = { " + entry + " }\n");
-    return error.substr(error.find("run"));
-  };
-  const std::string load = "loads = [{ node = 1, force = [0, 0, 1] }]\n";
-  EXPECT_EQ(control(load, "node = 1"), "run.control: needs dof, or arc");
-  EXPECT_EQ(control(load, "arc = \"1 m\", node = 1"), "run.control: node has no part in arc length");
-  EXPECT_EQ(control(load, "node = 2, dof = \"z\""),
-            "run.control.node: 2 is not a node of \"beam\", which has 0..1");
-  EXPECT_EQ(control(load, "node = 0, dof = \"z\""),
-            "run.control.dof: the node is supported in this direction");
-  EXPECT_EQ(control("", "node = 1, dof = \"z\""), "run.control: there is no load on \"beam\"");
-  EXPECT_EQ(control(load, "node = 1, dof = \"w\""), "run.control.dof: \"w\" is not one of x, y, z, X, Y, Z");
-  EXPECT_EQ(control(load, "node = 1, dof = \"z\", to = 0"), "run.control.to: is no travel");
-  EXPECT_EQ(control(load, "node = 1, dof = \"Z\", to = 1"),
-            "run.control.to: belongs to dof = x or y or z, but dof is Z");
-  EXPECT_EQ(control("loads = [{ node = 1, force = [0, 0, 1], history = [[0, 0], [1, 1]] }]\n",
-                    "node = 1, dof = \"z\""),
-            "run.control: with control loads have no history: the factor is sought");
-}
-
 }  // namespace
 }  // namespace topple::io

@@ -137,6 +137,38 @@ TEST_F(AnalysisTest, modes_of_a_free_cabinet_begin_with_six_rigid_ones) {
   expect_one_line({"modes", "s.toml", "--count", "0"}, 2, "--count: \"0\" is not a whole number in 1..1000");
 }
 
+// Two halves of a cantilever, 1 m each, whose yield stresses are a million apart: it carries Mp/l of the
+// weaker at its own clamp. Bent down by 1 mm the arm is shorter by 1e-6.
+TEST_F(AnalysisTest, strengths_a_million_apart_side_by_side_come_to_the_collapse_load) {
+  const auto material = [](const char* name, const char* yield) {
+    return "[[material]]\nname = \"" + std::string(name) +
+           "\"\nyoung = \"205 GPa\"\npoisson = 0.3\ndensity = 7850\nyield = \"" + yield + "\"\n";
+  };
+  const std::string beam = R"(
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["20 mm", "20 mm"]
+[[frame]]
+name = "beam"
+nodes = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+members = [{ nodes = [0, 1], section = "bar", material = "first" }, { nodes = [1, 2], section = "bar", material = "second" }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 2, force = [0, 0, -1] }]
+)";
+  const double modulus = 2e-6;  // b h^2 / 4, m^3
+  for (const auto& [first, second, load] : {std::tuple("235 MPa", "235 Pa", 235 * modulus / 1),
+                                            std::tuple("235 Pa", "235 MPa", 235 * modulus / 2)}) {
+    write_bytes("beam.toml",
+                "topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\n"
+                "control = { node = 2, dof = \"z\", to = \"-1 mm\" }\n" +
+                    material("first", first) + material("second", second) + beam);
+    const Ended ended = topple({"run", "beam.toml", "--json", "-", "--quiet"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NEAR(Json::parse(ended.out)["static"].back()["factor"].get<double>(), load, 2e-6 * load) << first;
+  }
+}
+
 TEST_F(AnalysisTest, scene_that_asks_for_modes_is_not_recorded) {
   write_bytes("s.toml", loaded(0));
   expect_one_line({"run", "s.toml", "--set", "run.analysis=modes", "-o", "a.h5"}, 2,

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "solver/io/recording/observer.h"
+#include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/run/run.h"
 

@@ -258,6 +258,31 @@ TEST_F(ViewerTest, the_timeline_scrubs_and_a_branch_continues_from_there) {
   EXPECT_TRUE(player_->ghost().has_value());
 }
 
+// The beginning is the nearest to the lower left corner, the end to the right of the upper edge, and the knee
+// at load step 24, where the first hinges form, to its middle: that is known to 9 px, 1.5 load steps.
+TEST_F(ViewerTest, a_click_on_the_path_of_a_static_run_goes_to_the_load_step_there) {
+  std::ifstream file(TOPPLE_SOURCE_DIR "/assets/scenes/portal-pushover.toml");
+  start(&topple::Run::advance, std::string(std::istreambuf_iterator<char>(file), {}));
+  for (int i = 0; i < 3; ++i) type(']');
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::over; }));
+  ASSERT_EQ(player_->way().size(), 41u);
+  const ImVec2 corner = find("load path", "path");
+  ASSERT_GE(corner.x, 0);
+  const Box& box = viewer_->path_box();
+  const float right = box.left + box.width - 20;
+  click({corner.x + 3, box.top + 0.6f * box.height});
+  EXPECT_EQ(player_->time(), 0);
+  EXPECT_FALSE(player_->at_head());
+  click({corner.x + (right - corner.x) / 2, corner.y + 15});
+  EXPECT_NEAR(player_->time() * 40, 24, 2);
+  click({right, corner.y + 15});
+  EXPECT_EQ(player_->time(), 1);
+  const Stability* const told = player_->stability(*player_->way().back());
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(told->stable());
+}
+
 TEST_F(ViewerTest, frames_are_drawn_while_one_step_takes_its_time) {
   Gate gate;
   start(gate.advance());

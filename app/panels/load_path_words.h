@@ -1,0 +1,19 @@
+// What the window says of the path of a static run.
+#pragma once
+
+#include "app/picture/window_words.h"
+
+namespace topple::app::window_words {
+
+inline constexpr Phrase k_node_way{"{0} node {1}, {2}", "{0} 節点{1}、{2}"};
+inline constexpr Phrase k_probe_way{"{0}, {1}", "{0}、{1}"};
+inline constexpr Phrase k_stable{"stable", "安定"};
+inline constexpr Phrase k_unstable{"unstable", "不安定"};
+inline constexpr Phrase k_stability_unknown{"stability not known", "安定性は不明"};
+inline constexpr Phrase k_limit_point{"limit point", "極限点"};
+inline constexpr Phrase k_buckles{"buckles sideways", "横に座屈"};
+inline constexpr Phrase k_mechanism{"mechanism", "崩壊機構"};
+inline constexpr Phrase k_moves_most{"{0}: {1}; node {2} of {3} moves most",
+                                     "{0}：{1}、{3} の節点{2}が最も動く"};
+
+}  // namespace topple::app::window_words
