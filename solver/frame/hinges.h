@@ -18,11 +18,12 @@ inline constexpr double k_unloading = 1e-3;
 /// solved again.
 bool break_sections(BodySystem& system, const BodyMotion& trial);
 
-/// Statics alone: where every end at a joint flows, their moments leave the joint's turn undetermined, within
-/// what flowed; unlike forces in them leave a moment that only one which stays elastic can balance. So one
-/// end of each such joint is held (ElementState::held): that furthest below its surface at `start`, as a step
-/// before left it, then that of least flow. release_joints: lets those flow again that end up beyond their
-/// surface, in favour of another one; true: solve again. Where each was released all flow.
+/// Statics alone. Where every end at a joint flows, their moments are those of yield whatever the joint's
+/// turn is: nothing determines it, and nothing balances what is left of their sum. So one end of each such
+/// joint stays elastic (ElementState::held): the one furthest below its surface at `start`, else that of
+/// least flow. release_joints lets those flow again that end up beyond their surface, so that hold_joints
+/// takes another one, and returns whether there were any: then the step must be solved again. Where each end
+/// was released all of them flow.
 void hold_joints(BodySystem& system, const BodyMotion& start, const BodyMotion& trial);
 bool release_joints(BodySystem& system, const BodyMotion& trial);
 
