@@ -1,5 +1,7 @@
 #include "solver/step/stability_of.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -17,45 +19,47 @@ bool is_conservative(const BodySystem& s) {
 }  // namespace
 
 void add_softest_mode(BodySystem& s, const std::vector<double>& growth, Stability& out) {
-  constexpr int k_rounds = 50, k_most_modes = 8;
-  constexpr double k_beside = 1e-3;  // of the loads' work: less is none
-  using Unknowns = Eigen::VectorXd;
-  std::vector<Unknowns> found;
+  constexpr int k_rounds = 30, k_more = 3;  // of inverse iteration; vectors beside those that are sought
+  constexpr double k_beside = 1e-3;         // of the loads' work: less is none
+  using Vectors = Eigen::MatrixXd;
   const auto n = static_cast<Eigen::Index>(growth.size());
-  for (int m = 0; m < k_most_modes; ++m) {
-    Unknowns mode(n);
-    double softness = 0;
-    for (Eigen::Index i = 0; i < n; ++i) mode[i] = start_entry(static_cast<int>(i));
-    for (int round = 0; round < k_rounds; ++round) {
+  const Eigen::Index count = std::min<Eigen::Index>(n, std::max(out.negative_pivots, 0) + k_more);
+  Vectors modes(n, count);
+  for (Eigen::Index m = 0; m < count; ++m)
+    for (Eigen::Index i = 0; i < n; ++i) modes(i, m) = start_entry(static_cast<int>(i), static_cast<int>(m));
+  Eigen::VectorXd softness;  // 1 over the eigenvalues of K, ascending
+  for (int round = 0; round < k_rounds; ++round) {
+    for (Eigen::Index m = 0; m < count; ++m)
       for (int i = 0; i < s.count; ++i) {
-        Eigen::Map<Vec3> shift(&mode[6 * i]), spin(&mode[6 * i + 3]);
+        Eigen::Map<Vec3> shift(&modes(6 * i, m)), spin(&modes(6 * i + 3, m));
         s.clear_fixed(i, shift, spin);
       }
-      for (const Unknowns& other : found) mode -= other.dot(mode) * other;
-      mode.normalize();
-      const Unknowns before = mode;
-      s.lu.solve(mode.data());
-      softness = before.dot(mode);
-    }
-    found.push_back(mode.normalized());
-    if (softness < 0 || out.negative_pivots <= 0) break;
+    modes = Eigen::HouseholderQR<Vectors>(modes).householderQ() * Vectors::Identity(n, count);
+    Vectors soft = modes;
+    for (Eigen::Index m = 0; m < count; ++m) s.lu.solve(soft.col(m).data());
+    const Vectors held = modes.transpose() * soft;
+    const Eigen::SelfAdjointEigenSolver<Vectors> ritz((held + held.transpose()) / 2);
+    softness = ritz.eigenvalues();
+    modes = soft * ritz.eigenvectors();
   }
-  const Unknowns& mode = found.back();
-  double greatest = 0;
-  for (int i = 0; i < s.count; ++i)
-    if (const Vec3 shift = mode.segment<3>(6 * i); shift.norm() > greatest) {
-      greatest = shift.norm();
-      out.node = s.first + i;
-      out.direction = shift / greatest;
-    }
-  const Eigen::Map<const Unknowns> loads(growth.data(), n);
-  double share = 0;
-  for (int i = 0; i < s.count; ++i) share += mode.segment<3>(6 * i).dot(loads.segment<3>(6 * i));
+  Eigen::Index softest = 0;
+  if (out.negative_pivots <= 0) softness.cwiseAbs().maxCoeff(&softest);
+  const Eigen::VectorXd mode = modes.col(softest).normalized();
+  double greatest = 0, share = 0, loads = 0;
+  for (int i = 0; i < s.count; ++i) {
+    const Vec3 shift = mode.segment<3>(6 * i), load(&growth[6 * i]);
+    share += shift.dot(load);
+    loads += load.squaredNorm();
+    if (shift.norm() <= greatest) continue;
+    greatest = shift.norm();
+    out.node = s.first + i;
+    out.direction = shift / greatest;
+  }
   const bool hinged =
       std::ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
-  out.loss = hinged                                                 ? Stability::Loss::mechanism
-             : std::abs(share) > k_beside * loads.norm() * greatest ? Stability::Loss::limit_point
-                                                                    : Stability::Loss::buckling;
+  out.loss = hinged                                                     ? Stability::Loss::mechanism
+             : std::abs(share) > k_beside * std::sqrt(loads) * greatest ? Stability::Loss::limit_point
+                                                                        : Stability::Loss::buckling;
 }
 
 Stability stability_of(BodySystem& s, const std::vector<double>& growth) {

@@ -13,7 +13,7 @@ namespace topple {
 Stability stability_of(BodySystem& system, const std::vector<double>& growth);
 
 /// Completes `out`, which stability_of() gave, by the mode that is softest or, with negative pivots, the
-/// softest of those in which the system runs away: inverse iteration beside those found before.
+/// softest of those in which the system runs away: inverse iteration of several vectors at once.
 void add_softest_mode(BodySystem& system, const std::vector<double>& growth, Stability& out);
 
 }  // namespace topple

@@ -126,6 +126,29 @@ TEST(LoadPath, arc_length_follows_lees_frame_over_both_limit_loads) {
   EXPECT_EQ(run.load_steps()[at(first) + 3].stability.loss, Stability::Loss::limit_point);
 }
 
+// Out of its plane it buckles before its limit load, in two ways: no limit point is told before the load
+// falls.
+TEST(LoadPath, what_is_lost_first_is_told_first) {
+  topple::Setup setup = lees_frame(20);
+  setup.run.statics = {.load_steps = 60, .control = PathControl{.to = 50., .arc_length = true}};
+  topple::Run run(setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(setup.model);
+  const std::vector<LoadStep>& steps = run.load_steps();
+  const auto peak = std::ranges::max_element(steps, {}, &LoadStep::factor);
+  int buckled = 0, limits = 0;
+  for (auto step = steps.begin(); step != steps.end(); ++step) {
+    const Stability::Loss loss = step->stability.loss;
+    if (step < peak) {
+      EXPECT_NE(loss, Stability::Loss::limit_point) << step->factor;
+    }
+    buckled += step < peak && loss == Stability::Loss::buckling ? 1 : 0;
+    limits += step > peak && loss == Stability::Loss::limit_point ? 1 : 0;
+  }
+  EXPECT_GT(buckled, 0);
+  EXPECT_GT(limits, 0);
+  EXPECT_GT(steps.end() - peak, 3);
+}
+
 // A stocky cantilever, loaded across its strong axis, goes sideways long before it bends down: at 0.62 of
 // this load.
 TEST(LoadPath, lateral_buckling_is_called_so) {
