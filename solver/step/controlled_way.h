@@ -28,6 +28,7 @@ class ControlledWay {
   double go(BodySystem& system, const std::vector<double>& growth, std::vector<double>& x);
   /// `x` was taken.
   void take(const std::vector<double>& x) { left_ -= dot(along_, x); }
+  double left() const { return left_; }  ///< of the travel
 
  private:
   std::vector<double> along_;

@@ -56,6 +56,24 @@ void unbalance(const BodySystem& s, std::vector<double>& forces) {
     for (int k = 0; k < 6; ++k) forces[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
 }
 
+// Whether rounding of the positions accounts for what is left: no correction makes that less.
+bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<double>& forces) {
+  double reach = s.size;
+  for (const Vec3& x : at.position) reach = std::max(reach, x.norm());
+  std::vector<double> held(s.count, 0.);
+  for (const auto& [e, i, j] : s.own_elements)
+    for (const int node : {i, j}) {
+      const Element& element = s.model.elements[e];
+      held[node] += element.normal_stiffness.maxCoeff() / element.length;
+    }
+  constexpr double k_rounded = std::numeric_limits<double>::epsilon();
+  for (int i = 0; i < s.count; ++i)
+    if (!(std::max(Vec3(&forces[6 * i]).norm(), Vec3(&forces[6 * i + 3]).norm() / s.size) <=
+          k_rounded * reach * held[i]))
+      return false;
+  return true;
+}
+
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
 struct Correction {
   double greatest = 0;
@@ -247,6 +265,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   s.load_memory(state, start);
   std::vector<Vec3> turn(s.count, Vec3::Zero());
   constexpr double k_none = std::numeric_limits<double>::infinity();
+  const double tolerance = k_convergence * s.size;
   double last = k_none;  // whole correction
   const auto blame = [&](int node) {
     status.node = s.first + node;
@@ -254,37 +273,40 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     status.load_factor = factor;
     return status;
   };
-  for (int iteration = 1; iteration <= k_most_iterations; ++iteration) {
+  // where many sections of one moment come to yield at once, some begin to flow in each iteration
+  const int most = k_most_iterations + (s.yields ? static_cast<int>(s.elements.size()) : 0);
+  for (int iteration = 1; iteration <= most; ++iteration) {
     status.newton_iterations = iteration;
     if (iteration > 1) hold_joints(s, start, trial);
     if (const int node = find_correction(s, still, state, factor, way ? &*way : nullptr, step); node >= 0)
       return blame(node);
-    const double part = iteration > 1 && s.yields ? search_line(s, still, state, factor, step) : 1;
-    factor += part * step.change;
-    for (double& value : step.x) value *= part;
-    if (way) way->take(step.x);
-    const auto [greatest, node, too_far] = correct(s, start, step.x, trial, turn);
-    if (too_far || !std::isfinite(greatest + factor)) return blame(node);
-    status.node = node;
-    if (part < 1 || step.damping > 0) {
+    bool found = iteration > 1 && s.yields && is_balanced(s, trial, step.forces) &&
+                 (!way || std::abs(way->left()) < tolerance);
+    if (!found) {
+      const double part = iteration > 1 && s.yields ? search_line(s, still, state, factor, step) : 1;
+      factor += part * step.change;
+      for (double& value : step.x) value *= part;
+      if (way) way->take(step.x);
+      const auto [greatest, node, too_far] = correct(s, start, step.x, trial, turn);
+      if (too_far || !std::isfinite(greatest + factor)) return blame(node);
+      status.node = node;
+      const bool whole = part == 1 && step.damping == 0;
+      const double rate = std::isfinite(last) ? greatest / last : 1;
+      found = whole && (greatest < tolerance || last < k_quadratic * s.size ||
+                        (rate < 0.5 && greatest * rate / (1 - rate) < tolerance));
+      last = whole ? greatest : k_none;
+    }
+    if (!found) continue;
+    if (release_joints(s, trial) || break_sections(s, trial)) {
+      iteration = 0;
       last = k_none;
       continue;
     }
-    const double rate = std::isfinite(last) ? greatest / last : 1, tolerance = k_convergence * s.size;
-    if (greatest < tolerance || last < k_quadratic * s.size ||
-        (rate < 0.5 && greatest * rate / (1 - rate) < tolerance)) {
-      if (release_joints(s, trial) || break_sections(s, trial)) {
-        iteration = 0;
-        last = k_none;
-        continue;
-      }
-      evaluate(s, still, state, factor);
-      status.stability = stability_of(s, step.growth);
-      if (settings_.stop_at_instability && !status.stability.stable()) return blame(node);
-      status.kind = StepStatus::Kind::ok;
-      return status;
-    }
-    last = greatest;
+    evaluate(s, still, state, factor);
+    status.stability = stability_of(s, step.growth);
+    if (settings_.stop_at_instability && !status.stability.stable()) return blame(status.node);
+    status.kind = StepStatus::Kind::ok;
+    return status;
   }
   return blame(status.node);
 }
