@@ -71,14 +71,14 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const float inner = right - legend, outer = inner - margin;
   render::LeftOut left_out;
   const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
-                                            render::colour_map_for(frame_.legend, settings_.map),
+                                            render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
                                             {"", inner, scene_.top + margin, right - margin, bottom - margin},
                                             frame_.dark, left_out)
                          .has_value();
   std::optional<render::OverlayBox> flat;
   if (!drawn)
     flat = render::draw_flat_legend_in(
-        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
+        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
         {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
   words_bottom_ = flat ? bottom - flat->top + pad : 0;
   words_right_ = drawn ? right - inner : 0;
