@@ -26,6 +26,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/live/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/appearance_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/panels/criteria_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/block_picture_test.cpp
