@@ -52,7 +52,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   add(fonts_.small,
       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
+  for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
+    add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
   float x = scene_.left + margin, y = scene_.top + margin;
