@@ -1,7 +1,10 @@
 // What the window says of the criteria beside what the run does.
 #include "app/panels/criteria.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "app/panels/map_panel.h"
 #include "app/panels/teaching_words.h"
