@@ -50,8 +50,8 @@ TEST_F(RunTest, the_summary_has_the_keys_of_the_contract) {
   const Json s = json_of(ended.out);
   ASSERT_TRUE(s.is_object()) << ended.out;
   expect_keys(s, {"topple", "schema", "scene", "status", "simulated_s", "wall_s", "realtime_factor",
-                  "integrator", "time_step_s", "steps", "rejected_steps", "newton_iterations", "energy",
-                  "bodies", "probes", "static", "warnings"});
+                  "integrator", "time_step_s", "uplift_threshold_deg", "steps", "rejected_steps",
+                  "newton_iterations", "energy", "bodies", "probes", "static", "warnings"});
   expect_keys(s["energy"], {"input_J", "kinetic_J", "strain_J", "gravity_J", "contact_J", "dissipated_J",
                             "balance_error"});
   ASSERT_EQ(s["bodies"].size(), 1u);

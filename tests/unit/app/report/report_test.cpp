@@ -65,6 +65,39 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
 }
 
+TEST_F(ReportPageTest, what_moved_a_body_is_named_and_not_what_frames_would_have_had) {
+  io::Scene scene = io::parse_scene(k_shaken, "s.toml", {"cabinet.free.model=elastic"});
+  topple::Run run(scene.setup);
+  report_.scene = &scene;
+  report_.summary = summary(scene, run, "completed", 1);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "<td>central differences</td>"));
+  EXPECT_FALSE(holds(html, "generalized-alpha"));
+  EXPECT_TRUE(holds(html, "rigid motion with elastic modes"));
+}
+
+TEST_F(ReportPageTest, elastic_stresses_are_not_said_to_be_those_of_steel) {
+  EXPECT_TRUE(holds(page(), "Stresses are elastic"));
+  EXPECT_FALSE(holds(page(), "real steel"));
+}
+
+// Whatever the peak of the floor: a scale needs more than its zero.
+TEST(SvgChart, the_axis_of_a_low_chart_has_ticks_beside_zero) {
+  for (double peak = 1; peak < 10; peak *= 1.03) {
+    LineChart chart;
+    chart.y_from = -1.1 * peak, chart.y_to = 1.1 * peak;
+    chart.x_to = 1;
+    chart.height = 170;
+    const std::string svg = svg_chart(chart);
+    std::size_t ticks = 0;
+    for (std::size_t at = svg.find("text-anchor=\"end\""); at != std::string::npos;
+         at = svg.find("text-anchor=\"end\"", at + 1))
+      ++ticks;
+    EXPECT_GE(ticks, 3u) << peak;
+    EXPECT_LE(ticks, 7u) << peak;
+  }
+}
+
 TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
   for (int k = 0; k < 21; ++k)
     report_.trials.push_back(

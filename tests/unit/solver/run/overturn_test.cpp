@@ -270,6 +270,51 @@ TEST(Overturn, impact_times_and_the_peaks_between_are_kept) {
   for (std::size_t k = 1; k + 1 < peaks.size(); ++k) EXPECT_LT(peaks[k], peaks[k - 1]);
 }
 
+// Forces as of a side that lets go and carries again, while the body has turned by a share of the angle from
+// which that counts.
+TEST(Overturn, uplift_and_impact_count_from_the_stated_angle_on) {
+  for (const double share : {0.9, 1.1}) {
+    SCOPED_TRACE(share);
+    const Standing s = standing();
+    Simulation sim(s.model, {s.start}, {}, true);
+    const double weight = s.model.bodies[0].mass * k_g;
+    const auto& points = s.model.bodies[0].base_points;
+    double least = 1e9;
+    for (const int p : points)
+      least = std::min(least, s.model.node_position[s.model.contact_points[p].node].x());
+    const auto carried = [&](bool lifted) {
+      std::vector<ContactForce> forces;
+      for (const int p : points) {
+        const double x = s.model.node_position[s.model.contact_points[p].node].x();
+        ContactForce force{};
+        force.point = p;
+        force.normal = lifted && x < least + 1e-6 ? 0 : weight / static_cast<double>(points.size());
+        forces.push_back(force);
+      }
+      return forces;
+    };
+    Outcome outcome(s.model);
+    std::vector<Event> events;
+    std::vector<SectionForces> sections;
+    section_forces(sim.model, sim.state, sections);
+    const auto observe = [&](double time, double angle, bool lifted) {
+      State state = sim.state;
+      state.time = time;
+      const Quat turn = exp_quaternion(Vec3(0, angle, 0));
+      for (Vec3& x : state.position) x = turn * x;
+      outcome.observe(sim.model, sim.parameters, state, carried(lifted), {}, sections, events);
+    };
+    observe(1, 0, true);
+    observe(2, share * k_uplift_angle, true);
+    observe(3, 0, false);
+    const bool counts = share > 1;
+    EXPECT_EQ(events.size(), counts ? 2u : 0u);
+    EXPECT_EQ(outcome.bodies()[0].impacts, counts ? 1 : 0);
+    EXPECT_EQ(outcome.bodies()[0].first_uplift, counts ? std::optional(1.) : std::nullopt);
+    EXPECT_EQ(outcome.bodies()[0].first_impact, counts ? std::optional(3.) : std::nullopt);
+  }
+}
+
 TEST(Overturn, resting_cabinet_has_no_events) {
   const Standing s = standing();
   Simulation sim(s.model, {s.start}, {}, true);
