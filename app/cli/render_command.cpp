@@ -213,15 +213,15 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
   return interrupted() ? k_interrupted : k_done;
 }
 
-std::optional<Replay> ghost_of(const RenderOptions& o, const io::Recording& recording) {
-  if (!o.ghost) return std::nullopt;
+/// Null: none is asked for, or it has no frames.
+std::unique_ptr<const Replay> ghost_of(const RenderOptions& o, const io::Recording& recording) {
+  if (!o.ghost) return nullptr;
   const auto& branches = recording.history().branches;
   if (std::ranges::find(branches, *o.ghost, &Branch::id) == branches.end())
     throw BadInput(fmt::format("--ghost: {} has no branch {}; its branches are 0..{}", o.source, *o.ghost,
                                branches.size() - 1));
-  std::optional<Replay> ghost(std::in_place, recording, *o.ghost);
-  if (ghost->frame_count() == 0) ghost.reset();
-  return ghost;
+  auto ghost = std::make_unique<const Replay>(recording, *o.ghost);
+  return ghost->frame_count() > 0 ? std::move(ghost) : nullptr;
 }
 
 int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const io::Scene> scene) {
@@ -230,7 +230,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
   io::check_edits(recording.history(), scene->setup);
   const Replay replay(recording);
   if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
-  const std::optional<Replay> ghost = ghost_of(o, recording);
+  const std::unique_ptr<const Replay> ghost = ghost_of(o, recording);
   const double first = replay.first(), last = replay.last();
   check_times(o, is_static(scene->setup), first, last, "the recording");
   defer_interrupts();
@@ -251,8 +251,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
         easel->window.emplace(*easel->context, scene, path, o.view, o.picture, inspected, followed, o.width,
                               o.height);
       else
-        easel->drawing.emplace(o, replay, ghost ? &*ghost : nullptr, *scene, inspected, followed,
-                               *easel->context);
+        easel->drawing.emplace(o, replay, ghost.get(), *scene, inspected, followed, *easel->context);
       return
           [easel](double time) { return easel->window ? easel->window->at(time) : easel->drawing->at(time); };
     };

@@ -30,7 +30,7 @@ class Player {
   void play();
   void pause();
   void toggle() { playing_ ? pause() : play(); }
-  void step(int rows);  ///< one recorded frame back or on; at the head, one step of the run
+  void step(int rows);           ///< one recorded frame back or on; at the head, one step of the run
   void set_speed(double speed);  ///< clipped to k_least_speed..k_most_speed
   void faster();
   void slower();

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "app/report/report_parts.h"
+#include "app/support/terms.h"
 #include "solver/run/overturn.h"
 
 namespace topple::app {

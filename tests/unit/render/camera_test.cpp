@@ -66,12 +66,12 @@ TEST(Camera, bodies_do_not_stand_behind_the_words_of_the_caption) {
         frame.legend.quantity = "stress";
         frame.caption.most_lines = lines;
         const Camera camera = fit_camera(view, frame, aspect);
+        const float right = -1 + 2 * 429 / (720 * aspect);
+        const float bottom = 1 - 2 * (63 + 22 * static_cast<float>(lines) - 1) / 720;
         for (int i = 0; i < 8; ++i) {
           const Eigen::Vector3f p = seen(camera, {i & 1 ? 3.f : -3.f, i & 2 ? 4.f : -4.f, i & 4 ? 2.f : 0.f});
-          const bool left = p.x()<-1 + 2 * 429 / (720 * aspect), high = p.y()> 1 -
-                            2 * (63 + 22 * static_cast<float>(lines) - 1) / 720;
-          EXPECT_FALSE(left && high) << lines << " lines, view " << static_cast<int>(view) << " at "
-                                     << p.transpose();
+          EXPECT_FALSE(p.x() < right && p.y() > bottom)
+              << lines << " lines, view " << static_cast<int>(view) << " at " << p.transpose();
         }
       }
 }

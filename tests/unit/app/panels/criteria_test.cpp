@@ -14,8 +14,6 @@
 namespace topple::app {
 namespace {
 
-using namespace window_words;
-
 class CriteriaTest : public ::testing::Test {
  protected:
   void start(const char* name, const std::vector<std::string>& changes) {
@@ -54,7 +52,7 @@ TEST_F(CriteriaTest, limits_are_those_of_the_contacts_of_the_scene) {
 TEST_F(CriteriaTest, a_cabinet_that_fell_below_its_limits_is_said_to_have_fallen) {
   start("paper-a", {"shake.1.amplitude=\"100 gal\""});
   const ShakePlace shake{0.5, 100 * k_gal};
-  ASSERT_EQ(&verdict(limits(), shake), &k_stays);
+  ASSERT_EQ(&verdict(limits(), shake), &window_words::k_stays);
   EXPECT_EQ(difference_in_words(*player_, 0, limits(), shake, false), "");
   player_->play();
   ASSERT_TRUE(until([&] {

@@ -1,6 +1,8 @@
 // topple report: what the page says, and that it is one file a browser shows.
 #include "app/report/report.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "app/batch/summary.h"
@@ -63,6 +65,25 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_TRUE(holds(html, "<td>0.25</td>"));
   EXPECT_FALSE(holds(html, "No anchor, strap or pole"));
   EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
+}
+
+// 50 kN/m and 2 kN, and what the summary says of the run.
+TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
+  io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  report_.scene = &scene;
+  report_.summary = summary(scene, run, "completed", 1);
+  report_.anchors = 2;
+  report_.without_anchors = report_.summary;
+  const double force = report_.summary["anchors"][1]["peak_force_N"];
+  ASSERT_GT(force, 0);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "<th scope=\"row\">strong</th>"));
+  EXPECT_TRUE(holds(html, fmt::format("<td>50</td><td>2000</td><td>{:.4g}</td><td>{:.0f} %</td>", force,
+                                      100 * force / 2000)));
+  EXPECT_TRUE(holds(html, "<td>50</td><td>1</td>"));
+  EXPECT_TRUE(holds(html, "<td>breaks at "));
 }
 
 TEST_F(ReportPageTest, what_moved_a_body_is_named_and_not_what_frames_would_have_had) {

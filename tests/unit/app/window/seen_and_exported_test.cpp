@@ -67,5 +67,31 @@ TEST_F(SeenTest, back_to_the_start_goes_on_if_it_was_running) {
   EXPECT_EQ(player().time(), 0);
 }
 
+// As with a finger that stays where *Next* was: it takes every step, whatever is written of it.
+TEST_F(SeenTest, next_stays_under_the_finger_and_space_after_end_is_the_run_s) {
+  connect_keyboard();
+  shell_->open("paper-a");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  shell_->session()->viewer().show(Viewer::Tab::teach);
+  click(std::string(demos()[0].name.english) + "##demo0", "side/content");
+  const auto guide = [&]() -> const std::optional<DemoGuide>& {
+    return shell_->session()->viewer().teaching().guide;
+  };
+  const auto stops_at = [&](std::size_t step) {
+    return until([&] { return guide() && guide()->step() == step && !guide()->under_way(); });
+  };
+  ASSERT_TRUE(stops_at(0));
+  click("Next##next", "side/content");
+  ASSERT_TRUE(stops_at(1));
+  EXPECT_EQ(player().speed(), 1);  // as it was before
+  click_at(ImGui::GetIO().MousePos, [this] { frame(); });
+  ASSERT_TRUE(stops_at(2));
+  tap(GLFW_KEY_END);
+  ASSERT_FALSE(player().playing());
+  tap(GLFW_KEY_SPACE);
+  EXPECT_TRUE(player().playing());
+  EXPECT_TRUE(guide().has_value());
+}
+
 }  // namespace
 }  // namespace topple::app
