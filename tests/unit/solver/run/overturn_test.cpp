@@ -286,10 +286,8 @@ TEST(Overturn, uplift_and_impact_count_from_the_stated_angle_on) {
       std::vector<ContactForce> forces;
       for (const int p : points) {
         const double x = s.model.node_position[s.model.contact_points[p].node].x();
-        ContactForce force{};
-        force.point = p;
-        force.normal = lifted && x < least + 1e-6 ? 0 : weight / static_cast<double>(points.size());
-        forces.push_back(force);
+        const double normal = lifted && x < least + 1e-6 ? 0 : weight / static_cast<double>(points.size());
+        forces.push_back({p, 0, 0, normal, Vec3(0, 0, normal)});
       }
       return forces;
     };
