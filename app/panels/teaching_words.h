@@ -121,30 +121,29 @@ inline constexpr Phrase k_gentle_start{
     "upper floors of tall buildings.",
     "床が 0.5 Hz、190 gal でゆっくり大きく揺れます。長周期地震動による高層階の揺れに相当します。"};
 inline constexpr Phrase k_gentle_uplift{
-    "An edge of the base has left the floor: the acceleration has passed g b/h. From here on the body turns "
-    "about "
-    "its other edge.",
-    "底面の一端が浮き上がりました。加速度が g b/h を超えたためです。ここから反対側の縁を中心に回転します。"};
+    "An edge of the base has left the floor: the acceleration has passed West's line. From here on the body "
+    "turns about its other edge.",
+    "底面の一端が浮き上がりました。加速度が West "
+    "の線を超えたためです。ここから反対側の縁を中心に回転します。"};
 inline constexpr Phrase k_gentle_critical{
     "The centre of gravity now stands over the edge. The floor still pushes the same way, because half a "
     "period "
     "takes a whole second, so nothing brings the body back.",
     "重心が縁の真上を越えました。半周期が1秒と長く床は同じ向きに加速し続けるため、家具は元に戻れません。"};
 inline constexpr Phrase k_gentle_end{
-    "It falls, at an acceleration that hardly lifted it. What counts is not how hard the floor is shaken but "
-    "for "
-    "how long it pushes one way.",
-    "浮き上がる程度の加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける時間です。"};
+    "It falls, at an acceleration of less than a fifth of gravity. What counts is not how hard the floor is "
+    "shaken but for how long it pushes one way.",
+    "重力加速度の5分の1に満たない加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける"
+    "時間です。"};
 inline constexpr Phrase k_violent_start{
     "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor moves by "
     "only a "
     "few centimetres.",
     "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の移動は数センチにすぎません。"};
 inline constexpr Phrase k_violent_uplift{
-    "The body lifts at once, since 700 gal is far above g b/h. Yet the floor will turn round in a quarter of "
-    "a "
-    "second.",
-    "700 gal は g b/h を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
+    "The body lifts at once, since 700 gal is far above West's line. Yet the floor will turn round in a "
+    "quarter of a second.",
+    "700 gal は West の線を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
 inline constexpr Phrase k_violent_impact{
     "It strikes the floor on its other side and loses energy. Each blow takes away some of what the floor "
     "has put "

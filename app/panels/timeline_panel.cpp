@@ -140,11 +140,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
       const float x = lane.left + 9 * static_cast<float>(k);
       list.AddLine({x, lane.y(1)}, {std::min(x + 5, lane.right), lane.y(1)}, theme().axis);
     }
-    add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text, say(k_falls_at_one));
-  }
-  if (shares && most >= k_tilt_room && lane.y(1) - lane.top > line) {
-    const std::string words = say(k_cut_above, k_tilt_room);
-    add_text(list, lane.right - text_width(words) - 4, lane.top, theme().text, words);
+    add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
+             most < k_tilt_room ? say(k_falls_at_one) : say(k_falls_and_cut, k_tilt_room));
   }
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };

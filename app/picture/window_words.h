@@ -145,7 +145,7 @@ inline constexpr Phrase k_up_to{"up to {0:.4g}", "最大 {0:.4g}"};
 inline constexpr Phrase k_tilt_lane{"tilt, °", "傾斜 [°]"};
 inline constexpr Phrase k_tilt_share_lane{"tilt / critical", "傾斜／限界角"};
 inline constexpr Phrase k_falls_at_one{"1: it falls", "1 で転倒"};
-inline constexpr Phrase k_cut_above{"more than {0}", "{0} 超"};
+inline constexpr Phrase k_falls_and_cut{"1: it falls; cut above {0}", "1 で転倒、{0} 超は省略"};
 inline constexpr Phrase k_floor_trace{"floor acceleration, gal", "床の加速度 [gal]"};
 inline constexpr Phrase k_anchor_breaks{"{0}: anchor {1} breaks at {2:.0f} N",
                                         "{0}：固定具 {1} が {2:.0f} N で破断"};
