@@ -1,6 +1,7 @@
 #include "app/panels/computed.h"
 
 #include <algorithm>
+#include <set>
 
 #include "app/picture/window_words.h"
 #include "solver/body/model_level.h"
@@ -9,6 +10,16 @@
 namespace topple::app {
 
 using namespace window_words;
+
+namespace {
+
+std::string moved_by(const Player& player, ModelLevel level) {
+  const auto* const own = std::ranges::find(k_moved_by, level, &MovedBy::kind);
+  return own == std::end(k_moved_by) ? say(phrase_of_choice(traits(player.parameters().integrator).word))
+                                     : say(own->words);
+}
+
+}  // namespace
 
 std::optional<double> step_taken(const Player& player) {
   const std::vector<RowPtr>& way = player.way();
@@ -32,10 +43,18 @@ std::string computed_in_words(const Player& player, std::size_t body) {
     if (event.event.kind == Event::Kind::model && event.event.body == static_cast<int>(body) &&
         event.time <= now->time)
       reason = event.event.reason;
-  const auto* const own = std::ranges::find(k_moved_by, level, &MovedBy::kind);
-  return say(k_computed_now, say(phrase_of(level)), say(phrase_of(reason)),
-             own == std::end(k_moved_by) ? say(phrase_of_choice(traits(player.parameters().integrator).word))
-                                         : say(own->words));
+  return say(k_computed_now, say(phrase_of(level)), say(phrase_of(reason)), moved_by(player, level));
+}
+
+std::string integrators_in_words(const Player& player) {
+  const std::optional<io::FrameRow> now = player.row();
+  if (!now) return "";
+  const std::set<std::uint8_t> levels(now->level.begin(), now->level.end());
+  if (levels == std::set{static_cast<std::uint8_t>(ModelLevel::frame)}) return "";
+  std::string all;
+  for (const std::uint8_t level : levels)
+    all += (all.empty() ? "" : "; ") + moved_by(player, static_cast<ModelLevel>(level));
+  return say(k_integrators_now, all);
 }
 
 }  // namespace topple::app

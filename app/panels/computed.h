@@ -16,4 +16,8 @@ std::optional<double> step_taken(const Player& player);
 /// that is shown. Empty: there is none.
 std::string computed_in_words(const Player& player, std::size_t body);
 
+/// "of frames; at work now: central differences": what moves bodies at the instant that is shown. Empty: the
+/// integrator that is chosen moves all of them, or there is no instant.
+std::string integrators_in_words(const Player& player);
+
 }  // namespace topple::app

@@ -254,6 +254,13 @@ void draw_type(const Parameter& of) {
   row.button(k_shake_once, static_cast<int>(Shake::Kind::pulse), k_shake_once_about);
 }
 
+/// What is computed, below what is asked for.
+void write_below(const std::string& words) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", words.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void draw_model(const Parameter& of) {
   ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
   of.row().choice(say(k_model), k_model_about, [&](int number) {
@@ -262,9 +269,13 @@ void draw_model(const Parameter& of) {
   });
   const ImVec2 line{1, ImGui::GetTextLineHeight()};
   if (!ImGui::IsRectVisible(line)) return ImGui::Dummy(line);  // of very many bodies
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextDisabled("%s", computed_in_words(of.player, static_cast<std::size_t>(of.index)).c_str());
-  ImGui::PopTextWrapPos();
+  write_below(computed_in_words(of.player, static_cast<std::size_t>(of.index)));
+}
+
+void draw_integrator(const Parameter& of) {
+  of.row().choice(say(k_integrator), k_integrator_about,
+                  [](int number) { return number != k_automatic_integrator; });
+  if (const std::string words = integrators_in_words(of.player); !words.empty()) write_below(words);
 }
 
 void draw_anchor(const Parameter& of) {
@@ -286,11 +297,7 @@ constexpr Control k_controls[] = {
      [](const Parameter& of) { of.row().choice(say(k_law), k_law_about, [](int) { return true; }); }},
     {Edit::Key::model, draw_model},
     {Edit::Key::anchor, draw_anchor},
-    {Edit::Key::integrator,
-     [](const Parameter& of) {
-       of.row().choice(say(k_integrator), k_integrator_about,
-                       [](int number) { return number != k_automatic_integrator; });
-     }},
+    {Edit::Key::integrator, draw_integrator},
     {Edit::Key::want,
      [](const Parameter& of) { of.row().tick(say(k_stresses_wanted), say(k_stresses_wanted_about)); }},
 };

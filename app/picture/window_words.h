@@ -230,6 +230,7 @@ inline constexpr MovedBy k_moved_by[] = {
     {ModelLevel::rigid,
      {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"}},
     {ModelLevel::elastic, {"central differences", "中央差分法"}}};
+inline constexpr Phrase k_integrators_now{"of frames; at work now: {0}", "骨組用。現在の計算：{0}"};
 inline constexpr Phrase k_computed_now{"now {0} ({1}): {2}", "現在 {0}（{1}）：{2}"};
 inline constexpr Phrase k_step_auto{"auto, %.3g ms", "自動、%.3g ms"};
 inline constexpr Phrase k_step_auto_unknown{"auto", "自動"};

@@ -36,9 +36,11 @@ TEST_F(ComputedTest, the_model_its_reason_and_what_moves_it_are_said) {
   start({"cabinet.free.model=auto", "run.want=[\"motion\",\"stress\"]", "run.duration=0.2"});
   run_to_end();
   EXPECT_EQ(computed_in_words(*player_, 0), "now elastic (stresses are wanted): central differences");
+  EXPECT_EQ(integrators_in_words(*player_), "of frames; at work now: central differences");
   start({"cabinet.free.model=frame", "run.duration=0.1"});
   run_to_end();
   EXPECT_EQ(computed_in_words(*player_, 0), "now frame (asked for): generalized-alpha");
+  EXPECT_EQ(integrators_in_words(*player_), "");
 }
 
 // Steps and time between frames are the run's own.
