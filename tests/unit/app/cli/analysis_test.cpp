@@ -170,7 +170,7 @@ loads = [{ node = 2, force = [0, 0, -1] }]
 }
 
 TEST_F(AnalysisTest, scene_that_asks_for_modes_is_not_recorded) {
-  write_bytes("s.toml", loaded(0));
+  write_bytes("s.toml", loaded(-1));
   expect_one_line({"run", "s.toml", "--set", "run.analysis=modes", "-o", "a.h5"}, 2,
                   "modes are not recorded");
   EXPECT_EQ(topple({"run", "s.toml", "--set", "run.analysis=modes"}).code, 0);

@@ -61,7 +61,7 @@ TEST_F(FullDiskTest, pictures_appear_whole_or_not_at_all) {
 }
 
 TEST_F(FullDiskTest, a_video_appears_whole_or_not_at_all) {
-  expect_one_line({"render", "a.h5", "--mp4", "a.mp4", "--size", "320x180"}, 1,
+  expect_one_line({"render", "a.h5", "--mp4", "a.mp4", "--size", "320x180", "--quiet"}, 1,
                   "a.mp4: ", {.most_bytes = 2000});
   EXPECT_EQ(files().size(), 2u);
 }
