@@ -10,6 +10,8 @@
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
 #include "solver/run/footprint.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/common/standing.h"
 
 namespace topple::app {
 namespace {
@@ -108,9 +110,23 @@ double rounded_up(double value) {
   return std::ceil(value / unit) * unit;
 }
 
+/// Greatest part of the acceleration that tips a body on a rigid floor by which it tips earlier here, as far
+/// as its weight on one edge tells, or exactly where it stands freely.
+std::optional<double> early_tipping(const Setup& setup) {
+  const Parameters& p = setup.parameters;
+  std::optional<double> early = early_uplift(setup.model, p.contact, p.gravity);
+  if (!early || *early <= k_early) return early;
+  for (int b = 0; b < setup.model.furniture_total(); ++b) {
+    if (!study::why_not_standing(setup.model, b).empty()) continue;
+    const study::Standing body = study::standing(setup.model, p, b);
+    early = std::max(*early, 1 - study::tipping_limit(body, p.contact) / body.rigid_limit());
+  }
+  return early;
+}
+
 void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   const Parameters& p = setup.parameters;
-  const std::optional<double> early = early_uplift(setup.model, p.contact, p.gravity);
+  const std::optional<double> early = early_tipping(setup);
   const std::optional<double> rigid = rigid_alpha(setup.model, p.contact, p.gravity);
   if (!early || !rigid || *early <= k_early) return;
   list.push_back(fmt::format(

@@ -11,6 +11,7 @@
 #include "app/batch/load_steps.h"
 #include "app/batch/run_warnings.h"
 #include "app/batch/ways_summary.h"
+#include "app/support/integrators.h"
 #include "app/support/terms.h"
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
@@ -42,12 +43,13 @@ ordered_json intervals(const std::vector<double>& times) {
   return out;
 }
 
-ordered_json models(const BodyOutcome& o) {
+ordered_json models(const BodyOutcome& o, Integrator frames) {
   ordered_json out = ordered_json::array();
   for (const LevelChange& change : o.level_changes)
     out.push_back({{"from_s", number(change.time)},
                    {"model", traits(change.level).word},
                    {"reason", name(change.reason)},
+                   {"integrator", integrator_of(change.level, frames)},
                    {"error_estimate", traits(change.level).moves_nodes ? ordered_json(nullptr)
                                                                        : number(change.error_estimate)}});
   return out;
@@ -61,11 +63,15 @@ ordered_json not_planar(const Setup& setup, const BodyOutcome& o, int body) {
   return why.empty() ? ordered_json(nullptr) : ordered_json(std::string(why));
 }
 
-ordered_json body(const Setup& setup, const BodyOutcome& o, const BodyMomentum& momentum, int index) {
+ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, const BodyMomentum& momentum,
+                  int index) {
   const Body& body = setup.model.bodies[static_cast<std::size_t>(index)];
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
-          {"models", models(o)},
+          {"integrator", is_static(setup)
+                             ? ordered_json(nullptr)
+                             : ordered_json(integrator_of(o.level.value_or(ModelLevel::frame), frames))},
+          {"models", models(o, frames)},
           {"not_planar", not_planar(setup, o, index)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
@@ -318,10 +324,12 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
       {"balance_error", is_static(run.setup()) ? ordered_json(nullptr) : number(e.balance_error())}};
   out["floor"] = {{"final_displacement_m", vector_json(state.floor_displacement)},
                   {"final_velocity_m_s", vector_json(state.floor_velocity)}};
+  out["uplift_threshold_deg"] = number(k_uplift_angle * k_degrees);
   out["bodies"] = ordered_json::array();
   const Model& model = run.setup().model;
   for (int b = 0; b < model.furniture_total(); ++b)
-    out["bodies"].push_back(body(run.setup(), run.outcome().bodies()[b], body_momentum(model, state, b), b));
+    out["bodies"].push_back(
+        body(run.setup(), p.integrator, run.outcome().bodies()[b], body_momentum(model, state, b), b));
   out["anchors"] = anchors(run);
   out["probes"] = ordered_json::array();
   for (std::size_t k = 0; k < run.probes().size(); ++k) {

@@ -52,6 +52,13 @@ std::string verdict(const ordered_json& recording) {
   return out;
 }
 
+/// What an event was of, beside its kind.
+std::string event_detail(const ordered_json& e) {
+  if (e.contains("anchor")) return " " + e["anchor"].get<std::string>() + " broke";
+  if (!e.contains("model")) return "";
+  return fmt::format(" {} ({})", e["model"].get<std::string>(), e["reason"].get<std::string>());
+}
+
 std::string info_table(const ordered_json& d) {
   std::string out = fmt::format("{} {}: {}\n", d["kind"].get<std::string>(), d["scene"].get<std::string>(),
                                 d["title"].get<std::string>());
@@ -95,7 +102,7 @@ std::string info_table(const ordered_json& d) {
     out += (is_static(d) ? fmt::format("load step {:>4}", e["step"].get<long>())
                          : fmt::format("{:>10.4f} s", e["time_s"].get<double>())) +
            fmt::format("  {} {}{}\n", e["body"].get<std::string>(), e["kind"].get<std::string>(),
-                       e.contains("anchor") ? " " + e["anchor"].get<std::string>() + " broke" : "");
+                       event_detail(e));
   return out;
 }
 

@@ -58,8 +58,9 @@ struct RenderOptions {
   std::optional<double> from, to;      ///< s
   bool ui = false;                     ///< with the panels of the window
   Language language = Language::english;
-  PictureSettings picture;  ///< all but `diagram`
-  std::string inspect;      ///< BODY or BODY/MEMBER; empty: none
+  PictureSettings picture;   ///< all but `diagram`
+  std::string inspect;       ///< BODY or BODY/MEMBER; empty: none
+  std::optional<int> ghost;  ///< branch of a recording drawn beside the newest
   render::Renderer renderer = render::Renderer::any;
   bool quiet = false;
   bool force = false;  ///< in place of files of any kind
@@ -118,7 +119,8 @@ std::optional<std::size_t> followed_by(const RenderOptions& o, const Model& mode
 /// Draws one instant after the other.
 class Drawing {
  public:
-  Drawing(const RenderOptions& o, const Replay& replay, const io::Scene& scene,
+  /// ghost: null: none.
+  Drawing(const RenderOptions& o, const Replay& replay, const Replay* ghost, const io::Scene& scene,
           const std::optional<Subject>& inspected, const std::optional<std::size_t>& followed,
           render::Context& context)
       : options_(o),
@@ -128,6 +130,7 @@ class Drawing {
         scene_(scene),
         bridge_(scene, extent_),
         replay_(replay),
+        ghost_(ghost),
         picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {
     if (followed_) start_ = centre_of(replay.frame(0), *followed_);
   }
@@ -139,6 +142,7 @@ class Drawing {
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
+    if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), settings, frame);
     return picture_.draw(frame, camera(frame, row), {.map = options_.picture.map});
   }
 
@@ -162,6 +166,7 @@ class Drawing {
   const io::Scene& scene_;
   const Bridge bridge_;
   const Replay& replay_;
+  const Replay* const ghost_;
   render::Picture picture_;
 };
 
@@ -208,12 +213,24 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
   return interrupted() ? k_interrupted : k_done;
 }
 
+/// Null: none is asked for, or it has no frames.
+std::unique_ptr<const Replay> ghost_of(const RenderOptions& o, const io::Recording& recording) {
+  if (!o.ghost) return nullptr;
+  const auto& branches = recording.history().branches;
+  if (std::ranges::find(branches, *o.ghost, &Branch::id) == branches.end())
+    throw BadInput(fmt::format("--ghost: {} has no branch {}; its branches are 0..{}", o.source, *o.ghost,
+                               branches.size() - 1));
+  auto ghost = std::make_unique<const Replay>(recording, *o.ghost);
+  return ghost->frame_count() > 0 ? std::move(ghost) : nullptr;
+}
+
 int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const io::Scene> scene) {
   const io::Recording recording = scene ? io::Recording(path) : open_foreign_recording(path);
   if (!scene) scene = std::make_shared<const io::Scene>(io::recorded_scene(recording));
   io::check_edits(recording.history(), scene->setup);
   const Replay replay(recording);
   if (replay.frame_count() == 0) throw BadInput(o.source + ": holds no frames");
+  const std::unique_ptr<const Replay> ghost = ghost_of(o, recording);
   const double first = replay.first(), last = replay.last();
   check_times(o, is_static(scene->setup), first, last, "the recording");
   defer_interrupts();
@@ -234,7 +251,7 @@ int draw(const RenderOptions& o, const std::string& path, std::shared_ptr<const 
         easel->window.emplace(*easel->context, scene, path, o.view, o.picture, inspected, followed, o.width,
                               o.height);
       else
-        easel->drawing.emplace(o, replay, *scene, inspected, followed, *easel->context);
+        easel->drawing.emplace(o, replay, ghost.get(), *scene, inspected, followed, *easel->context);
       return
           [easel](double time) { return easel->window ? easel->window->at(time) : easel->drawing->at(time); };
     };
@@ -257,12 +274,16 @@ int render_command(const RenderOptions& options) {
     throw BadInput("--size: a video needs an even width and height");
   if (options.ui && options.orbit)
     throw BadInput("--camera: with --ui, one of front, side, top, iso, follow");
+  if (options.ui && options.ghost)
+    throw BadInput("--ghost: with --ui the window itself shows the branch that was left");
   window_language() = options.language;
   if (io::is_recording(options.source)) {
     if (!options.overrides.empty())
       throw BadInput("--set: " + options.source + " is a recording; only a scene can be changed");
     return draw(options, options.source, nullptr);
   }
+  if (options.ghost)
+    throw BadInput("--ghost: " + options.source + " is a scene; only a recording has branches");
   const auto scene = std::make_shared<const io::Scene>(io::load_scene(options.source, options.overrides));
   check_times(options, is_static(scene->setup), 0, scene->setup.run.duration, "the scene");
   followed_by(options, scene->setup.model, inspected_by(options, scene->setup.model));
@@ -383,6 +404,8 @@ void add_picture(CLI::App& command, RenderOptions& options) {
   add_choice<Trails>(command, "--trails", "SPAN", picture.trails,
                      {{"second", Trails::second}, {"run", Trails::run}},
                      "second or run: paths of centres of gravity and tops of bodies since then");
+  add_read(command, "--ghost", "BRANCH", whole_number(options.ghost, 0, 1000000),
+           "another branch of a recording as a ghost; 0 is the first");
   add_path(command, "--inspect", options.inspect, "BODY[/MEMBER]",
            "look closely at a body or member: forces along the member; all values with --ui");
 }

@@ -277,14 +277,16 @@ void Player::to_end() {
 
 void Player::restart() {
   if (way_.empty() || busy()) return;
+  const bool goes_on = playing_;
   if (replay()) {
     to_start();
-    return;
+  } else {
+    pause();
+    const io::FrameRow& first = *way_.front();
+    ++forks_asked_;
+    run_.fork(first.branch, first.step, edits_since_start());
   }
-  pause();
-  const io::FrameRow& first = *way_.front();
-  ++forks_asked_;
-  run_.fork(first.branch, first.step, edits_since_start());
+  if (goes_on) play();
 }
 
 std::vector<Edit> Player::edits_since_start() const {

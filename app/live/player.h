@@ -30,10 +30,12 @@ class Player {
   void play();
   void pause();
   void toggle() { playing_ ? pause() : play(); }
-  void step(int rows);  ///< one recorded frame back or on; at the head, one step of the run
+  void step(int rows);           ///< one recorded frame back or on; at the head, one step of the run
+  void set_speed(double speed);  ///< clipped to k_least_speed..k_most_speed
   void faster();
   void slower();
-  /// From the beginning, in a new branch, with the parameters as they are now. A replay goes to its start.
+  /// From the beginning, in a new branch, with the parameters as they are now; plays on if it did. A replay
+  /// goes to its start.
   void restart();
   void scrub(double time);  ///< pauses
   void to_start();
@@ -91,6 +93,10 @@ class Player {
   const std::vector<RowPtr>& way() const { return way_; }
   /// The same of the branch that was left last; empty: there is none.
   const std::vector<RowPtr>& ghost_way() const { return ghost_way_; }
+  /// That ghost() is of; none: there is no ghost.
+  std::optional<std::int32_t> ghost_branch() const {
+    return ghost_way_.empty() ? std::nullopt : std::optional(left_);
+  }
   const RunExtent& extent() const { return extent_; }
   /// Recorded on the same branches.
   std::vector<io::RecordedEvent> events() const;
@@ -107,7 +113,6 @@ class Player {
   bool goes_on_at_end() const;
   bool forking() const { return forks_asked_ > status_.forks; }
   bool live_shown() const { return !replay() && shown_ == status_.branch; }
-  void set_speed(double speed);
   void post(const Edit& edit);
   void take(LiveReport&& report);
   void keep(RowPtr row);

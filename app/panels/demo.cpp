@@ -13,6 +13,7 @@ namespace {
 using namespace window_words;
 
 constexpr double k_lying = 60 * k_pi / 180;
+constexpr double k_demo_speed = 0.25;  // up to what is pointed out; a second is too short to look at it
 
 constexpr DemoStep k_gentle[] = {{Until::start, k_gentle_start},
                                  {Until::uplift, k_gentle_uplift},
@@ -64,6 +65,7 @@ DemoGuide::DemoGuide(const Demo& demo, Player& player)
       branch_before_(player.status().branch),
       body_(first_standing(player.scene().setup.model)) {
   shake_as_sine(player_, demo_.frequency, demo_.amplitude);
+  player_.pause();
   player_.restart();
 }
 
@@ -92,6 +94,7 @@ std::optional<DemoGuide::Stop> DemoGuide::stop_of(Until until) const {
 
 void DemoGuide::show(std::size_t step) {
   reached_ = step;
+  leave();
   going_ = false;
   player_.scrub(stops_[step].time);
 }
@@ -114,9 +117,18 @@ void DemoGuide::next() {
     show(*reached_ + 1);
     return;
   }
+  if (demo_.steps[*reached_ + 1].until != Until::end && player_.speed() > k_demo_speed) {
+    speed_before_ = player_.speed();
+    player_.set_speed(k_demo_speed);
+  }
   going_ = true;
   player_.to_end();
   player_.play();
+}
+
+void DemoGuide::leave() {
+  if (speed_before_ && player_.speed() == k_demo_speed) player_.set_speed(*speed_before_);
+  speed_before_.reset();
 }
 
 void DemoGuide::previous() {

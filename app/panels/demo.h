@@ -40,8 +40,11 @@ class DemoGuide {
 
   /// Stops where the step under way is reached. True when something changed.
   bool update();
+  /// Goes on to the next step, at a quarter of the speed where something is to be seen on the way.
   void next();
   void previous();
+  /// Gives the speed back that next() has changed.
+  void leave();
 
   const Demo& demo() const { return demo_; }
   /// Of the step reached last; nothing while the run is on its way to the first.
@@ -65,7 +68,8 @@ class DemoGuide {
   const std::int32_t body_;
   std::optional<std::size_t> reached_;
   bool going_ = true;
-  std::vector<Stop> stops_;  // of the steps reached so far
+  std::optional<double> speed_before_;  // next() has changed it
+  std::vector<Stop> stops_;             // of the steps reached so far
 };
 
 }  // namespace topple::app

@@ -10,8 +10,6 @@
 #include "app/panels/teaching_words.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
-#include "solver/study/common/alone.h"
-#include "solver/study/overturn/criteria.h"
 
 namespace topple::app {
 namespace {
@@ -47,32 +45,6 @@ ShakePlace place_of(const Shake& shake) {
           std::abs(shake.scale) * shake.record->peak};
 }
 
-/// What the criteria say of one body.
-struct Limits {
-  double west;      ///< m/s^2
-  double ishiyama;  ///< m/s
-
-  const Phrase& verdict(const ShakePlace& at) const {
-    if (at.amplitude < west) return k_stays;
-    return at.amplitude < 2 * k_pi * at.frequency * ishiyama ? k_rocks : k_may_overturn;
-  }
-};
-
-std::optional<Limits> limits_of(const Player& player, int body) {
-  const Model& model = player.scene().setup.model;
-  const Parameters& parameters = player.parameters();
-  if (!study::why_not_standing(model, body).empty()) return std::nullopt;
-  std::optional<Limits> least;
-  for (const double sense : {1., -1.}) {
-    const Vec3 direction = sense * parameters.shakes.front().direction;
-    const auto standing = study::standing_towards(model, parameters, body, direction);
-    if (!standing) continue;
-    const double west = study::west_acceleration(*standing);
-    if (!least || west < least->west) least = Limits{west, study::ishiyama_velocity(*standing)};
-  }
-  return least;
-}
-
 /// A word in the middle of a region between two heights at a frequency, if it has room.
 void draw_region(ImDrawList& list, const LogChart& chart, double frequency, double low, double high,
                  const Phrase& words) {
@@ -85,7 +57,7 @@ void draw_region(ImDrawList& list, const LogChart& chart, double frequency, doub
   add_text(list, x, (lower.y + upper.y) / 2 - line / 2, theme().text, text);
 }
 
-void draw_criteria_chart(const Limits& limits, const TeachingState& state) {
+void draw_criteria_chart(const CriteriaLimits& limits, const TeachingState& state) {
   const float height = std::min(0.72f * ImGui::GetContentRegionAvail().x, 18 * ImGui::GetTextLineHeight());
   const LogChart chart = chart_at_cursor(k_frequencies, k_amplitudes, height, say(k_amplitude_axis));
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -128,10 +100,11 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const Model& model = player.scene().setup.model;
   const auto& shakes = player.parameters().shakes;
   const auto furniture = model.furniture_total();
-  if (!state.body || !limits_of(player, *state.body)) {
+  const Parameters& parameters = player.parameters();
+  if (!state.body || !has_limits(model, parameters, *state.body)) {
     state.body.reset();
     for (int b = 0; b < furniture && !state.body; ++b)
-      if (limits_of(player, b)) state.body = b;
+      if (has_limits(model, parameters, b)) state.body = b;
   }
   if (!state.body) {
     ImGui::TextWrapped("%s", say(k_no_standing_body).c_str());
@@ -143,21 +116,27 @@ void draw_criteria(const Player& player, TeachingState& state) {
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##standing", model.bodies[static_cast<std::size_t>(*state.body)].name.c_str())) {
     for (int b = 0; b < furniture; ++b)
-      if (limits_of(player, b) &&
+      if (has_limits(model, parameters, b) &&
           ImGui::Selectable(model.bodies[static_cast<std::size_t>(b)].name.c_str(), b == *state.body))
         state.body = b;
     ImGui::EndCombo();
   }
-  const Limits limits = *limits_of(player, *state.body);
+  if (!state.limits_of || state.limits_of->first != *state.body || !(state.limits_of->second == parameters)) {
+    state.limits_of.emplace(*state.body, parameters);
+    state.limits = *limits_of(player, *state.body);
+  }
+  const CriteriaLimits& limits = state.limits;
   draw_criteria_chart(limits, state);
   const ShakePlace now = state.path.back();
   const bool record = traits(shakes.front().kind).has_record;
-  ImGui::TextWrapped("%s", say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal,
-                               say(limits.verdict(now)))
-                               .c_str());
-  ImGui::TextWrapped("%s", say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
-                               100 * now.amplitude / (2 * k_pi * now.frequency))
-                               .c_str());
+  const Phrase& by_criteria = verdict(limits, now);
+  const auto write = [](const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); };
+  write(say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal, say(by_criteria)));
+  const std::string words = difference_in_words(player, *state.body, limits, now, state.path.size() > 1);
+  if (!words.empty()) write(words);
+  write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
+            100 * now.amplitude / (2 * k_pi * now.frequency)));
+  if (limits.west < limits.rigid) write(say(k_soft_limits, limits.rigid / k_gal));
 }
 
 }  // namespace

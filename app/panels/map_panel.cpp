@@ -17,6 +17,8 @@ using namespace window_words;
 using study::Axis;
 using study::Verdict;
 
+constexpr double k_same = 1e-6;  // relative, of values that are an axis's
+
 constexpr Verdict k_verdicts[] = {Verdict::all, Verdict::some, Verdict::rocks, Verdict::stands,
                                   Verdict::failed};
 
@@ -208,14 +210,36 @@ bool can_have_map(const Player& player) {
          setup.model.furniture_total() > 0 && study::usual_axes(now.shakes) != nullptr;
 }
 
+void show(const std::shared_ptr<const OverturnFound>& found, MapState& state) {
+  if (state.shown != found) {
+    const study::Criteria& criteria = found->map.criteria;
+    state.soft_limit.reset();
+    if (!criteria.list.empty()) state.soft_limit = study::soft_limit(criteria.body, state.of.contact);
+  }
+  state.shown = found;
+  state.shown_of = state.of;
+}
+
 }  // namespace
+
+std::string present_in_words(const OverturnFound& found, const Parameters& now) {
+  const Axis &x = found.plan->x, &y = found.plan->y;
+  const double at_x = value_now(x, now), at_y = value_now(y, now);
+  const int i = place_on(x, at_x), j = place_on(y, at_y);
+  if (i < 0 || j < 0) return say(k_map_outside);
+  const auto is_of = [](double value, const Axis& axis, int k) {
+    return std::abs(value / axis.values[static_cast<std::size_t>(k)] - 1) <= k_same;
+  };
+  const std::string cell = cell_in_words(found, i, j);
+  return is_of(at_x, x, i) && is_of(at_y, y, j) ? say(k_map_here_exact, cell)
+                                                : say(k_map_here, cell, at_x, x.unit, at_y, y.unit);
+}
 
 void update_map(const Player& player, MapState& state) {
   using Follows = MapState::Follows;
   const bool over = state.search && state.search->over();  // asked first: the last result comes before it
   const auto found = state.search ? state.search->result() : nullptr;
-  if (found && found->plan && (over || !state.shown || state.follows != Follows::yes))
-    state.shown = found, state.shown_of = state.of;
+  if (found && found->plan && (over || !state.shown || state.follows != Follows::yes)) show(found, state);
   const bool failed = over && found && !found->plan;
   if (failed) state.shown.reset();
   if (over && state.follows == Follows::untried) {
@@ -266,12 +290,13 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   add_present(list, key.entry(say(k_present)));
   key.end();
   if (!curves.empty())
-    ImGui::TextWrapped("%s", say(k_map_lines, found->map.criteria.bodies).c_str());
+    ImGui::TextWrapped(
+        "%s", (say(k_map_lines, found->map.criteria.bodies) +
+               (state.soft_limit ? say(k_full_stop) + " " + say(k_map_soft, *state.soft_limit / k_gal) : ""))
+                  .c_str());
   else if (!found->map.criteria.why_not.empty())  // else they are not there yet
     ImGui::TextWrapped("%s", say(k_map_no_lines).c_str());
-  const int i = place_on(plan.x, x), j = place_on(plan.y, y);
-  ImGui::TextWrapped(
-      "%s", (i < 0 || j < 0 ? say(k_map_outside) : say(k_map_here, cell_in_words(*found, i, j))).c_str());
+  ImGui::TextWrapped("%s", present_in_words(*found, player.parameters()).c_str());
   draw_steps(player, *found, refused);
   if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of))
     ImGui::TextWrapped("%s", say(k_map_stale).c_str());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/panels/panels.h"
@@ -15,8 +16,15 @@ struct MapState {
   Parameters of, shown_of;                     ///< with which the search began, and that of `shown`
   /// It is computed anew whenever parameters change: where planar blocks do it, unless it was closed.
   enum class Follows { untried, yes, no } follows = Follows::untried;
+  /// Steady acceleration, m/s^2, that tips the body of the lines of `shown` on the scene's soft contacts;
+  /// none: they are nearly rigid, or there are no lines.
+  std::optional<double> soft_limit;
   Box cells;  ///< as drawn last
 };
+
+/// What the map says of the shake as it is now: the cell that it lies in, as that of another shake unless it
+/// is the one that was run.
+std::string present_in_words(const OverturnFound& found, const Parameters& now);
 
 /// Begins a search where the map follows the parameters, and takes over what is found.
 void update_map(const Player& player, MapState& state);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "app/panels/computed.h"
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
 #include "app/support/terms.h"
@@ -68,6 +69,8 @@ Slider slider_of(Edit::Key key) {
           of.most / unit};
 }
 
+constexpr float k_no_exponent = 1000;  // from here on four digits would get one
+
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
 
 double azimuth(const Vec3& direction) {
@@ -103,14 +106,19 @@ class Row {
       return value;
     };
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
-    float number = static_cast<float>(shown(edit_.value));
+    // An adaptive run takes other steps than the one that is kept for when it ends to be one.
+    const bool adaptive = look.key == Edit::Key::time_step && player_.parameters().adaptive;
+    const std::optional<double> taken = adaptive ? step_taken(player_) : std::nullopt;
+    float number = static_cast<float>(taken ? *taken / unit : shown(edit_.value));
+    std::string format = adaptive ? say(taken ? k_step_auto : k_step_auto_unknown) : look.format;
+    if (number >= k_no_exponent && !adaptive) format = std::string("%.0f ") + look.unit;
     const auto [low, high] = range(look, number, shown(scene_value_), unit);
     const ImGuiSliderFlags flags = look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
     const bool changed =
-        ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, look.format, flags);
+        ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, format.c_str(), flags);
     if (ImGui::IsItemActivated()) player_.begin_edit();
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-      ImGui::SetTooltip("%s", about(look, shown(scene_value_)).c_str());
+      ImGui::SetTooltip("%s", (adaptive ? say(k_step_auto_about) : about(look, shown(scene_value_))).c_str());
     // While somebody types, what stands there so far is no value yet.
     ImGuiStorage& typed = *ImGui::GetStateStorage();
     const ImGuiID item = ImGui::GetID("typed");
@@ -132,14 +140,13 @@ class Row {
     begin(label);
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());
     const int now = static_cast<int>(edit_.value.x());
-    const std::string shown(*io::choice_of(key_, now));
+    const auto word = [&](int number) { return say(phrase_of_choice(*io::choice_of(key_, number))); };
+    const std::string shown = word(now);
     const float room = ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
     const bool narrow = ImGui::CalcTextSize(shown.c_str()).x + ImGui::GetStyle().FramePadding.x > room;
     if (ImGui::BeginCombo("##value", shown.c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
       for (const int number : key_.numbers)
-        if (legal(number) &&
-            ImGui::Selectable(std::string(*io::choice_of(key_, number)).c_str(), number == now) &&
-            number != now)
+        if (legal(number) && ImGui::Selectable(word(number).c_str(), number == now) && number != now)
           post_anew(Vec3(number, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
@@ -247,12 +254,28 @@ void draw_type(const Parameter& of) {
   row.button(k_shake_once, static_cast<int>(Shake::Kind::pulse), k_shake_once_about);
 }
 
+/// What is computed, below what is asked for.
+void write_below(const std::string& words) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", words.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void draw_model(const Parameter& of) {
   ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
   of.row().choice(say(k_model), k_model_about, [&](int number) {
     const auto model = static_cast<BodyModel>(number);
     return traits(model).by_edit && can_be(of.model(), of.index, model);
   });
+  const ImVec2 line{1, ImGui::GetTextLineHeight()};
+  if (!ImGui::IsRectVisible(line)) return ImGui::Dummy(line);  // of very many bodies
+  write_below(computed_in_words(of.player, static_cast<std::size_t>(of.index)));
+}
+
+void draw_integrator(const Parameter& of) {
+  of.row().choice(say(k_integrator), k_integrator_about,
+                  [](int number) { return number != k_automatic_integrator; });
+  if (const std::string words = integrators_in_words(of.player); !words.empty()) write_below(words);
 }
 
 void draw_anchor(const Parameter& of) {
@@ -274,11 +297,7 @@ constexpr Control k_controls[] = {
      [](const Parameter& of) { of.row().choice(say(k_law), k_law_about, [](int) { return true; }); }},
     {Edit::Key::model, draw_model},
     {Edit::Key::anchor, draw_anchor},
-    {Edit::Key::integrator,
-     [](const Parameter& of) {
-       of.row().choice(say(k_integrator), k_integrator_about,
-                       [](int number) { return number != k_automatic_integrator; });
-     }},
+    {Edit::Key::integrator, draw_integrator},
     {Edit::Key::want,
      [](const Parameter& of) { of.row().tick(say(k_stresses_wanted), say(k_stresses_wanted_about)); }},
 };

@@ -49,7 +49,9 @@ void draw_demos(const Player& player, TeachingState& state) {
   ImGui::SameLine();
   const bool quit = ImGui::Button((say(k_quit_demo) + "##quit").c_str());
   ImGui::TextWrapped("%s", say(guide.text()).c_str());  // below: the buttons stay where they are
-  if (quit) state.guide.reset();
+  if (!quit) return;
+  guide.leave();
+  state.guide.reset();
 }
 
 void draw_accuracy(const Player& player, TeachingState& state) {

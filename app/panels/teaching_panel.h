@@ -8,18 +8,16 @@
 #include <vector>
 
 #include "app/panels/accuracy.h"
+#include "app/panels/criteria.h"
 #include "app/panels/demo.h"
 #include "app/panels/map_panel.h"
 
 namespace topple::app {
 
-/// A shake on the diagram. Of a record the frequency at which a sine has its peak acceleration and velocity.
-struct ShakePlace {
-  double frequency, amplitude;  ///< Hz, m/s^2
-};
-
 struct TeachingState {
-  std::optional<int> body;                     ///< that the criteria are for
+  std::optional<int> body;     ///< that the criteria are for
+  CriteriaLimits limits = {};  ///< of `body` under `limits_of`
+  std::optional<std::pair<int, Parameters>> limits_of;
   std::vector<ShakePlace> path;                ///< where the shake has been, the present place last
   std::shared_ptr<const Accelerogram> record;  ///< of the present place
   double scale = 1;                            ///< likewise

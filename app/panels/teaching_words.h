@@ -18,16 +18,32 @@ inline constexpr Phrase k_ishiyama{"Ishiyama", "石山"};
 inline constexpr Phrase k_stays{"stays", "動かない"};
 inline constexpr Phrase k_rocks{"rocks", "ロッキング"};
 inline constexpr Phrase k_may_overturn{"may overturn", "転倒の恐れ"};
-inline constexpr Phrase k_verdict{"{0:.3g} Hz, {1:.4g} gal: {2}.", "{0:.3g} Hz、{1:.4g} gal：{2}。"};
+inline constexpr Phrase k_verdict{"By the criteria, {0:.3g} Hz, {1:.4g} gal: {2}.",
+                                  "判定基準では {0:.3g} Hz、{1:.4g} gal：{2}。"};
 inline constexpr Phrase k_verdict_record{
-    "Record, peak {1:.4g} gal; peak acceleration over peak velocity as of {0:.3g} Hz: {2}.",
-    "加速度記録、最大 {1:.4g} gal。最大加速度と最大速度の比から {0:.3g} Hz 相当：{2}。"};
+    "Record, peak {1:.4g} gal; peak acceleration over peak velocity as of {0:.3g} Hz; by the criteria: {2}.",
+    "加速度記録、最大 {1:.4g} gal。最大加速度と最大速度の比から {0:.3g} Hz 相当。判定基準では{2}。"};
 inline constexpr Phrase k_limits{
     "West: it lifts above {0:.4g} gal. Ishiyama: below a floor velocity of {1:.3g} cm/s it does not "
     "overturn; here "
     "{2:.3g} cm/s.",
     "West の式：{0:.4g} gal を超えると浮き上がる。石山の式：床の速度が {1:.3g} cm/s 未満なら転倒しない（現在 "
     "{2:.3g} cm/s）。"};
+inline constexpr Phrase k_soft_limits{
+    "Both are drawn for the contacts of this scene, which are soft: on a rigid floor West has {0:.4g} gal.",
+    "どちらもこのシーンの柔らかい接触に対する値（剛な床では West の式は {0:.4g} gal）。"};
+inline constexpr Phrase k_run_differs{
+    "In this run {0} has {1}. The criteria are for one push on a body alone that is at rest before",
+    "この計算では {0} は{1}。判定基準は、静止した単独の家具への一度の押しに対するものです"};
+inline constexpr Phrase k_has_lifted{"lifted all the same", "それでも浮き上がった"};
+inline constexpr Phrase k_has_overturned{"overturned all the same", "それでも転倒した"};
+inline constexpr Phrase k_differs_soft{"; here soft contacts let it sway higher with each swing",
+                                       "。ここでは柔らかい接触のため揺れるたびに振れが大きくなります"};
+inline constexpr Phrase k_differs_changed{"; here the shake was changed while it ran",
+                                          "。ここでは途中で加振が変更されました"};
+inline constexpr Phrase k_differs_others{"; here other bodies stand beside it",
+                                         "。ここではほかの家具があります"};
+inline constexpr Phrase k_full_stop{".", "。"};
 inline constexpr Phrase k_long_period{"long period, small acceleration", "長周期・小さい加速度"};
 inline constexpr Phrase k_short_period{"short period, large acceleration", "短周期・大きい加速度"};
 inline constexpr Phrase k_preset_about{"{0:g} Hz, {1:g} gal, from now on", "現時刻から {0:g} Hz、{1:g} gal"};
@@ -61,14 +77,22 @@ inline constexpr Phrase k_map_all_fall{"; neighbours disagree, all {0} runs with
 inline constexpr Phrase k_map_all_stand{"; neighbours disagree, none of {0} runs within this cell overturns",
                                         "。周囲で結果が分かれるが、このマス内の {0} 件に転倒はない"};
 inline constexpr Phrase k_map_follows{"The map follows the sliders.", "マップはスライダーに追従します。"};
-inline constexpr Phrase k_map_here{"Cell of the present shake: {0}.", "現在の加振のマス：{0}。"};
+inline constexpr Phrase k_map_here{
+    "The nearest cell: {0}. The shake is at {1:.3g} {2}, {3:.4g} {4} now and may end otherwise.",
+    "最も近いマス：{0}。現在の加振は {1:.3g} {2}、{3:.4g} {4} で、結果は異なることがあります。"};
+inline constexpr Phrase k_map_here_exact{"The cell of the shake as it is now: {0}.",
+                                         "現在の加振のマス：{0}。"};
 inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",
                                       "現在の加振はマップの範囲外です。"};
-inline constexpr Phrase k_map_click{"A click shakes like this from now on; R runs it from the start.",
-                                    "クリックすると現時刻からこの加振に変更。R で最初から計算します。"};
+inline constexpr Phrase k_map_click{
+    "A click shakes like this from now on; R, then Space runs it from the start.",
+    "クリックすると現時刻からこの加振に変更。R の後 Space で最初から計算します。"};
 inline constexpr Phrase k_map_no_click{"Only the newest instant can be shaken otherwise: End, or C.",
                                        "加振を変更できるのは最新の時刻だけです（End または C）。"};
 inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床に自立する {0}"};
+inline constexpr Phrase k_map_soft{
+    "They are for a rigid floor; on the soft contacts of this scene a steady push of {0:.4g} gal tips it.",
+    "剛な床に対する値です。このシーンの柔らかい接触では {0:.4g} gal の一定の力で倒れます。"};
 inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines.",
                                        "判定基準を適用できないため、線はありません。"};
 inline constexpr Phrase k_present{"now", "現在"};
@@ -97,30 +121,29 @@ inline constexpr Phrase k_gentle_start{
     "upper floors of tall buildings.",
     "床が 0.5 Hz、190 gal でゆっくり大きく揺れます。長周期地震動による高層階の揺れに相当します。"};
 inline constexpr Phrase k_gentle_uplift{
-    "An edge of the base has left the floor: the acceleration has passed g b/h. From here on the body turns "
-    "about "
-    "its other edge.",
-    "底面の一端が浮き上がりました。加速度が g b/h を超えたためです。ここから反対側の縁を中心に回転します。"};
+    "An edge of the base has left the floor: the acceleration has passed West's line. From here on the body "
+    "turns about its other edge.",
+    "底面の一端が浮き上がりました。加速度が West "
+    "の線を超えたためです。ここから反対側の縁を中心に回転します。"};
 inline constexpr Phrase k_gentle_critical{
     "The centre of gravity now stands over the edge. The floor still pushes the same way, because half a "
     "period "
     "takes a whole second, so nothing brings the body back.",
     "重心が縁の真上を越えました。半周期が1秒と長く床は同じ向きに加速し続けるため、家具は元に戻れません。"};
 inline constexpr Phrase k_gentle_end{
-    "It falls, at an acceleration that hardly lifted it. What counts is not how hard the floor is shaken but "
-    "for "
-    "how long it pushes one way.",
-    "浮き上がる程度の加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける時間です。"};
+    "It falls, at an acceleration of less than a fifth of gravity. What counts is not how hard the floor is "
+    "shaken but for how long it pushes one way.",
+    "重力加速度の5分の1に満たない加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける"
+    "時間です。"};
 inline constexpr Phrase k_violent_start{
     "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor moves by "
     "only a "
     "few centimetres.",
     "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の移動は数センチにすぎません。"};
 inline constexpr Phrase k_violent_uplift{
-    "The body lifts at once, since 700 gal is far above g b/h. Yet the floor will turn round in a quarter of "
-    "a "
-    "second.",
-    "700 gal は g b/h を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
+    "The body lifts at once, since 700 gal is far above West's line. Yet the floor will turn round in a "
+    "quarter of a second.",
+    "700 gal は West の線を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
 inline constexpr Phrase k_violent_impact{
     "It strikes the floor on its other side and loses energy. Each blow takes away some of what the floor "
     "has put "

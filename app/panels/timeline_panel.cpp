@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "app/panels/edit_marks.h"
 #include "app/panels/lane.h"
 #include "app/panels/panels.h"
 #include "app/picture/body_colour.h"
@@ -61,7 +62,8 @@ ImU32 line_colour(const std::vector<std::size_t>& coloured, std::size_t body) {
   // Where all are coloured, in the colours that their paths have in the scene.
   const auto& [red, green, blue] =
       body_colour(coloured.back() < coloured.size() ? body : static_cast<std::size_t>(at - coloured.begin()));
-  return IM_COL32(red, green, blue, 255);
+  const auto clear = [](int part) { return window_is_dark() ? part + (255 - part) / 4 : part; };
+  return IM_COL32(clear(red), clear(green), clear(blue), 255);
 }
 
 using Value = std::function<double(const io::FrameRow&)>;
@@ -138,11 +140,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
       const float x = lane.left + 9 * static_cast<float>(k);
       list.AddLine({x, lane.y(1)}, {std::min(x + 5, lane.right), lane.y(1)}, theme().axis);
     }
-    add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text, say(k_falls_at_one));
-  }
-  if (shares && most >= k_tilt_room && lane.y(1) - lane.top > line) {
-    const std::string words = say(k_cut_above, k_tilt_room);
-    add_text(list, lane.right - text_width(words) - 4, lane.top, theme().text, words);
+    add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
+             most < k_tilt_room ? say(k_falls_at_one) : say(k_falls_and_cut, k_tilt_room));
   }
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
@@ -294,9 +293,9 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
         event.time, y, [&] { return mark.text(player, event); },
         [&](ImVec2 p) { mark.draw(list, p, size, colour); });
   }
-  for (const LoggedEdit& edit : player.edits())
+  for (const EditMark& mark : edit_marks(player.edits()))
     add(
-        edit.time, lane.top, [&] { return edit_text(player, edit); },
+        mark.last.time, lane.top, [&] { return edit_text(player, mark.last); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))

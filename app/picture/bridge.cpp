@@ -404,9 +404,13 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
                  .cursor = steps * static_cast<float>(row.time)};
     for (float& at : out.trace.at) at *= steps;
   }
-  for (const std::string& line : bodies_in_words(setup.model, row)) out.caption.lines.push_back(line);
+  for (const std::string& line : bodies_in_words(setup.model, parameters.gravity, row))
+    out.caption.lines.push_back(line);
   for (const std::string& line : anchors_in_words(setup.model, row)) out.caption.lines.push_back(line);
   if (out.legend.quantity.empty()) out.caption.lines.push_back(say(window_words::k_all_rigid));
+  out.caption.most_lines = 2 + most_lines_of_bodies(setup.model) +
+                           static_cast<int>(anchors_in_words(setup.model, row).size()) +
+                           out.legend.quantity.empty();
   std::string contact;
   if (!setup.model.planes.empty())
     contact = say(window_words::k_note_contact, parameters.contact.alpha / k_standard_gravity,

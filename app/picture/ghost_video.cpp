@@ -76,11 +76,12 @@ void add_ghost(const render::SceneFrame& ghost, render::SceneFrame& out) {
 }
 
 std::vector<std::string> words(const char* letter, const Actor& actor, const io::FrameRow& row, double time) {
-  const Model& model = actor.replay().scene.setup.model;
+  const Setup& setup = actor.replay().scene.setup;
   const std::string ended = time > actor.last() ? fmt::format(" (ended at {:.2f} s)", actor.last()) : "";
   std::vector<std::string> lines;
-  for (std::size_t b = 0; b < std::min(static_cast<std::size_t>(model.furniture_total()), k_lines); ++b)
-    lines.push_back(fmt::format("{}  {}{}", letter, body_in_words(model, row, b), ended));
+  for (std::size_t b = 0; b < std::min(static_cast<std::size_t>(setup.model.furniture_total()), k_lines); ++b)
+    lines.push_back(
+        fmt::format("{}  {}{}", letter, body_in_words(setup.model, setup.parameters.gravity, row, b), ended));
   return lines;
 }
 

@@ -6,8 +6,8 @@
 
 namespace topple::app {
 
-Replay::Replay(const io::Recording& recording)
-    : recording_(recording), frames_(recording.frames_on_way_to(recording.newest_branch())) {
+Replay::Replay(const io::Recording& recording, std::int32_t branch)
+    : recording_(recording), frames_(recording.frames_on_way_to(branch)) {
   for (const std::int64_t frame : frames_) times_.push_back(recording.index()[frame].time);
 }
 

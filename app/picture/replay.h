@@ -1,4 +1,4 @@
-// A recording as something that plays: its newest branch, by time.
+// A recording as something that plays: one of its branches, by time.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace topple::app {
 
-/// What a recording shows of its newest branch, by time. The recording must outlive it.
+/// What a recording shows of a branch, by time. The recording must outlive it.
 class Replay {
  public:
-  explicit Replay(const io::Recording& recording);
+  explicit Replay(const io::Recording& recording) : Replay(recording, recording.newest_branch()) {}
+  Replay(const io::Recording& recording, std::int32_t branch);
   std::int64_t frame_count() const { return static_cast<std::int64_t>(frames_.size()); }
   double first() const { return times_.front(); }  ///< s; a static run: its part of the way
   double last() const { return times_.back(); }

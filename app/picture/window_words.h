@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "app/support/language.h"
 #include "solver/body/model_level.h"
@@ -28,6 +30,8 @@ inline constexpr Phrase k_tilted{"tilt {0:.1f}°", "傾斜 {0:.1f}°"};
 inline constexpr Phrase k_fallen{"fallen, tilt {0:.0f}°", "転倒、傾斜 {0:.0f}°"};
 inline constexpr Phrase k_toppling{"toppling, tilt {0:.1f}° (critical {1:.1f}°)",
                                    "転倒中、{0:.1f}°（限界 {1:.1f}° 超過）"};
+inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°)",
+                                 "傾いて静止、{0:.1f}°（限界 {1:.1f}° 超過）"};
 inline constexpr Phrase k_rocking{"rocking, {0:.1f}° of {1:.1f}°", "ロッキング、{0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
@@ -37,6 +41,7 @@ inline constexpr Phrase k_others_stand{"{0} others stand", "ほか{0}体は直�
 inline constexpr Phrase k_others{"{0} others: {1}", "ほか{0}体：{1}"};
 inline constexpr Phrase k_count_fallen{"{0} fallen", "転倒 {0}"};
 inline constexpr Phrase k_count_toppling{"{0} toppling", "転倒中 {0}"};
+inline constexpr Phrase k_count_tipped{"{0} tipped", "傾いて静止 {0}"};
 inline constexpr Phrase k_count_rocking{"{0} rocking", "ロッキング {0}"};
 inline constexpr Phrase k_count_standing{"{0} standing", "直立 {0}"};
 inline constexpr Phrase k_comma{", ", "、"};
@@ -79,8 +84,8 @@ inline constexpr Phrase k_returning{"Going back to the state at this instant …
 inline constexpr Phrase k_stopped{"Stopped: {0}", "停止：{0}"};
 inline constexpr Phrase k_loads_done{"All load steps are done.", "全荷重ステップが終了しました。"};
 inline constexpr Phrase k_run_ended{"The run ended at {0:.2f} s.", "計算は {0:.2f} s で終了しました。"};
-inline constexpr Phrase k_after_end{" R runs it again, dragging on the timeline looks back.",
-                                    " R で再計算、タイムラインのドラッグで過去を表示します。"};
+inline constexpr Phrase k_after_end{" R, then Space runs it again, dragging on the timeline looks back.",
+                                    " R の後 Space で再計算、タイムラインのドラッグで過去を表示します。"};
 inline constexpr Phrase k_no_instants{"The recording holds no instants.", "記録に時刻のデータがありません。"};
 inline constexpr Phrase k_running_loads{"Running through the load steps.", "荷重ステップを計算中。"};
 inline constexpr Phrase k_running{"Running: {0:.2f} times real time asked, {1:.2f} reached.",
@@ -110,8 +115,9 @@ inline constexpr Phrase k_play{"Play (Space)", "再生（Space）"};
 inline constexpr Phrase k_one_on{"One instant on ( . )", "1コマ進む（ . ）"};
 inline constexpr Phrase k_to_end{"To the newest instant (End)", "最新の時刻へ（End）"};
 inline constexpr Phrase k_replay_restart{"To the start (R)", "先頭へ（R）"};
-inline constexpr Phrase k_restart{"Run again from the start with the sliders as they are (R)",
-                                  "現在のパラメーターで最初から計算し直す（R）"};
+inline constexpr Phrase k_restart{
+    "Back to the start, with the sliders as they are; what is running runs again (R)",
+    "現在のパラメーターで先頭に戻る。計算中なら最初から計算し直す（R）"};
 inline constexpr Phrase k_slower{"Half the speed ( [ )", "速度を半分に（ [ ）"};
 inline constexpr Phrase k_faster{"Twice the speed ( ] )", "速度を2倍に（ ] ）"};
 inline constexpr Phrase k_load_speed{"Load paths per second, asked for", "1秒あたりの載荷過程の数（指定値）"};
@@ -139,7 +145,7 @@ inline constexpr Phrase k_up_to{"up to {0:.4g}", "最大 {0:.4g}"};
 inline constexpr Phrase k_tilt_lane{"tilt, °", "傾斜 [°]"};
 inline constexpr Phrase k_tilt_share_lane{"tilt / critical", "傾斜／限界角"};
 inline constexpr Phrase k_falls_at_one{"1: it falls", "1 で転倒"};
-inline constexpr Phrase k_cut_above{"more than {0}", "{0} 超"};
+inline constexpr Phrase k_falls_and_cut{"1: it falls; cut above {0}", "1 で転倒、{0} 超は省略"};
 inline constexpr Phrase k_floor_trace{"floor acceleration, gal", "床の加速度 [gal]"};
 inline constexpr Phrase k_anchor_breaks{"{0}: anchor {1} breaks at {2:.0f} N",
                                         "{0}：固定具 {1} が {2:.0f} N で破断"};
@@ -190,6 +196,46 @@ inline Phrase phrase_of(ModelLevel level) {
 inline Phrase phrase_of(LevelReason reason) {
   return phrase_of(name(reason), k_level_reasons, reason);
 }
+
+/// Japanese of the words that a parameter may have.
+inline constexpr std::pair<std::string_view, std::string_view> k_choice_words[] = {
+    {"sine", "正弦波"},
+    {"sweep", "スイープ"},
+    {"pulse", "パルス"},
+    {"record", "加速度記録"},
+    {"coulomb", "クーロン摩擦"},
+    {"paper", "論文"},
+    {"printed", "論文（印刷の式）"},
+    {"auto", "自動"},
+    {"planar", "平面剛体"},
+    {"rigid", "剛体"},
+    {"elastic", "弾性"},
+    {"frame", "骨組"},
+    {"generalized-alpha", "一般化α法"},
+    {"central-difference", "中央差分法"},
+    {"newmark", "Newmark 法"}};
+/// A word as scenes have it, to be said; one without a row says itself.
+inline Phrase phrase_of_choice(std::string_view word) {
+  const auto* const row = std::ranges::find(k_choice_words, word, [](const auto& of) { return of.first; });
+  return {word, row == std::end(k_choice_words) ? word : row->second};
+}
+
+/// What moves a body on a level without the scene's integrator (integrators.h).
+struct MovedBy {
+  ModelLevel kind;
+  Phrase words;
+};
+inline constexpr MovedBy k_moved_by[] = {
+    {ModelLevel::planar, {"Taylor series", "テイラー級数"}},
+    {ModelLevel::rigid,
+     {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"}},
+    {ModelLevel::elastic, {"central differences", "中央差分法"}}};
+inline constexpr Phrase k_integrators_now{"of frames; at work now: {0}", "骨組用。現在の計算：{0}"};
+inline constexpr Phrase k_computed_now{"now {0} ({1}): {2}", "現在 {0}（{1}）：{2}"};
+inline constexpr Phrase k_step_auto{"auto, %.3g ms", "自動、%.3g ms"};
+inline constexpr Phrase k_step_auto_unknown{"auto", "自動"};
+inline constexpr Phrase k_step_auto_about{"adaptive: the step taken here; one that is set stays",
+                                          "可変刻み：この時点での刻み。設定すると固定になる"};
 
 inline constexpr Phrase k_edited{"{0}: {1} = {2}", "{0}：{1} = {2}"};
 inline constexpr Phrase k_mark_lifts{"lifts off", "浮き上がり"};
@@ -394,8 +440,9 @@ inline constexpr Phrase k_key_step{"one instant back, on", "1コマ戻る、進�
 inline constexpr Phrase k_key_speed{"half, twice the speed", "速度を半分、2倍に"};
 inline constexpr Phrase k_key_start{"to the start", "先頭へ"};
 inline constexpr Phrase k_key_end{"to the newest instant", "最新の時刻へ"};
-inline constexpr Phrase k_key_restart{"run again from the start with the sliders as they are",
-                                      "現在のパラメーターで最初から計算し直す"};
+inline constexpr Phrase k_key_restart{
+    "back to the start with the sliders as they are; what is running runs again",
+    "現在のパラメーターで先頭に戻る。計算中なら最初から計算し直す"};
 inline constexpr Phrase k_key_continue{"continue from here in a new branch", "ここから新しい分岐で続行"};
 inline constexpr Phrase k_key_undo{"take a change of a parameter back", "パラメーターの変更を取り消す"};
 inline constexpr Phrase k_key_redo{"make it again", "取り消した変更をやり直す"};

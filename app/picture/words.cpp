@@ -18,18 +18,24 @@ namespace {
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
 constexpr double k_slid_least = 1e-3;  // m
+constexpr double k_at_rest = 0.01;     // m/s: what moves slower at large rests there
 constexpr std::size_t k_few_anchors = 4;
 
 constexpr std::size_t k_few_bodies = 5;
 
 using namespace window_words;
 
-enum class Stance { fallen, toppling, rocking, standing };
+enum class Stance { fallen, toppling, tipped, rocking, standing };
 
-Stance stance(const io::FrameRow& row, std::size_t body) {
+bool is_at_rest(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
+  return io::kinetic_energy(model, gravity, row, static_cast<int>(body)) <
+         model.bodies[body].mass * k_at_rest * k_at_rest / 2;
+}
+
+Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
   const double tilt = row.body[body].tilt * k_degrees, critical = row.body[body].critical_angle * k_degrees;
   return tilt > k_lying     ? Stance::fallen
-         : tilt > critical  ? Stance::toppling
+         : tilt > critical  ? (is_at_rest(model, gravity, row, body) ? Stance::tipped : Stance::toppling)
          : tilt > k_upright ? Stance::rocking
                             : Stance::standing;
 }
@@ -62,16 +68,18 @@ double share_of_critical(const io::FrameRow& row, std::size_t body) {
   return row.body[body].tilt / (critical > 0 ? critical : k_lying / k_degrees);
 }
 
-std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t> others) {
+std::string others_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
+                            std::span<const std::size_t> others) {
   static constexpr std::pair<Stance, const Phrase&> k_stances[] = {{Stance::fallen, k_count_fallen},
                                                                    {Stance::toppling, k_count_toppling},
+                                                                   {Stance::tipped, k_count_tipped},
                                                                    {Stance::rocking, k_count_rocking},
                                                                    {Stance::standing, k_count_standing}};
   std::string counts;
   std::size_t standing = 0;
   for (const auto& [of, words] : k_stances) {
-    const auto count = static_cast<std::size_t>(
-        std::ranges::count_if(others, [&, of = of](std::size_t body) { return stance(row, body) == of; }));
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(
+        others, [&, of = of](std::size_t body) { return stance(model, gravity, row, body) == of; }));
     if (of == Stance::standing) standing = count;
     if (count > 0) counts += (counts.empty() ? "" : say(k_comma)) + say(words, count);
   }
@@ -81,17 +89,21 @@ std::string others_in_words(const io::FrameRow& row, std::span<const std::size_t
 
 }  // namespace
 
-std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body) {
+std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
+                          std::size_t body) {
   const io::BodyNumbers& now = row.body[body];
   const double tilt = now.tilt * k_degrees, critical = now.critical_angle * k_degrees;
   std::string line = model.bodies[body].name + say(k_colon);
   if (critical == 0) return line + say(k_tilted, tilt);
-  switch (stance(row, body)) {
+  switch (stance(model, gravity, row, body)) {
     case Stance::fallen:
       line += say(k_fallen, tilt);
       break;
     case Stance::toppling:
       line += say(k_toppling, tilt, critical);
+      break;
+    case Stance::tipped:
+      line += say(k_tipped, tilt, critical);
       break;
     case Stance::rocking:
       line += say(k_rocking, tilt, critical);
@@ -103,24 +115,29 @@ std::string body_in_words(const Model& model, const io::FrameRow& row, std::size
   return line;
 }
 
-std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row) {
+std::vector<std::string> bodies_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row) {
   std::vector<std::size_t> bodies(static_cast<std::size_t>(model.furniture_total()));
   std::iota(bodies.begin(), bodies.end(), 0);
   std::size_t told = bodies.size();
   if (bodies.size() > k_few_bodies) {
     std::ranges::stable_sort(bodies, std::ranges::greater{},
                              [&](std::size_t body) { return share_of_critical(row, body); });
-    const auto still =
-        std::ranges::find_if(bodies, [&](std::size_t body) { return stance(row, body) == Stance::standing; });
+    const auto still = std::ranges::find_if(
+        bodies, [&](std::size_t body) { return stance(model, gravity, row, body) == Stance::standing; });
     told = std::min(k_few_bodies, static_cast<std::size_t>(still - bodies.begin()));
   }
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, row, bodies[i]));
+  for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, gravity, row, bodies[i]));
   if (told == 0 && !bodies.empty())
     lines.push_back(say(k_all_stand, bodies.size()));
   else if (told < bodies.size())
-    lines.push_back(others_in_words(row, std::span(bodies).subspan(told)));
+    lines.push_back(others_in_words(model, gravity, row, std::span(bodies).subspan(told)));
   return lines;
+}
+
+int most_lines_of_bodies(const Model& model) {
+  const int bodies = model.furniture_total(), few = static_cast<int>(k_few_bodies);
+  return bodies > few ? few + 1 : bodies;
 }
 
 std::string anchor_type_in_words(const Anchor& anchor) {

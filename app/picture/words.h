@@ -9,12 +9,15 @@
 
 namespace topple::app {
 
-/// "free: rocking, 4.2° of 10.9°".
-std::string body_in_words(const Model& model, const io::FrameRow& row, std::size_t body);
+/// "free: rocking, 4.2° of 10.9°". gravity: m/s^2.
+std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body);
 
 /// One line for each of the furniture; of many, for those that tilt most of what they can, and one that
 /// counts the others.
-std::vector<std::string> bodies_in_words(const Model& model, const io::FrameRow& row);
+std::vector<std::string> bodies_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row);
+
+/// The most lines that bodies_in_words() has in a run.
+int most_lines_of_bodies(const Model& model);
 
 /// "strap" in the language of the window.
 std::string anchor_type_in_words(const Anchor& anchor);

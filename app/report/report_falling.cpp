@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "app/report/report_parts.h"
+#include "app/support/terms.h"
 #include "solver/run/overturn.h"
 
 namespace topple::app {
@@ -70,7 +71,8 @@ std::string outcome_table(const ReportPage& page) {
   const std::vector<Material>& materials = page.report().scene->setup.model.materials;
   const bool yields = std::ranges::any_of(materials, [](const Material& m) { return m.yield > 0; });
   return page.table(head, rows) +
-         page.paragraph(page.say(words::k_table_note, short_shown(100 * k_uplift), page.certain_section()),
+         page.paragraph(page.say(words::k_table_note, short_shown(100 * k_uplift),
+                                 short_shown(k_uplift_angle * k_degrees), page.certain_section()),
                         "note") +
          (stresses && !yields ? page.paragraph(page.say(words::k_stress_note), "note") : "");
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/picture/window_words.h"
 #include "app/report/report_parts.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
@@ -24,25 +25,39 @@ struct LevelPhrase {
   ModelLevel kind;
   const Phrase& phrase;
 };
-constexpr LevelPhrase k_levels[] = {{ModelLevel::planar, words::k_planar},
-                                    {ModelLevel::rigid, words::k_rigid},
-                                    {ModelLevel::elastic, words::k_elastic},
-                                    {ModelLevel::frame, words::k_frame}};
+constexpr LevelPhrase k_level_phrases[] = {{ModelLevel::planar, words::k_planar},
+                                           {ModelLevel::rigid, words::k_rigid},
+                                           {ModelLevel::elastic, words::k_elastic},
+                                           {ModelLevel::frame, words::k_frame}};
 
-/// All models that a body was computed as.
-std::string models(const ReportPage& page, const ordered_json& body) {
-  std::set<std::string> seen;
-  for (const ordered_json& change : body["models"]) seen.insert(change["model"]);
-  if (seen.empty()) seen.insert(body["model"]);
-  std::string out;
-  for (const std::string& model : seen)
-    out += (out.empty() ? "" : "; ") + page.say(row_of(k_levels, level_called(model).kind).phrase);
-  return out;
+const LevelPhrase& level_of(const ordered_json& model) {
+  return row_of(k_level_phrases, level_called(model.get<std::string>()).kind);
 }
 
-std::string integrator(const ReportPage& page) {
+std::string reason_in_words(const ReportPage& page, const std::string& reason) {
+  for (const auto& [kind, words] : window_words::k_level_reasons)
+    if (reason == name(kind)) return page.text(window_words::phrase_of(kind));
+  return reason;
+}
+
+/// All models that a body was computed as, since when and why.
+std::string models(const ReportPage& page, const ordered_json& body) {
+  if (body["models"].empty()) return page.say(level_of(body["model"]).phrase);
+  std::string out;
+  for (const ordered_json& change : body["models"]) {
+    const std::string model = page.text(level_of(change["model"]).phrase),
+                      reason = reason_in_words(page, change["reason"]);
+    const double from = change["from_s"].get<double>();
+    out += out.empty() ? model + " (" + reason + ")"
+                       : "; " + page.text(words::k_model_from, model, short_shown(from), reason);
+  }
+  return escaped(out);
+}
+
+std::string of_frames(const ReportPage& page) {
   const Parameters& p = page.report().scene->setup.parameters;
-  std::string name = page.report().summary["integrator"];
+  const std::string word = page.report().summary["integrator"],
+                    name = page.text(window_words::phrase_of_choice(word));
   switch (p.integrator) {
     case Integrator::generalized_alpha:
       return fmt::format("{}, ρ∞ = {}", name, short_shown(p.spectral_radius));
@@ -52,6 +67,28 @@ std::string integrator(const ReportPage& page) {
       break;
   }
   return name;
+}
+
+/// What moved the bodies, whatever the scene asks of frames.
+std::string integrators(const ReportPage& page) {
+  const Model& model = page.report().scene->setup.model;
+  std::set<ModelLevel> levels;
+  if (model.furniture_total() < static_cast<int>(model.bodies.size())) levels.insert(ModelLevel::frame);
+  for (const ordered_json& body : page.bodies()) {
+    levels.insert(level_of(body["model"]).kind);
+    for (const ordered_json& change : body["models"]) levels.insert(level_of(change["model"]).kind);
+  }
+  std::string out;
+  for (const ModelLevel level : levels) {
+    const auto* const own = std::ranges::find(window_words::k_moved_by, level, &window_words::MovedBy::kind);
+    const std::string words =
+        own == std::end(window_words::k_moved_by) ? of_frames(page) : page.text(own->words);
+    out +=
+        (out.empty() ? "" : "; ") +
+        (levels.size() > 1 ? page.text(words::k_of_models, words, page.text(window_words::phrase_of(level)))
+                           : words);
+  }
+  return escaped(out);
 }
 
 std::string step(const ReportPage& page) {
@@ -98,7 +135,7 @@ std::string settings_section(ReportPage& page) {
       {page.say(words::k_version), std::string("topple ") + TOPPLE_VERSION},
       {page.say(words::k_simulated),
        report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
-      {page.say(words::k_integrator), integrator(page)},
+      {page.say(words::k_integrator), integrators(page)},
       {page.say(words::k_step), step(page)},
       {page.say(words::k_contact), traits(p.contact).word},
       {page.say(words::k_alpha),

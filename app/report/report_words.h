@@ -117,15 +117,17 @@ inline constexpr Phrase k_table_note{
     "before the run ends. "
     "Slide: horizontal travel of the middle of the base relative to the floor. Uplift: one side of the base "
     "carries less than "
-    "{0} % of the weight. ±: stated numerical error, section {1}.",
+    "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated numerical error, "
+    "section {2}.",
     "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。すべり："
     "床に対する底面中心の水平移動量。"
-    "浮上り：底面の一辺が支える力が重量の{0} %を下回ること。±は推定数値誤差（第{1}節）。"};
+    "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
+    "±は推定数値誤差（第{2}節）。"};
 inline constexpr Phrase k_stress_note{
-    "Stresses are elastic: the scene's material does not yield, so that impacts reach values at which real "
-    "steel would flow.",
-    "応力は弾性計算による値である。シーンの材料は降伏しないため、衝突時には実際の鋼材なら降伏する値になること"
-    "がある。"};
+    "Stresses are elastic: the scene's material does not yield, so that impacts reach values at which a real "
+    "one would flow or break.",
+    "応力は弾性計算による値である。シーンの材料は降伏しないため、衝突時には実際の材料なら降伏または破壊する値"
+    "になることがある。"};
 inline constexpr Phrase k_tilt_chart{"Figure {0}: tilt of the bodies.{1} Diamond: overturned from here on.",
                                      "図{0}：家具の傾斜角。{1}◇：この時刻以降、転倒。"};
 inline constexpr Phrase k_tilt_chart_standing{"Figure {0}: tilt of the bodies.{1}",
@@ -344,6 +346,8 @@ inline constexpr Phrase k_simulated{"simulated time", "計算した時間"};
 inline constexpr Phrase k_stopped{"{0} s (stopped by the scene's condition)",
                                   "{0} s（シーンの条件により終了）"};
 inline constexpr Phrase k_integrator{"time integration", "時間積分法"};
+inline constexpr Phrase k_of_models{"{0} ({1})", "{0}（{1}）"};
+inline constexpr Phrase k_model_from{"from {1} s {0} ({2})", "{1} s から{0}（{2}）"};
 inline constexpr Phrase k_step{"time step", "時間刻み"};
 inline constexpr Phrase k_steps{"{0} steps, {1} rejected", "{0}ステップ、棄却{1}"};
 inline constexpr Phrase k_adaptive{"adaptive, tolerance {0}, mean {1} ms", "可変、許容誤差 {0}、平均 {1} ms"};

@@ -13,8 +13,9 @@ namespace topple::app {
 namespace {
 
 constexpr double k_width = 720, k_left = 62, k_right = 16, k_top = 12, k_bottom = 40;  // px
-constexpr double k_row = 24;                                                           // px, of dots
-constexpr double k_name_column = 130;                                                  // px, of dots
+constexpr std::size_t k_least_ticks = 3;
+constexpr double k_row = 24;           // px, of dots
+constexpr double k_name_column = 130;  // px, of dots
 
 struct Stroke {
   const char* colour;
@@ -71,7 +72,9 @@ std::string x_axis(const Axis& x, double top, double bottom, const std::string& 
 
 std::string y_axis(const Axis& y, double left, double right, const std::string& label, int count) {
   std::string out;
-  const render::Ticks ticks = render::nice_ticks(y.from, y.to, count);
+  render::Ticks ticks;
+  for (int more = count; ticks.values.size() < k_least_ticks && more < 4 * count; ++more)
+    ticks = render::nice_ticks(y.from, y.to, more);  // about 0, steps of 2 and 5 may leave 0 alone
   for (const double value : ticks.values) {
     out += line(left, y.at(value), right, y.at(value), k_grid);
     out += text(left - 6, y.at(value) + 4, "text-anchor=\"end\"", number(value, ticks.decimals));

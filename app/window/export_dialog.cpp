@@ -55,6 +55,14 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
     words.push_back("--trails");
     words.push_back(s.trails == Trails::run ? "run" : "second");
   }
+  if (const auto ghost = player.ghost_branch(); ghost && viewer.ghost_shown()) {
+    words.push_back("--ghost");
+    words.push_back(std::to_string(*ghost));
+  }
+  if (viewer.appearance().language == Language::japanese) {
+    words.push_back("--language");
+    words.push_back("ja");
+  }
   const auto& picked = viewer.inspection().picked;
   if (picked && picked->kind != Subject::Kind::anchor) {
     words.push_back("--inspect");

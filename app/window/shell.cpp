@@ -61,7 +61,8 @@ void Shell::show(LiveSource source, const std::string& path) {
   PictureSettings settings;
   bool loop = false;
   if (session_) {
-    settings = session_->viewer().settings();
+    if (source.scene && source.scene->name == session_->scene().name)
+      settings = session_->viewer().settings();  // those of another scene would mislead
     settings.range = settings.range == RangePolicy::fixed ? RangePolicy::run : settings.range;
     loop = session_->player().loop();
     appearance_ = session_->viewer().appearance();

@@ -84,6 +84,15 @@ class Viewer {
   const render::Orbit& orbit() const { return orbit_; }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
+  void choose_settings(const PictureSettings& settings) {
+    settings_ = settings;
+    scene_changed_ = true;
+  }
+  bool ghost_shown() const { return ghost_shown_; }
+  void show_ghost(bool on) {
+    ghost_shown_ = on;
+    scene_changed_ = true;
+  }
   /// In the status line until the next click.
   void show_message(const std::string& words) { message_ = words; }
   /// How long a frame took, ms, for the status line.

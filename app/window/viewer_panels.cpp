@@ -52,7 +52,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   add(fonts_.small,
       instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
   const Model& model = player_.scene().setup.model;
-  for (const std::string& words : bodies_in_words(model, row)) add(fonts_.small, words);
+  for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
+    add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
   float x = scene_.left + margin, y = scene_.top + margin;
@@ -71,14 +72,14 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const float inner = right - legend, outer = inner - margin;
   render::LeftOut left_out;
   const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
-                                            render::colour_map_for(frame_.legend, settings_.map),
+                                            render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
                                             {"", inner, scene_.top + margin, right - margin, bottom - margin},
                                             frame_.dark, left_out)
                          .has_value();
   std::optional<render::OverlayBox> flat;
   if (!drawn)
     flat = render::draw_flat_legend_in(
-        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map),
+        list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
         {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
   words_bottom_ = flat ? bottom - flat->top + pad : 0;
   words_right_ = drawn ? right - inner : 0;

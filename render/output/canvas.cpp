@@ -36,7 +36,7 @@ void Canvas::draw(ScenePainter& painter, const SceneFrame& frame, const Camera& 
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   const Camera& usable = finite(camera) ? camera : fit_camera(NamedView::iso, frame, aspect);
   const Target drawn{samples_ > 0 ? sampled_.id() : picture, width, height};
-  painter.draw(frame, usable, colour_map_for(frame.legend, map), quality, drawn, left_out);
+  painter.draw(frame, usable, colour_map_for(frame.legend, map, frame.dark), quality, drawn, left_out);
   if (samples_ == 0) return;
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
@@ -58,8 +58,10 @@ Image Canvas::read() const {
   return image;
 }
 
-ColourMap colour_map_for(const Legend& legend, ColourMap wanted) {
-  return legend.is_signed ? ColourMap::diverging : wanted;
+ColourMap colour_map_for(const Legend& legend, ColourMap wanted, bool dark) {
+  if (legend.is_signed) return ColourMap::diverging;
+  if (!dark) return wanted;
+  return wanted == ColourMap::cividis ? ColourMap::cividis_on_dark : ColourMap::viridis_on_dark;
 }
 
 }  // namespace topple::render

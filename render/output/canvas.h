@@ -37,6 +37,6 @@ class Canvas {
 };
 
 /// The map in which a frame with this legend is drawn when `wanted` is asked for.
-ColourMap colour_map_for(const Legend& legend, ColourMap wanted);
+ColourMap colour_map_for(const Legend& legend, ColourMap wanted, bool dark);
 
 }  // namespace topple::render

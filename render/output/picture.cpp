@@ -112,7 +112,7 @@ Image Picture::draw(const SceneFrame& frame, const Camera& camera, const Picture
   p.left_out = {};
   p.boxes.clear();
   p.canvas.draw(p.scene, frame, camera, options.map, Quality::still, p.left_out);
-  if (options.overlay) p.draw_words(frame, camera, colour_map_for(frame.legend, options.map));
+  if (options.overlay) p.draw_words(frame, camera, colour_map_for(frame.legend, options.map, frame.dark));
   Image image = p.canvas.read();
   check_gl(p.gl, "drawing a picture");
   return image;

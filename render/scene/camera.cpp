@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -139,24 +141,43 @@ Camera fit_camera(NamedView view, const SceneFrame& frame, float aspect) {
   Room room{-0.92f, 0.92f, -0.84f, 0.72f};
   if (!frame.legend.quantity.empty()) room.right = 0.68f;
   Camera whole = fit_box(rows, low, high, room, aspect);
-  if (frame.trace.at.empty()) return whole;
-  // The trace takes the lower left corner: bodies that would stand behind it go beside or above it,
-  // whichever shows them larger.
+  // What lies in the corners on the left: bodies that would stand behind it go beside it or to its other
+  // side, whichever shows them larger.
+  std::vector<Room> rooms{room};
+  const auto keep_off = [&](float right, bool is_covered, float Room::*side, float edge) {
+    if (!is_covered) return;
+    for (std::size_t i = 0, count = rooms.size(); i < count; ++i) {
+      rooms.push_back(rooms[i]);
+      rooms.back().left = std::max(rooms.back().left, right);
+      rooms[i].*side = edge;
+    }
+  };
+  const auto covers = [&](float right, float sign, float edge) {
+    return std::ranges::any_of(corners(low, high), [&](const Vector3f& point) {
+      const Eigen::Vector4f clip = whole.projection * (whole.view * point.homogeneous());
+      return clip.x() < right * clip.w() && sign * clip.y() > sign * edge * clip.w();
+    });
+  };
   constexpr float k_trace_right = -0.36f;
   constexpr float k_trace_top = -0.52f;
-  const bool covered = std::ranges::any_of(corners(low, high), [&](const Vector3f& point) {
-    const Eigen::Vector4f clip = whole.projection * (whole.view * point.homogeneous());
-    return clip.x() < k_trace_right * clip.w() && clip.y() < k_trace_top * clip.w();
-  });
-  if (!covered) return whole;
-  Room beside = room;
-  beside.left = k_trace_right;
-  Room above = room;
-  above.bottom = k_trace_top;
-  const Camera right_of_it = fit_box(rows, low, high, beside, aspect);
-  const Camera over_it = fit_box(rows, low, high, above, aspect);
+  keep_off(k_trace_right, !frame.trace.at.empty() && covers(k_trace_right, -1, k_trace_top), &Room::bottom,
+           k_trace_top);
+  // Lines of words below a title of one, as they are drawn on 720 px of height; smaller in narrow pictures.
+  constexpr float k_first_line = 63, k_line = 22, k_height = 720, k_line_width = 430;
+  const float unit = 2 * std::min(1.f, 0.75f * aspect) / k_height;
+  const float words_right = -1 + unit * k_line_width / aspect;
+  const float words_bottom =
+      1 - unit * (k_first_line + k_line * static_cast<float>(frame.caption.most_lines));
+  const bool has_words = frame.caption.most_lines > 0 && words_bottom > 0;  // else they take most of it
+  keep_off(words_right, has_words && covers(words_right, 1, words_bottom), &Room::top,
+           std::min(words_bottom, room.top));
   const Vector3f back = rows.row(2);
-  return back.dot(right_of_it.eye) <= back.dot(over_it.eye) ? right_of_it : over_it;
+  Camera nearest = fit_box(rows, low, high, rooms.front(), aspect);
+  for (const Room& other : std::span(rooms).subspan(1)) {
+    const Camera camera = fit_box(rows, low, high, other, aspect);
+    if (back.dot(camera.eye) < back.dot(nearest.eye)) nearest = camera;
+  }
+  return nearest;
 }
 
 }  // namespace topple::render

@@ -71,17 +71,33 @@ ColourTable diverging_table() {
   return table;
 }
 
+/// The upper part of a map that grows lighter.
+ColourTable on_dark(const ColourTable& map) {
+  constexpr double k_from = 0.42;
+  ColourTable table;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double at = k_from + (1 - k_from) * static_cast<double>(i) / (k_colour_map_size - 1);
+    table[i] = map[static_cast<std::size_t>(std::lround(at * (k_colour_map_size - 1)))];
+  }
+  return table;
+}
+
 }  // namespace
 
 const ColourTable& colour_table(ColourMap map) {
   static const ColourTable viridis = interpolated(k_viridis);
   static const ColourTable cividis = interpolated(k_cividis);
   static const ColourTable diverging = diverging_table();
+  static const ColourTable light_viridis = on_dark(viridis), light_cividis = on_dark(cividis);
   switch (map) {
     case ColourMap::cividis:
       return cividis;
     case ColourMap::diverging:
       return diverging;
+    case ColourMap::viridis_on_dark:
+      return light_viridis;
+    case ColourMap::cividis_on_dark:
+      return light_cividis;
     case ColourMap::viridis:
       break;
   }

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace topple::render {
 
-/// diverging: blue - grey - red, for signed values.
-enum class ColourMap { viridis, cividis, diverging };
+/// diverging: blue - grey - red, for signed values. On a dark ground the sequential ones begin where they
+/// can be told from it.
+enum class ColourMap { viridis, cividis, diverging, viridis_on_dark, cividis_on_dark };
+inline constexpr std::size_t k_colour_map_count = 5;
 
 inline constexpr int k_colour_map_size = 256;
 using ColourTable = std::array<std::array<std::uint8_t, 3>, k_colour_map_size>;

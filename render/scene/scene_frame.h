@@ -121,6 +121,7 @@ struct Caption {
   std::string title;               ///< top left, large
   std::vector<std::string> lines;  ///< below the title: time, excitation, what is happening
   std::string note;                ///< bottom, small: assumptions
+  int most_lines = 0;              ///< that `lines` may become over a run: bodies stay off as many
 };
 
 /// One recorded instant as a renderer needs it.

@@ -111,7 +111,7 @@ Outcome::Outcome(const Model& model)
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
-    outcome.lifted.assign(sides, false);
+    outcome.sides.resize(sides);
     bodies_.push_back(outcome);
     side_force_.emplace_back(sides, 0.);
     total_force_.push_back(0);
@@ -198,6 +198,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   const BodyPose pose = body_pose(model, state, body);
   const double before = o.tilt - o.critical, time_before = o.time;
   o.time = state.time;
+  o.vertical = pose.rotation.conjugate() * Vec3::UnitZ();
   o.tilt = tilt(pose);
   o.peak_tilt = std::max(o.peak_tilt, o.tilt);
   if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
@@ -225,32 +226,37 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
     o.over_60_since = state.time;
 }
 
-// What lifts off and lands.
+// What lifts off and lands. An uplift is told once it counts, with the time at which the side let go.
 void Outcome::observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
-  for (std::size_t side = 0; side < o.lifted.size(); ++side) {
-    const auto add = [&](Event::Kind kind) {
+  for (std::size_t i = 0; i < o.sides.size(); ++i) {
+    BodyOutcome::Side& side = o.sides[i];
+    const auto add = [&](Event::Kind kind, double time) {
       events.push_back({.kind = kind,
                         .step = state.step,
-                        .time = state.time,
+                        .time = time,
                         .body = static_cast<int>(b),
-                        .value = static_cast<double>(side)});
+                        .value = static_cast<double>(i)});
     };
-    const double carried = side_force_[b][side];
-    if (!o.lifted[side] && carried < k_uplift * weight && total_force_[b] > k_closing * weight) {
-      o.lifted[side] = true;
-      if (!o.first_uplift) o.first_uplift = state.time;
-      add(Event::Kind::uplift);
-    } else if (o.lifted[side] && carried > k_closing * weight) {
-      o.lifted[side] = false;
-      ++o.impacts;
-      if (!o.first_impact) o.first_impact = state.time;
-      if (o.impact_times.size() < k_kept_impacts) {
-        o.impact_times.push_back(state.time);
-        o.peak_tilts.push_back(o.tilt);
-      }
-      add(Event::Kind::impact);
+    const double carried = side_force_[b][i];
+    if (!side.open && carried < k_uplift * weight && total_force_[b] > k_closing * weight)
+      side = {.open = true, .counts = false, .since = state.time, .vertical = o.vertical};
+    if (!side.open) continue;
+    if (!side.counts && (o.vertical - side.vertical).norm() > k_uplift_angle) {
+      side.counts = true;
+      if (!o.first_uplift) o.first_uplift = side.since;
+      add(Event::Kind::uplift, side.since);
     }
+    if (!(carried > k_closing * weight)) continue;
+    side.open = false;
+    if (!side.counts) continue;
+    ++o.impacts;
+    if (!o.first_impact) o.first_impact = state.time;
+    if (o.impact_times.size() < k_kept_impacts) {
+      o.impact_times.push_back(state.time);
+      o.peak_tilts.push_back(o.tilt);
+    }
+    add(Event::Kind::impact, state.time);
   }
 }
 

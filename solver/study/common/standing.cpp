@@ -253,6 +253,12 @@ double tipping_limit(const Standing& body, const ContactLaw& law) {
   return std::max({best, withstood((from + to) / 2), 0.});
 }
 
+std::optional<double> soft_limit(const Standing& body, const ContactLaw& law) {
+  constexpr double k_nearly = 0.95;
+  const double limit = tipping_limit(body, law);
+  return limit < k_nearly * body.rigid_limit() ? std::optional(body.gravity * limit) : std::nullopt;
+}
+
 double alpha_for_tipping(const Standing& body, ContactLaw law, double loss) {
   return std::exp(
       turning_point(std::log(1e-3 * body.weight()), std::log(1e12 * body.weight()), [&](double alpha) {

@@ -26,6 +26,8 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/live/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/appearance_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/panels/computed_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/panels/criteria_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/load_path_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/subject_test.cpp
@@ -47,6 +49,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/support/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/progress_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/window/seen_and_exported_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/shell_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/shortcuts_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/soak_test.cpp

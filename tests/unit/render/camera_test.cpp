@@ -55,6 +55,27 @@ TEST(Camera, every_named_view_holds_the_whole_bounds_and_touches_their_limits) {
   }
 }
 
+// The words of draw_overlay on 720 lines: 22 px a line below the title, some 430 px wide.
+TEST(Camera, bodies_do_not_stand_behind_the_words_of_the_caption) {
+  for (const int lines : {3, 6, 10})
+    for (const NamedView view : k_views)
+      for (const float aspect : {4.0f / 3, 16.0f / 9}) {
+        SceneFrame frame;
+        frame.bounds_min = {-3, -4, 0};
+        frame.bounds_max = {3, 4, 2};
+        frame.legend.quantity = "stress";
+        frame.caption.most_lines = lines;
+        const Camera camera = fit_camera(view, frame, aspect);
+        const float right = -1 + 2 * 429 / (720 * aspect);
+        const float bottom = 1 - 2 * (63 + 22 * static_cast<float>(lines) - 1) / 720;
+        for (int i = 0; i < 8; ++i) {
+          const Eigen::Vector3f p = seen(camera, {i & 1 ? 3.f : -3.f, i & 2 ? 4.f : -4.f, i & 4 ? 2.f : 0.f});
+          EXPECT_FALSE(p.x() < right && p.y() > bottom)
+              << lines << " lines, view " << static_cast<int>(view) << " at " << p.transpose();
+        }
+      }
+}
+
 TEST(Camera, views_look_where_the_header_says) {
   SceneFrame frame;
   const Eigen::Vector3f o(0, 0, 1);

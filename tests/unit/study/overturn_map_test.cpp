@@ -82,10 +82,12 @@ TEST(OverturnMap, the_boundary_is_the_exact_pulse_curve_within_two_percent) {
   }
 }
 
+// Just above West's acceleration it turns by less than the angle from which uplift counts: half-sines a tenth
+// above push it for 0.2 s or more, hence by some tenths of a degree.
 TEST(OverturnMap, a_rigid_block_does_not_lift_below_west) {
   const double west = k_block.gravity * std::tan(k_block.critical);
   const OverturnPlan plan =
-      pulses("0.4..0.8:2", std::to_string(0.98 * west) + ".." + std::to_string(1.02 * west) + ":2");
+      pulses("0.4..0.8:2", std::to_string(0.98 * west) + ".." + std::to_string(1.1 * west) + ":2");
   const OverturnMap map = gather(plan, run_all(plan));
   const Verdict expected[] = {Verdict::stands, Verdict::stands, Verdict::rocks, Verdict::rocks};
   for (int p = 0; p < 4; ++p) EXPECT_EQ(map.points[static_cast<std::size_t>(p)].verdict, expected[p]) << p;

@@ -160,6 +160,16 @@ TEST(Summary, the_method_of_what_was_computed_is_named) {
       << head("frame");
 }
 
+TEST(Summary, each_body_says_what_moved_it_and_from_which_angle_uplift_counts) {
+  const io::Scene scene = io::load_scene(
+      "paper-a", {"cabinet.free.model=elastic", "cabinet.walled.model=frame", "run.duration=10 ms"});
+  topple::Run run(scene.setup);
+  const auto s = summary(scene, run, "completed", 0.5);
+  EXPECT_EQ(s["bodies"][0]["integrator"], "central-difference");
+  EXPECT_EQ(s["bodies"][1]["integrator"], "generalized-alpha");
+  EXPECT_DOUBLE_EQ(s["uplift_threshold_deg"], 0.05);
+}
+
 TEST_F(SummaryTest, the_table_has_a_line_for_each_body_and_probe) {
   const std::string table = summary_table(summary(scene_, run_, "completed", 0.5));
   EXPECT_NE(table.find("\nfree "), std::string::npos) << table;

@@ -258,6 +258,8 @@ TEST_F(RenderTest, options_of_the_picture_that_mean_nothing_are_refused) {
   refused({"--trails", "0"}, "--trails: \"0\" is not one of");
   refused({"--inspect", "nobody"}, "--inspect: nobody: there is no body of that name; there are free");
   refused({"--inspect", "free/x"}, "--inspect: free/x: free has no such member; it has post-1");
+  refused({"--ghost", "1"}, "--ghost: a.h5 has no branch 1; its branches are 0..0");
+  refused({"--ghost", "-1"}, "is not a whole number");
   EXPECT_EQ(files(), (std::vector<std::string>{"a.h5", "s.toml"}));
 }
 

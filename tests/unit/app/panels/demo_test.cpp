@@ -65,6 +65,16 @@ TEST_P(DemoTest, every_step_is_reached_by_its_event_and_can_be_gone_back_to) {
   EXPECT_EQ(guide_->step(), at.size() - 1);
   EXPECT_NEAR(player_->time(), at.back(), 0.011);
 }
+TEST_F(DemoTest, what_is_to_be_seen_runs_at_a_quarter_of_the_speed) {
+  start(std::make_shared<const io::Scene>(io::load_scene("paper-a", {"run.duration=6"})));
+  const double before = player_->speed();
+  guide_.emplace(demos()[0], *player_);
+  ASSERT_TRUE(until([&] { return guide_->step() == 0U && !guide_->under_way(); }));
+  guide_->next();
+  EXPECT_EQ(player_->speed(), 0.25);
+  guide_->leave();
+  EXPECT_EQ(player_->speed(), before);
+}
 INSTANTIATE_TEST_SUITE_P(All, DemoTest, ::testing::Values(0, 1));
 
 TEST_F(DemoTest, what_does_not_come_about_is_said) {

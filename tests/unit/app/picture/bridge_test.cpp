@@ -265,7 +265,11 @@ TEST_F(BridgeTest, captions_tell_a_tilt_from_the_critical_angle) {
   row.body[0].tilt = 34.8 / k_degrees;
   row.body[0].slide = 0;
   row.body[0].critical_angle = 10.3 / k_degrees;
-  EXPECT_EQ(body_in_words(model(), row, 0), "free: toppling, tilt 34.8° (critical 10.3°)");
+  const Vec3& gravity = scene_.setup.parameters.gravity;
+  row.body[0].energy += 1;  // J, of motion
+  EXPECT_EQ(body_in_words(model(), gravity, row, 0), "free: toppling, tilt 34.8° (critical 10.3°)");
+  row.body[0].energy -= io::kinetic_energy(model(), gravity, row, 0);
+  EXPECT_EQ(body_in_words(model(), gravity, row, 0), "free: tipped, rests at 34.8° (critical 10.3°)");
 }
 
 TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
@@ -275,6 +279,31 @@ TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
   EXPECT_EQ(caption.lines[0], "t = 0.10 s");
   EXPECT_TRUE(caption.lines[1].starts_with("floor: 2 Hz, 400 gal;  now ")) << caption.lines[1];
   EXPECT_TRUE(caption.lines[2].starts_with("free: rocking, ")) << caption.lines[2];
+}
+
+TEST_F(BridgeTest, captions_have_no_minus_before_a_zero) {
+  io::FrameRow row = end_;
+  row.floor_acceleration[0] = -1e-4;
+  row.floor_displacement[0] = -1e-6;
+  const render::Caption caption = Bridge(scene_, extent_).frame(row, scene_.setup.parameters).caption;
+  EXPECT_EQ(caption.lines[1], "floor: 2 Hz, 400 gal;  now +0 gal, +0 mm");
+}
+
+TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
+  const io::Scene scene = io::load_scene("classroom");
+  const Model& model = scene.setup.model;
+  const topple::Run run(scene.setup);
+  io::FrameRow row = io::frame_row(run);
+  const Vec3& gravity = scene.setup.parameters.gravity;
+  const int all = model.furniture_total();
+  ASSERT_GT(all, 5);
+  EXPECT_EQ(bodies_in_words(model, gravity, row), std::vector{fmt::format("all {} stand", all)});
+  row.body[0].tilt = 80 / k_degrees;
+  const std::vector<std::string> lines = bodies_in_words(model, gravity, row);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], model.bodies[0].name + ": fallen, tilt 80°");
+  EXPECT_EQ(lines[1], fmt::format("{} others stand", all - 1));
+  EXPECT_EQ(most_lines_of_bodies(model), 6);
 }
 
 TEST_F(BridgeTest, a_row_of_another_model_is_refused) {

@@ -1,6 +1,8 @@
 // topple report: what the page says, and that it is one file a browser shows.
 #include "app/report/report.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "app/batch/summary.h"
@@ -30,6 +32,14 @@ class ReportPageTest : public ::testing::Test {
     report_.motion = study::floor_motion(scene_.setup.parameters.shakes, 0.3);
     report_.tilts = {{.time = {0, 0.3}, .tilt = {0, 1}, .critical = 10.3}};
     report_.spread = 0.05;
+  }
+  /// Runs another scene to its end and tells of that.
+  void tell_of(const io::Scene& scene) {
+    topple::Run run(scene.setup);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok());
+    report_.scene = &scene;
+    report_.summary = summary(scene, run, "completed", 1);
+    report_.summary["error_estimate"] = error_estimate(scene.setup, run.outcome(), run.outcome());
   }
   std::string page(Language language = Language::english) const { return report_page(report_, language); }
 
@@ -63,6 +73,53 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_TRUE(holds(html, "<td>0.25</td>"));
   EXPECT_FALSE(holds(html, "No anchor, strap or pole"));
   EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
+}
+
+// 50 kN/m and 2 kN, and what the summary says of the run.
+TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
+  tell_of(scene);
+  report_.anchors = 2;
+  report_.without_anchors = report_.summary;
+  const double force = report_.summary["anchors"][1]["peak_force_N"];
+  ASSERT_GT(force, 0);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "<th scope=\"row\">strong</th>"));
+  EXPECT_TRUE(holds(html, fmt::format("<td>50</td><td>2000</td><td>{:.4g}</td><td>{:.0f} %</td>", force,
+                                      100 * force / 2000)));
+  EXPECT_TRUE(holds(html, "<td>50</td><td>1</td>"));
+  EXPECT_TRUE(holds(html, "<td>breaks at "));
+}
+
+TEST_F(ReportPageTest, what_moved_a_body_is_named_and_not_what_frames_would_have_had) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml", {"cabinet.free.model=elastic"});
+  tell_of(scene);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "<td>central differences</td>"));
+  EXPECT_FALSE(holds(html, "generalized-alpha"));
+  EXPECT_TRUE(holds(html, "rigid motion with elastic modes"));
+}
+
+TEST_F(ReportPageTest, elastic_stresses_are_not_said_to_be_those_of_steel) {
+  EXPECT_TRUE(holds(page(), "Stresses are elastic"));
+  EXPECT_FALSE(holds(page(), "real steel"));
+}
+
+// Whatever the peak of the floor: a scale needs more than its zero.
+TEST(SvgChart, the_axis_of_a_low_chart_has_ticks_beside_zero) {
+  for (double peak = 1; peak < 10; peak *= 1.03) {
+    LineChart chart;
+    chart.y_from = -1.1 * peak, chart.y_to = 1.1 * peak;
+    chart.x_to = 1;
+    chart.height = 170;
+    const std::string svg = svg_chart(chart);
+    std::size_t ticks = 0;
+    for (std::size_t at = svg.find("text-anchor=\"end\""); at != std::string::npos;
+         at = svg.find("text-anchor=\"end\"", at + 1))
+      ++ticks;
+    EXPECT_GE(ticks, 3u) << peak;
+    EXPECT_LE(ticks, 7u) << peak;
+  }
 }
 
 TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
@@ -126,7 +183,8 @@ TEST_F(ReportTest, the_page_is_one_file_that_refers_to_nothing) {
   for (const char* part :
        {"A cabinet for tests", "400 gal", "JMA ", "instrumental intensity", "critical angle", "0 of 21 runs",
         "95 % interval (Wilson)", "half the step (0.5 ms)", "Not validated against experiment",
-        "50 kgf (490.33 N)", "topple " TOPPLE_VERSION, "generalized-alpha",
+        "50 kgf (490.33 N)", "topple " TOPPLE_VERSION,
+        "central differences",  // of its elastic model; generalized-alpha moves frames alone
         "data:image/png;base64,iVBORw0KGgo"})
     EXPECT_TRUE(holds(html, part)) << part;
 }

@@ -1,0 +1,65 @@
+#include "app/panels/criteria.h"
+
+#include "app/panels/teaching_words.h"
+#include "solver/body/model_level.h"
+#include "solver/study/common/alone.h"
+#include "solver/study/common/standing.h"
+#include "solver/study/overturn/criteria.h"
+
+namespace topple::app {
+
+using namespace window_words;
+
+const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
+  if (at.amplitude < limits.west) return k_stays;
+  return at.amplitude < 2 * k_pi * at.frequency * limits.ishiyama ? k_rocks : k_may_overturn;
+}
+
+std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
+  const Model& model = player.scene().setup.model;
+  const Parameters& parameters = player.parameters();
+  if (!study::why_not_standing(model, body).empty()) return std::nullopt;
+  const auto row = player.row();
+  const bool planar = row && row->level[static_cast<std::size_t>(body)] ==
+                                 static_cast<std::uint8_t>(ModelLevel::planar);  // on a hard floor
+  std::optional<CriteriaLimits> least;
+  for (const double sense : {1., -1.}) {
+    const Vec3 direction = sense * parameters.shakes.front().direction;
+    auto standing = study::standing_towards(model, parameters, body, direction);
+    if (!standing) continue;
+    const double rigid = study::west_acceleration(*standing);
+    const auto soft = planar ? std::nullopt : study::soft_limit(*standing, parameters.contact);
+    if (soft) standing->base *= *soft / rigid;
+    const double west = study::west_acceleration(*standing);
+    if (!least || west < least->west)
+      least = CriteriaLimits{west, rigid, study::ishiyama_velocity(*standing)};
+  }
+  return least;
+}
+
+bool has_limits(const Model& model, const Parameters& parameters, int body) {
+  return study::why_not_standing(model, body).empty() &&
+         (study::standing_towards(model, parameters, body, parameters.shakes.front().direction) ||
+          study::standing_towards(model, parameters, body, -parameters.shakes.front().direction));
+}
+
+std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
+                                const ShakePlace& shake, bool changed) {
+  const Phrase& said = verdict(limits, shake);
+  bool lifted = false, overturned = false;
+  for (const io::RecordedEvent& event : player.events()) {
+    if (event.event.body != body || event.time > player.time()) continue;
+    lifted = lifted || event.event.kind == Event::Kind::uplift;
+    overturned = overturned || event.event.kind == Event::Kind::overturn;
+  }
+  if (&said == &k_may_overturn || !(overturned || (lifted && &said == &k_stays))) return "";
+  const Model& model = player.scene().setup.model;
+  std::string words = say(k_run_differs, model.bodies[static_cast<std::size_t>(body)].name,
+                          say(overturned ? k_has_overturned : k_has_lifted));
+  if (limits.west < limits.rigid) words += say(k_differs_soft);
+  if (changed) words += say(k_differs_changed);
+  if (model.furniture_total() > 1) words += say(k_differs_others);
+  return words + say(k_full_stop);
+}
+
+}  // namespace topple::app

@@ -1,0 +1,39 @@
+// What West's and Ishiyama's criteria say of a body of the scene as it is now, and where the run differs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/live/player.h"
+#include "app/support/language.h"
+
+namespace topple::app {
+
+/// A shake on the diagram. Of a record the frequency at which a sine has its peak acceleration and velocity.
+struct ShakePlace {
+  double frequency, amplitude;  ///< Hz, m/s^2
+};
+
+/// Of one body, towards the side that tips first.
+struct CriteriaLimits {
+  double west;      ///< m/s^2, on the contacts of the scene
+  double rigid;     ///< m/s^2, on rigid contacts
+  double ishiyama;  ///< m/s
+};
+
+/// Whether a body stands freely with an edge across the first shake.
+bool has_limits(const Model& model, const Parameters& parameters, int body);
+
+/// Soft contacts: of the block whose base is as much narrower as they take off the steady push that it
+/// withstands (study::soft_limit). None: it has no limits.
+std::optional<CriteriaLimits> limits_of(const Player& player, int body);
+
+/// k_stays, k_rocks or k_may_overturn.
+const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& shake);
+
+/// Where the run up to the instant that is shown does not agree with the criteria: how, and why that may be.
+/// Empty: it agrees. `changed`: the shake was another one before.
+std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
+                                const ShakePlace& shake, bool changed);
+
+}  // namespace topple::app

@@ -1,0 +1,20 @@
+#include "app/panels/edit_marks.h"
+
+namespace topple::app {
+
+std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits) {
+  constexpr double k_of_one_drag = 0.5;  // s
+  std::vector<EditMark> marks;
+  for (const LoggedEdit& edit : edits) {
+    const bool same = !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
+                      marks.back().last.edit.index == edit.edit.index &&
+                      edit.time - marks.back().last.time < k_of_one_drag;
+    if (same)
+      marks.back().last = edit;
+    else
+      marks.push_back({edit, edit});
+  }
+  return marks;
+}
+
+}  // namespace topple::app

@@ -1,0 +1,85 @@
+// Settings that are shown are those that are computed.
+#include "app/panels/computed.h"
+
+#include <gtest/gtest.h>
+
+#include "app/panels/edit_marks.h"
+#include "app/picture/window_words.h"
+#include "solver/io/edit/edit_text.h"
+#include "unit/app/live.h"
+
+namespace topple::app {
+namespace {
+
+class ComputedTest : public ::testing::Test {
+ protected:
+  void start(const std::vector<std::string>& changes) {
+    const auto scene = live_scene(k_rocking, changes);
+    run_.emplace(LiveSource{.scene = scene, .recording = {}, .output = {}});
+    player_.emplace(scene, *run_);
+    ASSERT_TRUE(until([&] { return player_->can_edit(); }));
+  }
+  template <typename Done>
+  ::testing::AssertionResult until(Done done) {
+    return eventually([this] { player_->update(1. / 60); }, done);
+  }
+  void run_to_end() {
+    player_->set_speed(k_most_speed);
+    player_->play();
+    ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::over; }));
+  }
+  std::optional<LiveRun> run_;
+  std::optional<Player> player_;
+};
+
+TEST_F(ComputedTest, the_model_its_reason_and_what_moves_it_are_said) {
+  start({"cabinet.free.model=auto", "run.want=[\"motion\",\"stress\"]", "run.duration=0.2"});
+  run_to_end();
+  EXPECT_EQ(computed_in_words(*player_, 0), "now elastic (stresses are wanted): central differences");
+  EXPECT_EQ(integrators_in_words(*player_), "of frames; at work now: central differences");
+  start({"cabinet.free.model=frame", "run.duration=0.1"});
+  run_to_end();
+  EXPECT_EQ(computed_in_words(*player_, 0), "now frame (asked for): generalized-alpha");
+  EXPECT_EQ(integrators_in_words(*player_), "");
+}
+
+// Steps and time between frames are the run's own.
+TEST_F(ComputedTest, the_step_shown_is_the_one_taken) {
+  start({"run.time_step=0.0005", "run.duration=0.2"});
+  run_to_end();
+  EXPECT_NEAR(step_taken(*player_).value(), 5e-4, 1e-9);
+  start({"run.time_step=auto", "run.duration=0.2"});
+  ASSERT_TRUE(player_->parameters().adaptive);
+  run_to_end();
+  const double step = step_taken(*player_).value();
+  EXPECT_GT(step, 0);
+  EXPECT_NE(step, player_->parameters().time_step);
+}
+
+TEST(ComputedWords, every_choice_has_a_word_in_japanese) {
+  for (const Edit::Key key : {Edit::Key::type, Edit::Key::law, Edit::Key::model, Edit::Key::integrator})
+    for (const std::string_view word : io::key_of(key).choices) {
+      const Phrase phrase = window_words::phrase_of_choice(word);
+      EXPECT_NE(phrase.japanese, phrase.english) << word;
+    }
+}
+
+TEST(EditMarks, one_drag_is_one_mark) {
+  const auto edit = [](double time, Edit::Key key, double value) {
+    return LoggedEdit{0, static_cast<std::int64_t>(1000 * time), time, {key, 0, Vec3(value, 0, 0)}};
+  };
+  using enum Edit::Key;
+  const std::vector<LoggedEdit> edits{edit(0.5, amplitude, 1),  edit(0.52, amplitude, 2),
+                                      edit(0.54, amplitude, 3), edit(0.56, friction, 0.4),
+                                      edit(0.58, amplitude, 4), edit(1.5, amplitude, 5)};
+  const std::vector<EditMark> marks = edit_marks(edits);
+  ASSERT_EQ(marks.size(), 4u);
+  EXPECT_EQ(marks[0].first.time, 0.5);
+  EXPECT_EQ(marks[0].last.edit.value.x(), 3);
+  EXPECT_EQ(marks[1].last.edit.key, friction);
+  EXPECT_EQ(marks[2].last.edit.value.x(), 4);
+  EXPECT_EQ(marks[3].first.time, 1.5);  // another drag, a second later
+}
+
+}  // namespace
+}  // namespace topple::app
