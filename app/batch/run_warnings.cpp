@@ -73,11 +73,13 @@ void warn_of_stress(const Run& run, Warnings& list) {
   for (int b = 0; b < model.furniture_total(); ++b) {
     const Body& body = model.bodies[b];
     double stiffest = 0;
+    bool yields = false;  // then the greatest stress may be that of what yields
     for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
       const Material& material = model.materials[model.members[m].material];
-      if (material.yield == 0) stiffest = std::max(stiffest, material.young);
+      yields = yields || material.yield > 0;
+      stiffest = std::max(stiffest, material.young);
     }
-    if (stiffest > 0 && bodies[b].peak_stress > k_elastic_strain * stiffest)
+    if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
       list.push_back(fmt::format(
           "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
           "hinges",

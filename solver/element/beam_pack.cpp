@@ -69,6 +69,12 @@ void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& 
   lu.add(block[3], t.force_x2, t.force_spin2, t.moment2_x2, t.moment2_spin2);
 }
 
+// It flowed: it has a hinge or had one. A viscous stress that came back with each unloading would act from
+// one step to the next, and do work that no motion shows.
+bool is_hinged(const ElementState& state) {
+  return state.hinge != Hinge::none || !state.offset.gamma.isZero(0) || !state.offset.kappa.isZero(0);
+}
+
 }  // namespace
 
 BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const BlockLu& lu)
@@ -102,7 +108,7 @@ void BeamPacks::remember(std::span<const ElementState> elements) {
     const int k = n % 4;
     const ElementState& state = elements[n];
     if (k == 0) pack.hinged = false;
-    pack.hinged = pack.hinged || state.hinge != Hinge::none;
+    pack.hinged = pack.hinged || is_hinged(state);
     set_lane(pack.beam.offset_gamma, k, state.offset.gamma);
     set_lane(pack.beam.offset_kappa, k, state.offset.kappa);
     const Element& element = model_->elements[pack.element[k]];
@@ -140,11 +146,11 @@ void BeamPacks::damp(std::size_t first, std::size_t last, double time) {
       std::any_of(packs_.begin(), packs_.end(), [](const Pack& pack) { return any_above(pack.damping, 0); });
 }
 
-// None where there is a hinge.
+// None where there is a hinge or was one.
 Four BeamPacks::damping(std::span<const ElementState> elements, std::size_t n) const {
   Four time = packs_[n].damping;
   for (int k = 0; packs_[n].hinged && k < 4 && packs_[n].element[k] >= 0; ++k)
-    if (elements[4 * n + k].hinge != Hinge::none) time.set(k, 0);
+    if (is_hinged(elements[4 * n + k])) time.set(k, 0);
   return time;
 }
 
@@ -207,12 +213,15 @@ PackFlowing<Four> BeamPacks::flowing_stiffness(std::size_t n, const Responses& r
   const Pack& pack = packs_[n];
   PackFlowing<Four> all{diagonal(elastic.normal_gamma), in_all_lanes(packed(Mat3(Mat3::Zero()))),
                         diagonal(elastic.moment_kappa)};
+  // what damping adds: it does not know of the flow within a step
+  const PackVector<Four> viscous_normal = elastic.normal_gamma - pack.beam.normal_stiffness,
+                         viscous_moment = elastic.moment_kappa - pack.beam.bending_stiffness;
   for (int k = 0; k < 4 && pack.element[k] >= 0; ++k) {
     if (!responses[k].flows()) continue;
     const SectionTangent one = section_tangent(model_->elements[pack.element[k]], responses[k]);
-    set_lane(all.normal_gamma, k, one.normal_gamma);
+    set_lane(all.normal_gamma, k, one.normal_gamma + Mat3(lane(viscous_normal, k).asDiagonal()));
     set_lane(all.normal_kappa, k, one.normal_kappa);
-    set_lane(all.moment_kappa, k, one.moment_kappa);
+    set_lane(all.moment_kappa, k, one.moment_kappa + Mat3(lane(viscous_moment, k).asDiagonal()));
   }
   return all;
 }

@@ -2,8 +2,8 @@
 //   viscous stress = a D (rate of the elastic strain),  a = 2 zeta / w1
 // with w1 the first elastic mode about the unloaded reference pose, so that mode k has the ratio
 // zeta w_k / w1 to critical. Strain rates are those of the integration point's frame: rigid motion, however
-// large, is not damped. An element with a hinge has no viscous stress, which would resist its flow (Charney
-// 2008). Recorded stresses are the elastic ones.
+// large, is not damped. An element that has flowed has no viscous stress, which would resist its flow
+// (Charney 2008). Recorded stresses are the elastic ones.
 #pragma once
 
 #include "solver/model/model.h"

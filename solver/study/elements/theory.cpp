@@ -58,7 +58,8 @@ double beam_collapse(const Model& model) {
 double portal_collapse(const Model& model) {
   const auto& x = model.node_position;
   const double height = (x[1] - x[0]).norm(), span = (x[4] - x[0]).norm();
-  return 6 * full_moment(model) /
+  constexpr unsigned k_turn = 1u << 4;  // in its plane
+  return (model.supports.front().fixed & k_turn ? 6 : 4) * full_moment(model) /
          (model.loads[0].force.norm() * height + model.loads[1].force.norm() * span / 2);
 }
 

@@ -35,7 +35,7 @@ double portal_sway(const Model& model);
 /// middle. Model: one body; node 0 and node 2 the ends, one load.
 double beam_collapse(const Model& model);
 
-/// 6 Mp/(H h + V l/2): load factor of the combined mechanism of a portal with clamped feet under H at a
+/// 6 Mp/(H h + V l/2), with pinned feet 4 Mp: load factor of the combined mechanism of a portal under H at a
 /// corner and V at the middle of the beam. Model: one body; nodes 0 and 4 the feet, 1 the corner, loads H and
 /// V.
 double portal_collapse(const Model& model);

@@ -6,6 +6,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/edit_text_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/furniture_kind_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fixing_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/hinge_scenes_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/furniture_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_block_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_choices_test.cpp

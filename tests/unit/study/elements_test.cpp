@@ -44,9 +44,9 @@ double order(const std::string& quantity, Scheme scheme, int n) {
 }
 
 TEST(ElementsStudy, every_solution_is_found) {
-  EXPECT_EQ(solved().of, 6 * 3 * 6);
+  EXPECT_EQ(solved().of, 7 * 3 * 6);
   EXPECT_EQ(solved().solved, solved().of);
-  EXPECT_EQ(solved().rows.size(), 10u * 3 * 6);
+  EXPECT_EQ(solved().rows.size(), 11u * 3 * 6);
   for (const ElementsRow& found : solved().rows) {
     SCOPED_TRACE(found.quantity + " " + traits(found.scheme).word);
     EXPECT_EQ(found.status, "completed");
@@ -74,6 +74,8 @@ TEST(ElementsStudy, hinges_at_element_ends_give_exact_collapse_loads) {
       // 2e-6 is the change of shape. One load step of the portal of two asi elements stands out by 2e-5.
       const bool stands_out = scheme == Scheme::asi && n == 2;
       EXPECT_LT(error("portal-collapse", scheme, n), stands_out ? 2e-5 : 2e-6);
+      // sway and normal forces take 3e-5 off
+      EXPECT_LT(error("portal-corners", scheme, n), 5e-5);
     }
 }
 
