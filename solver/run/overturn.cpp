@@ -41,9 +41,13 @@ bool has_floor(const Model& model) {
          std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.ground; });
 }
 
-bool is_supported(const Model& model, int body) {
-  return std::any_of(model.supports.begin(), model.supports.end(),
-                     [&](const Support& support) { return model.node_body[support.node] == body; });
+/// What holds a body higher up may break, and lets it fall then.
+bool is_base_supported(const Model& model, int index) {
+  const Body& body = model.bodies[index];
+  const double base = body.support_polygon.front().z() + 1e-6 * (1 + body.reach);
+  return std::any_of(model.supports.begin(), model.supports.end(), [&](const Support& support) {
+    return model.node_body[support.node] == index && model.node_position[support.node].z() <= base;
+  });
 }
 
 /// From the centre of gravity to the edge in the direction of the tilt, m, of an upright body.
@@ -52,7 +56,8 @@ struct EdgeAhead {
 };
 std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
-  if (body.support_polygon.empty() || !has_floor(model) || is_supported(model, index)) return std::nullopt;
+  if (body.support_polygon.empty() || !has_floor(model) || is_base_supported(model, index))
+    return std::nullopt;
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = up.head<2>().norm();

@@ -142,13 +142,16 @@ TEST(Overturn, critical_angle_tells_front_from_back) {
   EXPECT_GT(critical(Vec3::UnitX()), critical(-Vec3::UnitX()) + 0.1);
 }
 
-TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_cannot_overturn) {
+TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_of_the_base_cannot_overturn) {
   const BodyPose upright{Vec3::Zero(), Quat::Identity()};
   EXPECT_TRUE(std::isinf(critical_angle(sled(1, 0.06, 0.03), 0, upright)));
   Standing s = standing();
   EXPECT_FALSE(std::isinf(critical_angle(s.model, 0, upright)));
   s.model.supports.push_back({0, 0x7});
   EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
+  const auto top = std::ranges::max_element(s.model.node_position, {}, [](const Vec3& x) { return x.z(); });
+  s.model.supports[0].node = static_cast<int>(top - s.model.node_position.begin());  // that may break
+  EXPECT_FALSE(std::isinf(critical_angle(s.model, 0, upright)));
   s.model.supports.clear();
   s.model.planes[0].normal = Vec3::UnitX();
   EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
