@@ -22,6 +22,7 @@ constexpr double k_most_turn = 1.5;      // rad, within a load step: more is ano
 constexpr double k_least_part = 1. / 1024;  // of a load step
 constexpr double k_left = 0.5;              // of the work along a correction: a line search ends with less
 constexpr int k_most_searches = 30;
+constexpr int k_patience = 8;  // partial corrections, after which what is left may be enough (is_balanced)
 constexpr double k_least_damping = 1e-6, k_damped_more = 10;  // of add_levenberg, 1 at most
 constexpr double k_further = 4;  // of the first correction: no later one of a frame that yields goes further
 
@@ -56,21 +57,29 @@ void unbalance(const BodySystem& s, std::vector<double>& forces) {
     for (int k = 0; k < 6; ++k) forces[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
 }
 
-// Whether rounding of the positions accounts for what is left: no correction makes that less.
+// Whether what is left is no more than what rounding of the positions makes, beside 1e-8 of what the sections
+// bear. An element's force along an axis is as uncertain as that coordinate of its ends, its end moments as
+// the forces across it.
 bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<double>& forces) {
-  double reach = s.size;
-  for (const Vec3& x : at.position) reach = std::max(reach, x.norm());
-  std::vector<double> held(s.count, 0.);
-  for (const auto& [e, i, j] : s.own_elements)
-    for (const int node : {i, j}) {
-      const Element& element = s.model.elements[e];
-      held[node] += element.normal_stiffness.maxCoeff() / element.length;
-    }
-  constexpr double k_rounded = std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < s.count; ++i)
-    if (!(std::max(Vec3(&forces[6 * i]).norm(), Vec3(&forces[6 * i + 3]).norm() / s.size) <=
-          k_rounded * reach * held[i]))
-      return false;
+  constexpr double k_share = 1e-8, k_rounding = 4 * std::numeric_limits<double>::epsilon();
+  std::vector<double> allowed(forces.size(), 0.);
+  for (const auto& [e, i, j] : s.own_elements) {
+    const Element& element = s.model.elements[e];
+    const double bears = k_share * element.capacity.tail<3>().minCoeff();
+    if (!std::isfinite(bears)) continue;
+    const Vec3 force = k_rounding * element.normal_stiffness.maxCoeff() / element.length *
+                       at.position[i].cwiseAbs().cwiseMax(at.position[j].cwiseAbs());
+    const Vec3 arm = (at.position[j] - at.position[i]).cwiseAbs() / 2;
+    const Vec3 moment(arm.y() * force.z() + arm.z() * force.y(), arm.z() * force.x() + arm.x() * force.z(),
+                      arm.x() * force.y() + arm.y() * force.x());
+    for (const int node : {i, j})
+      for (int k = 0; k < 3; ++k) {
+        allowed[6 * node + k] += force[k] + bears / s.size;
+        allowed[6 * node + 3 + k] += moment[k] + bears;
+      }
+  }
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    if (!(std::abs(forces[k]) <= allowed[k])) return false;
   return true;
 }
 
@@ -267,6 +276,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   constexpr double k_none = std::numeric_limits<double>::infinity();
   const double tolerance = k_convergence * s.size;
   double last = k_none;  // whole correction
+  int partial = 0;       // corrections that were not, one after the other
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -280,7 +290,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     if (iteration > 1) hold_joints(s, start, trial);
     if (const int node = find_correction(s, still, state, factor, way ? &*way : nullptr, step); node >= 0)
       return blame(node);
-    bool found = iteration > 1 && s.yields && is_balanced(s, trial, step.forces) &&
+    bool found = partial >= k_patience && is_balanced(s, trial, step.forces) &&
                  (!way || std::abs(way->left()) < tolerance);
     if (!found) {
       const double part = iteration > 1 && s.yields ? search_line(s, still, state, factor, step) : 1;
@@ -295,10 +305,11 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
       found = whole && (greatest < tolerance || last < k_quadratic * s.size ||
                         (rate < 0.5 && greatest * rate / (1 - rate) < tolerance));
       last = whole ? greatest : k_none;
+      partial = whole ? 0 : partial + 1;
     }
     if (!found) continue;
     if (release_joints(s, trial) || break_sections(s, trial)) {
-      iteration = 0;
+      iteration = partial = 0;
       last = k_none;
       continue;
     }
