@@ -144,6 +144,9 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   const bool automatic = parameters.models[b] == BodyModel::automatic;
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
     return {ModelLevel::frame, LevelReason::deformation};
+  if (automatic && s.level == ModelLevel::elastic &&
+      parts.reduced(state, b).lands_on_what_gives(parameters.contact.alpha))
+    return {ModelLevel::frame, LevelReason::fall};
   if (watched_[b]) {
     ReducedBody& body = parts.reduced(state, b);
     if (body.yield_bound(s) > k_near_yield) {

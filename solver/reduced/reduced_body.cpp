@@ -472,6 +472,16 @@ void ReducedBody::add_residual(const BodyState& s, State& state) const {
   }
 }
 
+bool ReducedBody::lands_on_what_gives(double alpha) const {
+  const std::vector<int>& base = model_.bodies[body_].base_points;
+  bool any = false;
+  contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
+    any = any || (alpha * touch.give[k] > contacts_.length(touch, k) &&
+                  std::ranges::find(base, point) == base.end());
+  });
+  return any;
+}
+
 double ReducedBody::yield_bound(const BodyState& s) const {
   double bound = basis_->mode_yield.dot(s.amplitude.head(basis_->modes).abs().matrix());
   each_force(s, [&](int node, const Vec3& f) {

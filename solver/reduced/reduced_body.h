@@ -97,6 +97,10 @@ class ReducedBody {
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
   /// Adds to the nodes of `state` what the forces found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;
+  /// Whether of the contacts found last one beside the base has a local spring (body_contacts.h) that is
+  /// softer than the contact. Where a side of a body lands its points give together, which springs of their
+  /// own miss.
+  bool lands_on_what_gives(double alpha) const;
   /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
   double yield_bound(const BodyState& s) const;
   /// Upper bound of the rotation of a node relative to the body by the modes, rad.

@@ -57,6 +57,29 @@ TEST(Furniture, the_full_cabinet_stands_below_its_static_limit) {
   EXPECT_FALSE(run.outcome().bodies()[0].beyond_since);
 }
 
+// Its long edges give together where its whole front lands: as an elastic body, in which each point gives by
+// itself, it came to be pressed in by fifteen times the energy of the contacts when it became a frame.
+TEST(Furniture, that_lands_on_its_front_becomes_a_frame_without_a_leap_of_energy) {
+  const Scene scene = parse_scene(R"(
+topple = 1
+title = "A bookshelf falls on its front"
+[run]
+settle = false
+[floor]
+[[furniture]]
+kind = "bookshelf"
+tilt = "30 deg"
+)",
+                                  "falls.toml");
+  topple::Run run(scene.setup);
+  ASSERT_EQ(run.state().bodies[0].level, ModelLevel::elastic);
+  while (!run.over() && run.state().bodies[0].level != ModelLevel::frame) run.advance();
+  ASSERT_TRUE(run.status().ok()) << run.status().message(scene.setup.model);
+  EXPECT_EQ(run.state().bodies[0].reason, LevelReason::fall);
+  EXPECT_GT(run.energy().kinetic, 300);
+  EXPECT_LT(std::abs(run.energy().model_switch), 0.05 * run.energy().kinetic);
+}
+
 TEST(Rooms, have_at_most_30_bodies_that_start_more_than_50_mm_apart) {
   for (const char* name : {"office", "classroom"}) {
     const Scene scene = load_scene(name);

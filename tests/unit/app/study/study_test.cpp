@@ -25,7 +25,7 @@ TEST_F(StudyTest, numbers_stand_without_gnuplot_and_charts_come_with_it) {
   EXPECT_EQ(files(),
             (std::vector<std::string>{"new", "new/out", "new/out/elements.csv", "new/out/elements.json"}));
   const std::string csv = bytes_of("new/out/elements.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 181);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 199);
 
   const Ended ended = topple(k_call);
   EXPECT_EQ(ended.code, 0);
@@ -42,9 +42,9 @@ TEST_F(StudyTest, numbers_stand_without_gnuplot_and_charts_come_with_it) {
 
   const nlohmann::ordered_json json = json_of(bytes_of("new/out/elements.json"));
   EXPECT_EQ(json["topple"], TOPPLE_VERSION);
-  EXPECT_EQ(json["of"], 108);
-  EXPECT_EQ(json["rows"].size(), 180u);
-  EXPECT_EQ(json["cases"].size(), 10u);
+  EXPECT_EQ(json["of"], 126);
+  EXPECT_EQ(json["rows"].size(), 198u);
+  EXPECT_EQ(json["cases"].size(), 11u);
   EXPECT_EQ(json["settings"]["jobs"], 2);
   EXPECT_GE(json["machine"]["cores"], 1);
   for (const auto& row : json["rows"]) EXPECT_EQ(row.size(), 11u);
