@@ -43,6 +43,19 @@ bool has_limits(const Model& model, const Parameters& parameters, int body) {
           study::standing_towards(model, parameters, body, -parameters.shakes.front().direction));
 }
 
+std::string held_in_words(const Player& player, int body) {
+  const Model& model = player.scene().setup.model;
+  const auto row = player.row();
+  for (std::size_t k = 0; row && k < model.anchors.size(); ++k) {
+    const Anchor& anchor = model.anchors[k];
+    const float state = row->anchor[k].state;
+    const bool holds = state == io::k_anchor_holds || state == io::k_anchor_slack;
+    if (holds && (anchor.body == body || anchor.other.body == body))
+      return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
+  }
+  return "";
+}
+
 std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
                                 const ShakePlace& shake, bool changed) {
   const Phrase& said = verdict(limits, shake);

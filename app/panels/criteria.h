@@ -31,6 +31,9 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body);
 /// k_stays, k_rocks or k_may_overturn.
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& shake);
 
+/// That the criteria do not hold of a body that an anchor holds now. Empty: none does.
+std::string held_in_words(const Player& player, int body);
+
 /// Where the run up to the instant that is shown does not agree with the criteria: how, and why that may be.
 /// Empty: it agrees. `changed`: the shake was another one before.
 std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,

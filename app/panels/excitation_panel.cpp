@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/lane.h"
-#include "app/panels/log_chart.h"
+#include "app/chart/lane.h"
+#include "app/chart/log_chart.h"
 #include "app/panels/teaching_panel.h"
 #include "app/panels/teaching_words.h"
 #include "solver/model/accelerogram.h"
@@ -132,7 +132,9 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const Phrase& by_criteria = verdict(limits, now);
   const auto write = [](const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); };
   write(say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal, say(by_criteria)));
-  const std::string words = difference_in_words(player, *state.body, limits, now, state.path.size() > 1);
+  const std::string held = held_in_words(player, *state.body);
+  const std::string words =
+      held.empty() ? difference_in_words(player, *state.body, limits, now, state.path.size() > 1) : held;
   if (!words.empty()) write(words);
   write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
             100 * now.amplitude / (2 * k_pi * now.frequency)));

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/lane.h"
+#include "app/chart/lane.h"
 #include "app/panels/panels.h"
 #include "app/picture/anchor_picture.h"
 #include "app/picture/annotations.h"

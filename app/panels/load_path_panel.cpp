@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "app/panels/lane.h"
+#include "app/chart/lane.h"
+#include "app/chart/log_chart.h"
 #include "app/panels/load_path.h"
 #include "app/panels/load_path_words.h"
-#include "app/panels/log_chart.h"
 #include "app/panels/panels.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/lane.h"
-#include "app/panels/log_chart.h"
+#include "app/chart/lane.h"
+#include "app/chart/log_chart.h"
 #include "app/panels/teaching_words.h"
 #include "solver/io/edit/edit_text.h"
 

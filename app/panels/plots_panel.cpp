@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/panels/lane.h"
+#include "app/chart/lane.h"
 #include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"

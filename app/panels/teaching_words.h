@@ -32,6 +32,9 @@ inline constexpr Phrase k_limits{
 inline constexpr Phrase k_soft_limits{
     "Both are drawn for the contacts of this scene, which are soft: on a rigid floor West has {0:.4g} gal.",
     "どちらもこのシーンの柔らかい接触に対する値（剛な床では West の式は {0:.4g} gal）。"};
+inline constexpr Phrase k_is_held{
+    "But {0} is held by {1}: the criteria are of a body that nothing holds; the run says what it does held.",
+    "ただし {0} は {1} で固定されています。判定基準は固定のない家具のもので、固定の効果は計算が示します。"};
 inline constexpr Phrase k_run_differs{
     "In this run {0} has {1}. The criteria are for one push on a body alone that is at rest before",
     "この計算では {0} は{1}。判定基準は、静止した単独の家具への一度の押しに対するものです"};

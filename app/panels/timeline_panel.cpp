@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "app/chart/lane.h"
 #include "app/panels/edit_marks.h"
-#include "app/panels/lane.h"
 #include "app/panels/panels.h"
 #include "app/picture/body_colour.h"
 #include "app/picture/window_words.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/support/language.h"
+#include "app/support/model_words.h"
 #include "solver/body/model_level.h"
 
 namespace topple::app {
@@ -24,6 +25,7 @@ std::string say(const Phrase& phrase, const Of&... of) {
 }
 
 namespace window_words {
+using namespace model_words;
 
 // how bodies and anchors stand
 inline constexpr Phrase k_tilted{"tilt {0:.1f}°", "傾斜 {0:.1f}°"};
@@ -157,79 +159,6 @@ inline constexpr Phrase k_breaks{"breaks a member", "部材破断"};
 inline constexpr Phrase k_passes{"passes its critical angle", "転倒限界角を超過"};
 inline constexpr Phrase k_computed_as{"is computed as {0} ({1})", "計算モデル {0}（{1}）に変更"};
 
-/// Japanese of what the solver has English words for, which stand where there is no row.
-template <class Kind>
-struct Japanese {
-  Kind kind;
-  std::string_view words;
-};
-inline constexpr Japanese<ModelLevel> k_levels[] = {{ModelLevel::planar, "平面剛体"},
-                                                    {ModelLevel::rigid, "剛体"},
-                                                    {ModelLevel::elastic, "弾性"},
-                                                    {ModelLevel::frame, "骨組"}};
-inline constexpr Japanese<LevelReason> k_level_reasons[] = {
-    {LevelReason::asked, "指定による"},
-    {LevelReason::motion, "運動のみ必要"},
-    {LevelReason::stress, "応力が必要"},
-    {LevelReason::contact_frequency, "接触剛性が家具の剛性に近い"},
-    {LevelReason::yield, "断面が降伏に近い"},
-    {LevelReason::deformation, "微小変形でない"},
-    {LevelReason::near, "フレームの家具が近い"},
-    {LevelReason::calm, "静穏に戻った"},
-    {LevelReason::bending, "剛体とみなすには曲がりすぎる"},
-    {LevelReason::neighbour, "壁か他の家具が近い"},
-    {LevelReason::fall, "別の部分が床に当たる"},
-    {LevelReason::plane, "運動が鉛直面内でなくなった"},
-    {LevelReason::held, "固定具が働く"},
-    {LevelReason::contact, "接触条件の変更"},
-    {LevelReason::jammed, "すべりの停止が繰り返される"},
-    {LevelReason::solid, "一つの塊である"}};
-
-template <class Table, class Kind>
-Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {
-  const auto* const row = std::ranges::find_if(table, [kind](const auto& of) { return of.kind == kind; });
-  return {english, row == std::end(table) ? english : row->words};
-}
-inline Phrase phrase_of(ModelLevel level) {
-  return phrase_of(traits(level).word, k_levels, level);
-}
-inline Phrase phrase_of(LevelReason reason) {
-  return phrase_of(name(reason), k_level_reasons, reason);
-}
-
-/// Japanese of the words that a parameter may have.
-inline constexpr std::pair<std::string_view, std::string_view> k_choice_words[] = {
-    {"sine", "正弦波"},
-    {"sweep", "スイープ"},
-    {"pulse", "パルス"},
-    {"record", "加速度記録"},
-    {"coulomb", "クーロン摩擦"},
-    {"paper", "論文"},
-    {"printed", "論文（印刷の式）"},
-    {"auto", "自動"},
-    {"planar", "平面剛体"},
-    {"rigid", "剛体"},
-    {"elastic", "弾性"},
-    {"frame", "骨組"},
-    {"generalized-alpha", "一般化α法"},
-    {"central-difference", "中央差分法"},
-    {"newmark", "Newmark 法"}};
-/// A word as scenes have it, to be said; one without a row says itself.
-inline Phrase phrase_of_choice(std::string_view word) {
-  const auto* const row = std::ranges::find(k_choice_words, word, [](const auto& of) { return of.first; });
-  return {word, row == std::end(k_choice_words) ? word : row->second};
-}
-
-/// What moves a body on a level without the scene's integrator (integrators.h).
-struct MovedBy {
-  ModelLevel kind;
-  Phrase words;
-};
-inline constexpr MovedBy k_moved_by[] = {
-    {ModelLevel::planar, {"Taylor series", "テイラー級数"}},
-    {ModelLevel::rigid,
-     {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"}},
-    {ModelLevel::elastic, {"central differences", "中央差分法"}}};
 inline constexpr Phrase k_integrators_now{"of frames; at work now: {0}", "骨組用。現在の計算：{0}"};
 inline constexpr Phrase k_computed_now{"now {0} ({1}): {2}", "現在 {0}（{1}）：{2}"};
 inline constexpr Phrase k_step_auto{"auto, %.3g ms", "自動、%.3g ms"};

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "app/picture/window_words.h"
 #include "app/report/report_parts.h"
+#include "app/support/model_words.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 
@@ -35,8 +35,8 @@ const LevelPhrase& level_of(const ordered_json& model) {
 }
 
 std::string reason_in_words(const ReportPage& page, const std::string& reason) {
-  for (const auto& [kind, words] : window_words::k_level_reasons)
-    if (reason == name(kind)) return page.text(window_words::phrase_of(kind));
+  for (const auto& [kind, words] : model_words::k_level_reasons)
+    if (reason == name(kind)) return page.text(model_words::phrase_of(kind));
   return reason;
 }
 
@@ -57,7 +57,7 @@ std::string models(const ReportPage& page, const ordered_json& body) {
 std::string of_frames(const ReportPage& page) {
   const Parameters& p = page.report().scene->setup.parameters;
   const std::string word = page.report().summary["integrator"],
-                    name = page.text(window_words::phrase_of_choice(word));
+                    name = page.text(model_words::phrase_of_choice(word));
   switch (p.integrator) {
     case Integrator::generalized_alpha:
       return fmt::format("{}, ρ∞ = {}", name, short_shown(p.spectral_radius));
@@ -80,13 +80,12 @@ std::string integrators(const ReportPage& page) {
   }
   std::string out;
   for (const ModelLevel level : levels) {
-    const auto* const own = std::ranges::find(window_words::k_moved_by, level, &window_words::MovedBy::kind);
+    const auto* const own = std::ranges::find(model_words::k_moved_by, level, &model_words::MovedBy::kind);
     const std::string words =
-        own == std::end(window_words::k_moved_by) ? of_frames(page) : page.text(own->words);
-    out +=
-        (out.empty() ? "" : "; ") +
-        (levels.size() > 1 ? page.text(words::k_of_models, words, page.text(window_words::phrase_of(level)))
-                           : words);
+        own == std::end(model_words::k_moved_by) ? of_frames(page) : page.text(own->words);
+    out += (out.empty() ? "" : "; ") +
+           (levels.size() > 1 ? page.text(words::k_of_models, words, page.text(model_words::phrase_of(level)))
+                              : words);
   }
   return escaped(out);
 }

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/chart/theme.h"
 #include "app/panels/shell_words.h"
-#include "app/panels/theme.h"
 #include "app/picture/row.h"
 #include "app/support/terms.h"
 

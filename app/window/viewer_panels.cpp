@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/chart/theme.h"
 #include "app/panels/shell_words.h"
-#include "app/panels/theme.h"
 #include "app/picture/image_files.h"
 #include "app/picture/words.h"
 #include "app/support/files.h"

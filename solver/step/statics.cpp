@@ -5,6 +5,8 @@
 
 #include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
+#include "solver/element/beam.h"
+#include "solver/element/plasticity.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
 #include "solver/math/rotation.h"
@@ -63,8 +65,13 @@ void unbalance(const BodySystem& s, std::vector<double>& forces) {
 bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<double>& forces) {
   constexpr double k_share = 1e-8, k_rounding = 4 * std::numeric_limits<double>::epsilon();
   std::vector<double> allowed(forces.size(), 0.);
-  for (const auto& [e, i, j] : s.own_elements) {
+  bool flows = false;  // what moves without that is no frame
+  for (std::size_t n = 0; n < s.elements.size(); ++n) {
+    const auto [e, i, j] = s.own_elements[n];
     const Element& element = s.model.elements[e];
+    const BeamStrain strain =
+        beam_strain(element, beam_ends(at.position[i], at.rotation[i], at.position[j], at.rotation[j]));
+    flows = flows || respond(element, s.elements[n], strain).flows();
     const double bears = k_share * element.capacity.tail<3>().minCoeff();
     if (!std::isfinite(bears)) continue;
     const Vec3 force = k_rounding * element.normal_stiffness.maxCoeff() / element.length *
@@ -80,7 +87,7 @@ bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<do
   }
   for (std::size_t k = 0; k < forces.size(); ++k)
     if (!(std::abs(forces[k]) <= allowed[k])) return false;
-  return true;
+  return flows;
 }
 
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.

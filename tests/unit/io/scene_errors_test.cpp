@@ -437,10 +437,11 @@ TEST(SceneErrors, a_missing_file_lists_the_built_in_scenes) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, bookshelf, "
-        "breaking, cabinet, cantilever, chair, classroom, collide, desk, dominoes, "
-        "floor-long-period, free-rocking, moving-in, near-fault, office, paper-a, paper-b, portal-pushover, "
-        "refrigerator, stack, tumble, wardrobe, wedged, yielding");
+        "no-such-scene: no such file or built-in scene; built-in: anchored, beam-floor, bookshelf, breaking, "
+        "brittle-connector, "
+        "cabinet, cantilever, chair, classroom, collide, desk, dominoes, floor-long-period, "
+        "folding-leg, free-rocking, moving-in, near-fault, office, paper-a, paper-b, "
+        "portal-pushover, refrigerator, sixth-floor, stack, tumble, wardrobe, weak-storey, wedged, yielding");
   }
   try {
     load_scene(TOPPLE_SOURCE_DIR "/assets");

@@ -83,8 +83,9 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/live", {"batch", "picture", "support"}},
       {"app/study", {"batch", "support"}},
       {"app/validate", {"report", "study", "support"}},
-      {"app/panels", {"live", "study", "picture", "support"}},
-      {"app/window", {"panels", "live", "study", "picture", "support"}},
+      {"app/chart", {"live", "picture", "support"}},
+      {"app/panels", {"chart", "live", "study", "picture", "support"}},
+      {"app/window", {"panels", "chart", "live", "study", "picture", "support"}},
       {"app/cli", {"window", "validate", "panels", "report", "live", "study", "batch", "picture", "support"}},
       {"app", {"cli"}}}},  // main.cpp
 };

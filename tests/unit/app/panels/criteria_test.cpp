@@ -72,6 +72,15 @@ TEST_F(CriteriaTest, a_cabinet_that_fell_is_never_said_to_stay_without_a_reason)
   EXPECT_EQ(difference_in_words(*player_, 0, limits(), turned_down, true), "");
 }
 
+TEST_F(CriteriaTest, of_a_body_that_an_anchor_holds_it_is_said_that_they_do_not_hold) {
+  start("anchored", {});
+  ASSERT_TRUE(limits_of(*player_, 0));
+  const int body = player_->scene().setup.model.anchors.front().body;
+  EXPECT_NE(held_in_words(*player_, body).find("free is held by left"), std::string::npos);
+  start("anchored", {"anchor.1.on=false", "anchor.2.on=false"});
+  EXPECT_EQ(held_in_words(*player_, body), "");
+}
+
 TEST(MapWords, the_nearest_cell_is_not_called_the_present_shake) {
   const auto scene = std::make_shared<const io::Scene>(io::load_scene("paper-a"));
   OverturnFound found{"", std::make_shared<const study::OverturnPlan>(study::plan_overturn(*scene, "", ""))};

@@ -13,7 +13,7 @@
 #include <random>
 #include <set>
 
-#include "app/panels/theme.h"
+#include "app/chart/theme.h"
 #include "app/picture/window_words.h"
 #include "solver/io/recording/recording.h"
 #include "unit/app/shell_fixture.h"

@@ -11,9 +11,9 @@
 #include <ostream>
 #include <set>
 
+#include "app/chart/theme.h"
 #include "app/panels/precision_words.h"
 #include "app/panels/teaching_words.h"
-#include "app/panels/theme.h"
 #include "app/picture/image_files.h"
 #include "app/picture/window_words.h"
 #include "app/window/shell.h"

@@ -7,8 +7,8 @@
 
 #include <imgui.h>
 
+#include "app/chart/theme.h"
 #include "app/live/player.h"
-#include "app/panels/theme.h"
 
 namespace topple::app {
 

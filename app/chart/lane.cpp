@@ -1,4 +1,4 @@
-#include "app/panels/lane.h"
+#include "app/chart/lane.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/panels/theme.h"
+#include "app/chart/theme.h"
 
 namespace topple::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/panels/log_chart.h"
+#include "app/chart/log_chart.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "app/panels/lane.h"
+#include "app/chart/lane.h"
 
 namespace topple::app {
 namespace {
