@@ -59,8 +59,8 @@ TEST_F(CriteriaTest, a_cabinet_that_fell_is_never_said_to_stay_without_a_reason)
   EXPECT_EQ(difference_in_words(*player_, 0, limits(), turned_down, true), "");  // nothing has happened yet
   player_->play();
   ASSERT_TRUE(until([&] {
-    return std::ranges::any_of(player_->events(), [](const io::RecordedEvent& e) {
-      return e.event.kind == Event::Kind::overturn && e.event.body == 0;
+    return std::ranges::any_of(player_->events(), [this](const io::RecordedEvent& e) {
+      return e.event.kind == Event::Kind::overturn && e.event.body == 0 && e.time <= player_->time();
     });
   }));
   player_->pause();
