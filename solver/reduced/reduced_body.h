@@ -97,9 +97,9 @@ class ReducedBody {
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
   /// Adds to the nodes of `state` what the forces found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;
-  /// Whether of the contacts found last one beside the base has a local spring (body_contacts.h) that is
-  /// softer than the contact. Where a side of a body lands its points give together, which springs of their
-  /// own miss.
+  /// Whether a contact found last, of a point that is not of the base, has a local spring (body_contacts.h)
+  /// softer than itself. `alpha`: N, of Eq. 2. Where a whole side lands, its points are pressed in together,
+  /// less than each would be alone: the local springs are then far too soft.
   bool lands_on_what_gives(double alpha) const;
   /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
   double yield_bound(const BodyState& s) const;

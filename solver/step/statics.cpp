@@ -65,7 +65,7 @@ void unbalance(const BodySystem& s, std::vector<double>& forces) {
 bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<double>& forces) {
   constexpr double k_share = 1e-8, k_rounding = 4 * std::numeric_limits<double>::epsilon();
   std::vector<double> allowed(forces.size(), 0.);
-  bool flows = false;  // what moves without that is no frame
+  bool flows = false;  // a mechanism without hinges is in balance wherever it is: that is none
   for (std::size_t n = 0; n < s.elements.size(); ++n) {
     const auto [e, i, j] = s.own_elements[n];
     const Element& element = s.model.elements[e];
