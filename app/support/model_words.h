@@ -32,7 +32,7 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::calm, "静穏に戻った"},
     {LevelReason::bending, "剛体とみなすには曲がりすぎる"},
     {LevelReason::neighbour, "壁か他の家具が近い"},
-    {LevelReason::fall, "別の部分が床に当たる"},
+    {LevelReason::fall, "別の部分が床か壁に当たる"},
     {LevelReason::plane, "運動が鉛直面内でなくなった"},
     {LevelReason::held, "固定具が働く"},
     {LevelReason::contact, "接触条件の変更"},

@@ -94,7 +94,7 @@ const char* name(LevelReason reason) {
     case LevelReason::neighbour:
       return "a wall or another body is near";
     case LevelReason::fall:
-      return "another part of it meets the floor";
+      return "another part of it meets the floor or a wall";
     case LevelReason::plane:
       return "it is moved out of its plane";
     case LevelReason::held:

@@ -69,9 +69,9 @@ void set_stiffness(PackBeam<Four>& beam, int k, const Vec3& normal, const Vec3& 
   lu.add(block[3], t.force_x2, t.force_spin2, t.moment2_x2, t.moment2_spin2);
 }
 
-// It flowed: it has a hinge or had one. A viscous stress that came back with each unloading would act from
-// one step to the next, and do work that no motion shows.
-bool is_hinged(const ElementState& state) {
+// It has a hinge, had one, or is broken. Were it damped again at each unloading, the viscous stress would
+// leap from one step to the next and do work that no motion shows.
+bool has_flowed(const ElementState& state) {
   return state.hinge != Hinge::none || !state.offset.gamma.isZero(0) || !state.offset.kappa.isZero(0);
 }
 
@@ -93,7 +93,7 @@ BeamPacks::BeamPacks(const Model& model, std::span<const OwnElement> own, const 
     pack.block[3][k] = lu.index(from.j, from.j);
     pack.element[k] = real ? from.element : -1;
     pack.yields = (k > 0 && pack.yields) || std::isfinite(element.capacity[0]);
-    pack.hinged = false;
+    pack.flowed = false;
     for (int c = 0; c < 4; ++c) pack.inverse_square[c].set(k, real ? std::pow(element.capacity[c], -2) : 0);
     for (int p = 0; p < 2; ++p) pack.arm[p].set(k, element.length / 2 * (element.hinge_place[p] + element.s));
     pack.damping.set(k, 0);
@@ -107,8 +107,8 @@ void BeamPacks::remember(std::span<const ElementState> elements) {
     Pack& pack = packs_[n / 4];
     const int k = n % 4;
     const ElementState& state = elements[n];
-    if (k == 0) pack.hinged = false;
-    pack.hinged = pack.hinged || is_hinged(state);
+    if (k == 0) pack.flowed = false;
+    pack.flowed = pack.flowed || has_flowed(state);
     set_lane(pack.beam.offset_gamma, k, state.offset.gamma);
     set_lane(pack.beam.offset_kappa, k, state.offset.kappa);
     const Element& element = model_->elements[pack.element[k]];
@@ -149,8 +149,8 @@ void BeamPacks::damp(std::size_t first, std::size_t last, double time) {
 // None where there is a hinge or was one.
 Four BeamPacks::damping(std::span<const ElementState> elements, std::size_t n) const {
   Four time = packs_[n].damping;
-  for (int k = 0; packs_[n].hinged && k < 4 && packs_[n].element[k] >= 0; ++k)
-    if (is_hinged(elements[4 * n + k])) time.set(k, 0);
+  for (int k = 0; packs_[n].flowed && k < 4 && packs_[n].element[k] >= 0; ++k)
+    if (has_flowed(elements[4 * n + k])) time.set(k, 0);
   return time;
 }
 

@@ -64,7 +64,7 @@ class BeamPacks {
     std::array<std::array<int, 4>, 4> block;  ///< numbers of (i, i), (i, j), (j, i), (j, j)
     std::array<int, 4> element;               ///< index into Model::elements; -1: none
     bool yields;                              ///< some of them can
-    bool hinged;                              ///< some of them flowed or are broken
+    bool flowed;                              ///< some of them flowed or are broken
     std::array<Four, 4> inverse_square;       ///< of Element::capacity
     std::array<Four, 2> arm;                  ///< m, from the stress points to the hinge places
     Four damping;                             ///< s, damping_time
