@@ -129,6 +129,13 @@ struct PreparedLaw : ContactLaw {
   explicit PreparedLaw(const ContactLaw& law);
 };
 
+/// `law` with its frictions times `grip` (Body::grip).
+template <class Law>
+Law gripped(Law law, double grip) {
+  law.friction *= grip, law.friction_static *= grip;
+  return law;
+}
+
 /// Greatest stiffness of a law's springs over alpha/L, along the normal (before hardening; q < 1: at a depth
 /// of 0.01) and tangential.
 struct StiffnessBound {

@@ -162,7 +162,8 @@ void BodySystem::find_contacts(const ContactLaw& law, const BodyMotion& motion,
   find_plane_contacts(motion, found.planes);
   for (TouchingPair& pair : found.planes)
     new (&pair.out)  // in its place: a copy waits for what was just stored
-        ContactOutput(contact_force(law, plane_contact(pair, motion, stick_start, start)));
+        ContactOutput(
+            contact_force(on_plane(law, pair.node), plane_contact(pair, motion, stick_start, start)));
   find_member_contacts(law, member_pairs_, motion.position, motion.velocity, start, found.members);
 }
 
@@ -201,7 +202,8 @@ void BodySystem::add_contacts(const ContactLaw& law, const BodyMotion& motion,
     force[pair.node] += pair.out.force;
     if constexpr (with_tangent) {
       Mat3 by_position, by_velocity;
-      contact_force(law, plane_contact(pair, motion, stick_start, start), by_position, by_velocity);
+      contact_force(on_plane(law, pair.node), plane_contact(pair, motion, stick_start, start), by_position,
+                    by_velocity);
       add_slope(pair.node, pair.node, -by_position - velocity_factor * by_velocity, motion);
     }
   }

@@ -143,6 +143,10 @@ class BodySystem {
   void give_sticks(State& state);
   /// Writes the stick springs of `contacts`; those of open contacts become zero.
   void store_stick(const Contacts& contacts, State& state);
+  /// The law between a node of the system and planes.
+  ContactLaw on_plane(const ContactLaw& law, int i) const {
+    return gripped(law, model.bodies[model.node_body[node[i]]].grip);
+  }
   /// Input of the contact law for a touching pair at `motion`; arguments as of evaluate.
   ContactInput plane_contact(const TouchingPair& pair, const BodyMotion& motion,
                              std::span<const Vec3> stick_start, std::span<const Vec3> start) const;

@@ -118,12 +118,13 @@ void add_member_contacts(BodySystem& s, const ContactLaw& law, double h, Integra
 
 // Forces of planes, solved at each touching node for its new velocity. Inputs and outputs are made in their
 // places: a copy waits for what was just stored.
-void add_plane_contacts(BodySystem& s, const ContactLaw& law, std::span<const Vec3> stick, double h,
+void add_plane_contacts(BodySystem& s, const ContactLaw& of_all, std::span<const Vec3> stick, double h,
                         const IntegratorScratch& w) {
   std::vector<TouchingPair>& touching = s.contacts.planes;
-  const auto at_new_velocity = traits(law).at_new_velocity;
+  const auto at_new_velocity = traits(of_all).at_new_velocity;
   for (std::size_t k = 0; k < touching.size();) {
     const int i = touching[k].node;
+    const ContactLaw law = s.on_plane(of_all, i);
     const Vec3& half = w.trial.velocity[i];
     std::size_t end = k;
     ContactInput inputs[8];

@@ -96,6 +96,7 @@ struct Body {
   double first_frequency = 0;
   /// Of its base while it is a planar block: factor on the rate that an impact leaves by Housner's condition.
   double restitution = 1;
+  double grip = 1;      ///< of its contact points on planes: factor on the law's frictions
   bool ground = false;  ///< a floor or wall made of members, not furniture; such bodies come last
   bool solid = false;   ///< a block: its members are its edges, it is never elastic nor a frame
 };

@@ -151,7 +151,7 @@ void set_block(Candidate& c) {
     const double u = c.place(c.base_point(p)).x();
     block.left = std::max(block.left, -u), block.right = std::max(block.right, u);
   }
-  const ContactLaw& law = c.parameters.contact;
+  const ContactLaw law = gripped(c.parameters.contact, c.body.grip);
   block.kinetic_friction = law.friction;
   block.static_friction = law.friction + law.excess();
   block.restitution = c.body.restitution;

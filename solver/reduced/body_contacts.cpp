@@ -23,6 +23,7 @@ BodyContacts::BodyContacts(const Model& model, int body)
       mass_(model.bodies[body].mass),
       reach_(model.bodies[body].reach),
       contact_mass_(mass_ / std::max(1, model.bodies[body].contact_point_count)),
+      grip_(model.bodies[body].grip),
       least_length_(std::numeric_limits<double>::infinity()) {
   const Body& b = model.bodies[body];
   std::vector<int> order(b.contact_point_count);
@@ -239,8 +240,11 @@ template <bool with_slope, bool plain, class Normal>
 
 template <bool with_slope, ContactSums sums>
 ContactLoads BodyContacts::evaluate_forces(const PreparedLaw& law, const BodyVelocity& u, double gamma_dt) {
-  return law.plain && !gives_ ? evaluate_all<with_slope, true, sums>(law, u, gamma_dt)
-                              : evaluate_all<with_slope, false, sums>(law, u, gamma_dt);
+  const auto of = [&](const PreparedLaw& own) {
+    return own.plain && !gives_ ? evaluate_all<with_slope, true, sums>(own, u, gamma_dt)
+                                : evaluate_all<with_slope, false, sums>(own, u, gamma_dt);
+  };
+  return grip_ == 1 ? of(law) : of(gripped(law, grip_));
 }
 
 template <bool with_slope, bool plain, ContactSums sums>

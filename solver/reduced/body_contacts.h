@@ -255,7 +255,7 @@ class BodyContacts {
   }
 
   const Model& model_;
-  double mass_, reach_, contact_mass_;
+  double mass_, reach_, contact_mass_, grip_;
   bool gives_ = false;  // what find was given last is elastic
   double stiffest_ = 0, least_length_;
   std::vector<Group> groups_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/contact/contact_law.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 #include "solver/reduced/elastic_basis.h"
@@ -116,7 +117,7 @@ double rigid_error(const Model& model, const Parameters& parameters, int index) 
   const Body& body = model.bodies[index];
   const double angle = least_tipping_angle(body), gravity = parameters.gravity.norm();
   if (!body.elastic || !(angle < std::numeric_limits<double>::infinity())) return 0;
-  const ContactLaw& law = parameters.contact;
+  const ContactLaw law = gripped(parameters.contact, body.grip);
   const double floor = greatest_acceleration(parameters.shakes);
   const double friction = std::max(law.friction, law.friction_static);
   const double passed = std::min(floor, friction * gravity);

@@ -389,6 +389,15 @@ void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const 
   });
 }
 
+// Of the last `count` bodies.
+void read_friction(const Entry& entry, int count, Setup& setup) {
+  if (!entry.has("friction")) return;
+  const double of_all = setup.parameters.contact.friction;
+  if (of_all == 0)
+    entry.fail("friction", "contact.friction is 0, of which it is a share; write a small one there");
+  for (Body& body : std::span(setup.model.bodies).last(count)) body.grip = entry.number("friction") / of_all;
+}
+
 // What the last `count` bodies are computed as.
 void read_model(const Entry& root, const Entry& entry, int count, Setup& setup) {
   Model& model = setup.model;
@@ -454,6 +463,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     add_copies(entry, spec, add_cabinet, setup);
     check_copies(entry, model, first);
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    read_friction(entry, static_cast<int>(model.bodies.size() - first), setup);
     of_body.resize(model.bodies.size(), entry);
   }
   for (const Entry& entry : root.entries("frame")) {
@@ -468,6 +478,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     });
     check_copies(entry, model, first);
     read_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    read_friction(entry, static_cast<int>(model.bodies.size() - first), setup);
     of_body.resize(model.bodies.size(), entry);
   }
   for (const Entry& entry : root.entries("block")) {
@@ -478,6 +489,7 @@ void read_bodies(const Entry& root, Setup& setup) {
     add_copies(entry, spec, add_block, setup);
     check_copies(entry, model, first);
     read_block_model(root, entry, static_cast<int>(model.bodies.size() - first), setup);
+    read_friction(entry, static_cast<int>(model.bodies.size() - first), setup);
     of_body.resize(model.bodies.size(), entry);
   }
   if (model.bodies.empty()) {

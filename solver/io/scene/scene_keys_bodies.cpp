@@ -38,6 +38,14 @@ void add_restitution(Rows& rows) {
       .only_in({"dynamic"});
 }
 
+void add_friction(Rows& rows) {
+  rows.number(
+          "friction", 0, 1.5,
+          "coefficient of friction on floors and walls that are planes; where contact.friction is changed "
+          "while it runs, or in a study, it changes in proportion")
+      .absent_means("contact.friction");
+}
+
 void add_copies(Rows& rows) {
   rows.vectors("copies", D::length, "m", -k_far, k_far, "translations, one per copy")
       .absent_means("one, where it is");
@@ -98,6 +106,7 @@ void add_cabinet(std::vector<Key>& keys) {
   rows.integer("divisions", 1, 20, "members per edge").absent(cabinet.divisions);
   add_damping(rows);
   add_restitution(rows);
+  add_friction(rows);
   add_copies(rows);
   add_model(rows, BodyModel::automatic);
 }
@@ -124,6 +133,7 @@ void add_block(std::vector<Key>& keys) {
       .absent_means("a twentieth of the smallest side, at most 20 mm");
   add_base(rows);
   add_restitution(rows);
+  add_friction(rows);
   add_copies(rows);
   rows.word("model", {"auto", "planar", "rigid"},
             "what the block is computed as; auto: planar while it is a planar block, else rigid")
@@ -156,6 +166,7 @@ void add_frame(std::vector<Key>& keys) {
       .only_in({"dynamic"});
   add_damping(rows);
   add_restitution(rows);
+  add_friction(rows);
   add_model(rows, BodyModel::frame);
 }
 

@@ -127,7 +127,7 @@ std::string why_not_frames(const Model& model) {
 bool alike(const Model& model, int index_a, int index_b) {
   const Body &a = model.bodies[index_a], &b = model.bodies[index_b];
   return a.node_count == b.node_count && a.element_count == b.element_count &&
-         a.contact_point_count == b.contact_point_count && same_nodes(model, a, b) &&
+         a.contact_point_count == b.contact_point_count && a.grip == b.grip && same_nodes(model, a, b) &&
          same_elements(model, a, b) && same_contacts(model, a, b);
 }
 

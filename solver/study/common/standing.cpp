@@ -148,6 +148,7 @@ Standing towards(const Model& model, const Parameters& parameters, int index, co
   out.mass = body.mass;
   out.gravity = parameters.gravity.norm();
   out.height = centre.z() - out.edge.z();
+  out.grip = body.grip;
   const Vec3 axis = Vec3::UnitZ().cross(out.direction);
   out.inertia_of_edge =
       axis.dot(body.inertia * axis) + body.mass * (out.base * out.base + out.height * out.height);

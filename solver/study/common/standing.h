@@ -22,6 +22,7 @@ struct Standing {
   double base, height;     ///< m, b and h: distance of the edge, height of the centre of gravity above it
   double inertia_of_edge;  ///< kg m^2, about the edge
   std::vector<Contact> contacts;
+  double grip = 1;  ///< as of Body
 
   double weight() const { return mass * gravity; }      ///< N
   double rigid_limit() const { return base / height; }  ///< b/h: over g, acceleration at which it lifts

@@ -134,9 +134,9 @@ class Chart {
                           k_grey);
     std::vector<std::string> lines{fmt::format(
         "Curves: a rigid block like {} alone on the floor, b = {:.0f} mm, h = {:.0f} mm, that does not slip "
-        "(friction of the scene: {:g})",
+        "(its friction: {:g})",
         plain(map_.criteria.bodies), 1e3 * map_.criteria.body.base, 1e3 * map_.criteria.body.height,
-        plan_.scene.setup.parameters.contact.friction)};
+        map_.criteria.body.grip * plan_.scene.setup.parameters.contact.friction)};
     for (const Criterion& c : map_.criteria.list) lines.push_back(plain(c.label) + ": " + c.about);
     for (std::string& line : lines) line = scaled(line, 0.94);
     return sheet_.lines(lines, k_left, k_height - 186, 22, k_grey);

@@ -207,7 +207,7 @@ class Lister {
     PenaltyRow& row = add(Case::tipping, g, body.parameters.contact,
                           [body, theory = theory(g)] { return settled_tipping_limit(body, theory); });
     row.reference = theory(g).rigid_limit();
-    refuse_sliding(row, theory(g).rigid_limit());
+    refuse_sliding(row, theory(g), theory(g).rigid_limit());
   }
 
   void list_fall_back(int g, Setup body) {
@@ -216,7 +216,7 @@ class Lister {
                           [body, theory = theory(g)] { return fall_back(body, theory); });
     row.time_step = fixed_step(body);
     row.reference = fall_back_time(theory(g));
-    refuse_sliding(row, theory(g).rigid_limit());
+    refuse_sliding(row, theory(g), theory(g).rigid_limit());
   }
 
   void list_half_sine(int g, const Setup& body, double ratio) {
@@ -235,13 +235,13 @@ class Lister {
     row.time_step = fixed_step(body);
     row.at = ratio;
     row.reference = expected;
-    refuse_sliding(row, expected);
+    refuse_sliding(row, theory(g), expected);
     return row;
   }
 
   /// A push of more than mu g moves a body along instead of tipping it, and theory does not hold.
-  void refuse_sliding(PenaltyRow& row, double push) {
-    if (push <= row.law.friction) return;
+  void refuse_sliding(PenaltyRow& row, const Standing& theory, double push) {
+    if (push <= theory.grip * row.law.friction) return;
     row.status = "slides";
     entries_.back().trial = {};
   }

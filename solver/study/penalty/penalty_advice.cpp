@@ -166,13 +166,13 @@ Advice advise(const PenaltyStudy& study) {
   reasons.push_back(bounds_in_words());
   for (const BodyGroup& group : study.groups) {
     if (!group.obstacle.empty()) continue;
-    const double rigid = group.theory.rigid_limit();
+    const double rigid = group.theory.rigid_limit(), friction = group.theory.grip * study.law.friction;
     reasons.push_back(
-        rigid <= study.law.friction
+        rigid <= friction
             ? steady_in_words(group)
             : fmt::format("{} slides before it tips, b/h = {:.3g} with friction {:g}: its depth at "
                           "rest alone counts.",
-                          group.names, rigid, study.law.friction));
+                          group.names, rigid, friction));
   }
   if (advice.alpha) add_step(study, *advice.alpha, advice);
   reasons.push_back(judged(advice.of_scene, "The scene's alpha"));

@@ -94,7 +94,8 @@ class Chart {
   const BodyGroup& group(int g) const { return study_.groups[g]; }
   /// alpha that steady tipping asks for, of bodies that tip before they slide.
   double tips(int g) const {
-    return group(g).theory.rigid_limit() <= study_.law.friction ? group(g).steady_alpha : 0;
+    const Standing& theory = group(g).theory;
+    return theory.rigid_limit() <= theory.grip * study_.law.friction ? group(g).steady_alpha : 0;
   }
 
   template <typename Choose>

@@ -5,6 +5,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/contents_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/edit_text_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/furniture_kind_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/feet_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fixing_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/hinge_scenes_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/furniture_test.cpp
