@@ -14,7 +14,7 @@ enum class FixingKind { l_bracket, strap, pole, mat, stopper, connector };
 
 /// Where on its body a fixing holds, unless the scene says `at`.
 enum class FixingPlace {
-  near,   ///< the node nearest to what it leads to, of the upper ones for a wall
+  near,   ///< both upper corners next to a wall; else the node nearest to what it leads to
   top,    ///< the node nearest to the middle of the top
   feet,   ///< every corner of the base
   front,  ///< the corners of the base that are farthest from the wall

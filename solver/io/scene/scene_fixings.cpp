@@ -179,6 +179,7 @@ class Fixing {
       case FixingPlace::near:
         break;
     }
+    if (target_.wall) return upper_corners();
     if (target_.body >= 0) {
       const std::vector<int> others = nodes_of_body(target_.body, false);
       const auto far = [&](int node) {
@@ -189,8 +190,20 @@ class Fixing {
       return {best(nodes_of_body(body_, false), far, [&](int node) { return -x(node).z(); })};
     }
     return {best(
-        nodes_of_body(body_, target_.wall), [&](int node) { return target_.distance(x(node)); },
-        from_middle)};
+        nodes_of_body(body_, false), [&](int node) { return target_.distance(x(node)); }, from_middle)};
+  }
+
+  // Of the side that is nearest to the wall; a body that touches it in a point has one.
+  std::vector<int> upper_corners() const {
+    std::vector<int> nodes = nodes_of_body(body_, true);
+    const auto far = [&](int node) { return target_.distance(x(node)); };
+    const double least = far(*std::ranges::min_element(nodes, {}, far));
+    std::erase_if(nodes, [&](int node) { return far(node) > least + k_same; });
+    const Vec3 along = Vec3::UnitZ().cross(target_.normal);
+    const auto place = [&](int node) { return along.dot(x(node)); };
+    const auto [first, last] = std::ranges::minmax(nodes, {}, place);
+    if (place(last) - place(first) < k_same) return {first};
+    return {first, last};
   }
 
   // Of the other body: `point` itself where that is on it, else its nearest node.

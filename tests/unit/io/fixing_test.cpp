@@ -80,18 +80,25 @@ TEST(Fixing, finds_its_points_and_has_the_numbers_of_its_kind) {
   }
 }
 
-TEST(Fixing, takes_the_node_nearest_to_the_wall_and_the_keys_of_the_anchor) {
+TEST(Fixing, takes_the_upper_corners_next_to_the_wall_and_the_keys_of_the_anchor) {
   const Scene scene =
       scene_of(fixing("L-bracket", "back", "strength = \"900 N\"\nstiffness = \"77 kN/m\"\n"));
-  const Anchor& anchor = scene.setup.model.anchors[0];
-  const Vec3& node = scene.setup.model.node_position[anchor.node];
-  EXPECT_NEAR(node.x(), -0.15, 1e-9);
-  EXPECT_GT(node.z(), 1.7);
-  EXPECT_NEAR(anchor.to.x(), -0.22, 1e-12);
-  EXPECT_NEAR(anchor.to.z(), node.z(), 1e-12);
-  EXPECT_EQ(anchor.strength, 900);
-  EXPECT_EQ(anchor.stiffness, 77e3);
-  EXPECT_EQ(anchor.arm.norm(), 0);
+  const Model& model = scene.setup.model;
+  ASSERT_EQ(model.anchors.size(), 2u);
+  double side = 0;
+  for (const Anchor& anchor : model.anchors) {
+    const Vec3& node = model.node_position[anchor.node];
+    EXPECT_NEAR(node.x(), -0.15, 1e-9);
+    EXPECT_NEAR(std::abs(node.y()), 0.3, 1e-9);
+    EXPECT_NEAR(node.z(), 1.8, 0.1);
+    EXPECT_NEAR(anchor.to.x(), -0.22, 1e-12);
+    EXPECT_NEAR(anchor.to.z(), node.z(), 1e-12);
+    EXPECT_EQ(anchor.strength, 900);
+    EXPECT_EQ(anchor.stiffness, 77e3);
+    EXPECT_EQ(anchor.arm.norm(), 0);
+    side += node.y();
+  }
+  EXPECT_NEAR(side, 0, 1e-9);
 }
 
 TEST(Fixing, a_pole_pushes_with_its_preload_from_the_start) {
