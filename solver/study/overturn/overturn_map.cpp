@@ -89,6 +89,7 @@ ordered_json settings_of(const OverturnPlan& plan) {
   ordered_json settings = settings_of("overturn", plan.scene, plan.x, plan.y);
   settings["ensemble"] = plan.ensemble;
   settings["chunk"] = plan.chunk;
+  settings["ways"] = plan.scene.setup.room.ways();
   settings.update(settings_of(plan.factors));
   return settings;
 }
@@ -112,10 +113,12 @@ std::string run_text(const RunEnd& end) {
     fell += (fell.empty() ? "" : ",") + (fate.fell ? fmt::format("{}", *fate.fell) : "null");
     lifted |= fate.lifted;
   }
+  std::string open;
+  for (const bool way : end.open) open += (open.empty() ? "" : ",") + std::string(way ? "true" : "false");
   const std::string status =
       ordered_json(end.status).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  return fmt::format("{{\"status\":{},\"fell\":[{}],\"lifted\":{}{}}}", status, fell, lifted,
-                     end.planar ? ",\"planar\":true" : "");
+  return fmt::format("{{\"status\":{},\"fell\":[{}],\"lifted\":{},\"open\":[{}]{}}}", status, fell, lifted,
+                     open, end.planar ? ",\"planar\":true" : "");
 }
 
 std::string row_text(const std::vector<RunEnd>& ends, double cpu) {
@@ -302,6 +305,7 @@ void add_run(OverturnPoint& point, const ordered_json& row, int counts[]) {
     ++point.fell[b];
     ++fallen;
   }
+  for (std::size_t p = 0; p < point.open.size(); ++p) point.open[p] += row["open"][p].get<bool>();
   if (first) {
     ++point.overturned;
     point.times.push_back(*first);
@@ -354,10 +358,13 @@ OverturnMap gather(const OverturnPlan& plan, const std::vector<std::string>& row
   OverturnMap map;
   const Model& model = plan.scene.setup.model;
   for (int b = 0; b < model.furniture_total(); ++b) map.bodies.push_back(model.bodies[b].name);
+  const Room& room = plan.scene.setup.room;
+  for (std::size_t p = 0; p < room.ways(); ++p) map.ways.push_back(room.places[p].name);
   map.of = plan.runs();
   for (int p = 0; p < plan.points(); ++p) {
     OverturnPoint point;
     point.fell.resize(map.bodies.size());
+    point.open.resize(map.ways.size());
     int counts[static_cast<int>(Verdict::stands) + 1] = {};
     for (int chunk = 0; chunk < plan.chunks(); ++chunk) {
       const std::string& row = rows[static_cast<std::size_t>(p * plan.chunks() + chunk)];

@@ -73,8 +73,9 @@ class OverturnRunner {
  public:
   explicit OverturnRunner(const OverturnPlan& plan);
   /// A row of JSON in one line: "cpu_s" and "runs", each with "status" ("completed", or why it failed),
-  /// "fell" (s, per piece of furniture, null: it stands), "lifted" (a side of any lifted), of planar blocks
-  /// "planar" (true). Empty: give_up() came true, it is asked after each step.
+  /// "fell" (s, per piece of furniture, null: it stands), "lifted" (a side of any lifted), "open" (per
+  /// place with a way out), of planar blocks "planar" (true). Empty: give_up() came true, it is asked after
+  /// each step.
   std::string run(int k, const std::function<bool()>& give_up);
 
  private:
@@ -119,6 +120,7 @@ struct OverturnPoint {
   int runs = 0, failed = 0;                 ///< that ended, without and with failure
   int overturned = 0;                       ///< runs in which a body overturned
   std::vector<int> fell;                    ///< per piece of furniture: runs in which it did
+  std::vector<int> open;                    ///< per place: runs after which a way leads to a door
   std::vector<double> times;                ///< s, of the first overturning in each such run, ascending
   std::string status = "not run";           ///< "completed", or why the first that failed did
   double cpu = 0;                           ///< s
@@ -132,6 +134,7 @@ struct OverturnPoint {
 
 struct OverturnMap {
   std::vector<std::string> bodies;  ///< furniture
+  std::vector<std::string> ways;    ///< places whose way out is looked at
   std::vector<OverturnPoint> points;
   int run = 0, of = 0;  ///< runs
   int planar = 0;       ///< runs that were planar blocks

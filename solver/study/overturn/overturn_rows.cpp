@@ -86,6 +86,14 @@ ordered_json rows_as_json(const OverturnPlan& plan, const OverturnMap& map) {
         {"overturn_time_early_s", or_null(point.time(k_early))},
         {"overturn_time_late_s", or_null(point.time(k_late))}};
     for (std::size_t b = 0; b < map.bodies.size(); ++b) row["overturned_" + map.bodies[b]] = point.fell[b];
+    for (std::size_t way = 0; way < map.ways.size(); ++way) {
+      const std::string key = "open_" + map.ways[way];
+      const bool any = point.runs > 0;
+      const Interval bounds = any ? wilson(point.open[way], point.runs) : Interval{};
+      row[key] = point.open[way];
+      row[key + "_low"] = any ? ordered_json(bounds.low) : ordered_json(nullptr);
+      row[key + "_high"] = any ? ordered_json(bounds.high) : ordered_json(nullptr);
+    }
     row["cpu_s"] = point.cpu;
     rows.push_back(std::move(row));
   }
@@ -98,6 +106,10 @@ ordered_json map_as_json(const OverturnPlan& plan, const OverturnMap& map) {
   for (std::size_t b = 0; b < map.bodies.size(); ++b)
     bodies.push_back(
         {{"name", map.bodies[b]}, {"overturned", over([b](const OverturnPoint& p) { return p.fell[b]; })}});
+  ordered_json ways = ordered_json::array();
+  for (std::size_t p = 0; p < map.ways.size(); ++p)
+    ways.push_back(
+        {{"place", map.ways[p]}, {"open", over([p](const OverturnPoint& of) { return of.open[p]; })}});
   ordered_json curves = ordered_json::array();
   for (const Criterion& c : map.criteria.list)
     curves.push_back({{"name", c.name}, {"label", c.label}, {"about", c.about}, {"x", c.x}, {"y", c.y}});
@@ -118,6 +130,7 @@ ordered_json map_as_json(const OverturnPlan& plan, const OverturnMap& map) {
        })},
       {"overturn_time_s", over([](const OverturnPoint& p) { return or_null(p.time(0.5)); })},
       {"bodies", bodies},
+      {"ways", ways},
       {"criteria", {{"bodies", map.criteria.bodies}, {"why_not", map.criteria.why_not}, {"curves", curves}}},
       {"fragility", fragility_as_json(plan, map)}};
 }

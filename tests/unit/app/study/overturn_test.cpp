@@ -73,6 +73,32 @@ TEST_F(OverturnTest, an_ensemble_gives_probabilities_charts_and_a_fragility) {
   EXPECT_EQ(json["rows"].size(), 12u);
 }
 
+// A block that lies across the room leaves 0.45 m beside it; one that stands leaves 1.75 m.
+TEST_F(OverturnTest, says_after_how_many_runs_a_way_out_is_open) {
+  write_bytes("room.toml",
+        "topple = 1\n[run]\nduration = 2.5\n[floor]\n"
+        "[[shake]]\ntype = \"pulse\"\nshape = \"half-sine\"\nduration = 0.4\namplitude = 1\n"
+        "direction = [0, -1, 0]\n"
+        "[[wall]]\nname = \"right\"\nat = [0, -1]\nnormal = [0, 1, 0]\n"
+        "[[wall]]\nname = \"left\"\nat = [0, 1]\nnormal = [0, -1, 0]\n"
+        "[[wall]]\nname = \"front\"\nat = [2, 0]\nnormal = [-1, 0, 0]\n"
+        "[[block]]\nname = \"a\"\nsize = [0.5, 0.18, 1.28]\nmass = 30\nwidth = 0.02\nat = [0, -0.85]\n"
+        "[[door]]\nname = \"door\"\nwall = \"front\"\nat = 0\nwidth = 0.8\n"
+        "[[place]]\nname = \"desk\"\nat = [-1, 0]\n");
+  const Ended ended =
+      topple({"study", "overturn", "room.toml", "-o", "out", "--x", "shake.1.duration=0.4 s..0.45 s:2", "--y",
+              "shake.1.amplitude=1..8:2", "--ensemble", "2", "--spread", "5%", "--quiet"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const ordered_json json = json_of(bytes_of("out/overturn.json"));
+  EXPECT_EQ(json["overturned"], ordered_json::parse("[[0, 0], [2, 2]]"));
+  EXPECT_EQ(json["ways"][0]["place"], "desk");
+  EXPECT_EQ(json["ways"][0]["open"], ordered_json::parse("[[2, 2], [0, 0]]"));
+  EXPECT_EQ(json["rows"][0]["open_desk"], 2);
+  EXPECT_EQ(json["rows"][0]["open_desk_high"], 1);
+  EXPECT_NEAR(json["rows"][0]["open_desk_low"].get<double>(), 2 / (2 + 1.96 * 1.96), 1e-3);  // Wilson's score
+  EXPECT_EQ(json["rows"][3]["open_desk"], 0);
+}
+
 TEST_F(OverturnTest, quick_says_when_it_left_nothing_out) {
   const Ended ended = topple(call("out", {"--quick", "--jobs", "2"}));
   EXPECT_EQ(ended.code, 0);
