@@ -414,11 +414,17 @@ std::string json_text(const ordered_json& value, int indent) {
 }
 
 std::string energy_in_words(const ordered_json& e) {
-  const auto plastic = e["plastic_J"].is_null() ? 0 : e["plastic_J"].get<double>();
-  return fmt::format("energy: {} J came in, {} J dissipated{}, balance error {}\n",
-                     text(e["input_J"], "{:.4g}"), text(e["dissipated_J"], "{:.4g}"),
-                     plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
-                     text(e["balance_error"], "{:.1e}"));
+  constexpr double k_told = 1e-3;  // of what came in or was dissipated
+  const auto joules = [&](const char* key) { return e[key].is_null() ? 0 : e[key].get<double>(); };
+  const double plastic = joules("plastic_J"), switched = joules("model_switch_J");
+  const double size = std::max(std::abs(joules("input_J")), std::abs(joules("dissipated_J")));
+  return fmt::format(
+      "energy: {} J came in{}, {} J dissipated{}, balance error {}\n", text(e["input_J"], "{:.4g}"),
+      std::abs(switched) <= k_told * size ? ""
+                                          : fmt::format(", {:.3g} J as models of bodies changed", switched),
+      text(e["dissipated_J"], "{:.4g}"),
+      plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
+      text(e["balance_error"], "{:.1e}"));
 }
 
 std::string summary_table(const ordered_json& s) {

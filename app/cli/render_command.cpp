@@ -42,8 +42,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_least_side = 64, k_most_side = 8192;  // px
-constexpr float k_farthest = 1e4;                     // of the camera, m or degrees
+constexpr int k_least_side = 64, k_most_side = 8192;   // px
+constexpr double k_slowest = 0.001, k_fastest = 1000;  // times real time
+constexpr float k_farthest = 1e4;                      // of the camera, m or degrees
 
 struct RenderOptions {
   std::string source;                  ///< scene or recording
@@ -52,6 +53,7 @@ struct RenderOptions {
   std::optional<double> at;            ///< s, of the still
   int width = 1280, height = 720;
   int fps = 30;
+  double speed = 1;  ///< simulated seconds per second of a sequence
   render::NamedView view = render::NamedView::iso;
   std::optional<render::Orbit> orbit;  ///< instead of `view`; only target, distance and sight are set
   std::optional<std::string> follow;   ///< body the camera follows; empty: of `inspect`, or first
@@ -188,7 +190,8 @@ std::string picture_name(int number) {
 int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, double to) {
   std::optional<VideoWriter> video;
   if (!o.mp4.empty()) video.emplace(host::Target(o.mp4, o.force), o.width, o.height, o.fps);
-  const int count = static_cast<int>(std::floor((to - from) * o.fps + 1e-6)) + 1;
+  const double interval = o.speed / o.fps;
+  const int count = static_cast<int>(std::floor((to - from) / interval + 1e-6)) + 1;
   for (int i = 0; !video && i < count; ++i)
     host::expect_replaceable({fs::path(o.png) / picture_name(i), o.force}, host::FileKind::png);
   Progress progress("drawing", "pictures", count, o.quiet);
@@ -196,7 +199,7 @@ int draw_sequence(const RenderOptions& o, const OpenDrawing& open, double from, 
       count,
       [&]() -> DrawPicture {
         return [&, draw_at = open()](int i) -> std::vector<std::uint8_t> {
-          render::Image image = draw_at(std::min(from + static_cast<double>(i) / o.fps, to));
+          render::Image image = draw_at(std::min(from + i * interval, to));
           if (video) return std::move(image.rgba);
           write_png({fs::path(o.png) / picture_name(i), o.force}, image);
           return {};
@@ -372,10 +375,11 @@ Reader range_of(PictureSettings& picture) {
   };
 }
 
-Reader exaggeration(double& value) {
-  return [&value](const std::string& text) -> std::string {
-    value = number_in<double>(text).value_or(0);
-    return value >= 1 && value <= k_most_exaggeration ? "" : "\"" + text + "\" is not a number from 1 to 200";
+Reader number_from(double& value, double least, double most) {
+  return [&value, least, most](const std::string& text) {
+    value = number_in<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
+    if (value >= least && value <= most) return std::string();
+    return fmt::format("\"{}\" is not a number from {:g} to {:g}", text, least, most);
   };
 }
 
@@ -395,12 +399,14 @@ void add_picture(CLI::App& command, RenderOptions& options) {
       "viridis (default) or cividis: colours of what has no sign");
   add_read(command, "--range", "RANGE", range_of(picture),
            "run (default), instant, or the greatest value in the legend's unit: where colours end");
-  add_read(command, "--exaggerate", "FACTOR", exaggeration(picture.exaggeration),
+  add_read(command, "--exaggerate", "FACTOR", number_from(picture.exaggeration, 1, k_most_exaggeration),
            "deformation drawn so many times as large, 1 to 200");
   command.add_flag("--forces", picture.contact_forces,
                    "arrows of what floors, walls and other bodies do to bodies");
   command.add_flag_callback(
       "--no-panels", [&picture] { picture.panels = false; }, "without the sheets of cabinets");
+  command.add_flag_callback(
+      "--no-words", [&picture] { picture.words = false; }, "without title, captions, legend and floor curve");
   add_choice<Trails>(command, "--trails", "SPAN", picture.trails,
                      {{"second", Trails::second}, {"run", Trails::run}},
                      "second or run: paths of centres of gravity and tops of bodies since then");
@@ -431,6 +437,8 @@ void add_render(Commands& commands) {
   add_read(command, "--to", "SECONDS", seconds(options.to), "last instant");
   add_read(command, "--size", "WxH", size_of(options), "pixels, default 1280x720");
   add_read(command, "--fps", "RATE", whole_number(options.fps, 1, 1000), "pictures per second, default 30");
+  add_read(command, "--speed", "FACTOR", number_from(options.speed, k_slowest, k_fastest),
+           "simulated seconds per second, default 1: 0.25 is slow motion");
   add_read(command, "--camera", "NAME", camera_of(options),
            "front, side, top, iso (default) or follow: iso, going along with the body of --inspect "
            "or the first; "

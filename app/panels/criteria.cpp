@@ -27,12 +27,12 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
     const Vec3 direction = sense * parameters.shakes.front().direction;
     auto standing = study::standing_towards(model, parameters, body, direction);
     if (!standing) continue;
-    const double rigid = study::west_acceleration(*standing);
+    const double rigid = study::west_acceleration(*standing), base = standing->base;
     const auto soft = planar ? std::nullopt : study::soft_limit(*standing, parameters.contact);
     if (soft) standing->base *= *soft / rigid;
     const double west = study::west_acceleration(*standing);
     if (!least || west < least->west)
-      least = CriteriaLimits{west, rigid, study::ishiyama_velocity(*standing)};
+      least = CriteriaLimits{west, rigid, study::ishiyama_velocity(*standing), base, standing->height};
   }
   return least;
 }

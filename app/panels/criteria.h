@@ -16,9 +16,10 @@ struct ShakePlace {
 
 /// Of one body, towards the side that tips first.
 struct CriteriaLimits {
-  double west;      ///< m/s^2, on the contacts of the scene
-  double rigid;     ///< m/s^2, on rigid contacts
-  double ishiyama;  ///< m/s
+  double west;          ///< m/s^2, on the contacts of the scene
+  double rigid;         ///< m/s^2, on rigid contacts
+  double ishiyama;      ///< m/s
+  double base, height;  ///< m, from the edge to the centre of gravity, and up to it
 };
 
 /// Whether a body stands freely with an edge across the first shake.

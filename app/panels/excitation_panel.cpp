@@ -58,7 +58,7 @@ void draw_region(ImDrawList& list, const LogChart& chart, double frequency, doub
 }
 
 void draw_criteria_chart(const CriteriaLimits& limits, const TeachingState& state) {
-  const float height = std::min(0.72f * ImGui::GetContentRegionAvail().x, 18 * ImGui::GetTextLineHeight());
+  const float height = std::min(0.64f * ImGui::GetContentRegionAvail().x, 16 * ImGui::GetTextLineHeight());
   const LogChart chart = chart_at_cursor(k_frequencies, k_amplitudes, height, say(k_amplitude_axis));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_log_grid(list, chart);
@@ -138,7 +138,8 @@ void draw_criteria(const Player& player, TeachingState& state) {
   if (!words.empty()) write(words);
   write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
             100 * now.amplitude / (2 * k_pi * now.frequency)));
-  if (limits.west < limits.rigid) write(say(k_soft_limits, limits.rigid / k_gal));
+  write((limits.west < limits.rigid ? say(k_soft_limits) : "") +
+        say(k_west_formula, limits.rigid / k_gal, 1e3 * limits.base, 1e3 * limits.height));
 }
 
 }  // namespace

@@ -103,6 +103,8 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
   changed |= ImGui::Checkbox(say(k_contact_forces).c_str(), &settings.contact_forces);
   ImGui::SameLine(0, 2 * ImGui::GetStyle().ItemSpacing.x);
   changed |= ImGui::Checkbox(say(k_panels).c_str(), &settings.panels);
+  changed |= ImGui::Checkbox(say(k_words).c_str(), &settings.words);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_words_about).c_str());
   return changed;
 }
 

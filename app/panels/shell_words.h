@@ -80,10 +80,12 @@ inline constexpr Phrase k_size{"Size", "大きさ"};
 inline constexpr Phrase k_from{"From", "開始"};
 inline constexpr Phrase k_to{"To", "終了"};
 inline constexpr Phrase k_rate{"Pictures a second", "毎秒の枚数"};
+inline constexpr Phrase k_times_real_time{"times real time", "倍速"};
 inline constexpr Phrase k_folder{"Folder", "フォルダ"};
 inline constexpr Phrase k_export_now{"Export", "書き出す"};
-inline constexpr Phrase k_picture_about{"The view as it is seen now, with its title, legend and time.",
-                                        "現在の視点の画像。題名・凡例・時刻が入ります。"};
+inline constexpr Phrase k_picture_about{
+    "The view as it is seen now, with title, legend and time unless Picture leaves them out.",
+    "現在の視点の画像。「表示」で消していなければ題名・凡例・時刻が入ります。"};
 inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
                                       "現在の視点の動画。時間の範囲を選べます。"};
 inline constexpr Phrase k_tables_about{

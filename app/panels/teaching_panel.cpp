@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <filesystem>
+
 #include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
 
@@ -26,15 +28,7 @@ void draw_presets(Player& player) {
   }
 }
 
-void draw_demos(const Player& player, TeachingState& state) {
-  ImGui::TextDisabled("%s", say(k_demos).c_str());
-  state.wanted.reset();
-  for (std::size_t k = 0; k < demos().size() && !state.guide; ++k) {
-    if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0})) state.wanted = k;
-    if (ImGui::IsItemHovered() && player.scene().name != k_demo_scene)
-      ImGui::SetTooltip("%s", say(k_demo_opens, k_demo_scene).c_str());
-  }
-  if (!state.guide) return;
+void draw_guide(TeachingState& state) {
   DemoGuide& guide = *state.guide;
   ImGui::TextWrapped(
       "%s", say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size())
@@ -52,6 +46,22 @@ void draw_demos(const Player& player, TeachingState& state) {
   if (!quit) return;
   guide.leave();
   state.guide.reset();
+}
+
+void draw_demos(const Player& player, TeachingState& state) {
+  ImGui::TextDisabled("%s", say(k_demos).c_str());
+  state.wanted.reset();
+  if (state.guide)
+    draw_guide(state);
+  else
+    for (std::size_t k = 0; k < demos().size(); ++k)
+      if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
+        state.wanted = k;
+  if (player.scene().name != k_demo_scene) ImGui::TextWrapped("%s", say(k_demo_opens, k_demo_scene).c_str());
+  const std::string& before = state.came_from;
+  state.back =
+      !before.empty() &&
+      ImGui::Button(say(k_back_to, std::filesystem::path(before).filename().string()).c_str(), {-1, 0});
 }
 
 void draw_accuracy(const Player& player, TeachingState& state) {

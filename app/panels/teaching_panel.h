@@ -23,6 +23,8 @@ struct TeachingState {
   double scale = 1;                            ///< likewise
   std::optional<DemoGuide> guide;
   std::optional<std::size_t> wanted;  ///< index into demos(): asked for in the last frame
+  std::string came_from;              ///< what a demo's scene was opened instead of; empty: nothing
+  bool back = false;                  ///< to that: asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
   MapState map;
 };

@@ -29,9 +29,12 @@ inline constexpr Phrase k_limits{
     "{2:.3g} cm/s.",
     "West の式：{0:.4g} gal を超えると浮き上がる。石山の式：床の速度が {1:.3g} cm/s 未満なら転倒しない（現在 "
     "{2:.3g} cm/s）。"};
-inline constexpr Phrase k_soft_limits{
-    "Both are drawn for the contacts of this scene, which are soft: on a rigid floor West has {0:.4g} gal.",
-    "どちらもこのシーンの柔らかい接触に対する値（剛な床では West の式は {0:.4g} gal）。"};
+inline constexpr Phrase k_soft_limits{"Both are for the soft contacts of this scene. ",
+                                      "どちらもこのシーンの柔らかい接触での値。"};
+inline constexpr Phrase k_west_formula{
+    "On a rigid floor West has g b/h = {0:.4g} gal, the centre of gravity b = {1:.0f} mm from the edge, h = "
+    "{2:.0f} mm up.",
+    "剛な床では West の式は g b/h = {0:.4g} gal（重心：縁から b = {1:.0f} mm、高さ h = {2:.0f} mm）。"};
 inline constexpr Phrase k_is_held{
     "But {0} is held by {1}: the criteria are of a body that nothing holds; the run says what it does held.",
     "ただし {0} は {1} で固定されています。判定基準は固定のない家具のもので、固定の効果は計算が示します。"};
@@ -109,8 +112,9 @@ inline constexpr Phrase k_run_failed{"run failed", "計算失敗"};
 inline constexpr Phrase k_not_computed{"not computed", "未計算"};
 
 // guided demos
-inline constexpr Phrase k_demo_opens{"Opens {0} for it; the run that is open has been recorded.",
-                                     "デモ用に {0} を開きます。現在の計算は記録済みです。"};
+inline constexpr Phrase k_demo_opens{"They open {0}; what is open now stays recorded.",
+                                     "{0} を開きます。現在の計算は記録されています。"};
+inline constexpr Phrase k_back_to{"Back to {0}", "{0} に戻る"};
 inline constexpr Phrase k_demos{"Guided demos", "解説付きデモ"};
 inline constexpr Phrase k_demo_gentle{"long and gentle", "ゆっくり大きな揺れ"};
 inline constexpr Phrase k_demo_violent{"short and violent", "速く激しい揺れ"};
@@ -124,18 +128,19 @@ inline constexpr Phrase k_gentle_start{
     "upper floors of tall buildings.",
     "床が 0.5 Hz、190 gal でゆっくり大きく揺れます。長周期地震動による高層階の揺れに相当します。"};
 inline constexpr Phrase k_gentle_uplift{
-    "An edge of the base has left the floor: the acceleration has passed West's line. From here on the body "
-    "turns about its other edge.",
-    "底面の一端が浮き上がりました。加速度が West "
-    "の線を超えたためです。ここから反対側の縁を中心に回転します。"};
+    "An edge of the base has left the floor, since 190 gal are above West's line. From here on the body "
+    "turns "
+    "about its other edge.",
+    "190 gal は West の線を超えるため、底面の一端が浮き上がりました。ここから反対側の縁を中心に回転します。"};
 inline constexpr Phrase k_gentle_critical{
-    "The centre of gravity now stands over the edge. The floor still pushes the same way, because half a "
-    "period "
-    "takes a whole second, so nothing brings the body back.",
-    "重心が縁の真上を越えました。半周期が1秒と長く床は同じ向きに加速し続けるため、家具は元に戻れません。"};
+    "The centre of gravity now stands over the edge. Half a period takes a whole second, and all that time "
+    "the "
+    "floor has pushed the same way.",
+    "重心が縁の真上に達しました。半周期が1秒と長く、床はその間ずっと同じ向きに加速し続けました。"};
 inline constexpr Phrase k_gentle_end{
-    "It falls, at an acceleration of less than a fifth of gravity. What counts is not how hard the floor is "
-    "shaken but for how long it pushes one way.",
+    "It falls, at an acceleration of less than a fifth of gravity. What counts is not only how hard the "
+    "floor "
+    "is shaken but for how long it pushes one way.",
     "重力加速度の5分の1に満たない加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける"
     "時間です。"};
 inline constexpr Phrase k_violent_start{

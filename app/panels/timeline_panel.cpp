@@ -141,7 +141,7 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
       list.AddLine({x, lane.y(1)}, {std::min(x + 5, lane.right), lane.y(1)}, theme().axis);
     }
     add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
-             most < k_tilt_room ? say(k_falls_at_one) : say(k_falls_and_cut, k_tilt_room));
+             most < k_tilt_room ? say(k_critical_at_one) : say(k_critical_and_cut, k_tilt_room));
   }
   const std::vector<std::size_t> coloured = coloured_bodies(player);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };

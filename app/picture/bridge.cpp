@@ -167,6 +167,12 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   if (settings.diagram) add_diagram(model, drawn, *settings.diagram, out);
   add_grounds(shift, out);
   add_captions(row, parameters, settings, out);
+  if (!settings.words) {
+    out.legend = {};
+    out.trace = {};
+    out.caption = {};
+    out.labels.clear();
+  }
   return out;
 }
 
@@ -177,6 +183,9 @@ void Bridge::add_ghost(const io::FrameRow& row, const PictureSettings& settings,
   exaggerate(scene_.setup.model, rigid_fit(scene_.setup.model, row), settings.exaggeration, drawn);
   add_tubes(
       drawn, [](std::size_t, double) { return 0.f; }, out.ghost_stations, out.ghost_tubes);
+  if (!settings.words) return;
+  out.caption.lines.push_back(say(window_words::k_ghost_is, row.branch));
+  ++out.caption.most_lines;
 }
 
 Bridge::ColourAt Bridge::colours(const io::FrameRow& row, const RigidFit& fit, BeamQuantity quantity) const {

@@ -34,6 +34,7 @@ struct PictureSettings {
   bool contact_forces = false;
   bool alone = false;  ///< one picture of the run: an impact's arrows get a scale of their own
   bool panels = true;
+  bool words = true;  ///< title, captions, labels, legend and the floor's curve
   Trails trails = Trails::none;
   std::optional<Diagram> diagram = {};
 };

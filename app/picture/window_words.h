@@ -34,7 +34,7 @@ inline constexpr Phrase k_toppling{"toppling, tilt {0:.1f}° (critical {1:.1f}°
                                    "転倒中、{0:.1f}°（限界 {1:.1f}° 超過）"};
 inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°)",
                                  "傾いて静止、{0:.1f}°（限界 {1:.1f}° 超過）"};
-inline constexpr Phrase k_rocking{"rocking, {0:.1f}° of {1:.1f}°", "ロッキング、{0:.1f}°（限界 {1:.1f}°）"};
+inline constexpr Phrase k_leaning{"leans {0:.1f}° of {1:.1f}°", "傾斜 {0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
 inline constexpr Phrase k_all_stand{"all {0} stand", "{0}体すべて直立"};
@@ -44,7 +44,7 @@ inline constexpr Phrase k_others{"{0} others: {1}", "ほか{0}体：{1}"};
 inline constexpr Phrase k_count_fallen{"{0} fallen", "転倒 {0}"};
 inline constexpr Phrase k_count_toppling{"{0} toppling", "転倒中 {0}"};
 inline constexpr Phrase k_count_tipped{"{0} tipped", "傾いて静止 {0}"};
-inline constexpr Phrase k_count_rocking{"{0} rocking", "ロッキング {0}"};
+inline constexpr Phrase k_count_leaning{"{0} leaning", "傾斜 {0}"};
 inline constexpr Phrase k_count_standing{"{0} standing", "直立 {0}"};
 inline constexpr Phrase k_comma{", ", "、"};
 inline constexpr Phrase k_colon{": ", "："};
@@ -146,8 +146,8 @@ inline constexpr Phrase k_load_steps{"load steps", "荷重ステップ"};
 inline constexpr Phrase k_up_to{"up to {0:.4g}", "最大 {0:.4g}"};
 inline constexpr Phrase k_tilt_lane{"tilt, °", "傾斜 [°]"};
 inline constexpr Phrase k_tilt_share_lane{"tilt / critical", "傾斜／限界角"};
-inline constexpr Phrase k_falls_at_one{"1: it falls", "1 で転倒"};
-inline constexpr Phrase k_falls_and_cut{"1: it falls; cut above {0}", "1 で転倒、{0} 超は省略"};
+inline constexpr Phrase k_critical_at_one{"1: critical", "1：限界"};
+inline constexpr Phrase k_critical_and_cut{"1: critical; cut above {0}", "1：限界、{0} 超は省略"};
 inline constexpr Phrase k_floor_trace{"floor acceleration, gal", "床の加速度 [gal]"};
 inline constexpr Phrase k_anchor_breaks{"{0}: anchor {1} breaks at {2:.0f} N",
                                         "{0}：固定具 {1} が {2:.0f} N で破断"};
@@ -171,7 +171,7 @@ inline constexpr Phrase k_mark_lifts{"lifts off", "浮き上がり"};
 inline constexpr Phrase k_mark_strikes{"strikes", "衝突"};
 inline constexpr Phrase k_mark_hinge{"hinge", "ヒンジ"};
 inline constexpr Phrase k_mark_breaks{"breaks", "破断"};
-inline constexpr Phrase k_mark_passes{"overturns", "転倒"};
+inline constexpr Phrase k_mark_passes{"beyond critical", "限界超過"};
 inline constexpr Phrase k_mark_model{"model", "モデル"};
 inline constexpr Phrase k_mark_edit{"change", "変更"};
 
@@ -282,7 +282,11 @@ inline constexpr Phrase k_last_second{"last second", "直近1秒"};
 inline constexpr Phrase k_since_start{"since the start", "開始から"};
 inline constexpr Phrase k_contact_forces{"contact forces", "接触力"};
 inline constexpr Phrase k_panels{"panels", "側板"};
+inline constexpr Phrase k_words{"words", "文字"};
+inline constexpr Phrase k_words_about{"Title, captions and legend; in exports the floor's curve as well",
+                                      "題名、説明、凡例。書き出しでは床の曲線も"};
 inline constexpr Phrase k_ghost{"ghost of the branch left", "離れた分岐の残像"};
+inline constexpr Phrase k_ghost_is{"pale: branch {0}, that was left", "淡色：離れた分岐 {0}"};
 inline constexpr Phrase k_front{"Front", "正面"};
 inline constexpr Phrase k_side{"Side", "側面"};
 inline constexpr Phrase k_top{"Top", "上面"};

@@ -25,7 +25,7 @@ constexpr std::size_t k_few_bodies = 5;
 
 using namespace window_words;
 
-enum class Stance { fallen, toppling, tipped, rocking, standing };
+enum class Stance { fallen, toppling, tipped, leaning, standing };
 
 bool is_at_rest(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
   return io::kinetic_energy(model, gravity, row, static_cast<int>(body)) <
@@ -36,7 +36,7 @@ Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, 
   const double tilt = row.body[body].tilt * k_degrees, critical = row.body[body].critical_angle * k_degrees;
   return tilt > k_lying     ? Stance::fallen
          : tilt > critical  ? (is_at_rest(model, gravity, row, body) ? Stance::tipped : Stance::toppling)
-         : tilt > k_upright ? Stance::rocking
+         : tilt > k_upright ? Stance::leaning
                             : Stance::standing;
 }
 
@@ -73,7 +73,7 @@ std::string others_in_words(const Model& model, const Vec3& gravity, const io::F
   static constexpr std::pair<Stance, const Phrase&> k_stances[] = {{Stance::fallen, k_count_fallen},
                                                                    {Stance::toppling, k_count_toppling},
                                                                    {Stance::tipped, k_count_tipped},
-                                                                   {Stance::rocking, k_count_rocking},
+                                                                   {Stance::leaning, k_count_leaning},
                                                                    {Stance::standing, k_count_standing}};
   std::string counts;
   std::size_t standing = 0;
@@ -105,8 +105,8 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::tipped:
       line += say(k_tipped, tilt, critical);
       break;
-    case Stance::rocking:
-      line += say(k_rocking, tilt, critical);
+    case Stance::leaning:
+      line += say(k_leaning, tilt, critical);
       break;
     case Stance::standing:
       line += say(k_standing);

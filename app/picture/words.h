@@ -9,7 +9,7 @@
 
 namespace topple::app {
 
-/// "free: rocking, 4.2° of 10.9°". gravity: m/s^2.
+/// "free: leans 4.2° of 10.9°". gravity: m/s^2.
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body);
 
 /// One line for each of the furniture; of many, for those that tilt most of what they can, and one that

@@ -51,6 +51,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
       fmt::format("{}", s.exaggeration)};
   if (s.contact_forces) words.push_back("--forces");
   if (!s.panels) words.push_back("--no-panels");
+  if (!s.words) words.push_back("--no-words");
   if (s.trails != Trails::none) {
     words.push_back("--trails");
     words.push_back(s.trails == Trails::run ? "run" : "second");
@@ -127,8 +128,8 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
              result,   "--size",  fmt::format("{}x{}", size[0], size[1])};
     const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
     if (video)
-      add({"--from", fmt::format("{}", from), "--to", fmt::format("{}", to), "--fps",
-           fmt::format("{}", rate)});
+      add({"--from", fmt::format("{}", from), "--to", fmt::format("{}", to), "--fps", fmt::format("{}", rate),
+           "--speed", fmt::format("{}", speed)});
     else
       add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
     for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
@@ -230,6 +231,10 @@ void ExportDialog::draw_choices(const Player& player) {
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("##rate", &rate, 0);
   rate = std::clamp(rate, 1, k_most_rate);
+  ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+  ImGui::SetNextItemWidth(number);
+  ImGui::InputDouble((say(ww::k_times_real_time) + "##speed").c_str(), &speed, 0, 0, "%g");
+  speed = std::clamp(std::isfinite(speed) ? speed : 1, k_least_speed, k_most_speed);
 }
 
 void ExportDialog::draw_job() {

@@ -35,6 +35,7 @@ class ExportDialog {
   int size[2] = {1920, 1080};
   double from = 0, to = 0;  ///< s; of a static run parts of its way
   int rate = 30;            ///< pictures a second
+  double speed = 1;         ///< simulated seconds per second of a video
 
   /// Begins; what is wrong is in refused().
   void start(const Player& player, const Viewer& viewer, const std::string& recording);

@@ -13,11 +13,12 @@ namespace topple::app {
 
 class Session {
  public:
-  /// `opened`: the file that it came from; empty: none. `wake` as of LiveRun.
+  /// `opened`: the file that it came from; empty: a built-in scene. `wake` as of LiveRun.
   Session(LiveSource source, std::string opened, render::Stage& stage, float scale,
           const PictureSettings& settings, const Appearance& appearance, Viewer::Keep keep,
           std::function<void()> wake)
       : scene_(source.scene),
+        source_(opened.empty() ? scene_->name : opened),
         replayed_(source.recording ? std::move(opened) : std::string()),
         run_(std::make_unique<LiveRun>(std::move(source), std::move(wake))),
         player_(scene_, *run_),
@@ -26,6 +27,8 @@ class Session {
   Player& player() { return player_; }
   Viewer& viewer() { return viewer_; }
   const io::Scene& scene() const { return *scene_; }
+  /// What opens it anew: a file or the name of a built-in scene.
+  const std::string& source() const { return source_; }
   /// The file that holds what is shown; empty: none.
   std::string recording() const {
     const std::string& written = player_.status().recording;
@@ -36,7 +39,7 @@ class Session {
 
  private:
   const std::shared_ptr<const io::Scene> scene_;
-  const std::string replayed_;
+  const std::string source_, replayed_;
   std::unique_ptr<LiveRun> run_;
   Player player_;
   Viewer viewer_;

@@ -160,9 +160,10 @@ void Shell::start_demo() {
   const bool there = session_->scene().name == k_demo_scene && !player.replay();
   if (there) player.to_end();
   if (there && can_shake_as_sine(player)) {
-    session_->viewer().guide(demo_->which);
+    session_->viewer().guide(demo_->which, before_demo_);
     demo_.reset();
   } else if (!std::exchange(demo_->opened, true)) {
+    before_demo_ = session_->source();
     open(k_demo_scene);
   } else if (!there) {
     demo_.reset();  // something else was opened meanwhile
@@ -234,7 +235,9 @@ void Shell::build() {
     session_->viewer().build();
   if (covered()) return;
   ask(session_->viewer().asked());
-  if (const auto& wanted = session_->viewer().teaching().wanted) demo_ = {*wanted, false};
+  const TeachingState& teaching = session_->viewer().teaching();
+  if (teaching.wanted) demo_ = {*teaching.wanted, false};
+  if (teaching.back) open(teaching.came_from);
 }
 
 void Shell::build_over() {

@@ -93,6 +93,7 @@ class Shell {
     bool opened;        ///< its scene
   };
   std::optional<WantedDemo> demo_;  ///< begins when its scene is there
+  std::string before_demo_;         ///< what was open when a demo opened its scene; empty: nothing
   int frames_due_ = 0;
   bool wants_to_close_ = false;
 };

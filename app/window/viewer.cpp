@@ -339,8 +339,9 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
   }
 }
 
-void Viewer::guide(std::size_t demo) {
+void Viewer::guide(std::size_t demo, const std::string& came_from) {
   tab_ = Tab::teach;
+  teaching_.came_from = came_from;
   teaching_.guide.emplace(demos()[demo], player_);
 }
 

@@ -48,8 +48,8 @@ class Viewer {
     return follows_ ? std::optional(follows_->body) : std::nullopt;
   }
 
-  /// Begins a guided demo; the floor must be one that can_shake_as_sine.
-  void guide(std::size_t demo);
+  /// Begins a guided demo; the floor must be one that can_shake_as_sine. `came_from`: as of TeachingState.
+  void guide(std::size_t demo, const std::string& came_from = {});
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);

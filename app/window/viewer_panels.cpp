@@ -32,6 +32,10 @@ constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
 }  // namespace
 
 void Viewer::draw_words(const io::FrameRow& row) {
+  if (!settings_.words) {
+    words_top_ = words_bottom_ = words_left_ = words_right_ = 0;
+    return;
+  }
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float right = scene_.left + scene_.width, bottom = scene_.top + scene_.height;
   list.PushClipRect({scene_.left, scene_.top}, {right, bottom});
@@ -56,6 +60,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
     add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
+  if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
+    add(fonts_.small, say(k_ghost_is, *ghost));
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;

@@ -159,6 +159,9 @@ TEST_F(RenderTest, from_and_to_cut_a_sequence_out) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator("part"), {}), 3);
   EXPECT_EQ(bytes_of("part/frame-000000.png"), bytes_of("all/frame-000002.png"));
   EXPECT_EQ(bytes_of("part/frame-000002.png"), bytes_of("all/frame-000004.png"));
+  draw({"a.h5", "--png", "slow", "--fps", "20", "--from", "0.1", "--to", "0.2", "--speed", "0.5"});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator("slow"), {}), 5);
+  EXPECT_EQ(bytes_of("slow/frame-000002.png"), bytes_of("part/frame-000001.png"));
   draw({"a.h5", "--png", "beyond", "--fps", "20", "--from", "-5", "--to", "99"});
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator("beyond"), {}), 7);
 }
@@ -229,6 +232,7 @@ TEST_F(RenderTest, every_option_of_the_picture_changes_it) {
                                                       {"--exaggerate", "200"},
                                                       {"--forces"},
                                                       {"--no-panels"},
+                                                      {"--no-words"},
                                                       {"--trails", "run"},
                                                       {"--inspect", "free"},
                                                       {"--inspect", "free/post-1"}};
@@ -255,6 +259,9 @@ TEST_F(RenderTest, options_of_the_picture_that_mean_nothing_are_refused) {
     refused({"--range", range}, "is not run, instant or a number");
   for (const char* factor : {"0.5", "201", "nan", "x"})
     refused({"--exaggerate", factor}, "is not a number from 1 to 200");
+  for (const char* factor : {"0", "-1", "1001", "nan", "x"})
+    refused({"--speed", factor},
+            "--speed: \"" + std::string(factor) + "\" is not a number from 0.001 to 1000");
   refused({"--trails", "0"}, "--trails: \"0\" is not one of");
   refused({"--inspect", "nobody"}, "--inspect: nobody: there is no body of that name; there are free");
   refused({"--inspect", "free/x"}, "--inspect: free/x: free has no such member; it has post-1");

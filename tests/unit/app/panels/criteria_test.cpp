@@ -38,6 +38,7 @@ TEST_F(CriteriaTest, limits_are_those_of_the_contacts_of_the_scene) {
   start("paper-a", {});
   const CriteriaLimits soft = limits();
   EXPECT_NEAR(soft.rigid / k_gal, 177.5, 0.2);
+  EXPECT_NEAR(soft.rigid, k_standard_gravity * soft.base / soft.height, 1e-9);
   const Model& model = player_->scene().setup.model;
   const Parameters& parameters = player_->parameters();
   const auto standing =

@@ -278,7 +278,7 @@ TEST_F(BridgeTest, captions_say_time_excitation_and_tilt) {
   ASSERT_EQ(caption.lines.size(), 3u);
   EXPECT_EQ(caption.lines[0], "t = 0.10 s");
   EXPECT_TRUE(caption.lines[1].starts_with("floor: 2 Hz, 400 gal;  now ")) << caption.lines[1];
-  EXPECT_TRUE(caption.lines[2].starts_with("free: rocking, ")) << caption.lines[2];
+  EXPECT_TRUE(caption.lines[2].starts_with("free: leans ")) << caption.lines[2];
 }
 
 TEST_F(BridgeTest, captions_have_no_minus_before_a_zero) {

@@ -171,6 +171,11 @@ TEST_F(ShellTest, a_guided_demo_opens_its_own_scene_and_what_was_open_stays_reco
   EXPECT_EQ(shell_->title(), "topple: paper-a");
   EXPECT_EQ(player().parameters().shakes[0].frequency, demos()[0].frequency);
   ASSERT_TRUE(until([&] { return io::Recording(recording).status() == "stopped"; }));
+  const auto stands_still = [&] { return shell_->session()->viewer().teaching().guide->step() == 0; };
+  ASSERT_TRUE(until(stands_still));
+  click("Back to rocking.toml", "side/content");
+  ASSERT_TRUE(until([&] { return ready() && shell_->title() == "topple: rocking"; }));
+  EXPECT_FALSE(shell_->session()->viewer().teaching().guide.has_value());
 }
 
 TEST_F(ShellTest, an_accelerogram_becomes_the_first_shake_of_a_copy_that_starts_anew) {
