@@ -17,6 +17,7 @@ StepStatus PlanarPart::settle(const Parameters& parameters, State& state, PartSc
   for (const auto& [index, body] : bodies_) {
     if (body->stands(parameters, state)) continue;
     status.kind = StepStatus::Kind::not_settled;
+    status.no_rest = NoRest::tips_over;
     status.time = state.time;
     status.body = index;
     break;

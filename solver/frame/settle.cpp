@@ -164,7 +164,10 @@ class FrameRest {
   }
 
   // Without rest.
-  const StepStatus& status() const { return status_; }
+  StepStatus status(Balance found) {
+    status_.no_rest = no_rest(found);
+    return status_;
+  }
 
   const double size;
   double balanced;
@@ -189,7 +192,8 @@ class FrameRest {
 
 StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
   FrameRest body(s, parameters, state, w);
-  return find_rest(body) == Balance::rest ? body.accept() : body.status();
+  const Balance found = find_rest(body);
+  return found == Balance::rest ? body.accept() : body.status(found);
 }
 
 }  // namespace topple

@@ -254,8 +254,10 @@ StepStatus settle_bodies(std::span<const ModelBody> bodies, MemberCoupling* coup
                          const Parameters& parameters, State& state) {
   RestOfBodies rest(bodies, coupling, parameters, state);
   StepStatus status;
-  if (find_rest(rest) == Balance::rest) return status;
+  const Balance found = find_rest(rest);
+  if (found == Balance::rest) return status;
   status.kind = StepStatus::Kind::not_settled;
+  status.no_rest = no_rest(found);
   status.time = state.time;
   status.body = rest.furthest >= 0 ? rest.furthest : bodies.front().index;
   return status;

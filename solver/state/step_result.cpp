@@ -12,6 +12,19 @@ std::string format(const char* pattern, double a) {
   return text;
 }
 
+const char* in_words(NoRest why) {
+  switch (why) {
+    case NoRest::leaves:
+      return "nothing holds it where it is; does it stand on something that can carry it, with enough "
+             "friction?";
+    case NoRest::tips_over:
+      return "it balances, but tips over by itself (do soft contacts let it lean?)";
+    case NoRest::not_found:
+      break;
+  }
+  return "none was found (can alpha and the steel carry it?)";
+}
+
 const char* loss_in_words(Stability::Loss loss) {
   using Loss = Stability::Loss;
   switch (loss) {
@@ -75,8 +88,8 @@ std::string StepStatus::message(const Model& model) const {
       return "the stiffness is singular " + when + ": " + where + "; a part may be free to move";
     case Kind::not_settled:
       return "before the first step, " + when + ": " + where +
-             " does not come to rest under gravity; does it stand on something, and can alpha and the steel "
-             "carry it? settle = false starts it as it is";
+             " does not come to rest under gravity: " + in_words(no_rest) +
+             "; settle = false starts it as it is";
     case Kind::step_too_long:
       return where + format(": central-difference is stable up to a time_step of %.4g s", limit) + ", met " +
              when + "; try a smaller one, or generalized-alpha";

@@ -30,6 +30,10 @@ struct Stability {
   bool stable() const { return negative_pivots <= 0; }
 };
 
+/// Why a body has no rest. leaves: it has gone a quarter of its size and nothing holds it; tips_over: its
+/// balance is none that lasts; not_found: neither, so there may be one.
+enum class NoRest { leaves, tips_over, not_found };
+
 /// What became of a step: ok, or the first thing that went wrong, when and where.
 struct StepStatus {
   enum class Kind {
@@ -52,11 +56,12 @@ struct StepStatus {
   int element = -1;
   int node = -1;
   int newton_iterations = 0;
-  int rejected = 0;           ///< trial steps thrown away within this step
-  double limit = 0;           ///< s, step_too_long: the greatest stable step
-  double load_factor = 0;     ///< no_equilibrium: at which none was found
-  Stability stability = {};   ///< statics: of the equilibrium
-  bool by_tolerance = false;  ///< the tolerance, not time_step, is what makes steps shorter
+  int rejected = 0;                    ///< trial steps thrown away within this step
+  double limit = 0;                    ///< s, step_too_long: the greatest stable step
+  NoRest no_rest = NoRest::not_found;  ///< not_settled
+  double load_factor = 0;              ///< no_equilibrium: at which none was found
+  Stability stability = {};            ///< statics: of the equilibrium
+  bool by_tolerance = false;           ///< the tolerance, not time_step, is what makes steps shorter
 
   bool ok() const { return kind == Kind::ok; }
   /// One sentence for the user: what, when, where, what to try.

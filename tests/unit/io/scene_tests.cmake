@@ -20,6 +20,7 @@ add_executable(scene_test
   ${CMAKE_CURRENT_LIST_DIR}/scene_save_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_static_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/stiff_frames_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/toml_precheck_test.cpp)
 target_include_directories(scene_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 target_link_libraries(scene_test PRIVATE topple_io GTest::gtest_main)

@@ -125,7 +125,9 @@ TEST(Settle, floor_too_soft_for_a_tall_body_lets_it_tip_over) {
   EXPECT_NEAR(least, 11.6, 0.1);
   Parameters p;
   p.contact.alpha = 0.8 * least * k_g;
-  EXPECT_EQ(settled(tall_cabinet(), p).status.kind, StepStatus::Kind::not_settled);
+  const Settled s = settled(tall_cabinet(), p);
+  EXPECT_EQ(s.status.kind, StepStatus::Kind::not_settled);
+  EXPECT_NE(s.status.no_rest, NoRest::not_found);
   p.contact.alpha = 1.3 * least * k_g;
   EXPECT_TRUE(settled(tall_cabinet(), p).status.ok());
 }
@@ -143,6 +145,7 @@ TEST(Settle, body_that_leans_too_far_floats_or_has_no_floor_is_not_settled) {
   CabinetSpec upright = tall_cabinet();
   for (const Settled& s : {settled(leaning, {}), settled(upright, {}, false)}) {
     EXPECT_EQ(s.status.kind, StepStatus::Kind::not_settled);
+    EXPECT_EQ(s.status.no_rest, NoRest::leaves);
     EXPECT_EQ(s.status.body, 0);
     EXPECT_NE(s.status.message(s.model).find("\"cabinet\""), std::string::npos);
   }
