@@ -112,11 +112,32 @@ void drop_extrapolated(const FragilityPlan& plan, FragilityCurve& curve, const c
   const double median = in_unit(plan, curve.fit.fit->median);
   if (median >= plan.levels.values.front() && median <= plan.levels.values.back()) return;
   const bool above = median > plan.levels.values.back();
-  const Level& end = above ? curve.levels.back() : curve.levels.front();
+  const auto share = [](const Level& at) {
+    return at.runs > 0 ? static_cast<double>(at.hits) / at.runs : 0.;
+  };
+  const Level& end = above ? *std::ranges::max_element(curve.levels, {}, share)
+                           : *std::ranges::min_element(curve.levels, {}, share);
   curve.fit.fit.reset();
   curve.fit.why_not = fmt::format(
-      "the median lies {} the levels, a run at {:.4g} {} in {:.2g} % of the cases", above ? "above" : "below",
-      end.intensity, verb, end.runs > 0 ? 100. * end.hits / end.runs : 0.);
+      "the median lies {} the levels, a run {} in {} {:.2g} % of the cases, at {:.4g}",
+      above ? "above" : "below", verb, above ? "at most" : "at least", 100 * share(end), end.intensity);
+}
+
+/// No curve where what is more frequent at one level than at a higher one is so by more than chance.
+void drop_falling(FragilityCurve& curve) {
+  const auto share = [](const Level& at) { return wilson(at.hits, at.runs); };
+  const Level* most = nullptr;
+  for (const Level& level : curve.levels) {
+    if (level.runs == 0 || !curve.fit.fit) continue;
+    if (most && share(level).high < share(*most).low) {
+      curve.fit.fit.reset();
+      curve.fit.why_not =
+          fmt::format("it does not become more frequent: {} of {} runs at {:.4g}, {} of {} at {:.4g}",
+                      most->hits, most->runs, most->intensity, level.hits, level.runs, level.intensity);
+    } else if (!most || share(level).low > share(*most).low) {
+      most = &level;
+    }
+  }
 }
 
 FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& records, const char* verb) {
@@ -125,6 +146,7 @@ FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& record
   FragilityCurve curve;
   curve.levels = sum_of(records, all);
   curve.fit = fit_fragility(intensities(plan, curve.levels), verb);
+  drop_falling(curve);
   drop_extrapolated(plan, curve, verb);
   if (curve.fit.fit) {
     Lognormal fit = *curve.fit.fit;

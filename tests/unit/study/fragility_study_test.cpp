@@ -53,6 +53,24 @@ TEST(FragilityStudy, a_known_threshold_and_a_known_scatter_come_back) {
   EXPECT_EQ(found.curves[0][1].fit.why_not, "no run slides farther");
 }
 
+// What a stronger floor brings back upright has no lognormal curve, however well one can be fitted.
+TEST(FragilityStudy, shares_that_fall_have_no_curve) {
+  const FragilityPlan plan = plan_fragility(pulsed(), "pga=100 gal..1500 gal:24",
+                                            {.runs = 40, .vary = {"amplitude=lognormal:0.3"}}, 0.05);
+  std::vector<std::string> rows;
+  for (int k = 0; k < plan.cases(); ++k) {
+    const int level = k / plan.chunks() / plan.records(), last = plan.levels.count() - 1;
+    const int hits = level == last ? 0 : level > last / 2 ? 40 : 0;
+    const std::string all = "[" + std::to_string(hits) + ",0," + std::to_string(hits) + "]";
+    rows.push_back("{\"runs\":40,\"failed\":0,\"planar\":40,\"status\":\"completed\",\"hits\":[" + all + "," +
+                   all + "],\"closed\":[],\"cpu_s\":0}");
+  }
+  const FragilityCurve overturns = gather(plan, rows).curves[0][2];
+  EXPECT_FALSE(overturns.fit.fit);
+  EXPECT_TRUE(overturns.fit.why_not.starts_with("it does not become more frequent: "))
+      << overturns.fit.why_not;
+}
+
 TEST(FragilityStudy, levels_of_any_measure_are_reached) {
   const io::Scene scene = pulsed();
   for (const MotionMeasure& measure : motion_measures()) {

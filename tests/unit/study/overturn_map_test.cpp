@@ -297,8 +297,10 @@ TEST(OverturnMap, the_study_adds_to_a_scene_what_it_leaves_out_alone) {
   const auto added = [](const std::vector<std::string>& set) {
     return plan_overturn(io::load_scene("paper-a", set), "", "").set;
   };
-  EXPECT_EQ(added({}), (std::vector<std::string>{"run.want=[\"motion\"]", "run.stop_when=all-overturned"}));
-  EXPECT_EQ(added({"run.want=[\"stress\"]", "run.stop_when=never"}), std::vector<std::string>{});
+  EXPECT_EQ(added({}), (std::vector<std::string>{"run.want=[\"motion\"]", "run.accuracy=0.05",
+                                                 "run.stop_when=all-overturned"}));
+  EXPECT_EQ(added({"run.want=[\"stress\"]", "run.accuracy=0.01", "run.stop_when=never"}),
+            std::vector<std::string>{});
 }
 
 TEST(OverturnMap, plans_that_make_no_sense_are_refused) {
