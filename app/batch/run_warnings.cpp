@@ -127,8 +127,8 @@ void warn_of_energy(const Run& run, Warnings& list) {
   const bool by_tolerance = run.parameters().adaptive && !traits(run.parameters().integrator).is_explicit;
   const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
   if (const double balance = e.balance_error(); balance > k_good_balance)
-    list.push_back(
-        fmt::format("energy balance error {:.1e} is above {:.0e}; {}", balance, k_good_balance, finer));
+    list.push_back(fmt::format("energy balance error {:.1e} (of the {:.2g} J exchanged) is above {:.0e}; {}",
+                               balance, e.largest, k_good_balance, finer));
   const double share = std::abs(e.numerical) / e.largest;
   if (e.largest < k_numbers_of_interest || share < k_numerical) return;
   const Parameters& p = run.parameters();

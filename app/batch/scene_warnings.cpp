@@ -83,6 +83,25 @@ bool is_borne(const Model& model, const State& start, int index, double bottom) 
   return false;
 }
 
+/// Where a wall pushes a body away as the run begins.
+void warn_of_walls(const Setup& setup, const State& start, std::vector<std::string>& list) {
+  const Model& model = setup.model;
+  for (int b = 0; b < model.furniture_total(); ++b)
+    for (const Plane& plane : model.planes) {
+      if (plane.normal.z() > k_upright) continue;
+      const Body& body = model.bodies[b];
+      double deepest = 0;
+      for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+        const ContactPoint& point = model.contact_points[p];
+        deepest =
+            std::max(deepest, point.width / 2 - plane.normal.dot(start.position[point.node] - plane.point));
+      }
+      if (deepest > k_hangs)
+        list.push_back(fmt::format("\"{}\" starts {:.3g} mm within \"{}\", which pushes it away at once",
+                                   body.name, 1e3 * deepest, plane.name));
+    }
+}
+
 void warn_of_falls(const Setup& setup, const State& start, std::vector<std::string>& list) {
   const Model& model = setup.model;
   if (setup.parameters.gravity.isZero(0)) return;
@@ -143,6 +162,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   if (setup.run.analysis != Analysis::dynamic) return list;
   const State start = start_state(setup.model, setup.starts);
   warn_of_anchors(setup, start, list);
+  warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   warn_of_alpha(setup, list);
   return list;

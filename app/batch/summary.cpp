@@ -75,6 +75,7 @@ ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, c
           {"not_planar", not_planar(setup, o, index)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
+          {"first_beyond_critical_s", number(o.first_beyond)},
           {"first_uplift_s", number(o.first_uplift)},
           {"impacts", o.impacts},
           {"first_impact_s", number(o.first_impact)},
@@ -103,9 +104,11 @@ ordered_json anchors(const Run& run) {
   for (std::size_t k = 0; k < model.anchors.size(); ++k) {
     const AnchorOutcome& o = run.outcome().anchors()[k];
     ordered_json one = describe_anchor(model, model.anchors[k]);
-    one["peak_force_N"] = number(o.peak_force);
+    // a step ends beyond the strength at which it broke
+    one["peak_force_N"] = number(std::min(o.peak_force, model.anchors[k].strength));
     one["final_force_N"] = number(o.tension);
     one["in_place"] = o.hold == AnchorHold::in_place;
+    one["slack"] = o.hold == AnchorHold::in_place && o.tension == 0;
     one["broke"] = o.broke.has_value();
     one["break_time_s"] = number(o.broke);
     out.push_back(one);
@@ -236,7 +239,8 @@ std::string anchor_line(const ordered_json& a) {
     return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
   if (!a["strength_N"].is_null())
     line += fmt::format(", {:.0f} % of its strength", 100 * peak / a["strength_N"].get<double>());
-  return line + (a["in_place"].get<bool>() ? "\n" : ", taken away\n");
+  if (!a["in_place"].get<bool>()) return line + ", taken away\n";
+  return line + (a["slack"].get<bool>() ? ", slack at the end\n" : "\n");
 }
 
 }  // namespace
@@ -260,6 +264,7 @@ ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
           {"strength_N", number(anchor.strength)},
           {"stiffness_N_m", number(anchor.stiffness)},
           {"fixing", anchor.fixing.empty() ? ordered_json(nullptr) : ordered_json(anchor.fixing)},
+          {"leads_to", anchor.leads_to.empty() ? ordered_json(nullptr) : ordered_json(anchor.leads_to)},
           {"own_end", place(anchor.own())},
           {"other_end", place(anchor.other)}};
 }
@@ -269,8 +274,10 @@ std::string fixing_line(const ordered_json& a) {
     return fmt::format("node {} of {}, {:.0f} mm from it", end["node"].get<int>(),
                        end["body"].get<std::string>(), 1e3 * end["distance_m"].get<double>());
   };
-  return fmt::format("fixing {}: {} on {}{}", a["name"].get<std::string>(), a["fixing"].get<std::string>(),
-                     at(a["own_end"]), a["other_end"].is_null() ? "" : ", to " + at(a["other_end"]));
+  const std::string to = a["leads_to"].get<std::string>();
+  return fmt::format("fixing {}: {} on {}, to {}", a["name"].get<std::string>(),
+                     a["fixing"].get<std::string>(), at(a["own_end"]),
+                     a["other_end"].is_null() ? to : at(a["other_end"]));
 }
 
 ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
@@ -452,6 +459,10 @@ std::string summary_table(const ordered_json& s) {
                          model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
                          model["reason"].get<std::string>(), not_planar(b, model),
                          allowed_error(model["error_estimate"]));
+  for (const auto& b : s["bodies"])
+    if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
+      out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
+                         b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);

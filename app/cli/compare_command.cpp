@@ -144,6 +144,27 @@ ordered_json outcomes(const Side& a, const Side& b) {
   return list;
 }
 
+/// The entries of a list of the summaries that have `key`, by its value: [{name, a, b}], null: it is not
+/// there.
+ordered_json paired(const Side& a, const Side& b, const char* list, const char* key) {
+  ordered_json out = ordered_json::array();
+  for (const bool of_b : {false, true}) {
+    const ordered_json& summary = (of_b ? b : a).summary;
+    if (summary.is_null() || !summary.contains(list)) continue;
+    for (const ordered_json& entry : summary[list]) {
+      const auto same = [&](const ordered_json& one) { return one["name"] == entry[key]; };
+      const auto found = std::ranges::find_if(out, same);
+      if (found != out.end())
+        (*found)["b"] = entry;
+      else
+        out.push_back({{"name", entry[key]},
+                       {"a", of_b ? ordered_json(nullptr) : entry},
+                       {"b", of_b ? entry : ordered_json(nullptr)}});
+    }
+  }
+  return out;
+}
+
 ordered_json side_json(const Side& side) {
   return {{"source", side.source},
           {"scene", side.scene.name},
@@ -201,6 +222,18 @@ void add_outcome(Table& table, const ordered_json& body) {
   number("peak stress, MPa", "peak_stress_Pa", 1e6, 2);
 }
 
+std::string holds(const ordered_json& anchor) {
+  if (anchor.is_null()) return "-";
+  const std::string peak = text(anchor, "peak_force_N", 1, 1);
+  return anchor["broke"].get<bool>() ? peak + ", broke at " + text(anchor, "break_time_s", 1, 3) + " s"
+                                     : peak;
+}
+
+std::string leads_out(const ordered_json& way) {
+  if (way.is_null() || way["open"].is_null()) return "-";
+  return (way["open"].get<bool>() ? "open, " : "closed, ") + text(way, "widest_m", 1, 2) + " m";
+}
+
 std::string tables(const ordered_json& result) {
   const std::string a = result["a"]["source"], b = result["b"]["source"];
   Table parameters, outcomes;
@@ -212,6 +245,10 @@ std::string tables(const ordered_json& result) {
   outcomes.row("outcome", "A: " + a, "B: " + b);
   outcomes.row("status", result["a"]["status"], result["b"]["status"]);
   for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
+  for (const ordered_json& one : result["anchors"])
+    outcomes.row(one["name"].get<std::string>() + ": greatest force, N", holds(one["a"]), holds(one["b"]));
+  for (const ordered_json& one : result["ways"])
+    outcomes.row("way out from " + one["name"].get<std::string>(), leads_out(one["a"]), leads_out(one["b"]));
   return (result["parameters"].empty() ? "no parameter differs\n" : parameters.text()) + "\n" +
          outcomes.text();
 }
@@ -228,7 +265,9 @@ int compare_command(const CompareOptions& options) {
                             {"a", side_json(a)},
                             {"b", side_json(b)},
                             {"parameters", parameters(a, b)},
-                            {"bodies", outcomes(a, b)}};
+                            {"bodies", outcomes(a, b)},
+                            {"anchors", paired(a, b, "anchors", "name")},
+                            {"ways", paired(a, b, "ways", "place")}};
   if (pictures && a.recording && b.recording) {
     const Replay of_a(*a.recording), of_b(*b.recording);
     const int drawn = draw_ghost_video({options.mp4, options.force}, {a.source, a.scene, of_a},

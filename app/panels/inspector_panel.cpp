@@ -36,11 +36,19 @@ struct Inspected {
   double value(const Subject& subject, std::size_t k) const {
     return values_of(subject.kind)[k].at(now, subject.index);
   }
-  double run_peak(const Subject& subject, std::size_t k) const {
-    double most = 0;
+  /// Least and greatest over the run, 0 included.
+  std::pair<double, double> run_range(const Subject& subject, std::size_t k) const {
+    double least = 0, most = 0;
     for (const float sample : histories.of(player, subject, k))
-      if (std::isfinite(sample)) most = std::max<double>(most, std::abs(sample));
-    return most;
+      if (std::isfinite(sample)) {
+        least = std::min<double>(least, sample);
+        most = std::max<double>(most, sample);
+      }
+    return {least, most};
+  }
+  double run_peak(const Subject& subject, std::size_t k) const {
+    const auto [least, most] = run_range(subject, k);
+    return std::max(-least, most);
   }
 };
 
@@ -194,13 +202,14 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = 4.6f * line;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  Lane lane{low.x + 6, low.x + width - 6,          low.y + line + 8, low.y + height - 5, at.player.length(),
-            0,         at.run_peak(subject, value)};
+  const auto [least, most] = at.run_range(subject, value);
+  const Lane lane{
+      low.x + 6, low.x + width - 6, low.y + line + 8, low.y + height - 5, at.player.length(), least, most};
   list.AddRectFilled(low, {low.x + width, low.y + height}, theme().sheet, 3);
   list.AddRect(low, {low.x + width, low.y + height}, theme().frame, 3);
   add_text(list, low.x + 5, low.y + 3, theme().text,
-           say(k_over_run, say(what.name), value_text(lane.high), what.unit));
-  if (lane.high > 0)
+           say(k_over_run, say(what.name), value_text(std::max(-least, most)), what.unit));
+  if (most > least)
     add_curve(
         list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);
   list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, theme().cursor,

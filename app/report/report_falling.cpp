@@ -186,8 +186,9 @@ std::string holding_table(ReportPage& page) {
     if (a["broke"].get<bool>())
       share = page.say(words::k_anchor_broke, shown(a["break_time_s"].get<double>(), 2));
     rows.push_back({escaped(a["name"].get<std::string>()), escaped(a["body"].get<std::string>()),
-                    a["other_end"].is_null() ? page.say(words::k_anchor_frame)
-                                             : escaped(a["other_end"]["body"].get<std::string>()),
+                    !a["leads_to"].is_null()   ? escaped(a["leads_to"].get<std::string>())
+                    : a["other_end"].is_null() ? page.say(words::k_anchor_frame)
+                                               : escaped(a["other_end"]["body"].get<std::string>()),
                     escaped(a[fixing ? "fixing" : "type"].get<std::string>()),
                     short_shown(a["stiffness_N_m"].get<double>() / 1e3),
                     bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013", short_shown(peak),
@@ -206,7 +207,7 @@ std::string holding_table(ReportPage& page) {
 std::string anchors_section(ReportPage& page) {
   const ordered_json& without = *page.report().without_anchors;
   std::string out = holding_table(page);
-  out += page.paragraph(page.say(words::k_anchors_text, page.report().anchors));
+  out += page.paragraph(page.say(words::k_anchors_text));
   if (without["status"] == "diverged")
     return page.section(
         words::k_anchors,

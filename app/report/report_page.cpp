@@ -79,6 +79,12 @@ std::string result(const ReportPage& page) {
   const Report& report = page.report();
   const std::vector<std::size_t> falls = fallen(page);
   std::string out = page.paragraph(verdict(page), "verdict");
+  std::string broken;
+  for (const ordered_json& a : report.summary["anchors"])
+    if (a["broke"].get<bool>())
+      broken += (broken.empty() ? "" : ", ") + page.text(words::k_one_breaks, a["name"].get<std::string>(),
+                                                         shown(a["break_time_s"].get<double>(), 2));
+  if (!broken.empty()) out += page.paragraph(page.say(words::k_holding_breaks, broken), "notice");
   if (verdict_is_open(page)) out += page.paragraph(page.say(words::k_open, page.certain_section()), "notice");
   if (sensitive(page)) out += page.paragraph(page.say(words::k_sensitive, page.certain_section()), "notice");
   out += "<div class=\"figures\">\n";

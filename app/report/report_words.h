@@ -185,9 +185,11 @@ inline constexpr Phrase k_open_sides{
 
 // anchors
 inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有無による違い"};
-inline constexpr Phrase k_anchors_text{
-    "The scene holds its furniture with {0} anchor(s). The same run with all of them removed:",
-    "シーンには固定具が{0}個ある。すべて取り外した場合との比較を示す。"};
+inline constexpr Phrase k_anchors_text{"The same run with all of them removed:",
+                                       "すべて取り外した場合との比較を示す。"};
+inline constexpr Phrase k_holding_breaks{"What holds the furniture does not last: {0}.",
+                                         "固定具が破断する：{0}。"};
+inline constexpr Phrase k_one_breaks{"{0} breaks at {1} s", "{0}（{1}秒）"};
 inline constexpr Phrase k_anchor_name{"fixing", "固定具"};
 inline constexpr Phrase k_anchor_of{"body", "家具"};
 inline constexpr Phrase k_anchor_to{"tied to", "取付先"};
@@ -314,7 +316,7 @@ inline constexpr Phrase k_as_given{
     "checked here.",
     "寸法・質量・重心・材料はシーンファイルの値をそのまま用いた。実測や確認は行っていない。"};
 inline constexpr Phrase k_contents{
-    "Contents do not move; doors and drawers stay shut; feet, casters, carpets and mats are not modelled.",
+    "Contents do not move; doors and drawers stay shut; casters and carpets are not modelled.",
     "収納物は動かず、扉・引き出しは閉じたままとする。脚、キャスター、カーペット、マットは考慮しない。"};
 inline constexpr Phrase k_rigid_floor{
     "Floor and walls are rigid planes that move together; the furniture does not act back on the building.",

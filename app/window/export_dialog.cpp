@@ -65,7 +65,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
     words.push_back("ja");
   }
   const auto& picked = viewer.inspection().picked;
-  if (picked && picked->kind != Subject::Kind::anchor) {
+  if (s.words && picked && picked->kind != Subject::Kind::anchor) {
     words.push_back("--inspect");
     words.push_back(name_of(model, *picked));
   }

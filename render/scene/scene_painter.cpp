@@ -270,7 +270,7 @@ void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Q
       lighting.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
       lighting.ground.set("u_dark", frame.dark ? 1 : 0);
       lighting.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
-      lighting.ground.set("u_strength", seen_from_behind ? 0.12f : 1.0f);
+      lighting.ground.set("u_strength", seen_from_behind ? 0.3f : 1.0f);
       gl_.DepthMask(seen_from_behind ? GL_FALSE : GL_TRUE);
       gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }

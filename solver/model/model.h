@@ -169,8 +169,8 @@ struct Anchor {
   /// m, natural: that at the start, less what preload stretches it by; 0: a pin, which holds in all
   /// directions
   double length;
-  /// Of a [[fixing]], that it stands for: its kind and its number, from 1; else empty and 0.
-  std::string fixing = {};
+  /// Of a [[fixing]], that it stands for: its kind, what it leads to, its number, from 1; else empty and 0.
+  std::string fixing = {}, leads_to = {};
   int fixing_number = 0;
   AnchorEnd own() const { return {body, node, arm}; }
 };

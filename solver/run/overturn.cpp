@@ -217,6 +217,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
     const bool crossed = state.step > 0 && before < 0;
     o.beyond_since =
         crossed ? time_before + (state.time - time_before) * before / (before - beyond) : state.time;
+    if (!o.first_beyond) o.first_beyond = o.beyond_since;
     events.push_back({.kind = Event::Kind::overturn,
                       .step = state.step,
                       .time = *o.beyond_since,

@@ -74,6 +74,7 @@ struct BodyOutcome {
   double slide = 0, peak_slide = 0;
   double critical = 0;                 ///< critical angle in the present direction
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
+  std::optional<double> first_beyond;  ///< it came there first, whether it came back or not
   std::optional<double> first_uplift;
   int impacts = 0;
   std::optional<double> first_impact;

@@ -226,6 +226,7 @@ class Fixing {
     Anchor anchor;
     anchor.name = name;
     anchor.fixing = kind_.word;
+    anchor.leads_to = target_.name;
     anchor.fixing_number = number_;
     anchor.body = body_;
     anchor.type = kind_.type;

@@ -107,11 +107,11 @@ void add_run(std::vector<Key>& keys) {
               "fixed step, or one that follows the motion (central-difference: 0.9 of its limit)")
       .or_word({"auto"})
       .absent(parameters.time_step)
-      .absent_means("1 ms; auto with a floor or wall when `contact.alpha` is left out")
+      .absent_means("1 ms; auto with a `tolerance`, or with a floor or wall when `contact.alpha` is left out")
       .only_in({"dynamic"});
-  rows.number("tolerance", 1e-9, 0.1, "local error of the adaptive step over the travel of the body")
+  rows.number("tolerance", 1e-9, 0.1,
+              "local error of the adaptive step over the travel of the body; `time_step` is auto or absent")
       .absent(parameters.tolerance)
-      .only("time_step", {"auto"})
       .only_in({"dynamic"});
   rows.integer("load_steps", 1, 1e5, "equal parts in which the loads grow")
       .absent(run.statics.load_steps)

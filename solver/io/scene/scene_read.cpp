@@ -95,10 +95,12 @@ void read_run(const Entry& root, Setup& setup) {
   setup.parameters.beta = run.number("beta");
   setup.parameters.gamma = run.number("gamma");
   // a step that was not chosen for the contact follows it
-  setup.parameters.adaptive = run.has("time_step")
-                                  ? run.text("time_step") == "auto"
-                                  : !root.entry("contact").has("alpha") &&
-                                        (root.entry("floor").present() || !root.entries("wall").empty());
+  const bool of_contact =
+      !root.entry("contact").has("alpha") && (root.entry("floor").present() || !root.entries("wall").empty());
+  setup.parameters.adaptive =
+      run.has("time_step") ? run.text("time_step") == "auto" : run.has("tolerance") || of_contact;
+  if (run.has("tolerance") && !setup.parameters.adaptive)
+    run.fail("tolerance", "belongs to time_step = auto, but time_step is fixed");
   if (!setup.parameters.adaptive) setup.parameters.time_step = run.number("time_step");
   setup.parameters.tolerance = run.number("tolerance");
   setup.run.analysis = run.chosen("analysis", k_analyses);

@@ -127,6 +127,7 @@ TEST(Scene, time_step_is_a_time_or_auto_with_a_tolerance) {
       parse_scene(k_scene + "[run]\ntime_step = \"auto\"\ntolerance = 1e-4\n", "s.toml").setup.parameters;
   EXPECT_TRUE(automatic.adaptive);
   EXPECT_EQ(automatic.tolerance, 1e-4);
+  EXPECT_TRUE(parse_scene(k_scene + "[run]\ntolerance = 1e-4\n", "s.toml").setup.parameters.adaptive);
 }
 
 TEST(Scene, alpha_and_time_step_follow_the_bodies_when_alpha_is_left_out) {
