@@ -79,7 +79,8 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   return status;
 }
 
-// Whether the step in w.next has lost or gained energy as one over an impact does, and shorter ones would
+// Whether the step in w.next, at the end of which something touches, has lost or gained energy as one over an
+// impact does, and shorter ones would
 // not.
 bool skips_an_impact(const Parameters& parameters, const State& state, const StepStatus& status,
                      const Workspace::Impl& w) {
@@ -88,7 +89,10 @@ bool skips_an_impact(const Parameters& parameters, const State& state, const Ste
   const EnergyLedger& energy = w.next.energy;
   const double lost = std::max(std::abs(energy.unexplained() - state.energy.unexplained()),
                                state.energy.numerical - energy.numerical);
-  return lost > k_step_loss * energy.largest && lost > k_least_energy;
+  if (!(lost > k_step_loss * energy.largest && lost > k_least_energy)) return false;
+  HardestContact hardest;
+  for (const auto& part : w.parts.all()) hardest = part->hardest_contact(hardest);
+  return hardest.force > 0;
 }
 
 // Looks at the numbers of parameters that are new, and of a state that is not finite.

@@ -18,6 +18,7 @@ const std::vector<Unit>& units() {
       {"km", D::length, 1e3},
       {"s", D::time, 1},
       {"ms", D::time, 1e-3},
+      {"us", D::time, 1e-6},
       {"min", D::time, 60},
       {"kg", D::mass, 1},
       {"g", D::mass, 1e-3},

@@ -177,7 +177,7 @@ Advice advise(const PenaltyStudy& study) {
   if (advice.alpha) add_step(study, *advice.alpha, advice);
   reasons.push_back(judged(advice.of_scene, "The scene's alpha"));
   if (!same(study.law.alpha, ContactLaw().alpha))
-    reasons.push_back(judged(advice.of_default, "The program's default"));
+    reasons.push_back(judged(advice.of_default, "The paper's alpha"));
   return advice;
 }
 
