@@ -54,7 +54,7 @@ struct ModelSwitch::Switching {
   Parts& parts;
 };
 
-ModelSwitch::ModelSwitch(const Model& model) : changed_(model.bodies.size()) {}
+ModelSwitch::ModelSwitch(const Model& model) : yields_(model.bodies.size()), changed_(model.bodies.size()) {}
 
 void ModelSwitch::find_base(const Model& model, const Parameters& parameters) {
   if (!base_.empty()) return;
@@ -148,6 +148,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
       parts.reduced(state, b).lands_on_what_gives(parameters.contact.alpha))
     return {ModelLevel::frame, LevelReason::fall};
   if (watched_[b]) {
+    if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
     ReducedBody& body = parts.reduced(state, b);
     if (body.yield_bound(s) > k_near_yield) {
       body.section_forces(s, parts.sections);
@@ -209,6 +210,20 @@ void ModelSwitch::begin_block(const Switching& on, int b) {
   on.parts.planar(b).balance(on.parameters, on.now, on.state);
 }
 
+bool ModelSwitch::yielded(const Model& model, const State& next, Parts& parts) {
+  bool any = false;
+  for (int b = 0; b < static_cast<int>(next.bodies.size()); ++b) {
+    const BodyState& s = next.bodies[b];
+    if (!watched_[b] || s.level != ModelLevel::elastic) continue;
+    ReducedBody& body = parts.reduced(next, b);
+    if (!(body.yield_bound(s) > 1)) continue;
+    body.section_forces(s, parts.sections);
+    yields_[b] = yield_ratio(model, b, parts.sections) > 1;
+    any = any || yields_[b];
+  }
+  return any;
+}
+
 void ModelSwitch::start(const Model& model, const Parameters& parameters, State& state, Parts& parts) {
   find_base(model, parameters);
   choice_ = base_;
@@ -253,6 +268,7 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   for (int b = 0; b < count; ++b) {
     BodyState& s = state.bodies[b];
     const bool was_frame = s.level == ModelLevel::frame;
+    if (was_frame) yields_[b] = false;
     if (choice_[b].level == s.level)
       s.reason = choice_[b].reason;
     else

@@ -26,6 +26,10 @@ class ModelSwitch {
   bool update(const Model& model, const Parameters& parameters, const StepInputs& now, const StepInputs& end,
               State& state, Parts& parts);
 
+  /// Whether an elastic body that becomes a frame before it yields has yielded at `next`, where a step has
+  /// led to: then it is one when the step is taken again.
+  bool yielded(const Model& model, const State& next, Parts& parts);
+
  private:
   struct Switching;
 
@@ -42,6 +46,7 @@ class ModelSwitch {
   std::vector<LevelChoice> base_;    // per body; empty: not found for these parameters
   std::vector<double> rigid_error_;  // per body, likewise
   std::vector<char> watched_;        // per body, likewise: it becomes a frame before it yields
+  std::vector<char> yields_;         // per body: in the step that is taken again
   std::vector<LevelChoice> choice_;  // per body
   std::vector<char> changed_;        // per body: its level, since the last step
   std::vector<char> near_;           // per body: another may touch it

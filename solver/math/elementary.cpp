@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-6";
+  return "topple-7";
 }
 
 }  // namespace topple

@@ -66,6 +66,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
       close_ledger(s);
       check(s, status);
     }
+    if (status.ok() && w.models.yielded(model, w.next, w.parts)) continue;
     if (!status.ok() || alone) return status;
     travel = greatest_travel(model, state, w.next);
     if (2 * travel < w.next.candidate_margin) {

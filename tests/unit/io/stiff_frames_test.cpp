@@ -1,6 +1,8 @@
 // Frames whose steps are too long for them, and frames on contacts that Newton's method does not like.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
 
@@ -62,6 +64,30 @@ TEST(StiffFrames, a_step_that_gains_energy_is_taken_in_parts) {
   EXPECT_GT(rejected, 0);
   EXPECT_LT(run.outcome().bodies()[0].peak_tilt, 1e-3);
   EXPECT_LT(run.state().energy.balance_error(), 1e-3);
+}
+
+// No section bears more than it can: a step that leads an elastic body beyond its yield surface is taken
+// again with the body as a frame, and no energy comes in with the change of its model.
+TEST(StiffFrames, a_blow_finds_a_frame_before_a_section_yields) {
+  const Scene scene = parse_scene(R"(topple = 1
+floor = {}
+run = { duration = 0.6, settle = false }
+[[cabinet]]
+size = [0.38, 0.88, 1.79]
+mass = 40
+section = "box 30x1"
+material = "steel"
+tilt = "45 deg"
+)",
+                                  "s.toml");
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(scene.setup.model);
+  const BodyOutcome& body = run.outcome().bodies()[0];
+  ASSERT_EQ(body.level_changes.size(), 2u);
+  EXPECT_EQ(body.level_changes[1].reason, LevelReason::yield);
+  EXPECT_NEAR(body.peak_yield_ratio.value(), 1, 1e-9);
+  const EnergyLedger& energy = run.state().energy;
+  EXPECT_LT(std::abs(energy.model_switch), 1e-3 * energy.dissipated());
 }
 
 // P = alpha (1 - l/L)^q is infinitely stiff where it begins when q < 1, and Newton's steps overshoot.
