@@ -81,8 +81,7 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
 }
 
 // Whether the step in w.next, at the end of which something touches, has lost or gained energy as one over an
-// impact does, and shorter ones would
-// not.
+// impact does, and shorter ones would not.
 bool skips_an_impact(const Parameters& parameters, const State& state, const StepStatus& status,
                      const Workspace::Impl& w) {
   if (!(status.ok() || status.kind == StepStatus::Kind::energy_lost)) return false;
