@@ -55,9 +55,7 @@ CLI::Option& add_scene(CLI::App& command, std::string& value) {
 }
 
 void add_set(CLI::App& command, std::vector<std::string>& overrides) {
-  command
-      .add_option("--set", overrides,
-                  "override a key of the scene: --set contact.alpha=\"5 kgf\"; KEY= leaves it out")
+  command.add_option("--set", overrides, "override a key of the scene: --set contact.alpha=\"5 kgf\"")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all();

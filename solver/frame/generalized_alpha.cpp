@@ -418,24 +418,6 @@ void ImplicitStep::accept(StepEnergy& energy) {
   s_.store_stick(s_.contacts, state_);
 }
 
-/// `so_far`: iterations and rejected steps.
-StepStatus advance_in_halves(BodySystem& system, const StepSpan& span, const GeneralizedAlpha& c,
-                             State& state, IntegratorScratch& scratch, StepEnergy& energy,
-                             const StepStatus& so_far) {
-  StepStatus status;
-  int iterations = so_far.newton_iterations, rejected = so_far.rejected;
-  const double half = span.h / 2;
-  const StepInputs middle(span.parameters, span.start.time + half), end(span.parameters, middle.time + half);
-  for (const auto& [from, to] : {std::pair(&span.start, &middle), std::pair(&middle, &end)}) {
-    const StepSpan part{span.parameters, *from, *to, half, span.halvings - 1, std::max(span.split - 1, 0)};
-    status = advance_generalized_alpha(system, part, c, state, scratch, energy);
-    status.newton_iterations = iterations += status.newton_iterations;
-    status.rejected = rejected += status.rejected;
-    if (!status.ok()) return status;
-  }
-  return status;
-}
-
 }  // namespace
 
 GeneralizedAlpha GeneralizedAlpha::newmark(double beta, double gamma) {
@@ -450,7 +432,6 @@ StepStatus advance_generalized_alpha(BodySystem& system, const StepSpan& span, c
                                      State& state, IntegratorScratch& scratch, StepEnergy& energy) {
   StepStatus status;
   status.time = span.end.time;
-  if (span.split > 0) return advance_in_halves(system, span, c, state, scratch, energy, status);
   ImplicitStep implicit(system, span, c, state, scratch);
   const Attempt attempt = implicit.solve_with_fracture();
   status.newton_iterations = attempt.iterations;
@@ -468,8 +449,17 @@ StepStatus advance_generalized_alpha(BodySystem& system, const StepSpan& span, c
     status.element = system.element_at(attempt.node);
     return status;
   }
-  status.rejected = 1;
-  return advance_in_halves(system, span, c, state, scratch, energy, status);
+  int iterations = attempt.iterations, rejected = 1;
+  const double half = span.h / 2;
+  const StepInputs middle(span.parameters, span.start.time + half), end(span.parameters, middle.time + half);
+  for (const auto& [from, to] : {std::pair(&span.start, &middle), std::pair(&middle, &end)}) {
+    const StepSpan part{span.parameters, *from, *to, half, span.halvings - 1};
+    status = advance_generalized_alpha(system, part, c, state, scratch, energy);
+    status.newton_iterations = iterations += status.newton_iterations;
+    status.rejected = rejected += status.rejected;
+    if (!status.ok()) return status;
+  }
+  return status;
 }
 
 }  // namespace topple

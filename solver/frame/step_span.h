@@ -22,8 +22,7 @@ struct StepSpan {
   const StepInputs& start;
   const StepInputs& end;
   double h;
-  int halvings;   ///< how often the implicit methods of frames may halve h when Newton does not converge
-  int split = 0;  ///< how often they halve it before that, in any case
+  int halvings;  ///< how often the implicit methods of frames may halve h when Newton does not converge
 };
 
 }  // namespace topple

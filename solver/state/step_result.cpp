@@ -15,8 +15,9 @@ std::string format(const char* pattern, double a) {
 const char* in_words(NoRest why) {
   switch (why) {
     case NoRest::leaves:
-      return "nothing holds it where it is; does it stand on something that can carry it, with enough "
-             "friction?";
+      return "nothing keeps it where it is (does it stand on something, with enough friction, and can alpha "
+             "and "
+             "the steel carry it?)";
     case NoRest::tips_over:
       return "it balances, but tips over by itself (do soft contacts let it lean?)";
     case NoRest::not_found:

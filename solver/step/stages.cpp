@@ -14,6 +14,7 @@ namespace topple {
 namespace {
 
 constexpr double k_time_slack = 1e-9;    // s, times are sums of rounded steps
+constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
 
 // Accelerations anew of the bodies whose anchors were switched.
 void balance_changed(const StepInProgress& s) {
@@ -32,13 +33,12 @@ void change_law(const StepInProgress& s) {
 }  // namespace
 
 StepInProgress::StepInProgress(const Model& model_, const Parameters& parameters_, const State& from_,
-                               double h_, int halvings_, int split_, Workspace::Impl& w_)
+                               double h_, int halvings_, Workspace::Impl& w_)
     : model(model_),
       parameters(parameters_),
       from(from_),
       h(h_),
       halvings(halvings_),
-      split(split_),
       w(w_),
       start(w.reached && w.reached->time == from.time ? *w.reached : StepInputs(parameters, from.time)) {
   w.reached.emplace(parameters, end(), start);
@@ -94,7 +94,7 @@ StepStatus advance_parts(StepInProgress& s) {
   Workspace::Impl& w = s.w;
   const auto& parts = w.parts.all();
   const int count = static_cast<int>(parts.size());
-  const StepSpan span{s.parameters, s.start, *w.reached, s.h, s.halvings, s.split};
+  const StepSpan span{s.parameters, s.start, *w.reached, s.h, s.halvings};
   w.outcomes.resize(count);
   const auto advance = [&](int part, int worker) {
     PartScratch& scratch = w.scratches[worker];

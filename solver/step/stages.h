@@ -6,22 +6,20 @@
 
 namespace topple {
 
-inline constexpr double k_least_energy = 1e-6;  ///< J, below it a balance is rounding
-
 /// One step of size h, s, from `from`; `w.next` is what becomes of it.
 struct StepInProgress {
   const Model& model;
   const Parameters& parameters;
   const State& from;
   double h;
-  int halvings, split;  ///< as of StepSpan
+  int halvings;  ///< how often the implicit methods of frames may halve h when Newton does not converge
   Workspace::Impl& w;
   StepInputs start;
   StepEnergy exchanged = {};  ///< in the step
   BodyEnergy held = {};       ///< at its end
 
   StepInProgress(const Model& model, const Parameters& parameters, const State& from, double h, int halvings,
-                 int split, Workspace::Impl& w);
+                 Workspace::Impl& w);
   double end() const { return from.time + h; }  ///< s
 };
 

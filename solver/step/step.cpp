@@ -1,12 +1,9 @@
 #include "solver/step/step.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "solver/body/anchors.h"
 #include "solver/body/candidates.h"
-#include "solver/frame/integrator.h"
 #include "solver/step/adaptive_step.h"
 #include "solver/step/stages.h"
 
@@ -14,15 +11,12 @@ namespace topple {
 namespace {
 
 constexpr int k_halvings = 6;
-constexpr double k_step_loss = 0.02;  // of the largest energy, unexplained by one step: an impact it skips
 constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes move further than was expected
 
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
                         Workspace::Impl& w);
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
-                    int halvings, int split, Workspace::Impl& w);
-bool skips_an_impact(const Parameters& parameters, const State& state, const StepStatus& status,
-                     const Workspace::Impl& w);
+                    int halvings, Workspace::Impl& w);
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w);
 
 }  // namespace
@@ -33,16 +27,10 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
   StepStatus status = check_inputs(model, parameters, state, w);
   if (!status.ok()) return status;
   if (parameters.adaptive) {
-    const auto try_adaptive = [&](double h) { return try_step(model, parameters, state, h, 0, 0, w); };
+    const auto try_adaptive = [&](double h) { return try_step(model, parameters, state, h, 0, w); };
     status = adaptive_step(model, parameters, state, w, until, std::ref(try_adaptive));
   } else {
-    status = try_step(model, parameters, state, parameters.time_step, k_halvings, 0, w);
-    for (int split = 2; split <= k_halvings && skips_an_impact(parameters, state, status, w); split += 2) {
-      const int rejected = status.rejected + 1, iterations = status.newton_iterations;
-      status = try_step(model, parameters, state, parameters.time_step, k_halvings, split, w);
-      status.rejected += rejected;
-      status.newton_iterations += iterations;
-    }
+    status = try_step(model, parameters, state, parameters.time_step, k_halvings, w);
   }
   if (status.ok()) accept(model, parameters, state, w);
   return status;
@@ -52,11 +40,11 @@ namespace {
 
 // One step of size h into w.next. passed_through: nodes moved too far for the pairs looked at.
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
-                    int halvings, int split, Workspace::Impl& w) {
+                    int halvings, Workspace::Impl& w) {
   const bool alone = model.bodies.size() < 2;
   double travel = alone ? 0 : likely_travel(model, state, h);
   for (int look = 0; look < k_most_looks; ++look) {
-    StepInProgress s(model, parameters, state, h, halvings, split, w);
+    StepInProgress s(model, parameters, state, h, halvings, w);
     find_candidates(s, travel);
     switch_models(s);
     apply_events(s);
@@ -78,21 +66,6 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   status.kind = StepStatus::Kind::passed_through;
   status.time = w.next.time;
   return status;
-}
-
-// Whether the step in w.next, at the end of which something touches, has lost or gained energy as one over an
-// impact does, and shorter ones would not.
-bool skips_an_impact(const Parameters& parameters, const State& state, const StepStatus& status,
-                     const Workspace::Impl& w) {
-  if (!(status.ok() || status.kind == StepStatus::Kind::energy_lost)) return false;
-  if (traits(parameters.integrator).is_explicit || !w.parts.moves_nodes()) return false;
-  const EnergyLedger& energy = w.next.energy;
-  const double lost = std::max(std::abs(energy.unexplained() - state.energy.unexplained()),
-                               state.energy.numerical - energy.numerical);
-  if (!(lost > k_step_loss * energy.largest && lost > k_least_energy)) return false;
-  HardestContact hardest;
-  for (const auto& part : w.parts.all()) hardest = part->hardest_contact(hardest);
-  return hardest.force > 0;
 }
 
 // Looks at the numbers of parameters that are new, and of a state that is not finite.

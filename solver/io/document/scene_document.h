@@ -88,8 +88,8 @@ struct SceneError : InputError {
 Node parse_toml(std::string_view text, const std::string& origin);
 
 /// Applies "KEY=VALUE". KEY is dotted; entries of arrays go by their name or number from 1. Creates absent
-/// keys and the tables above them, but no entry of an array. Without VALUE the key, or the entry, is not
-/// there any more. Throws InputError, also for bytes that are not UTF-8, which no scene can hold.
+/// keys and the tables above them, but no entry of an array. Throws InputError, also for bytes that are not
+/// UTF-8, which no scene can hold.
 void apply_override(Node& root, const std::string& override_text);
 
 /// A text as a TOML basic string: escaped, with double quotes around it.

@@ -72,9 +72,7 @@ void apply_override(Node& root, const std::string& override_text) {
     fail("", place, "", "expected KEY=VALUE, such as contact.friction=0.5");
   }
 
-  const std::string text = trimmed(override_text.substr(equals + 1));
-  const bool removes = text.empty();
-  Node value = removes ? Node() : parse_value(text, place);
+  Node value = parse_value(trimmed(override_text.substr(equals + 1)), place);
   Node* at = &root;
   std::string path;
   for (;;) {
@@ -95,10 +93,6 @@ void apply_override(Node& root, const std::string& override_text) {
       next = &at->items.back();
     }
     path += (path.empty() ? "" : ".") + rest.substr(0, length);
-    if (length >= rest.size() && removes) {
-      at->items.erase(at->items.begin() + (next - at->items.data()));
-      return;
-    }
     if (length >= rest.size()) {
       if (at->kind == Node::Kind::list && next->value.kind == Node::Kind::table) {
         fail("", place, path, "is a whole entry; set one of its keys");

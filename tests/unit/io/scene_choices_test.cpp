@@ -70,9 +70,9 @@ TEST(SceneChoices, keys_of_a_choice_not_made_are_refused) {
             "s.toml:18:1: run.control: belongs to analysis = static, but analysis is dynamic");
   EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\n"), "no error");
   EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\ntime_step = 2e-3\n"),
-            "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is fixed");
+            "s.toml:18:13: run.tolerance: belongs to time_step = auto, but time_step is fixed");
   EXPECT_EQ(after_beam("[run]\ntolerance = 1e-3\ntime_step = \"2 ms\"\n"),
-            "s.toml:18:1: run.tolerance: belongs to time_step = auto, but time_step is fixed");
+            "s.toml:18:13: run.tolerance: belongs to time_step = auto, but time_step is fixed");
   EXPECT_EQ(after_beam("[[shake]]\nfrequency = 1\namplitude = 1\nduration = 1\n"),
             "s.toml:20:1: shake.1.duration: belongs to type = sweep or pulse, but type is sine");
   EXPECT_EQ(in_cabinet("bracing = \"none\"\npanel_thickness = 1e-3\n"),

@@ -341,7 +341,7 @@ TEST(SceneErrors, directions_and_histories_must_make_sense) {
             "s.toml:17:42: frame.beam.loads.1.history.2.1: times must increase, 0 does not");
   EXPECT_EQ(
       after_beam("loads = [{ node = 1, history = [[\"1 m\", 1]] }]\n"),
-      "s.toml:17:34: frame.beam.loads.1.history.1.1: \"1 m\" is a length, expected a time (s, ms, min)");
+      "s.toml:17:34: frame.beam.loads.1.history.1.1: \"1 m\" is a length, expected a time (s, ms, us, min)");
 }
 
 TEST(SceneErrors, broken_toml_says_where) {

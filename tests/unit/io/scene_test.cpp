@@ -415,19 +415,6 @@ TEST(Scene, overrides_set_what_the_file_says_and_what_it_does_not) {
   EXPECT_EQ(scene.title, "A title");
 }
 
-TEST(Scene, an_override_without_a_value_leaves_a_key_or_an_entry_out) {
-  const Scene without = parse_scene(k_scene, "s.toml", {"contact.q=2", "contact.q=", "contact.friction="});
-  EXPECT_EQ(without.setup.parameters.contact,
-            parse_scene(k_scene, "s.toml", {"contact.friction=0.6"}).setup.parameters.contact);
-  const std::string two = k_scene + "[[wall]]\nname = \"a\"\nat = [-3, 0]\nnormal = [1, 0, 0]\n" +
-                          "[[wall]]\nname = \"b\"\nat = [-4, 0]\nnormal = [1, 0, 0]\n";
-  const auto planes = [&](const std::vector<std::string>& set) {
-    return parse_scene(two, "s.toml", set).setup.model.planes.size();
-  };
-  EXPECT_EQ(planes({"wall.a="}), planes({}) - 1);
-  EXPECT_EQ(planes({"wall.2="}), planes({}) - 1);
-}
-
 TEST(Scene, the_last_override_of_a_key_counts) {
   const Scene scene = parse_scene(k_scene, "s.toml", {"contact.q=2", "contact.q=3"});
   EXPECT_EQ(scene.setup.parameters.contact.q, 3);

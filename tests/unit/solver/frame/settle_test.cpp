@@ -145,7 +145,7 @@ TEST(Settle, body_that_leans_too_far_floats_or_has_no_floor_is_not_settled) {
   CabinetSpec upright = tall_cabinet();
   for (const Settled& s : {settled(leaning, {}), settled(upright, {}, false)}) {
     EXPECT_EQ(s.status.kind, StepStatus::Kind::not_settled);
-    EXPECT_EQ(s.status.no_rest, NoRest::leaves);
+    EXPECT_NE(s.status.no_rest, NoRest::not_found);
     EXPECT_EQ(s.status.body, 0);
     EXPECT_NE(s.status.message(s.model).find("\"cabinet\""), std::string::npos);
   }
