@@ -76,15 +76,15 @@ TEST_F(OverturnTest, an_ensemble_gives_probabilities_charts_and_a_fragility) {
 // A block that lies across the room leaves 0.45 m beside it; one that stands leaves 1.75 m.
 TEST_F(OverturnTest, says_after_how_many_runs_a_way_out_is_open) {
   write_bytes("room.toml",
-        "topple = 1\n[run]\nduration = 2.5\n[floor]\n"
-        "[[shake]]\ntype = \"pulse\"\nshape = \"half-sine\"\nduration = 0.4\namplitude = 1\n"
-        "direction = [0, -1, 0]\n"
-        "[[wall]]\nname = \"right\"\nat = [0, -1]\nnormal = [0, 1, 0]\n"
-        "[[wall]]\nname = \"left\"\nat = [0, 1]\nnormal = [0, -1, 0]\n"
-        "[[wall]]\nname = \"front\"\nat = [2, 0]\nnormal = [-1, 0, 0]\n"
-        "[[block]]\nname = \"a\"\nsize = [0.5, 0.18, 1.28]\nmass = 30\nwidth = 0.02\nat = [0, -0.85]\n"
-        "[[door]]\nname = \"door\"\nwall = \"front\"\nat = 0\nwidth = 0.8\n"
-        "[[place]]\nname = \"desk\"\nat = [-1, 0]\n");
+              "topple = 1\n[run]\nduration = 2.5\n[floor]\n"
+              "[[shake]]\ntype = \"pulse\"\nshape = \"half-sine\"\nduration = 0.4\namplitude = 1\n"
+              "direction = [0, -1, 0]\n"
+              "[[wall]]\nname = \"right\"\nat = [0, -1]\nnormal = [0, 1, 0]\n"
+              "[[wall]]\nname = \"left\"\nat = [0, 1]\nnormal = [0, -1, 0]\n"
+              "[[wall]]\nname = \"front\"\nat = [2, 0]\nnormal = [-1, 0, 0]\n"
+              "[[block]]\nname = \"a\"\nsize = [0.5, 0.18, 1.28]\nmass = 30\nwidth = 0.02\nat = [0, -0.85]\n"
+              "[[door]]\nname = \"door\"\nwall = \"front\"\nat = 0\nwidth = 0.8\n"
+              "[[place]]\nname = \"desk\"\nat = [-1, 0]\n");
   const Ended ended =
       topple({"study", "overturn", "room.toml", "-o", "out", "--x", "shake.1.duration=0.4 s..0.45 s:2", "--y",
               "shake.1.amplitude=1..8:2", "--ensemble", "2", "--spread", "5%", "--quiet"});
