@@ -18,6 +18,7 @@ namespace {
 
 constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
 constexpr double k_hangs = 1e-3;   // m, above what might bear it
+constexpr double k_within = 1e-3;  // m, a wall
 constexpr double k_early = 0.05;   // of the acceleration that lifts a side
 constexpr double k_upright = 0.7;  // of the normal of a floor
 
@@ -96,7 +97,7 @@ void warn_of_walls(const Setup& setup, const State& start, std::vector<std::stri
         deepest =
             std::max(deepest, point.width / 2 - plane.normal.dot(start.position[point.node] - plane.point));
       }
-      if (deepest > k_hangs)
+      if (deepest > k_within)
         list.push_back(fmt::format("\"{}\" starts {:.3g} mm within \"{}\", which pushes it away at once",
                                    body.name, 1e3 * deepest, plane.name));
     }
