@@ -20,9 +20,11 @@ struct LossWords {
   Stability::Loss loss;
   const char *word, *words;
 };
-constexpr LossWords k_losses[] = {{Stability::Loss::limit_point, "limit-point", "past a limit point"},
-                                  {Stability::Loss::buckling, "buckling", "buckles, sideways to its loads"},
-                                  {Stability::Loss::mechanism, "mechanism", "a mechanism"}};
+constexpr LossWords k_losses[] = {
+    {Stability::Loss::limit_point, "limit-point", "past a limit point"},
+    {Stability::Loss::buckling, "buckling", "buckles, sideways to its loads"},
+    {Stability::Loss::mechanism, "mechanism", "a mechanism"},
+    {Stability::Loss::fracture, "fracture", "a section breaks, the rest does not carry"}};
 
 }  // namespace
 

@@ -20,6 +20,7 @@ constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly
 constexpr double k_hangs = 1e-3;   // m, above what might bear it
 constexpr double k_within = 1e-3;  // m, a wall
 constexpr double k_early = 0.05;   // of the acceleration that lifts a side
+constexpr double k_hardly = 0.02;  // of it
 constexpr double k_upright = 0.7;  // of the normal of a floor
 
 /// Of the member of a body that is nearest to a point, and where along it, 0..1.
@@ -144,6 +145,18 @@ std::optional<double> early_tipping(const Setup& setup) {
   return early;
 }
 
+/// Least alpha, N, with which that part is k_hardly.
+double alpha_for_tipping(const Setup& setup) {
+  const Parameters& p = setup.parameters;
+  const double early = early_uplift(setup.model, p.contact, p.gravity).value_or(0);
+  double alpha = p.contact.alpha * std::pow(early / k_hardly, p.contact.q);
+  for (int b = 0; b < setup.model.furniture_total(); ++b)
+    if (study::why_not_standing(setup.model, b).empty())
+      alpha =
+          std::max(alpha, study::alpha_for_tipping(study::standing(setup.model, p, b), p.contact, k_hardly));
+  return alpha;
+}
+
 void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   const Parameters& p = setup.parameters;
   const std::optional<double> early = early_tipping(setup);
@@ -151,8 +164,11 @@ void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   if (!early || !rigid || *early <= k_early) return;
   list.push_back(fmt::format(
       "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
-      "acceleration than on a rigid floor; {:.0f} kgf, or no alpha at all, keeps that below 2 %",
+      "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes {:.0f} "
+      "kgf, "
+      "with which it lands as on a rigid floor too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
+      rounded_up(alpha_for_tipping(setup) / k_standard_gravity), 100 * k_hardly,
       rounded_up(*rigid / k_standard_gravity)));
 }
 

@@ -16,6 +16,7 @@
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
 #include "solver/body/planar_body.h"
+#include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
 
 namespace topple::app {
@@ -66,6 +67,7 @@ ordered_json not_planar(const Setup& setup, const BodyOutcome& o, int body) {
 ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, const BodyMomentum& momentum,
                   int index) {
   const Body& body = setup.model.bodies[static_cast<std::size_t>(index)];
+  const bool slides = std::isfinite(o.critical);  // it stands on a floor, and nothing holds its base
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
           {"integrator", is_static(setup)
@@ -86,8 +88,8 @@ ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, c
           {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical * k_degrees)},
-          {"peak_slide_m", number(o.peak_slide)},
-          {"final_slide_m", number(o.slide)},
+          {"peak_slide_m", slides ? number(o.peak_slide) : ordered_json(nullptr)},
+          {"final_slide_m", slides ? number(o.slide) : ordered_json(nullptr)},
           {"final_velocity_m_s", vector_json(momentum.velocity)},
           {"final_angular_momentum_kg_m2_s", vector_json(momentum.angular_momentum)},
           {"peak_stress_Pa", o.always_rigid ? ordered_json(nullptr) : number(o.peak_stress)},
@@ -114,6 +116,21 @@ ordered_json anchors(const Run& run) {
     out.push_back(one);
   }
   return out;
+}
+
+/// What moved frames; the first body, where none was one.
+std::string_view integrator(const Run& run) {
+  const Model& model = run.setup().model;
+  const Integrator frames = run.parameters().integrator;
+  const std::span<const BodyOutcome> bodies =
+      std::span(run.outcome().bodies()).first(static_cast<std::size_t>(model.furniture_total()));
+  const auto was_frame = [](const BodyOutcome& o) {
+    return !o.level || std::ranges::any_of(o.level_changes, [](const LevelChange& change) {
+      return traits(change.level).moves_nodes;
+    });
+  };
+  const bool any = bodies.size() < model.bodies.size() || std::ranges::any_of(bodies, was_frame);
+  return any || bodies.empty() ? traits(frames).word : integrator_of(*bodies.front().level, frames);
 }
 
 /// The mean of an adaptive run.
@@ -190,7 +207,7 @@ std::string integrators(const ordered_json& s) {
     look(b["model"]);
     for (const auto& change : b["models"]) look(change["model"]);
   }
-  const auto named = s["integrator"].get<std::string>();
+  const auto named = s["integrator"].get<std::string>();  // of frames, if there are any
   std::string words = frames ? named : "";
   const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
   if (frames && others && named != "central-difference") words += " (frames)";
@@ -199,9 +216,11 @@ std::string integrators(const ordered_json& s) {
   return words.empty() ? "central differences" : words;
 }
 
-// Of a body that is no frame.
-std::string allowed_error(const ordered_json& estimate) {
-  return estimate.is_null() ? "" : fmt::format("; error about {:.2g} %", 100 * estimate.get<double>());
+std::string allowed_error(const ordered_json& change) {
+  const ordered_json& estimate = change["error_estimate"];
+  if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
+  if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
+  return fmt::format("; error about {:.2g} %", 100 * estimate.get<double>());
 }
 
 // Of the model that a body begins with.
@@ -222,13 +241,27 @@ std::string dynamic_head(const ordered_json& s) {
                      s["steps"].get<long>(), s["rejected_steps"].get<long>(),
                      s["newton_iterations"].get<long>());
   const ordered_json& share = s["contact"]["member_share"];
-  out += fmt::format("contact: alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}\n",
-                     s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
-                     share.is_null() || share == 1
-                         ? ""
-                         : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
-                     s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>());
+  out += fmt::format(
+      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}\n",
+      s["contact"]["law"].get<std::string>(), s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
+      share.is_null() || share == 1 ? ""
+                                    : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
+      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>(),
+      s["contact"]["restitution"].is_null()
+          ? ""
+          : fmt::format(", restitution {:.6g}", s["contact"]["restitution"].get<double>()));
   return out + energy_in_words(s["energy"]) + "\n";
+}
+
+std::string damage_line(const ordered_json& b) {
+  const int hinges = b["hinges"].get<int>(), fractures = b["fractures"].get<int>();
+  if (hinges + fractures == 0) return "";
+  const auto counted = [](int count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return b["name"].get<std::string>() + ": " + (hinges > 0 ? counted(hinges, "plastic hinge") : "") +
+         (hinges > 0 && fractures > 0 ? ", " : "") +
+         (fractures > 0 ? counted(fractures, "broken section") : "") + "\n";
 }
 
 std::string anchor_line(const ordered_json& a) {
@@ -295,17 +328,18 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["wall_s"] = number(wall_s);
   out["realtime_factor"] =
       wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);
-  out["integrator"] =
-      is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(traits(p.integrator).word);
+  out["integrator"] = is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrator(run));
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
   out["safe_closing_speed_m_s"] = safe_closing_speed(run);
-  out["contact"] = {{"alpha_N", number(p.contact.alpha)},
+  const ContactLawTraits& law = traits(p.contact);
+  out["contact"] = {{"law", law.word},
+                    {"alpha_N", number(p.contact.alpha)},
                     {"q", number(p.contact.q)},
                     {"friction", number(p.contact.friction)},
-                    {"restitution", number(p.contact.restitution)},
-                    {"normal_speed_m_s", number(p.contact.normal_speed)},
+                    {"restitution", law.has_restitution ? number(p.contact.restitution) : nullptr},
+                    {"normal_speed_m_s", law.has_restitution ? number(p.contact.normal_speed) : nullptr},
                     {"member_share", run.setup().model.bodies.size() > 1 ? number(p.contact.member_share)
                                                                          : ordered_json(nullptr)}};
   out["steps"] = state.step;
@@ -457,12 +491,12 @@ std::string summary_table(const ordered_json& s) {
     for (const auto& model : b["models"])
       out += fmt::format("{}: {} from {} s ({}{}{})\n", b["name"].get<std::string>(),
                          model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
-                         model["reason"].get<std::string>(), not_planar(b, model),
-                         allowed_error(model["error_estimate"]));
+                         model["reason"].get<std::string>(), not_planar(b, model), allowed_error(model));
   for (const auto& b : s["bodies"])
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
       out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
                          b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
+  for (const auto& b : s["bodies"]) out += damage_line(b);
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);

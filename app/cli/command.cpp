@@ -55,7 +55,10 @@ CLI::Option& add_scene(CLI::App& command, std::string& value) {
 }
 
 void add_set(CLI::App& command, std::vector<std::string>& overrides) {
-  command.add_option("--set", overrides, "override a key of the scene: --set contact.alpha=\"5 kgf\"")
+  command
+      .add_option("--set", overrides,
+                  "override a key of the scene, --set contact.alpha=\"5 kgf\", or a whole entry, "
+                  "--set shake.1='{ type = \"record\", files = [\"my.csv\"] }'")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all();

@@ -119,13 +119,17 @@ ordered_json scene_description(const io::Scene& scene) {
   out["elements"] = setup.model.elements.size();
   out["contact_points"] = setup.model.contact_points.size();
   out["bodies"] = ordered_json::array();
-  for (const Body& body : setup.model.bodies)
+  for (const Body& body : setup.model.bodies) {
+    const bool based = !body.support_polygon.empty();
+    const double above = based ? body.centre_of_gravity.z() - body.support_polygon.front().z() : 0;
     out["bodies"].push_back({{"name", body.name},
                              {"mass_kg", body.mass},
                              {"centre_of_gravity_m", vector_json(body.centre_of_gravity)},
+                             {"above_base_m", based ? ordered_json(above) : ordered_json(nullptr)},
                              {"inertia_kg_m2", vector_json(body.inertia.diagonal())},
                              {"nodes", body.node_count},
                              {"elements", body.element_count}});
+  }
   out["anchors"] = ordered_json::array();
   for (std::size_t k = 0; k < setup.model.anchors.size(); ++k) {
     const Anchor& anchor = setup.model.anchors[k];

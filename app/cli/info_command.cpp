@@ -72,10 +72,15 @@ std::string info_table(const ordered_json& d) {
   for (const auto& b : d["bodies"]) {
     const auto &c = b["centre_of_gravity_m"], &i = b["inertia_kg_m2"];
     out += fmt::format(
-        "body {}: {:.6g} kg, centre of gravity ({:.4f}, {:.4f}, {:.4f}) m, inertia ({:.4g}, {:.4g}, {:.4g}) "
+        "body {}: {:.6g} kg, centre of gravity ({:.4f}, {:.4f}, {:.4f}) m{}, inertia ({:.4g}, {:.4g}, "
+        "{:.4g}) "
         "kg m^2\n",
         b["name"].get<std::string>(), b["mass_kg"].get<double>(), c[0].get<double>(), c[1].get<double>(),
-        c[2].get<double>(), i[0].get<double>(), i[1].get<double>(), i[2].get<double>());
+        c[2].get<double>(),
+        b["above_base_m"].is_null()
+            ? ""
+            : fmt::format(", {:.4g} m above its base", b["above_base_m"].get<double>()),
+        i[0].get<double>(), i[1].get<double>(), i[2].get<double>());
   }
   for (const auto& a : d["anchors"])
     out += fmt::format("anchor {}: {} of {:.4g} kN/m on {}, {}{}\n", a["name"].get<std::string>(),

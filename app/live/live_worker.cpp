@@ -118,6 +118,7 @@ void LiveWorker::change(const Edit& edit) {
   history_.edits.push_back(logged);
   if (recorder_) recorder_->post(logged);
   publish([&logged](LiveReport& report) { report.edits.push_back(logged); });
+  if (!going_) report_head();  // an anchor that was taken away is seen to be
   set(status_.kind == LiveStatus::Kind::failed ? LiveStatus::Kind::halted : status_.kind);
 }
 
@@ -188,6 +189,9 @@ void LiveWorker::record(io::Observation observation) {
 void LiveWorker::report_head() {
   io::FrameRow row = io::frame_row(*run_);
   row.branch = status_.branch;
+  const std::vector<bool>& on = run_->parameters().anchors;
+  for (std::size_t k = 0; k < on.size(); ++k)  // taken away by an edit: the next step lets go of it
+    if (!on[k]) row.anchor[k] = {0, 0, row.anchor[k].natural_length, io::k_anchor_away};
   auto head = std::make_shared<const io::FrameRow>(std::move(row));
   publish([&head](LiveReport& report) { report.head = std::move(head); });
   set(status_.kind);

@@ -31,7 +31,8 @@ struct LossWord {
 };
 constexpr LossWord k_loss_words[] = {{Stability::Loss::limit_point, k_limit_point},
                                      {Stability::Loss::buckling, k_buckles},
-                                     {Stability::Loss::mechanism, k_mechanism}};
+                                     {Stability::Loss::mechanism, k_mechanism},
+                                     {Stability::Loss::fracture, k_section_breaks}};
 
 struct PathAxis {
   double low, high;

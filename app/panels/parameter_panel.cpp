@@ -38,7 +38,7 @@ constexpr Slider k_sliders[] = {
     {Edit::Key::direction, k_direction, k_direction_about, "", "%.0f°", -180, 180},
     {Edit::Key::duration, k_duration, k_duration_about, "s", "%.3g s", 0.05, 60, false, true},
     {Edit::Key::scale, k_scale, k_scale_about, "", "× %.2f", 0, 3},
-    {Edit::Key::alpha, k_alpha, k_alpha_about, "kgf", "%.4g kgf", 1. / 50, 50, true, true},
+    {Edit::Key::alpha, k_alpha, k_alpha_about, "kgf", "%.4g kgf", 1. / 50, 1000, true, true},
     {Edit::Key::q, k_q, k_q_about, "", "%.2f", 0.5, 4},
     {Edit::Key::friction, k_friction, k_friction_about, "", "%.2f", 0, 1.5},
     {Edit::Key::friction_static, k_friction_static, k_friction_static_about, "", "%.2f", 0, 1.5},

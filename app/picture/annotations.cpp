@@ -21,6 +21,10 @@ constexpr render::Float4 k_force_colour = {0.96f, 0.56f, 0.05f, 1};
 constexpr double k_arrow = 1. / 3;       // of the height, an arrow of the usual top
 constexpr double k_least_arrow = 0.004;  // m: shorter ones are not seen
 
+constexpr double k_door = 2;             // m, drawn so high
+constexpr double k_before_wall = 0.005;  // m
+constexpr render::Float4 k_place_colour = {0.10f, 0.55f, 0.30f, 1};
+
 constexpr double k_trail = 1;  // s
 constexpr std::size_t k_trail_points = 240;
 constexpr float k_least_strength = 0.15f;  // of what is oldest in a whole run
@@ -140,6 +144,20 @@ void add_contact_forces(const Model& model, const io::FrameRow& row, double newt
   }
 }
 
+void add_doors(const Room& room, const Vec3& shift, render::SceneFrame& out) {
+  const auto above = [&](const Vec2& at, double z) { return to_float(Vec3(at.x(), at.y(), z) + shift); };
+  for (const Room::Door& door : room.doors) {
+    const Vec2 face = k_before_wall * room.walls[static_cast<std::size_t>(door.wall)].normal;
+    const Vec2 a = room.jamb(door, 0) + face, b = room.jamb(door, 1) + face;
+    out.panels.push_back({{above(a, 0), above(b, 0), above(b, k_door), above(a, k_door)}});
+    out.labels.push_back({above((a + b) / 2, k_door), door.name});
+  }
+  for (const Room::Place& place : room.places) {
+    out.rings.push_back({above(place.at, 0), {0, 0, 1}, static_cast<float>(room.person / 2), k_place_colour});
+    out.labels.push_back({above(place.at, 0), place.name});
+  }
+}
+
 void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow& row, bool whole_run,
                 render::SceneFrame& out) {
   const std::vector<float>& times = extent.way;
@@ -227,6 +245,8 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
   }
   label(*least);
   label(*most);
+  for (const Ordinate* end : {&all.front(), &all.back()})
+    if (end != &*least && end != &*most && is_something(*end)) label(*end);
 }
 
 }  // namespace topple::app

@@ -18,6 +18,9 @@ double component_of(const SectionForces& forces, std::size_t component);
 /// pale and has no head. `row`: as it is drawn.
 void add_hinges(const Model& model, const io::FrameRow& row, render::SceneFrame& out);
 
+/// Doors as sheets in their walls and places as rings on the floor, a person wide, with their names.
+void add_doors(const Room& room, const Vec3& shift, render::SceneFrame& out);
+
 /// Arrows of what floors, walls and members of other bodies do to bodies, from the points of contact on, at
 /// `newtons` for each 0.1 m. Between two bodies there is one on each.
 void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons, render::SceneFrame& out);

@@ -22,6 +22,7 @@ constexpr double k_floor_margin = 2.2;  // m, floor beyond where bodies go
 constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
+constexpr double k_at_wall = 1e-6;      // m, a door's from its wall's face
 constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1};
 constexpr render::Float4 k_rigid_colour = {0.55f, 0.60f, 0.65f, 1};
 constexpr double k_tear = 0.6;          // depth of the teeth of a broken end, of the section
@@ -148,6 +149,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   exaggerate(model, fit, settings.exaggeration, drawn);
   add_tubes(drawn, colours(row, fit, settings.colour), out.stations, out.tubes);
   add_hinges(model, drawn, out);
+  add_doors(scene_.setup.room, shift, out);
   add_anchors(model, drawn, shift, out);
   out.legend = legend(row, settings);
   if (settings.panels)
@@ -368,6 +370,15 @@ void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
           near_high = near_high.cwiseMax(model.node_position[i]);
         }
       }
+      const Room& room = scene_.setup.room;
+      for (const Room::Door& door : room.doors)
+        for (const int end : {0, 1}) {
+          const Vec2 jamb = room.jamb(door, end);
+          const Vec3 at(jamb.x(), jamb.y(), 0);
+          if (std::abs(plane.normal.dot(at - plane.point)) > k_at_wall) continue;
+          near_low = near_low.cwiseMin(at);
+          near_high = near_high.cwiseMax(at);
+        }
       if (near_low.x() < 1e29) low = near_low, high = near_high;
       low -= Vec3::Constant(k_wall_margin);
       high += Vec3::Constant(k_wall_margin);

@@ -8,6 +8,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double k_better = 1.05;  // in cost or error; less is written as 1
+
 std::string percent(double share) {
   return share == 0 ? "0 %" : fmt::format("{:.2g} %", 100 * share);
 }
@@ -50,9 +52,12 @@ std::string default_in_words(const study::PrecisionPlan& plan, const study::Prec
   for (int m = 0; m < study::k_measures; ++m) {
     const auto measure = static_cast<study::Measure>(m);
     if (const auto place = place_of_default(plan, results, measure))
-      text += fmt::format(
-          "  {}: off by {}; others are as exact for {:.2g} of its cost, {:.2g} times nearer for all of it\n",
-          name(measure), percent(*own.errors[index(measure)]), 1 / place->cost_ratio, place->error_ratio);
+      text += fmt::format("  {}: off by {}; {}\n", name(measure), percent(*own.errors[index(measure)]),
+                          place->cost_ratio > k_better || place->error_ratio > k_better
+                              ? fmt::format("others are as exact for {:.2g} of its cost, {:.2g} times nearer "
+                                            "for all of it",
+                                            1 / place->cost_ratio, place->error_ratio)
+                              : "no other is as exact for less, or nearer for the same");
   }
   return text;
 }

@@ -145,8 +145,8 @@ HardestContact FramePart::hardest_contact(const HardestContact& hardest) {
     const int node = system_.node[local];
     found = {force, system_.model.node_body[node], node, system_.element_at(node)};
   };
-  for (const TouchingPair& pair : system_.contacts.planes) look(pair.out.normal, pair.node);
-  for (const MemberTouch& touch : system_.contacts.members.touches)
+  for (const TouchingPair& pair : contacts_.planes) look(pair.out.normal, pair.node);
+  for (const MemberTouch& touch : contacts_.members.touches)
     look(touch.out.normal, system_.member_pairs()[touch.pair].node[0]);
   return found;
 }

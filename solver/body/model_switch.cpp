@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
@@ -97,14 +98,18 @@ void ModelSwitch::find_near(const std::vector<Island>& islands) {
       for (const int b : island.bodies) near_[b] = true;
 }
 
-// Of the body's present level (model_level.h); a frame is what the others are measured by.
+// Of the body's present level (model_level.h); a frame is what the others are measured by. Infinite: not
+// known.
 double ModelSwitch::error_estimate(const Model& model, const Parameters& parameters, const State& state,
                                    Parts& parts, int b) const {
   const BodyState& s = state.bodies[b];
   if (traits(s.level).moves_nodes) return 0;
   if (traits(s.level).has_block) return rigid_error_[b] + parts.planar(b).hard_floor_error(parameters, state);
   if (!traits(s.level).has_modes) return rigid_error_[b];
-  return elastic_error(model.bodies[b], parameters, parts.reduced(state, b).rotation_bound(s));
+  const ReducedBody& elastic = parts.reduced(state, b);
+  return elastic.lands_on_what_gives(parameters.contact.alpha)
+             ? std::numeric_limits<double>::infinity()
+             : elastic_error(model.bodies[b], parameters, elastic.rotation_bound(s));
 }
 
 // Of a body on the level planar.
@@ -143,10 +148,8 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   }
   const bool automatic = parameters.models[b] == BodyModel::automatic;
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
-    return {ModelLevel::frame, LevelReason::deformation};
-  if (automatic && s.level == ModelLevel::elastic &&
-      parts.reduced(state, b).lands_on_what_gives(parameters.contact.alpha))
-    return {ModelLevel::frame, LevelReason::fall};
+    return {ModelLevel::frame,
+            std::isfinite(s.error_estimate) ? LevelReason::deformation : LevelReason::fall};
   if (watched_[b]) {
     if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
     ReducedBody& body = parts.reduced(state, b);

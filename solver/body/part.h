@@ -61,7 +61,7 @@ class Part {
   /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.
   virtual void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                            Forces& forces) = 0;
-  /// That of the newest step, or `hardest` where none of its own is greater.
+  /// Of those that list_forces found last, or `hardest` where none of its own is greater.
   virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
   /// Until give_sticks it works on a copy of the stick springs between members, so that parts can advance in
   /// parallel; then those of its own pairs go back.

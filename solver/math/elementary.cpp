@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-7";
+  return "topple-8";
 }
 
 }  // namespace topple

@@ -61,7 +61,7 @@ using Amplitudes = Eigen::Array<double, k_modes, 1>;
 struct BodyState {
   ModelLevel level = ModelLevel::frame;
   LevelReason reason = LevelReason::asked;
-  double error_estimate = 0;  ///< of this level, as Parameters::accuracy; not in checkpoints
+  double error_estimate = 0;  ///< as Parameters::accuracy; infinite: unknown; not in checkpoints
   double calm_since = -1;  ///< s, since when a frame meets the conditions of a lower level; -1: it does not
   Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
   Quat rotation = Quat::Identity();           ///< reference to current

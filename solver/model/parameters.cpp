@@ -44,7 +44,7 @@ double sum_of(const Shake& shake) {
 bool is_finite(const Parameters& parameters) {
   const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, accuracy,
                gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
-               substep_refinement] = parameters;
+               substep_refinement, resolves_contacts] = parameters;
   double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
                  sum(accuracy, spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
   for (const Shake& shake : shakes) total += sum_of(shake);

@@ -35,6 +35,10 @@ const char* loss_in_words(Stability::Loss loss) {
       return " buckles there, sideways to its loads";
     case Loss::mechanism:
       return " is a mechanism there; run.control follows a path that goes on or turns down";
+    case Loss::fracture:
+      return " breaks there, and what is left does not carry the loads; run.control follows a path that goes "
+             "on "
+             "or turns down";
     case Loss::none:
       break;
   }

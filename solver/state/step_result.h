@@ -20,7 +20,8 @@ struct Stability {
     none,
     limit_point,  ///< the loads do work along the mode: the path has passed a greatest load
     buckling,     ///< they do none: the body leaves the path sideways
-    mechanism     ///< as limit_point, while hinges flow
+    mechanism,    ///< as limit_point, while hinges flow
+    fracture      ///< StepStatus::element breaks, and what is left does not carry the loads
   };
   Loss loss = Loss::none;
   int negative_pivots = -1;       ///< of the tangent: directions in which it runs away; -1: not known

@@ -127,6 +127,17 @@ StepStatus advance_parts(StepInProgress& s) {
   return status;
 }
 
+HardestContact hardest_contact(const Parameters& parameters, const State& state, Workspace::Impl& w) {
+  w.parts.arrange(state);
+  const StepInputs now(parameters, state.time);
+  w.forces.contacts.clear();
+  w.forces.members.clear();
+  for (const auto& part : w.parts.all()) part->list_forces(parameters, now, state, w.forces);
+  HardestContact hardest;
+  for (const auto& part : w.parts.all()) hardest = part->hardest_contact(hardest);
+  return hardest;
+}
+
 void close_ledger(const StepInProgress& s) {
   State& next = s.w.next;
   next.step = s.from.step + 1;
@@ -146,8 +157,8 @@ void check(const StepInProgress& s, StepStatus& status) {
     status.body = body_not_finite(s.model, next);
   } else if (next.energy.balance_error() > k_lost_balance &&
              std::abs(next.energy.unexplained()) > k_least_energy) {
-    HardestContact hardest;
-    for (const auto& part : s.w.parts.all()) hardest = part->hardest_contact(hardest);
+    HardestContact hardest = hardest_contact(s.parameters, s.from, s.w);
+    if (hardest.force == 0) hardest = hardest_contact(s.parameters, next, s.w);
     if (hardest.force > 0) {
       status.kind = StepStatus::Kind::energy_lost;
       status.time = next.time;

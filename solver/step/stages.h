@@ -38,11 +38,14 @@ StepStatus check_stability(const StepInProgress& step);
 /// Advances all parts to the end of the step, in parallel where there are workers. The first failure counts.
 StepStatus advance_parts(StepInProgress& step);
 
+/// At `state`, for which it arranges the parts.
+HardestContact hardest_contact(const Parameters& parameters, const State& state, Workspace::Impl& w);
+
 /// Sets step, time, floor motion and energies of `w.next`.
 void close_ledger(const StepInProgress& step);
 
-/// `status` becomes not_finite where a number at the end is not, energy_lost where a contact is closed and
-/// the balance error is above k_lost_balance.
+/// `status` becomes not_finite where a number at the end is not, energy_lost where a contact is closed at
+/// one of the ends and the balance error is above k_lost_balance.
 void check(const StepInProgress& step, StepStatus& status);
 
 }  // namespace topple

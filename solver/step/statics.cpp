@@ -288,6 +288,13 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     status.node = s.first + node;
     status.element = s.element_at(status.node);
     status.load_factor = factor;
+    for (std::size_t k = 0; k < s.elements.size(); ++k) {
+      const int e = s.own_elements[k].element;
+      if (s.elements[k].hinge != Hinge::broken || state.elements[e].hinge == Hinge::broken) continue;
+      status.element = e;
+      status.stability.loss = Stability::Loss::fracture;
+      break;
+    }
     return status;
   };
   // where many sections of one moment come to yield at once, some begin to flow in each iteration

@@ -1,9 +1,12 @@
 #include "solver/step/step.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "solver/body/anchors.h"
 #include "solver/body/candidates.h"
+#include "solver/body/step_control.h"
 #include "solver/step/adaptive_step.h"
 #include "solver/step/stages.h"
 
@@ -12,11 +15,16 @@ namespace {
 
 constexpr int k_halvings = 6;
 constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes move further than was expected
+constexpr int k_parts = 4, k_most_divisions = 3;  // of a step that is taken again
+constexpr double k_lossy =
+    1e-3;  // of the largest energy: more left unexplained by a step is a contact missed
 
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
                         Workspace::Impl& w);
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w);
+StepStatus in_parts(const Model& model, const Parameters& parameters, const State& from, double h,
+                    int divisions, Workspace::Impl& w);
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w);
 
 }  // namespace
@@ -30,7 +38,9 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
     const auto try_adaptive = [&](double h) { return try_step(model, parameters, state, h, 0, w); };
     status = adaptive_step(model, parameters, state, w, until, std::ref(try_adaptive));
   } else {
-    status = try_step(model, parameters, state, parameters.time_step, k_halvings, w);
+    status = in_parts(model, parameters, state, parameters.time_step,
+                      parameters.resolves_contacts ? k_most_divisions : 0, w);
+    w.next.step_size = state.step_size;
   }
   if (status.ok()) accept(model, parameters, state, w);
   return status;
@@ -65,6 +75,54 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
   StepStatus status;
   status.kind = StepStatus::Kind::passed_through;
   status.time = w.next.time;
+  return status;
+}
+
+// Whether a step from `from` that ended so in w.next is to be taken again in parts: it failed in a way that
+// shorter ones may not, or left energy of frames unexplained where something touches.
+bool is_too_coarse(const Parameters& parameters, const State& from, double h, const StepStatus& status,
+                   Workspace::Impl& w) {
+  using Kind = StepStatus::Kind;
+  switch (status.kind) {
+    case Kind::newton_diverged:
+    case Kind::passed_through:
+    case Kind::energy_lost:
+      return true;
+    case Kind::step_too_long:  // unless the frame was asked for
+      return w.next.bodies[status.body].reason != LevelReason::asked;
+    case Kind::ok:
+      break;
+    default:
+      return false;
+  }
+  const EnergyLedger &now = w.next.energy, &before = from.energy;
+  const double left =
+      std::max(std::abs(now.unexplained() - before.unexplained()), before.numerical - now.numerical);
+  return w.parts.moves_nodes() && left > k_lossy * h / parameters.time_step * now.largest &&
+         (hardest_contact(parameters, from, w).force > 0 || hardest_contact(parameters, w.next, w).force > 0);
+}
+
+// One step of size h into w.next, in parts where it is too coarse as a whole.
+StepStatus in_parts(const Model& model, const Parameters& parameters, const State& from, double h,
+                    int divisions, Workspace::Impl& w) {
+  StepStatus status = try_step(model, parameters, from, h, k_halvings, w);
+  if (divisions == 0 || !is_too_coarse(parameters, from, h, status, w)) return status;
+  int iterations = status.newton_iterations, rejected = status.rejected + 1;
+  State at = from;
+  at.step_size = h;
+  change_step(at, h / k_parts);
+  for (int part = 0; part < k_parts; ++part) {
+    status = in_parts(model, parameters, at, h / k_parts, divisions - 1, w);
+    status.newton_iterations = iterations += status.newton_iterations;
+    status.rejected = rejected += status.rejected;
+    if (!status.ok()) return status;
+    accept(model, parameters, at, w);
+  }
+  at.step = from.step + 1;
+  at.time = from.time + h;
+  at.step_size = h / k_parts;
+  change_step(at, h);
+  w.next = at;
   return status;
 }
 

@@ -35,9 +35,9 @@ Node parse_value(const std::string& text, const Place& place) {
   return value;
 }
 
-// The entry whose label `rest` begins with, and the label's length; names may contain dots, so the longest
-// counts.
-Item* find_entry(Node& list, const std::string& rest, std::size_t& length) {
+// The entry of the list `key` whose label `rest` begins with, and the label's length; names may contain dots,
+// so the longest counts. One without a name is called "cabinet-2" in results.
+Item* find_entry(Node& list, const std::string& key, const std::string& rest, std::size_t& length) {
   Item* found = nullptr;
   const auto consider = [&](const std::string& label, Item& entry) {
     const bool begins = rest.compare(0, label.size(), label) == 0 &&
@@ -48,9 +48,10 @@ Item* find_entry(Node& list, const std::string& rest, std::size_t& length) {
     }
   };
   for (std::size_t k = 0; k < list.items.size(); ++k) consider(entry_label(list, k), list.items[k]);
-  if (!found) {
-    for (std::size_t k = 0; k < list.items.size(); ++k) consider(std::to_string(k + 1), list.items[k]);
-  }
+  for (const std::string& before : {std::string(), key + "-"})
+    for (std::size_t k = 0; k < list.items.size() && !found; ++k)
+      if (before.empty() || !list.items[k].value.find("name"))
+        consider(before + std::to_string(k + 1), list.items[k]);
   return found;
 }
 
@@ -80,7 +81,7 @@ void apply_override(Node& root, const std::string& override_text) {
     if (length == std::string::npos) length = rest.size();
     Item* next = nullptr;
     if (at->kind == Node::Kind::list) {
-      next = find_entry(*at, rest, length);
+      next = find_entry(*at, path, rest, length);
       if (!next) fail("", place, path + "." + rest.substr(0, length), "no such entry; " + labels(*at));
     } else if (at->kind != Node::Kind::table) {
       fail("", place, path, "is " + std::string(kind_name(at->kind)) + " and has no keys");
@@ -94,8 +95,10 @@ void apply_override(Node& root, const std::string& override_text) {
     }
     path += (path.empty() ? "" : ".") + rest.substr(0, length);
     if (length >= rest.size()) {
-      if (at->kind == Node::Kind::list && next->value.kind == Node::Kind::table) {
-        fail("", place, path, "is a whole entry; set one of its keys");
+      if (at->kind == Node::Kind::list && next->value.kind == Node::Kind::table &&
+          value.kind != Node::Kind::table) {
+        fail("", place, path,
+             "is a whole entry; set one of its keys, or all of them: " + path + "={ KEY = VALUE, ... }");
       }
       next->key_place = place;
       next->value = std::move(value);

@@ -112,7 +112,7 @@ void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
     csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
     csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(loading.stress);
     std::isfinite(model.elements[e].capacity[0]) ? csv.number(loading.yield_ratio) : csv.none();
-    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).end_row();
+    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).number(loading.peak).end_row();
   }
 }
 
@@ -144,7 +144,7 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
   CsvFile bodies(within("bodies.csv"), "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J");
   CsvFile nodes(within("nodes.csv"), "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
   CsvFile elements(within("elements.csv"),
-                   "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
+                   "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge,peak_stress_Pa");
   CsvFile floor(within("floor.csv"), "time_s,ax,ay,az,dx,dy,dz");
   std::string energies = "time_s";
   for (const EnergyTraits& column : energy_columns(!model.anchors.empty()))

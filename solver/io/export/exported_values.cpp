@@ -16,11 +16,15 @@ ElementLoading element_loading(const Model& model, const FrameRow& row, std::siz
   const Member& member = model.members[static_cast<std::size_t>(element.member)];
   const float* f = row.section_force.data() + 6 * e;
   const SectionForces forces{.normal = {f[0], f[1], f[2]}, .moment = {f[3], f[4], f[5]}};
-  double greatest = -1;
-  for (const double end : {-1., 1.})
-    greatest =
-        std::max(greatest, yield_function(element, forces_along(forces, element.length, row.s[e], end)));
-  return {.stress = equivalent_stress(model.sections[static_cast<std::size_t>(member.section)], forces),
+  const Section& section = model.sections[static_cast<std::size_t>(member.section)];
+  double greatest = -1, peak = 0;
+  for (const double end : {-1., 1.}) {
+    const SectionForces there = forces_along(forces, element.length, row.s[e], end);
+    greatest = std::max(greatest, yield_function(element, there));
+    peak = std::max(peak, equivalent_stress(section, there));
+  }
+  return {.stress = equivalent_stress(section, forces),
+          .peak = peak,
           .yield_ratio = static_cast<float>(std::sqrt(greatest + 1))};
 }
 

@@ -14,6 +14,7 @@ namespace topple::io {
 
 struct ElementLoading {
   double stress;      ///< Pa, equivalent_stress() at the stress point
+  double peak;        ///< Pa, greatest at the element's ends
   float yield_ratio;  ///< sqrt(f + 1) (plasticity.h), greatest of the element's ends; 0 where it cannot yield
 };
 ElementLoading element_loading(const Model& model, const FrameRow& row, std::size_t element);
@@ -35,7 +36,7 @@ enum class FieldPlace { nodes, elements };
 /// Calls field(name, place, values, columns) for each field of a frame as ParaView gets it; `columns` numbers
 /// belong to each node or element. On nodes, from the reference pose: displacement_m, rotation_rad (rotation
 /// vector). On elements: N_N, Vy_N, Vz_N, T_Nm, My_Nm, Mz_Nm and stress_Pa at the stress point, yield_ratio,
-/// s, hinge (FrameRow::hinge).
+/// s, hinge (FrameRow::hinge), peak_stress_Pa of the ends.
 template <class Field>
 void each_field(const Model& model, const FrameRow& row, Field field) {
   const NodeMotion motion(model, row);
@@ -48,17 +49,19 @@ void each_field(const Model& model, const FrameRow& row, Field field) {
     for (std::size_t e = 0; e < elements; ++e) values[e] = row.section_force[6 * e + k];
     field(k_forces[k], FieldPlace::elements, values, 1);
   }
-  std::vector<double> stress;
+  std::vector<double> stress, peak;
   std::vector<float> yield_ratio;
   for (std::size_t e = 0; e < elements; ++e) {
     const ElementLoading loading = element_loading(model, row, e);
     stress.push_back(loading.stress);
+    peak.push_back(loading.peak);
     yield_ratio.push_back(loading.yield_ratio);
   }
   field("stress_Pa", FieldPlace::elements, stress, 1);
   field("yield_ratio", FieldPlace::elements, yield_ratio, 1);
   field("s", FieldPlace::elements, row.s, 1);
   field("hinge", FieldPlace::elements, row.hinge, 1);
+  field("peak_stress_Pa", FieldPlace::elements, peak, 1);
 }
 
 /// Asked before each frame that is exported; false gives the export up.

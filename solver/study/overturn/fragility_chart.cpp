@@ -27,31 +27,71 @@ std::string between(const Interval& interval) {
   return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
 }
 
+/// Curves over the measure, as many as there are looks at most.
+struct Panel {
+  std::string title;
+  struct Curve {
+    std::string word;
+    const FragilityCurve* of;
+  };
+  std::vector<Curve> curves;
+  std::optional<std::size_t> criteria = std::nullopt;  ///< of this body
+  bool keyed = false;                                  ///< the words above have the colours of their curves
+};
+
+int hits(const FragilityCurve& curve) {
+  int sum = 0;
+  for (const Level& level : curve.levels) sum += level.hits;
+  return sum;
+}
+
 class FragilityChart {
  public:
   FragilityChart(const FragilityPlan& plan, const FragilityResults& results)
-      : plan_(plan), results_(results), shown_(bodies_shown()), columns_(shown_.size() > 1 ? 2 : 1) {
-    const int rows = (static_cast<int>(shown_.size()) + columns_ - 1) / columns_;
+      : plan_(plan), results_(results), shown_(bodies_shown()) {
+    for (const std::size_t b : shown_) {
+      Panel& of = panels_.emplace_back(Panel{results.bodies[b], {}, b});
+      for (std::size_t s = 0; s < k_states; ++s)
+        of.curves.push_back({damage_states()[s].title, &results.curves[b][s]});
+    }
+    if (!results.closed.empty()) panels_.push_back(ways());
+    columns_ = panels_.size() > 1 ? 2 : 1;
+    const int rows = (static_cast<int>(panels_.size()) + columns_ - 1) / columns_;
     sheet_ = {k_sheet_width, k_head + rows * (k_panel_head + k_plot + k_foot)};
   }
 
   std::string script(const std::string& origin, ChartFormat format) const {
     std::string out = header(origin);
-    for (std::size_t k = 0; k < shown_.size(); ++k) out += panel(k);
+    for (std::size_t k = 0; k < panels_.size(); ++k) out += panel(k);
     return sheet_.script(format, out);
   }
 
  private:
+  /// Of the places from which the way is closed most often.
+  Panel ways() const {
+    const std::vector<FragilityCurve>& closed = results_.closed;
+    std::vector<std::size_t> order(closed.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t p) { return hits(closed[p]); });
+    order.resize(std::min(order.size(), k_looks_of_states.size()));
+    std::ranges::sort(order);
+    Panel out{fmt::format("No way out{}", order.size() < closed.size()
+                                              ? fmt::format(", {} of {} places", order.size(), closed.size())
+                                              : ""),
+              {},
+              std::nullopt,
+              true};
+    for (const std::size_t p : order)
+      out.curves.push_back({"from " + plan_.scene.setup.room.places[p].name, &closed[p]});
+    return out;
+  }
+
   std::vector<std::size_t> bodies_shown() const {
     std::vector<std::size_t> order(results_.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     if (order.size() <= k_panels) return order;
-    const auto hits = [&](std::size_t b) {
-      int sum = 0;
-      for (const Level& level : results_.curves[b].back().levels) sum += level.hits;
-      return sum;
-    };
-    std::ranges::stable_sort(order, std::greater<>(), hits);
+    std::ranges::stable_sort(order, std::greater<>(),
+                             [&](std::size_t b) { return hits(results_.curves[b].back()); });
     order.resize(k_panels);
     std::ranges::sort(order);
     if (order.back() + 1 != results_.bodies.size()) order.back() = results_.bodies.size() - 1;
@@ -72,12 +112,7 @@ class FragilityChart {
     for (std::size_t s = 0; s < k_states; ++s) {
       const std::string words = damage_states()[s].title +
                                 std::string(s == 1 ? fmt::format(" over {:g} mm", 1e3 * plan_.slide) : "");
-      out +=
-          sheet_.stroke(x, x + 34, top - 152, fmt::format("lc rgb '{}' lw 3", k_looks_of_states[s].colour)) +
-          sheet_.label("", x + 17, top - 152,
-                       fmt::format("point {} ps 1.1 lc rgb '{}'", k_looks_of_states[s].point,
-                                   k_looks_of_states[s].colour)) +
-          sheet_.label(words, x + 44, top - 152);
+      out += sample(s, x, top - 152) + sheet_.label(words, x + 44, top - 152);
       x += 84 + 9.2 * static_cast<double>(words.size());
     }
     return out + sheet_.label("bars: 95 % of the share (Wilson)", x, top - 152, k_grey);
@@ -91,28 +126,41 @@ class FragilityChart {
     return out;
   }
 
-  /// What stands above a panel.
-  std::vector<std::string> words(std::size_t b) const {
+  /// What stands above a panel, a line a curve.
+  std::vector<std::string> words(const Panel& of) const {
     std::vector<std::string> lines;
-    for (std::size_t s = 0; s < k_states; ++s) {
-      const FragilityCurve& curve = results_.curves[b][s];
-      const std::string state = damage_states()[s].title;
+    for (const auto& [word, drawn] : of.curves) {
+      const FragilityCurve& curve = *drawn;
       if (!curve.fit.fit) {
-        lines.push_back(state + ": no curve, " + curve.fit.why_not);
+        lines.push_back(word + ": no curve, " + curve.fit.why_not);
         continue;
       }
       const std::string unit = plan_.levels.unit.empty() ? "" : " " + plan_.levels.unit;
       const Interval median = curve.median_of_records.value_or(curve.median_of_runs),
                      beta = curve.beta_of_records.value_or(curve.beta_of_runs);
-      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g}){}", state,
+      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g}){}", word,
                                   curve.median, unit, between(median), curve.fit.fit->beta, beta.low,
                                   beta.high, curve.scatter > 1 ? "; a poor fit" : ""));
     }
     return lines;
   }
 
+  /// Samples of the looks of curves that the sheet's key does not name, beside their words.
+  std::string key(const Panel& of, double left, double top) const {
+    std::string out;
+    for (std::size_t s = 0; of.keyed && s < of.curves.size(); ++s)
+      out += sample(s, left, top - k_lines * static_cast<double>(s));
+    return out;
+  }
+
+  std::string sample(std::size_t look, double x, double y) const {
+    const StateLook& as = k_looks_of_states[look];
+    return sheet_.stroke(x, x + 34, y, fmt::format("lc rgb '{}' lw 3", as.colour)) +
+           sheet_.label("", x + 17, y, fmt::format("point {} ps 1.1 lc rgb '{}'", as.point, as.colour));
+  }
+
   std::string panel(std::size_t k) const {
-    const std::size_t b = shown_[k];
+    const Panel& of = panels_[k];
     const double width = static_cast<double>(k_sheet_width) / columns_;
     const double left = width * static_cast<double>(k % static_cast<std::size_t>(columns_)) + k_from_left,
                  right = left - k_from_left + width - k_from_right;
@@ -120,16 +168,18 @@ class FragilityChart {
         sheet_.height - k_head -
         static_cast<double>(k / static_cast<std::size_t>(columns_)) * (k_panel_head + k_plot + k_foot);
     const double plot_top = top - k_panel_head, bottom = plot_top - k_plot;
-    std::string out = sheet_.label(bold(plain(results_.bodies[b]), 1.15), left, top - 12) +
-                      sheet_.lines(shortened(words(b), right - left), left, top - 38, k_lines, k_grey_as_is);
+    const double indent = of.keyed ? 44 : 0;
+    std::string out = sheet_.label(bold(plain(of.title), 1.15), left, top - 12) + key(of, left, top - 38) +
+                      sheet_.lines(shortened(words(of), right - left - indent), left + indent, top - 38,
+                                   k_lines, k_grey_as_is);
     out +=
         sheet_.place(left, right, bottom, plot_top) + axis_scale("x", plan_.levels) +
         axis_label("x", measure_axis(), "0,0.2") +
         "unset logscale y\nset yrange [-0.02:1.02]\nset ytics 0.2 nomirror\nset ylabel 'probability' offset "
         "1.2,0\nset border 3 lc rgb '#444444' lw 1\nset grid ytics lc rgb '#dddddd' lw 0.8\n";
     Plot plot;
-    out += criteria(b, left, right, plot_top, plot);
-    for (std::size_t s = 0; s < k_states; ++s) add_curve(b, s, plot);
+    if (of.criteria) out += criteria(*of.criteria, left, right, plot_top, plot);
+    for (std::size_t s = 0; s < of.curves.size(); ++s) add_curve(*of.curves[s].of, s, plot);
     return out + plot.data + plot.command() + "unset label\nunset arrow\nunset object\n";
   }
 
@@ -180,8 +230,7 @@ class FragilityChart {
     return out;
   }
 
-  void add_curve(std::size_t b, std::size_t s, Plot& plot) const {
-    const FragilityCurve& curve = results_.curves[b][s];
+  void add_curve(const FragilityCurve& curve, std::size_t s, Plot& plot) const {
     const StateLook& look = k_looks_of_states[s];
     if (curve.fit.fit) {
       const std::vector<double> ends = plan_.levels.edges();
@@ -210,7 +259,8 @@ class FragilityChart {
   const FragilityPlan& plan_;
   const FragilityResults& results_;
   const std::vector<std::size_t> shown_;
-  const int columns_;
+  std::vector<Panel> panels_;
+  int columns_ = 1;
   Sheet sheet_{};
 };
 

@@ -8,8 +8,9 @@
 
 namespace topple::study {
 
-/// gnuplot script: a panel per body, of many the k_panels most likely to overturn and `any body`: shares of
-/// runs with intervals, fitted curves, criteria as lines across. `origin`: as of overturn_chart().
+/// gnuplot script: a panel per body, of many the k_panels most likely to overturn and `any body`, and one of
+/// the places from which the way out is closed most often: shares of runs with intervals, fitted curves,
+/// criteria as lines across. `origin`: as of overturn_chart().
 std::string fragility_chart(const FragilityPlan& plan, const FragilityResults& results,
                             const std::string& origin, ChartFormat format);
 

@@ -221,6 +221,7 @@ Setup stepped_by(const StabilityPlan& plan, const SteppingMethod& method,
   Setup setup = with_changes(plan, changes);
   if (method.of_scene()) return setup;
   Parameters& p = setup.parameters;
+  p.resolves_contacts = false;  // the method as it is
   p.models.assign(setup.model.bodies.size(), BodyModel::frame);
   p.integrator = method.integrator;
   p.beta = method.beta;

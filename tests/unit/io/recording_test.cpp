@@ -188,10 +188,11 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
   EXPECT_EQ(bytes_of(path("out/csv/floor.csv")), "time_s,ax,ay,az,dx,dy,dz\n0.1,1.862,0,0,0,0,0\n");
   const std::string elements = bytes_of(path("out/csv/elements.csv"));
   EXPECT_TRUE(
-      elements.starts_with("time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge\n"
+      elements.starts_with("time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge,"
+                           "peak_stress_Pa\n"
                            "0.1,\"shelf, \"\"blue\"\"\",post-1,0,1000,0,0,0,0,0,"))
       << elements;
-  EXPECT_TRUE(elements.ends_with("post-1,1,0,0,0,0,0,0,0,,-0.25,2\n")) << elements;
+  EXPECT_TRUE(elements.ends_with("post-1,1,0,0,0,0,0,0,0,,-0.25,2,0\n")) << elements;
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out/csv")), {}), 5);
 }
 

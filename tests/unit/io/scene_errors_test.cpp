@@ -371,7 +371,8 @@ TEST(SceneErrors, overrides_are_blamed_by_their_own_text) {
   EXPECT_EQ(error("cabinet=[]"),
             "--set cabinet=[]: cabinet: an override cannot add or replace a [[cabinet]]");
   EXPECT_EQ(error("cabinet.free=3"),
-            "--set cabinet.free=3: cabinet.free: is a whole entry; set one of its keys");
+            "--set cabinet.free=3: cabinet.free: is a whole entry; set one of its keys, or all of them: "
+            "cabinet.free={ KEY = VALUE, ... }");
   EXPECT_EQ(error("cabinet.free.cg_height=1.7").substr(0, 53),
             "--set cabinet.free.cg_height=1.7: cabinet.free.cg_hei");
   EXPECT_EQ(error("title=\x8d"), "--set title=\x8d: is not UTF-8");

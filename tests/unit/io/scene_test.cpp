@@ -426,6 +426,23 @@ TEST(Scene, names_with_dots_are_found_by_overrides) {
   EXPECT_NEAR(parse_scene(text, "s.toml", {"cabinet.a.b.mass=12"}).setup.model.bodies.at(0).mass, 12, 1e-9);
 }
 
+TEST(Scene, an_override_replaces_a_whole_entry) {
+  const std::string text = k_cabinet_scene + "[[shake]]\nname = \"floor\"\nfrequency = 1\namplitude = 1\n";
+  const Scene scene =
+      parse_scene(text, "s.toml", {"shake.floor={ type = \"record\", files = [\"near-fault.csv\"] }"});
+  ASSERT_EQ(scene.setup.parameters.shakes.size(), 1u);
+  EXPECT_TRUE(scene.setup.parameters.shakes[0].record);
+  EXPECT_NE(error_of(text, {"shake.floor.type=record"}).find("shake.floor.frequency"), std::string::npos);
+}
+
+TEST(Scene, an_override_finds_an_entry_by_what_results_call_it) {
+  std::string text = k_cabinet_scene;
+  text.erase(text.find("name = \"free\"\n"), 14);
+  const Scene scene = parse_scene(text, "s.toml", {"cabinet.cabinet-1.mass=12"});
+  EXPECT_EQ(scene.setup.model.bodies.at(0).name, "cabinet-1");
+  EXPECT_NEAR(scene.setup.model.bodies.at(0).mass, 12, 1e-9);
+}
+
 TEST(Scene, text_is_verbatim_without_overrides_and_repeats_the_scene_with_them) {
   const std::string text = "# a comment\n" + k_scene + "[contact]\nfriction = 0.125 # so\n";
   EXPECT_EQ(parse_scene(text, "s.toml").text, text);

@@ -17,6 +17,9 @@ namespace {
 
 using Table = std::vector<std::vector<std::string>>;
 
+constexpr const char* k_elements =
+    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge,peak_stress_Pa";
+
 /// What was exported of an instant: by name the arrays and where they belong.
 struct ExportedGrid {
   double time = 0;
@@ -67,12 +70,12 @@ class ExportTest : public ProgramTest {
   /// What the grids hold is what the tables hold, exactly.
   static void expect_as_tables(const std::vector<ExportedGrid>& grids, const std::string& folder) {
     const Table nodes = rows("nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz", folder);
-    const Table elements = rows(
-        "elements.csv", "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge", folder);
+    const Table elements = rows("elements.csv", k_elements, folder);
     ASSERT_FALSE(grids.empty());
     const std::size_t n = nodes.size() / grids.size(), e = elements.size() / grids.size();
-    const std::vector<std::string> columns = {"N_N",   "Vy_N",      "Vz_N",        "T_Nm", "My_Nm",
-                                              "Mz_Nm", "stress_Pa", "yield_ratio", "s",    "hinge"};
+    const std::vector<std::string> columns = {"N_N",   "Vy_N",  "Vz_N",          "T_Nm",
+                                              "My_Nm", "Mz_Nm", "stress_Pa",     "yield_ratio",
+                                              "s",     "hinge", "peak_stress_Pa"};
     for (std::size_t f = 0; f < grids.size(); ++f) {
       const ExportedGrid& grid = grids[f];
       EXPECT_EQ(grid.time, number(nodes[f * n][0]));
@@ -88,7 +91,7 @@ class ExportTest : public ProgramTest {
         for (std::size_t i = 0; i < e; ++i) {
           const std::string& field = elements[f * e + i][4 + c];
           EXPECT_EQ(array.values[i],
-                    columns[c] == "stress_Pa" ? number(field) : std::strtof(field.c_str(), nullptr))
+                    columns[c].ends_with("stress_Pa") ? number(field) : std::strtof(field.c_str(), nullptr))
               << columns[c] << " of element " << i << " at " << grid.time << " s";
         }
       }
@@ -123,8 +126,7 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
   const std::size_t frames = what["frames"];
   EXPECT_EQ(frames, 31u);  // 100 Hz for 0.3 s, both ends included
   const Table nodes = rows("nodes.csv", "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
-  const Table elements =
-      rows("elements.csv", "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge");
+  const Table elements = rows("elements.csv", k_elements);
   const Table floor = rows("floor.csv", "time_s,ax,ay,az,dx,dy,dz");
   EXPECT_EQ(nodes.size(), frames * what["nodes"].get<std::size_t>());
   EXPECT_EQ(elements.size(), frames * what["elements"].get<std::size_t>());
@@ -133,6 +135,14 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
   const io::FrameRow last = recording.frame(recording.frame_count() - 1);
   EXPECT_EQ(static_cast<float>(number(nodes.back()[5])), last.position.back());
   EXPECT_EQ(static_cast<float>(number(elements.back()[9])), last.section_force.back());
+  double at_points = 0, peak = 0;
+  for (const std::vector<std::string>& row : elements) {
+    at_points = std::max(at_points, number(row[10]));
+    peak = std::max(peak, number(row.back()));
+  }
+  EXPECT_GT(peak, at_points);
+  EXPECT_LE(peak,
+            (1 + 1e-6) * what["summary"]["bodies"][0]["peak_stress_Pa"].get<double>());  // single precision
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(number(floor.back()[1 + static_cast<std::size_t>(k)]), last.floor_acceleration[k]);
     EXPECT_EQ(number(floor.back()[4 + static_cast<std::size_t>(k)]), last.floor_displacement[k]);

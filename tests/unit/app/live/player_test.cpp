@@ -244,6 +244,8 @@ TEST_F(PlayerTest, an_anchor_is_taken_away_and_put_back_and_the_run_repeats) {
   run_to(0.2);
   player().edit({Edit::Key::anchor, 1, Vec3(0, 0, 0)});
   EXPECT_FALSE(player().parameters().anchors[1]);
+  EXPECT_TRUE(
+      until([&] { return player().row()->anchor[1].state == io::k_anchor_away; }));  // it stands still
   run_to(0.4);
   EXPECT_EQ(player().row()->anchor[1].state, io::k_anchor_away);
   player().undo();

@@ -205,6 +205,35 @@ TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
   EXPECT_FLOAT_EQ(frame.trace.cursor, 0.1f);
 }
 
+TEST(RoomPicture, shows_doors_in_their_walls_and_places_on_the_floor) {
+  const io::Scene scene = io::load_scene("classroom");
+  const Room& room = scene.setup.room;
+  const topple::Run run(scene.setup);
+  const io::FrameRow row = io::frame_row(run);
+  RunExtent extent;
+  extent.add(scene.setup.model, scene.setup.parameters, row);
+  const Bridge bridge(scene, extent);
+  const render::SceneFrame frame = bridge.frame(row, scene.setup.parameters);
+  std::vector<std::string> words;
+  for (const render::Label& label : frame.labels) words.push_back(label.words);
+  EXPECT_EQ(words, (std::vector<std::string>{"front door", "back door", "teacher", "aisle", "back row"}));
+  for (std::size_t d = 0; d < room.doors.size(); ++d) {
+    const auto& corners = frame.panels[d].corners;
+    const Room::Wall& wall = room.walls[static_cast<std::size_t>(room.doors[d].wall)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(Room::before(wall, {corners[k][0], corners[k][1]}), 0.005, 1e-6);
+      EXPECT_FLOAT_EQ(corners[k][2], k < 2 ? 0 : 2);
+    }
+    EXPECT_NEAR(std::hypot(corners[1][0] - corners[0][0], corners[1][1] - corners[0][1]), 0.9, 1e-6);
+  }
+  ASSERT_EQ(frame.rings.size(), 3u);
+  EXPECT_FLOAT_EQ(frame.rings[0].radius, 0.25f);
+  EXPECT_EQ(frame.rings[0].centre, (Float3{3, 0, 0}));
+  PictureSettings settings;
+  settings.words = false;
+  EXPECT_TRUE(bridge.frame(row, scene.setup.parameters, settings).labels.empty());
+}
+
 TEST(StaticBridge, pictures_of_a_static_run_tell_load_step_and_load_factor) {
   const io::Scene scene = io::load_scene("portal-pushover");
   topple::Run run(scene.setup);

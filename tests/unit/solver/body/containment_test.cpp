@@ -294,7 +294,7 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
   }
   [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
                                 want_stress, accuracy, gravity, integrator, spectral_radius, beta, gamma,
-                                time_step, adaptive, tolerance, substep_refinement] = all;
+                                time_step, adaptive, tolerance, substep_refinement, resolves_contacts] = all;
   out["contact_ramp.since"] = [](Parameters& p) -> double& { return p.contact_ramp.since; };
   out["contact_ramp.over"] = [](Parameters& p) -> double& { return p.contact_ramp.over; };
   for (std::size_t b = 0; b < all.damping.size(); ++b)

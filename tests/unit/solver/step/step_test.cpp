@@ -145,6 +145,30 @@ TEST(Step, energy_balances_in_a_slide) {
   }
 }
 
+// Thrown down at 10 m/s in steps of 4 ms, each of which takes a point past the whole width of its contact.
+TEST(Step, one_that_is_too_long_for_a_contact_is_taken_in_parts) {
+  Model model = steel_model();
+  CabinetSpec spec = tall_cabinet();
+  spec.at.z() += 0.05;
+  BodyStart start = add_cabinet(model, spec);
+  start.velocity = {0, 0, -10};
+  model.planes.push_back(ground());
+  Parameters p;
+  p.contact.alpha = 20000 * k_g;
+  p.time_step = 4e-3;
+  for (const bool resolves : {true, false}) {
+    p.resolves_contacts = resolves;
+    Simulation sim(model, {start}, p, false);
+    StepStatus status;
+    while (status.ok() && sim.state.time < 0.5) status = sim.advance();
+    EXPECT_EQ(status.ok(), resolves) << status.message(model);
+    if (resolves)
+      EXPECT_LE(sim.state.energy.balance_error(), 2e-3);  // 1e-3 of each step that is taken as a whole
+    else
+      EXPECT_EQ(status.kind, StepStatus::Kind::energy_lost);
+  }
+}
+
 // Puts `bad` into one field and steps: the step is refused with the state as it was, or the field played no
 // part and what is accepted is finite.
 void expect_never_accepted(const Scene& scene, const std::function<void(Simulation&, double)>& poison,
