@@ -102,7 +102,9 @@ bool is_too_coarse(const Parameters& parameters, const State& from, double h, co
          (hardest_contact(parameters, from, w).force > 0 || hardest_contact(parameters, w.next, w).force > 0);
 }
 
-// One step of size h into w.next, in parts where it is too coarse as a whole.
+// One step of size h into w.next, in parts where it is too coarse as a whole. After those the algorithmic
+// accelerations stay as near to the true ones as the last part left them: what is not smooth in a part is no
+// slope that a whole step may follow.
 StepStatus in_parts(const Model& model, const Parameters& parameters, const State& from, double h,
                     int divisions, Workspace::Impl& w) {
   StepStatus status = try_step(model, parameters, from, h, k_halvings, w);
@@ -120,8 +122,6 @@ StepStatus in_parts(const Model& model, const Parameters& parameters, const Stat
   }
   at.step = from.step + 1;
   at.time = from.time + h;
-  at.step_size = h / k_parts;
-  change_step(at, h);
   w.next = at;
   return status;
 }
