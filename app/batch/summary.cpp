@@ -18,6 +18,7 @@
 #include "solver/body/planar_body.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
+#include "solver/planar/planar_case.h"
 
 namespace topple::app {
 namespace {
@@ -165,7 +166,7 @@ std::string text(const ordered_json& value, const char* format) {
 
 /// The line about `error_estimate`.
 std::string estimate_in_words(const ordered_json& e) {
-  const std::string begin = fmt::format("error ({}): ", e["how"].get<std::string>());
+  const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
   if (e.contains("failed"))
     return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
   if (!e["disagreements"].empty()) {
@@ -192,6 +193,8 @@ std::string static_head(const ordered_json& s) {
   for (const auto& step : s["static"])
     out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
                        step["converged"].get<bool>() ? "converged" : "no equilibrium", loss_in_words(step));
+  const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
+  if (std::ranges::all_of(s["static"], stable)) out += "stable at every load factor\n";
   return out + "\n";
 }
 
@@ -216,11 +219,14 @@ std::string integrators(const ordered_json& s) {
   return words.empty() ? "central differences" : words;
 }
 
-std::string allowed_error(const ordered_json& change) {
+std::string allowed_error(const ordered_json& body, const ordered_json& change) {
   const ordered_json& estimate = change["error_estimate"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
-  return fmt::format("; error about {:.2g} %", 100 * estimate.get<double>());
+  const bool may_strike =
+      body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
+  return fmt::format("; error about {:.2g} %{}", 100 * estimate.get<double>(),
+                     may_strike ? " until it strikes something, from which a frame springs back" : "");
 }
 
 // Of the model that a body begins with.
@@ -474,7 +480,7 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& b : s["bodies"])
     width = std::max(width, static_cast<int>(letters(b["name"].get<std::string>())));
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
-                     "uplift", "impacts", "peak tilt", "final tilt", "slide", "peak stress");
+                     "uplift", "impacts", "peak tilt", "final tilt", "peak slide", "peak stress");
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",
                      "deg", "deg", "mm", "MPa");
   for (const auto& b : s["bodies"]) {
@@ -491,7 +497,7 @@ std::string summary_table(const ordered_json& s) {
     for (const auto& model : b["models"])
       out += fmt::format("{}: {} from {} s ({}{}{})\n", b["name"].get<std::string>(),
                          model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
-                         model["reason"].get<std::string>(), not_planar(b, model), allowed_error(model));
+                         model["reason"].get<std::string>(), not_planar(b, model), allowed_error(b, model));
   for (const auto& b : s["bodies"])
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
       out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",

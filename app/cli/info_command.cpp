@@ -52,6 +52,11 @@ std::string verdict(const ordered_json& recording) {
   return out;
 }
 
+/// What happened; that it overturned for good is in the summary.
+std::string event_words(const ordered_json& e) {
+  return e["kind"] == "overturn" ? "passes its critical angle" : e["kind"].get<std::string>();
+}
+
 /// What an event was of, beside its kind.
 std::string event_detail(const ordered_json& e) {
   if (e.contains("anchor")) return " " + e["anchor"].get<std::string>() + " broke";
@@ -106,8 +111,7 @@ std::string info_table(const ordered_json& d) {
   for (const auto& e : d["events"])
     out += (is_static(d) ? fmt::format("load step {:>4}", e["step"].get<long>())
                          : fmt::format("{:>10.4f} s", e["time_s"].get<double>())) +
-           fmt::format("  {} {}{}\n", e["body"].get<std::string>(), e["kind"].get<std::string>(),
-                       event_detail(e));
+           fmt::format("  {} {}{}\n", e["body"].get<std::string>(), event_words(e), event_detail(e));
   return out;
 }
 

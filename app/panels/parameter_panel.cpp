@@ -280,7 +280,9 @@ void draw_integrator(const Parameter& of) {
 
 void draw_anchor(const Parameter& of) {
   const Anchor& anchor = of.model().anchors[static_cast<std::size_t>(of.index)];
-  of.row().tick(anchor.name,
+  const auto row = of.player.row();
+  const bool broke = row && row->anchor[static_cast<std::size_t>(of.index)].state == io::k_anchor_broken;
+  of.row().tick(broke ? say(k_anchor_broke, anchor.name) : anchor.name,
                 say(k_anchor_about, of.model().bodies[static_cast<std::size_t>(anchor.body)].name));
 }
 

@@ -23,7 +23,7 @@ constexpr double k_least_arrow = 0.004;  // m: shorter ones are not seen
 
 constexpr double k_door = 2;             // m, drawn so high
 constexpr double k_before_wall = 0.005;  // m
-constexpr render::Float4 k_place_colour = {0.10f, 0.55f, 0.30f, 1};
+constexpr render::Float4 k_place_colour = {0.36f, 0.45f, 0.56f, 1};
 
 constexpr double k_trail = 1;  // s
 constexpr std::size_t k_trail_points = 240;

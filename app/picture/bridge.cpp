@@ -148,6 +148,10 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   io::FrameRow drawn = row;
   exaggerate(model, fit, settings.exaggeration, drawn);
   add_tubes(drawn, colours(row, fit, settings.colour), out.stations, out.tubes);
+  if (settings.colour == BeamQuantity::yield_ratio)  // what cannot yield has none
+    for (render::Tube& tube : out.tubes)
+      if (!std::isfinite(model.elements[model.members[tube.member].first_element].capacity[0]))
+        tube.colour = k_rigid_colour;
   add_hinges(model, drawn, out);
   add_doors(scene_.setup.room, shift, out);
   add_anchors(model, drawn, shift, out);

@@ -73,7 +73,8 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
                             all ? ""
                             : results.why_not_planar.empty()
                                 ? study::k_climbed
-                                : "; the scene itself is none: " + results.why_not_planar);
+                                : ", the others as rigid bodies; the scene itself is none: " +
+                                      results.why_not_planar);
 }
 
 Findings findings(const study::FragilityPlan& plan, const study::FragilityResults& results) {

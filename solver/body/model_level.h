@@ -20,8 +20,8 @@
 //   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
 //     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.
-// It comes down to its base level when no such frame is near, no hinge ever formed in it, and for k_calm_for
-// sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
+// It comes down to its base level when no such frame is near, no hinge ever formed in it, it does not fall,
+// and for k_calm_for sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
 //
 // Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
 // bore. Up: nodes are placed where the modes, and what loads add to them statically, put them. Down: the

@@ -36,6 +36,14 @@ bool is_bent(const Model& model, const State& state, int b) {
   });
 }
 
+// It moves, tilted beyond its least critical angle.
+bool is_falling(const Model& model, const Parameters& parameters, const State& state, int b) {
+  const Body& body = model.bodies[b];
+  return tilt(body_pose(model, state, b)) > least_tipping_angle(body) &&
+         body_momentum(model, state, b).velocity.squaredNorm() / 2 >
+             k_negligible * parameters.gravity.norm() * body.reach;
+}
+
 double strain_energy(const Model& model, int b, const std::vector<SectionForces>& sections) {
   const Body& body = model.bodies[b];
   double strain = 0;
@@ -123,6 +131,15 @@ LevelChoice ModelSwitch::choose_of_block(const Switching& on, int b) {
   return reason ? LevelChoice{ModelLevel::rigid, *reason} : LevelChoice{s.level, s.reason};
 }
 
+// Whether a frame, as an elastic body, would be on what makes that one a frame.
+bool ModelSwitch::would_lie(const Switching& on, ModelLevel level, int b) {
+  if (!traits(level).has_modes) return false;
+  ReducedBody& body = on.parts.reduced(on.state, b);
+  body.remember(on.state.anchors);
+  body.find_contacts(on.now, reduce(on.model, on.state, b, level), on.state.stick);
+  return body.lands_on_what_gives(on.parameters.contact.alpha);
+}
+
 // At the state of `on`, where the contacts of those that are not frames have been found.
 LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   const auto& [model, parameters, now, end, state, parts] = on;
@@ -134,7 +151,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (base.level == ModelLevel::frame) return base;
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
-    const bool calm = !is_bent(model, state, b) &&
+    const bool calm = !is_bent(model, state, b) && !is_falling(model, parameters, state, b) &&
                       strain_energy(model, b, parts.sections) <
                           k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
                       yield_ratio(model, b, parts.sections) < k_calm_yield;
@@ -142,7 +159,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
       s.calm_since = -1;
     else if (s.calm_since < 0)
       s.calm_since = state.time;
-    else if (state.time - s.calm_since >= k_calm_for)
+    else if (state.time - s.calm_since >= k_calm_for && !would_lie(on, base.level, b))
       return {base.level, LevelReason::calm};
     return {s.level, s.reason};
   }
@@ -150,6 +167,11 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
     return {ModelLevel::frame,
             std::isfinite(s.error_estimate) ? LevelReason::deformation : LevelReason::fall};
+  // before it strikes hard: what springs of its own each contact point of an elastic body has is not what the
+  // frame has, and the blow would be another one
+  if (automatic && s.level == ModelLevel::elastic && parts.reduced(state, b).is_struck() &&
+      is_falling(model, parameters, state, b))
+    return {ModelLevel::frame, LevelReason::fall};
   if (watched_[b]) {
     if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
     ReducedBody& body = parts.reduced(state, b);

@@ -62,7 +62,7 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = up.head<2>().norm();
   double distance = std::numeric_limits<double>::infinity();
-  if (lean > 1e-12) {
+  if (lean > k_uplift_angle) {
     distance =
         distance_to_edge(body.support_polygon, body.centre_of_gravity, Vec3(-up.x(), -up.y(), 0) / lean);
   } else {

@@ -106,6 +106,12 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::energy_lost:
       return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
              when + ": " + where + finer;
+    case Kind::folded:
+      return where + " has folded " + when +
+             ": an element follows a bend, but not one beyond half a turn; a fracture_strain lets it break, "
+             "a "
+             "stiffer section or more elements keep it from folding" +
+             (by_tolerance ? "" : ", if a smaller time_step does not");
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::bad_parameter:

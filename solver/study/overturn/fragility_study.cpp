@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/io/scene/scene_file.h"
+#include "solver/model/accelerogram.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/kept_rows.h"
 #include "solver/study/common/measure.h"
@@ -162,6 +163,19 @@ FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& record
   return curve;
 }
 
+/// Towards the edge that the shake pushes it to, where it goes along one line; else the nearest.
+Standing pushed(const Setup& setup, int body) {
+  const std::vector<Shake>& shakes = setup.parameters.shakes;
+  const bool line = shakes.size() == 1 && (!shakes[0].record || shakes[0].record->components.size() == 1);
+  std::optional<Standing> least;
+  for (const double sense : {1., -1.})
+    if (const auto at =
+            line ? standing_towards(setup.model, setup.parameters, body, sense * shakes[0].direction)
+                 : std::nullopt)
+      if (!least || at->rigid_limit() < least->rigid_limit()) least = at;
+  return least ? *least : standing(setup.model, setup.parameters, body);
+}
+
 /// In the axis's unit; 0: the axis is neither of acceleration nor of velocity.
 BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) {
   const Setup& setup = plan.scene.setup;
@@ -171,7 +185,7 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
   out.why_not =
       !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_not_standing(setup.model, body);
   if (!out.why_not.empty()) return out;
-  const Standing at = standing(setup.model, setup.parameters, body);
+  const Standing at = pushed(setup, body);
   out.corner = evaluation_frequency(at);
   const double median = evaluation_acceleration(at), turn = 2 * k_pi * frequency;
   // of a floor that goes by acceleration below the corner, by velocity above

@@ -126,6 +126,43 @@ TEST_F(FailureTest, a_scene_that_collapses_under_its_own_weight_is_told) {
                   {"before the first step, at 0 s", "does not come to rest under gravity"});
 }
 
+// A moment that is greater than what a post of lead bears winds it up.
+TEST_F(FailureTest, an_element_that_folds_is_told_and_one_that_breaks_goes_on) {
+  write_bytes("post.toml", R"(topple = 1
+[run]
+duration = 2
+time_step = "auto"
+gravity = [0, 0, 0]
+settle = false
+[[material]]
+name = "lead"
+young = "16 GPa"
+poisson = 0.44
+density = 11340
+yield = "1 MPa"
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["20 mm", "20 mm"]
+[[frame]]
+name = "post"
+nodes = [[0, 0, 0], [0, 0, 1]]
+members = [{ nodes = [0, 1], section = "bar", material = "lead" }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+masses = [{ node = 1, mass = 1, inertia = [1, 1, 1] }]
+loads = [{ node = 1, moment = [0, 5, 0] }]
+)");
+  for (const char* step : {"run.time_step=auto", "run.time_step=1e-3"}) {
+    const Ended folds = topple({"run", "post.toml", "--quiet", "--set", step});
+    EXPECT_EQ(folds.code, 1);
+    EXPECT_NE(folds.err.find("body \"post\", member \"member-0\" (element "), std::string::npos) << folds.err;
+    EXPECT_NE(folds.err.find(" has folded at "), std::string::npos) << folds.err;
+  }
+  const Ended breaks = topple({"run", "post.toml", "--quiet", "--set", "material.lead.fracture_strain=0.05"});
+  EXPECT_EQ(breaks.code, 0) << breaks.err;
+  EXPECT_NE(breaks.out.find("1 broken section"), std::string::npos) << breaks.out;
+}
+
 // It falls for 0.1 s before it meets the floor; sixty-four parts of a step of 50 ms are still too long there.
 TEST_F(FailureTest, a_step_far_too_long_is_told_and_what_converged_stays_readable) {
   const Ended ended = topple({"run", TOPPLE_SOURCE_DIR "/assets/scenes/failures/fast-impact.toml", "--set",

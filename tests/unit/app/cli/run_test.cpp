@@ -140,7 +140,8 @@ TEST_F(RunTest, an_estimate_of_the_error_stands_in_summary_table_and_recording) 
   const Ended ended = topple({"run", "s.toml", "--estimate", "-o", "a.h5", "--json", "a.json"});
   EXPECT_EQ(ended.code, 0);
   EXPECT_EQ(ended.err, "");
-  EXPECT_NE(ended.out.find("\nerror (step halved): peak tilt "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("\nerror of the time integration (step halved): peak tilt "), std::string::npos)
+      << ended.out;
   const Json s = json_of(bytes_of("a.json")), &e = s["error_estimate"];
   ASSERT_TRUE(e.is_object());
   EXPECT_EQ(e["how"], "step halved");
@@ -164,7 +165,9 @@ TEST_F(RunTest, an_estimate_of_the_error_stands_in_summary_table_and_recording) 
 TEST_F(RunTest, the_error_of_an_adaptive_run_is_that_of_its_tolerance) {
   const Ended ended = topple({"run", "s.toml", "--estimate", "--set", "run.time_step=auto"});
   EXPECT_EQ(ended.code, 0);
-  EXPECT_NE(ended.out.find("\nerror (tolerance divided by 10): peak tilt "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("\nerror of the time integration (tolerance divided by 10): peak tilt "),
+            std::string::npos)
+      << ended.out;
 }
 
 TEST_F(RunTest, what_takes_no_steps_of_time_has_no_error_of_them) {
