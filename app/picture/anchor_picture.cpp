@@ -141,8 +141,8 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
     const bool strap = anchor.type == Anchor::Type::strap;
     const Shape shape = strap ? band : rod;
     const render::Float4& colour = state == io::k_anchor_holds ? k_held_colour : k_idle_colour;
-    painter.mark(plate, colour, from, direction);
     if (state == io::k_anchor_away) continue;
+    painter.mark(plate, colour, from, direction);
     painter.mark(thimble, colour, to, direction);
     if (state == io::k_anchor_broken) {
       const double stump = std::max(k_stump * length, k_least_stump);

@@ -37,7 +37,11 @@ std::string probability(ReportPage& page) {
   std::string out = "<h3>" + page.say(words::k_probability, short_shown(100 * report.spread)) + "</h3>\n";
   out += page.paragraph(page.say(words::k_probability_text, report.trials.size(), shown(1 - report.spread, 2),
                                  shown(1 + report.spread, 2)));
-  if (failed > 0) out += page.paragraph(page.say(words::k_runs_failed, failed, report.trials.size()));
+  std::string factors;
+  for (const study::Trial& trial : report.trials)
+    if (!trial.finished) factors += (factors.empty() ? "" : ", ") + shown(trial.factor, 3);
+  if (failed > 0)
+    out += page.paragraph(page.say(words::k_runs_failed, failed, report.trials.size(), factors));
   if (runs == 0) return out;
   std::vector<std::vector<std::string>> rows;
   DotChart chart;

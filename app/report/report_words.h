@@ -224,8 +224,9 @@ inline constexpr Phrase k_probability_text{
     "床の揺れに{1}から{2}までの等間隔の倍率を掛け、計算を{0}"
     "回繰り返した。衝突を何度か経たロッキングはわずかな違いで挙動が分かれるため、"
     "1回の軌跡ではなく、転倒した計算の割合が信頼できる指標となる。"};
-inline constexpr Phrase k_runs_failed{"{0} of {1} runs failed and are left out.",
-                                      "{1}回のうち{0}回は計算が失敗したため除外した。"};
+inline constexpr Phrase k_runs_failed{
+    "{0} of {1} runs failed and are left out: with the input times {2}. A run of the scene with it says why.",
+    "{1}回のうち{0}回（入力{2}倍）は計算が失敗したため除外した。その倍率で計算すると理由が示される。"};
 inline constexpr Phrase k_overturned_in{"overturned in", "転倒した計算"};
 inline constexpr Phrase k_runs{"{0} of {1} runs", "{1}回中{0}回"};
 inline constexpr Phrase k_share{"share", "割合"};

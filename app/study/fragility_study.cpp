@@ -104,7 +104,7 @@ Findings findings(const study::FragilityPlan& plan, const study::FragilityResult
                    const std::string& origin,
                    study::ChartFormat format) { return fragility_chart(plan, results, origin, format); },
       .text = in_words(plan, results),
-      .each = fmt::format(" of {} runs", plan.chunk),
+      .each = fmt::format(" of up to {} runs", plan.chunk),
       .pace = fmt::format(", {:.4g} runs a second and core",
                           static_cast<double>(results.runs) / std::max(1e-9, results.cpu))};
 }

@@ -96,7 +96,7 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
       .chart = [&plan, &map](const std::string& origin,
                              study::ChartFormat format) { return overturn_chart(plan, map, origin, format); },
       .text = picture(plan, map) + fit_in_words(plan, map) + models_in_words(plan, map),
-      .each = plan.chunk > 1 ? fmt::format(" of {} runs", plan.chunk) : "",
+      .each = plan.chunk > 1 ? fmt::format(" of up to {} runs", plan.chunk) : "",
       .pace = fmt::format(", {:.3g} ms CPU time a run", 1e3 * cpu / std::max(1, map.run))};
 }
 

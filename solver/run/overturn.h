@@ -28,8 +28,8 @@ inline constexpr double k_uplift_angle = 0.05 * k_pi / 180;
 inline constexpr std::size_t k_kept_impacts = 100;
 
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
-/// rad: atan(distance/height). Infinite without a floor, and for a body without a base or with supports
-/// there.
+/// below k_uplift_angle above the nearest, rad: atan(distance/height). Infinite without a floor, and for a
+/// body without a base or with supports there.
 double critical_angle(const Model& model, int body, const BodyPose& pose);
 
 /// Energy that lifts the centre of gravity of a rigid body over the edge in the direction of its tilt, J;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "solver/body/anchors.h"
 #include "solver/body/candidates.h"
@@ -19,6 +20,16 @@ constexpr double k_least_energy = 1e-6;  // J, below it a balance is rounding
 // Accelerations anew of the bodies whose anchors were switched.
 void balance_changed(const StepInProgress& s) {
   s.w.parts.balance(s.parameters, s.start, s.w.changed, s.w.next);
+}
+
+// Greatest stable step over that of central differences, by linear theory: 1/sqrt(gamma/2 - beta)/2 of
+// Newmark's method where that is real (Hughes 1987, 9.1.2).
+double stable_share(const Parameters& parameters) {
+  const IntegratorTraits& method = traits(parameters.integrator);
+  if (method.is_explicit) return 1;
+  const GeneralizedAlpha c = method.coefficients(parameters);
+  const double lacks = c.gamma / 2 - c.beta;
+  return lacks > 0 && !parameters.adaptive ? 0.5 / std::sqrt(lacks) : std::numeric_limits<double>::infinity();
 }
 
 // Another law took hold: what contacts hold more with it is input.
@@ -78,11 +89,12 @@ void apply_events(StepInProgress& s) {
 
 StepStatus check_stability(const StepInProgress& s) {
   StepStatus status;
-  if (!traits(s.parameters.integrator).is_explicit) return status;
+  const double share = stable_share(s.parameters);
+  if (!std::isfinite(share)) return status;
   const std::optional<ExplicitLimit>& limit = s.w.find_explicit_limit(s.parameters, s.w.next);
-  if (!limit || s.h <= limit->step) return status;
+  if (!limit || s.h <= share * limit->step) return status;
   status.kind = StepStatus::Kind::step_too_long;
-  status.limit = limit->step;
+  status.limit = share * limit->step;
   status.time = s.from.time;
   status.body = limit->body;
   status.node = limit->node;

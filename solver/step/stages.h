@@ -32,7 +32,7 @@ void switch_models(const StepInProgress& step);
 /// Applies what changed since the last step: anchors, contact law, step size, a jump of the floor's velocity.
 void apply_events(StepInProgress& step);
 
-/// step_too_long where an explicit method is not stable.
+/// step_too_long where an explicit method, or Newmark's with steps of fixed length, is not stable.
 StepStatus check_stability(const StepInProgress& step);
 
 /// Advances all parts to the end of the step, in parallel where there are workers. The first failure counts.

@@ -137,12 +137,18 @@ class Collector {
 
   bool follows(const std::string& message, const std::string& error_path) const {
     for (const std::string& path : keys_) {
-      if (path == error_path) return true;
+      if (path == error_path || path.starts_with(error_path + ".")) return true;  // an entry without its key
       const std::string key = path.substr(path.rfind('.') + 1);
       for (const char* how : {" is ", " = "})
         if (message.find("but " + key + how) != std::string::npos) return true;
     }
     if (!message.starts_with(k_there_is_no)) return false;
+    const auto is_kind = [](const std::string& path) {
+      return path.starts_with("furniture.") && path.ends_with(".kind");
+    };
+    if (message.starts_with(std::string(k_there_is_no) + "[[furniture]]") &&
+        std::ranges::any_of(keys_, is_kind))
+      return true;  // it may be the piece that is called after its kind
     // copies of an entry are called after it
     return std::ranges::any_of(names_, [&](const std::string& name) {
       return message.find('"' + name + '"') != std::string::npos ||

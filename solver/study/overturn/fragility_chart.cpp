@@ -121,6 +121,7 @@ class FragilityChart {
   std::string coverage() const {
     std::string out = results_.runs == results_.of ? fmt::format("{} runs", results_.of)
                                                    : fmt::format("{} of {} runs", results_.runs, results_.of);
+    if (results_.planar < results_.runs) out += ", as rigid bodies";
     if (shown_.size() < results_.bodies.size())
       out += fmt::format("; {} of {} shown", shown_.size(), results_.bodies.size());
     return out;

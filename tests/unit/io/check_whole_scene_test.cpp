@@ -83,6 +83,16 @@ TEST(CheckWholeScene, copies_and_fittings_of_what_is_wrong_are_not_blamed) {
   EXPECT_TRUE(found.errors[2].starts_with("s.toml:22:8: probe.2.body: "));
 }
 
+// Another piece stands beside it, and without that key it would stand in the wall.
+TEST(CheckWholeScene, a_misspelt_kind_is_one_error) {
+  const CheckedScene found = checked(
+      "topple = 1\n[floor]\n[[wall]]\nname = \"back\"\nat = [0, 0]\nnormal = [1, 0, 0]\n"
+      "[[furniture]]\nkind = \"bookshelff\"\nagainst = \"back\"\n"
+      "[[furniture]]\nkind = \"filing-cabinet\"\nbeside = \"bookshelf\"\n");
+  ASSERT_EQ(found.errors.size(), 1u) << testing::PrintToString(found.errors);
+  EXPECT_NE(found.errors[0].find("the nearest is bookshelf"), std::string::npos) << found.errors[0];
+}
+
 TEST(CheckWholeScene, entries_keep_their_numbers_behind_one_that_is_left_out) {
   const CheckedScene found = checked(k_scene + "[[probe]]\n[[probe]]\nbody = \"beam\"\nnode = 7\n");
   ASSERT_EQ(found.errors.size(), 2u);

@@ -69,7 +69,7 @@ TEST_F(StabilityTest, gives_a_map_for_each_method_with_the_limits_of_theory) {
   EXPECT_EQ(json["rows"][0]["fate"], "refused");
   EXPECT_EQ(json["rows"][0]["reached_s"], 0);
   EXPECT_NE(
-      json["rows"][0]["status"].get<std::string>().find("central-difference is stable up to a time_step of"),
+      json["rows"][0]["status"].get<std::string>().find("the time integration is stable up to a time_step of"),
       std::string::npos);
 }
 

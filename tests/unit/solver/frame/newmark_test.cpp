@@ -47,6 +47,23 @@ TEST(Newmark, average_acceleration_is_of_second_order_and_the_damped_rule_of_fir
   EXPECT_NEAR(order(k_damped), 1, 0.1);
 }
 
+// Linear acceleration, beta = 1/6: omega h = 2 sqrt(3), where central differences have 2.
+TEST(Newmark, is_refused_where_linear_theory_says_that_it_grows) {
+  constexpr Rule k_linear{1. / 6, 0.5};
+  Parameters central = newmark(k_linear, 1e-9);
+  central.integrator = Integrator::central_difference;
+  Simulation probe(oscillator(), {BodyStart{}}, central);
+  ASSERT_TRUE(probe.advance(1));
+  const double limit = std::sqrt(3.) * *explicit_limit(probe.workspace());
+  Simulation stable = plucked(k_linear, 0.99 * limit);
+  ASSERT_TRUE(stable.advance(1000));
+  EXPECT_LT(std::abs(stable.state.position[1].x() - 1), 0.02);  // it was pulled by 0.01
+  Simulation grows = plucked(k_linear, 1.01 * limit);
+  const StepStatus status = grows.advance();
+  EXPECT_EQ(status.kind, StepStatus::Kind::step_too_long);
+  EXPECT_NEAR(status.limit, limit, 1e-9 * limit);
+}
+
 // Two masses on a spring that tumble and swing: rotations take part.
 Quat tumbled(const Rule& rule, double h) {
   Model model = oscillator();

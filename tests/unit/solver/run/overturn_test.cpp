@@ -83,7 +83,7 @@ TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
     return critical_angle(s.model, 0, turned(s.model, angle * axis));
   };
   const double hx = k_depth / 2, hy = k_breadth / 2, corner = std::atan2(hy, hx);
-  for (double angle : {1e-6, 0.1, 0.5}) {
+  for (double angle : {1e-3, 0.1, 0.5}) {
     SCOPED_TRACE(angle);
     EXPECT_NEAR(critical(0, angle), std::atan2(hx, k_height), 1e-9);
     EXPECT_NEAR(critical(k_pi, angle), std::atan2(hx, k_height), 1e-9);
@@ -96,8 +96,9 @@ TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
       EXPECT_NEAR(critical(direction, angle), std::atan2(distance, k_height), 1e-9) << direction;
     }
   }
-  // upright: the nearest edge
+  // upright, within what counts as that: the nearest edge
   EXPECT_NEAR(critical_angle(s.model, 0, turned(s.model, Vec3::Zero())), k_edge_angle, 1e-9);
+  EXPECT_NEAR(critical(k_pi / 2, 0.9 * k_uplift_angle), k_edge_angle, 1e-9);
 }
 
 // The centre of gravity of a body that turns about its edge rises by what the barrier says.
