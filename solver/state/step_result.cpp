@@ -96,8 +96,8 @@ std::string StepStatus::message(const Model& model) const {
              " does not come to rest under gravity: " + in_words(no_rest) +
              "; settle = false starts it as it is";
     case Kind::step_too_long:
-      return where + format(": the time integration is stable up to a time_step of %.4g s", limit) + ", met " +
-             when + "; try a smaller one, or generalized-alpha";
+      return where + format(": the time integration is stable up to a time_step of %.4g s", limit) +
+             ", met " + when + "; try a smaller one, or generalized-alpha";
     case Kind::no_equilibrium:
       return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
              loss_in_words(stability.loss);

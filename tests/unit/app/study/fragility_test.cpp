@@ -93,8 +93,9 @@ TEST_F(FragilityTest, killed_and_resumed_it_has_no_row_twice) {
   again.push_back("--resume");
   const Ended resumed = topple(call("out", again));
   EXPECT_EQ(resumed.code, 0) << resumed.err;
-  EXPECT_NE(resumed.out.find("12 of 12 parts of up to 4 runs (" + std::to_string(cases.size()) + " from before)"),
-            std::string::npos)
+  EXPECT_NE(
+      resumed.out.find("12 of 12 parts of up to 4 runs (" + std::to_string(cases.size()) + " from before)"),
+      std::string::npos)
       << resumed.out;
   EXPECT_EQ(rows("out"), rows("whole"));
   close(out);

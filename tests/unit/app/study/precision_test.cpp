@@ -63,7 +63,8 @@ TEST_F(PrecisionTest, gives_numbers_charts_a_reference_and_the_cheapest_settings
       EXPECT_FALSE(row["tilt_error"].is_null());
       continue;
     }
-    EXPECT_NE(row["status"].get<std::string>().find("the time integration is stable up to"), std::string::npos);
+    EXPECT_NE(row["status"].get<std::string>().find("the time integration is stable up to"),
+              std::string::npos);
     EXPECT_TRUE(row["tilt_error"].is_null());
     ++too_long;
   }

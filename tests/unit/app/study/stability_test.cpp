@@ -68,9 +68,9 @@ TEST_F(StabilityTest, gives_a_map_for_each_method_with_the_limits_of_theory) {
   // a failed run is a row that says when and why
   EXPECT_EQ(json["rows"][0]["fate"], "refused");
   EXPECT_EQ(json["rows"][0]["reached_s"], 0);
-  EXPECT_NE(
-      json["rows"][0]["status"].get<std::string>().find("the time integration is stable up to a time_step of"),
-      std::string::npos);
+  EXPECT_NE(json["rows"][0]["status"].get<std::string>().find(
+                "the time integration is stable up to a time_step of"),
+            std::string::npos);
 }
 
 TEST_F(StabilityTest, rows_are_the_same_on_one_thread_on_two_and_on_two_ranks) {
