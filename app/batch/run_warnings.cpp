@@ -46,15 +46,6 @@ void warn_of_depth(const Run& run, Warnings& list) {
                       model.bodies[b].name, 1 - bodies[b].peak_pinch));
 }
 
-void warn_of_shakes(const Run& run, Warnings& list) {
-  const std::vector<Shake>& shakes = run.parameters().shakes;
-  for (std::size_t k = 0; k < shakes.size(); ++k)
-    if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
-      list.push_back(
-          fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
-                      k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
-}
-
 // With run.control the loads follow the path, and a body stays on it.
 void warn_of_instability(const Run& run, Warnings& list) {
   const std::vector<LoadStep>& steps = run.load_steps();
@@ -142,10 +133,18 @@ void warn_of_energy(const Run& run, Warnings& list) {
 
 }  // namespace
 
+void warn_of_shakes(const std::vector<Shake>& shakes, std::vector<std::string>& list) {
+  for (std::size_t k = 0; k < shakes.size(); ++k)
+    if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
+      list.push_back(
+          fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
+                      k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
+}
+
 std::vector<std::string> run_warnings(const Run& run) {
   Warnings list;
   warn_of_depth(run, list);
-  warn_of_shakes(run, list);
+  warn_of_shakes(run.parameters().shakes, list);
   warn_of_stress(run, list);
   warn_of_instability(run, list);
   if (is_static(run.setup())) return list;

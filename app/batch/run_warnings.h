@@ -10,5 +10,7 @@ namespace topple::app {
 
 /// One sentence each, for the `warnings` of a summary: what was seen, where, and what to try.
 std::vector<std::string> run_warnings(const Run& run);
+/// Adds those of accelerations that no floor has, most likely of a unit that was forgotten.
+void warn_of_shakes(const std::vector<Shake>& shakes, std::vector<std::string>& list);
 
 }  // namespace topple::app

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/batch/run_warnings.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
@@ -182,6 +183,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   warn_of_alpha(setup, list);
+  warn_of_shakes(setup.parameters.shakes, list);
   return list;
 }
 

@@ -1,5 +1,8 @@
 #include "app/panels/criteria.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/panels/teaching_words.h"
 #include "solver/body/model_level.h"
 #include "solver/study/common/alone.h"
@@ -9,6 +12,8 @@
 namespace topple::app {
 
 using namespace window_words;
+
+constexpr double k_beside = 0.05;  // m, between the bases of bodies that stand side by side
 
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
   if (at.amplitude < limits.west) return k_stays;
@@ -50,7 +55,10 @@ std::string held_in_words(const Player& player, int body) {
     const Anchor& anchor = model.anchors[k];
     const float state = row->anchor[k].state;
     const bool holds = state == io::k_anchor_holds || state == io::k_anchor_slack;
-    if (holds && (anchor.body == body || anchor.other.body == body))
+    // what stands on it and is fixed to it does not hold it
+    const auto base = [&](int b) { return model.bodies[static_cast<std::size_t>(b)].base_centre.z(); };
+    const bool beside = anchor.other.body == body && base(anchor.body) < base(body) + k_beside;
+    if (holds && (anchor.body == body || beside))
       return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
   }
   return "";
@@ -59,6 +67,8 @@ std::string held_in_words(const Player& player, int body) {
 std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
                                 const ShakePlace& shake, bool changed) {
   const Phrase& said = verdict(limits, shake);
+  const auto is_set_here = [&](const LoggedEdit& edit) { return std::abs(edit.time - player.time()) < 1e-9; };
+  if (std::ranges::any_of(player.history().edits, is_set_here)) return "";  // no step was taken with it
   bool lifted = false, overturned = false;
   for (const io::RecordedEvent& event : player.events()) {
     if (event.event.body != body || event.time > player.time()) continue;

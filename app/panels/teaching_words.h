@@ -144,10 +144,9 @@ inline constexpr Phrase k_gentle_end{
     "重力加速度の5分の1に満たない加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける"
     "時間です。"};
 inline constexpr Phrase k_violent_start{
-    "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor moves by "
-    "only a "
-    "few centimetres.",
-    "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の移動は数センチにすぎません。"};
+    "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor swings by "
+    "only a few centimetres each way.",
+    "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の揺れは片側数センチにすぎません。"};
 inline constexpr Phrase k_violent_uplift{
     "The body lifts at once, since 700 gal is far above West's line. Yet the floor will turn round in a "
     "quarter of a second.",

@@ -306,7 +306,8 @@ inline constexpr Phrase k_range_fixed{"fixed range", "固定範囲"};
 inline constexpr Phrase k_range_instant{"range of this instant", "この時刻の範囲"};
 inline constexpr Phrase k_yield_at{"yield {0:g} MPa", "降伏 {0:g} MPa"};
 inline constexpr Phrase k_yield{"yield", "降伏"};
-inline constexpr Phrase k_all_rigid{"computed as rigid: no stresses", "剛体として計算（応力なし）"};
+inline constexpr Phrase k_all_rigid{"no stresses: computed as what does not bend",
+                                    "変形しない物体として計算（応力なし）"};
 inline constexpr Phrase k_some_rigid{"grey: rigid, no stresses", "灰色：剛体（応力なし）"};
 inline constexpr Phrase k_cannot_yield{"nothing here can yield", "降伏する部材なし"};
 inline constexpr Phrase k_deformed{"deformation ×{0:g}", "変形倍率 ×{0:g}"};

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "app/picture/window_words.h"
+#include "app/support/on_floor.h"
 #include "app/support/terms.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
@@ -111,7 +112,7 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::standing:
       line += say(k_standing);
   }
-  if (now.slide > k_slid_least) line += say(k_slid, 1e3 * now.slide);
+  if (now.slide > k_slid_least && slides_on_floor(model.bodies[body])) line += say(k_slid, 1e3 * now.slide);
   return line;
 }
 

@@ -48,7 +48,9 @@ std::string verdict(const ReportPage& page) {
     const std::size_t most = most_tilted(page);
     const std::string tilt = shown(page.bodies()[most]["peak_tilt_deg"].get<double>(), 2);
     const std::optional<double>& critical = page.report().tilts[most].critical;
-    return critical ? page.say(words::k_nothing_falls, page.name(most), tilt, shown(*critical, 2))
+    const bool over = critical && page.bodies()[most]["peak_tilt_deg"].get<double>() > *critical;
+    return critical ? page.say(over ? words::k_nothing_stays_over : words::k_nothing_falls, page.name(most),
+                               tilt, shown(*critical, 2))
                     : page.say(words::k_nothing_falls_far, page.name(most), tilt);
   }
   if (falls.size() > k_named_falls)

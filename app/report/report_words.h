@@ -23,6 +23,9 @@ inline constexpr Phrase k_many_fall{
 inline constexpr Phrase k_nothing_falls{
     "Nothing overturns. “{0}” tilts most, by {1}° of the {2}° at which it would.",
     "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（転倒限界角 {2}°）。"};
+inline constexpr Phrase k_nothing_stays_over{
+    "Nothing overturns. “{0}” tilts most, by {1}°, beyond the {2}° at which it would alone, and comes back.",
+    "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（単独での転倒限界角 {2}°を超えて戻る）。"};
 inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts most, by {1}°.",
                                             "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°。"};
 inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};

@@ -28,12 +28,20 @@ struct Motion {
   double change = 0, speed = 0;  // kg m^2/s^4, kg m^2/s^2
 };
 
-Motion of_frame(const Model& model, const Body& body, const State& before, const State& after) {
+// `before` has nodes only of what was a frame there: one that became one in the step began without
+// algorithmic acceleration (place_nodes).
+Motion of_frame(const Model& model, const Body& body, bool was_frame, const State& before,
+                const State& after) {
   Motion sum;
   for (int i = body.first_node; i < body.first_node + body.node_count; ++i) {
     const auto square = [&](const Vec3& v, const Vec3& w) {
       return model.node_mass[i] * v.squaredNorm() + w.dot(model.node_inertia[i] * w);
     };
+    if (!was_frame) {
+      sum.change += square(after.algorithmic_acceleration[i], after.algorithmic_angular_acceleration[i]);
+      sum.speed += square(after.velocity[i], after.angular_velocity[i]);
+      continue;
+    }
     sum.change +=
         square(after.algorithmic_acceleration[i] - before.algorithmic_acceleration[i],
                after.algorithmic_angular_acceleration[i] - before.algorithmic_angular_acceleration[i]);
@@ -83,8 +91,9 @@ double step_error(const Model& model, const Parameters& parameters, const State&
     if (!with_frames[b]) continue;
     const Body& body = model.bodies[b];
     const bool frame = traits(after.bodies[b].level).moves_nodes;
-    const auto [change, speed] =
-        frame ? of_frame(model, body, before, after) : of_rigid(body, before.bodies[b], after.bodies[b]);
+    const bool was_frame = traits(before.bodies[b].level).moves_nodes;
+    const auto [change, speed] = frame ? of_frame(model, body, was_frame, before, after)
+                                       : of_rigid(body, before.bodies[b], after.bodies[b]);
     if (!(change > 0)) continue;
     const double allowed = parameters.tolerance * std::sqrt(speed / body.mass + floor);
     greatest =

@@ -67,5 +67,27 @@ masses = [{ node = 3, mass = 9 }]
   EXPECT_NEAR(carried, weight, 1e-6 * weight);
 }
 
+// A cabinet that knocks on its wall becomes a frame within a step: what was looked at of it before, by who
+// records it, must not count.
+TEST(StiffFrames, a_run_that_is_looked_at_is_the_run_that_is_not) {
+  const Scene scene = parse_scene(R"(topple = 1
+run = { duration = 1.4 }
+floor = {}
+wall = [{ at = [-0.6, 0], normal = [1, 0, 0] }]
+shake = [{ frequency = 1, amplitude = "463 gal", taper = 1 }]
+furniture = [{ kind = "cabinet", against = "wall-1", offset = 1.5 }]
+)",
+                                  "s.toml");
+  topple::Run alone(scene.setup), seen(scene.setup);
+  while (!alone.over()) {
+    ASSERT_TRUE(alone.advance().ok());
+    ASSERT_TRUE(seen.advance().ok());
+    seen.state();
+  }
+  ASSERT_EQ(alone.outcome().bodies()[0].level, ModelLevel::frame);
+  EXPECT_EQ(alone.step(), seen.step());
+  EXPECT_EQ(hash(alone.state()), hash(seen.state()));
+}
+
 }  // namespace
 }  // namespace topple::io
