@@ -1,4 +1,5 @@
 // [[fixing]] of a scene: anchors by name, which find their points.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -206,15 +207,31 @@ class Fixing {
     return {first, last};
   }
 
-  // Of the other body: `point` itself where that is on it, else its nearest node.
+  // Of a block, whose faces are as good as its corners.
+  Vec3 nearest_on_block(const Body& block, const Vec3& point) const {
+    const Quat& turned = start_.rotation[block.first_node];
+    const Vec3& corner = model().node_position[block.first_node];
+    Eigen::AlignedBox3d box;
+    for (int i = block.first_node; i < block.first_node + block.node_count; ++i)
+      box.extend(model().node_position[i] - corner);
+    const Vec3 inside = turned.conjugate() * (point - x(block.first_node));
+    return x(block.first_node) + turned * inside.cwiseMax(box.min()).cwiseMin(box.max());
+  }
+
+  // Of the other body: `point` itself where that is on it, else what of it is nearest: of a block a point of
+  // its faces, of others a node.
   Vec3 point_of_other(const Vec3& point) const {
     if (kind_.pin && entry_.has("at")) return point;
+    if (const Body& other = model().bodies[target_.body]; other.solid) return nearest_on_block(other, point);
     const std::vector<int> others = nodes_of_body(target_.body, false);
     return x(best(
         others, [&](int node) { return (x(node) - point).norm(); }, [&](int node) { return -x(node).z(); }));
   }
 
   void check_reach(const char* key, int of, const Vec3& point) const {
+    if (const Body& body = model().bodies[of];
+        body.solid && (nearest_on_block(body, point) - point).norm() <= k_off_body)
+      return;
     const auto [member, distance] = nearest_member(model(), of, start_, point);
     if (distance > k_off_body)
       entry_.fail(key, "finds no point of \"" + model().bodies[of].name + "\" within " +

@@ -56,13 +56,51 @@ std::string refusal(const std::string& rest) {
   return "";
 }
 
+// The plinth is twice as wide: no corner of it is within reach of one of the statue's.
+TEST(Fixing, a_mat_sticks_a_statue_to_the_face_of_its_plinth) {
+  const Scene scene = parse_scene(R"(topple = 1
+run = { duration = 1 }
+floor = {}
+shake = [{ frequency = 1, amplitude = "200 gal" }]
+block = [
+  { name = "plinth", size = [0.4, 0.4, 1], mass = 120, at = [0, 0], yaw = "30 deg" },
+  { name = "statue", size = [0.2, 0.2, 0.6], mass = 40, at = [0, 0, 1.02], yaw = "30 deg" },
+]
+fixing = [{ kind = "mat", body = "statue", to = "plinth" }]
+)",
+                                  "s.toml");
+  const Model& model = scene.setup.model;
+  ASSERT_EQ(model.anchors.size(), 4u);
+  const State start = start_state(model, scene.setup.starts);
+  for (const Anchor& anchor : model.anchors) {
+    EXPECT_EQ(anchor.other.body, 0);
+    const Vec3 held = start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+    const Vec3 there =
+        start.position[anchor.other.node] + start.rotation[anchor.other.node] * anchor.other.arm;
+    EXPECT_LT((held - there).norm(), 1e-12);  // a pin
+    EXPECT_NEAR(held.z(), 1.02, 0.03);
+    EXPECT_LT((held - start.position[anchor.node]).norm(), 0.03);
+  }
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  EXPECT_LT(run.outcome().bodies()[1].peak_tilt, 1e-3);
+}
+
 std::string fixing(const std::string& kind, const std::string& to, const std::string& rest = "") {
   return "[[fixing]]\nname = \"it\"\nkind = \"" + kind + "\"\nbody = \"left\"\nto = \"" + to + "\"\n" + rest;
 }
 
+/// What a kind may hold "left" to.
+std::string target(const FixingTraits& kind) {
+  return kind.place == FixingPlace::feet ? "floor"
+         : kind.to_body                  ? "right"
+         : kind.to_ceiling               ? "ceiling"
+                                         : "floor";
+}
+
 TEST(Fixing, finds_its_points_and_has_the_numbers_of_its_kind) {
   for (const FixingTraits& kind : k_fixings) {
-    const std::string to = kind.to_body ? "right" : kind.to_ceiling ? "ceiling" : "floor";
+    const std::string to = target(kind);
     const Scene scene = scene_of(fixing(kind.word, to));
     const Model& model = scene.setup.model;
     ASSERT_FALSE(model.anchors.empty()) << kind.word;
@@ -74,7 +112,7 @@ TEST(Fixing, finds_its_points_and_has_the_numbers_of_its_kind) {
       EXPECT_EQ(anchor.fixing_number, 1);
       EXPECT_EQ(anchor.stiffness, kind.stiffness);
       EXPECT_EQ(anchor.strength, kind.strength);
-      EXPECT_EQ(anchor.other.body, kind.to_body ? 1 : -1);
+      EXPECT_EQ(anchor.other.body, to == "right" ? 1 : -1);
       EXPECT_EQ(anchor.length == 0, kind.pin);
     }
   }
@@ -126,7 +164,7 @@ TEST(Fixing, a_stopper_leans_the_block_back) {
 TEST(Fixing, every_kind_is_run_through) {
   for (const FixingTraits& kind : k_fixings) {
     SCOPED_TRACE(kind.word);
-    Scene scene = scene_of(fixing(kind.word, kind.to_body ? "right" : kind.to_ceiling ? "ceiling" : "floor"));
+    Scene scene = scene_of(fixing(kind.word, target(kind)));
     scene.setup.run.duration = 1;
     topple::Run run(scene.setup);
     ASSERT_TRUE(run.status().ok()) << run.status().message(scene.setup.model);
