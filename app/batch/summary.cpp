@@ -12,7 +12,6 @@
 #include "app/batch/run_warnings.h"
 #include "app/batch/ways_summary.h"
 #include "app/support/integrators.h"
-#include "app/support/on_floor.h"
 #include "app/support/terms.h"
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
@@ -69,8 +68,7 @@ ordered_json not_planar(const Setup& setup, const BodyOutcome& o, int body) {
 ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, const BodyMomentum& momentum,
                   int index) {
   const Body& body = setup.model.bodies[static_cast<std::size_t>(index)];
-  // it stands on a floor, and nothing holds its base
-  const bool slides = std::isfinite(o.critical) && slides_on_floor(body);
+  const bool slides = std::isfinite(o.critical);  // it stands on a floor, and nothing holds its base
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
           {"integrator", is_static(setup)
