@@ -165,9 +165,8 @@ void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
   if (!early || !rigid || *early <= k_early) return;
   list.push_back(fmt::format(
       "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
-      "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes {:.0f} "
-      "kgf, "
-      "with which it lands as on a rigid floor too",
+      "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes "
+      "{:.0f} kgf, with which it lands as on a rigid floor too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
       rounded_up(alpha_for_tipping(setup) / k_standard_gravity), 100 * k_hardly,
       rounded_up(*rigid / k_standard_gravity)));

@@ -101,9 +101,14 @@ void ModelSwitch::choose_islands(const std::vector<Island>& islands, const Param
 
 void ModelSwitch::find_near(const std::vector<Island>& islands) {
   near_.assign(base_.size(), false);
+  near_yield_.assign(base_.size(), false);
   for (const Island& island : islands)
     if (!island.is_alone())
-      for (const int b : island.bodies) near_[b] = true;
+      for (const int b : island.bodies) {
+        near_[b] = true;
+        near_yield_[b] =
+            std::ranges::any_of(island.bodies, [this](int other) { return watched_[other] != 0; });
+      }
 }
 
 // Of the body's present level (model_level.h); a frame is what the others are measured by. Infinite: not
@@ -167,11 +172,11 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
     return {ModelLevel::frame,
             std::isfinite(s.error_estimate) ? LevelReason::deformation : LevelReason::fall};
-  // before it strikes hard: what springs of its own each contact point of an elastic body has is not what the
-  // frame has, and the blow would be another one
-  if (automatic && s.level == ModelLevel::elastic && parts.reduced(state, b).is_struck() &&
+  // before the blow: an elastic body has a spring of its own at each contact point, a frame has not, and to
+  // change within the blow would put energy into it
+  if (automatic && s.level == ModelLevel::elastic && near_yield_[b] &&
       is_falling(model, parameters, state, b))
-    return {ModelLevel::frame, LevelReason::fall};
+    return {ModelLevel::frame, LevelReason::neighbour};
   if (watched_[b]) {
     if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
     ReducedBody& body = parts.reduced(state, b);

@@ -51,6 +51,7 @@ class ModelSwitch {
   std::vector<LevelChoice> choice_;  // per body
   std::vector<char> changed_;        // per body: its level, since the last step
   std::vector<char> near_;           // per body: another may touch it
+  std::vector<char> near_yield_;     // per body: likewise, and one of those that may is watched_
 };
 
 }  // namespace topple

@@ -106,7 +106,7 @@ struct Parameters {
   /// stability asks for.
   double substep_refinement = 1;
   /// A step of fixed length at which a frame loses energy in a contact is taken again in parts
-  /// (generalized_alpha.h). False: what a study of the steps themselves asks for.
+  /// (step.h). False: what a study of the steps themselves asks for.
   bool resolves_contacts = true;
   bool operator==(const Parameters&) const = default;
 };

@@ -90,7 +90,6 @@ class ReducedBody {
   /// nodes of the model.
   void clear_member_forces() { member_forces_.clear(); }
   void add_member_force(int node, const Vec3& force);
-  bool is_struck() const { return !member_forces_.empty(); }  ///< there are some
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
   /// Section forces of the body's elements at `s` under the forces found last, into those of the model; zero

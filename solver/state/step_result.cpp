@@ -36,9 +36,8 @@ const char* loss_in_words(Stability::Loss loss) {
     case Loss::mechanism:
       return " is a mechanism there; run.control follows a path that goes on or turns down";
     case Loss::fracture:
-      return " breaks there, and what is left does not carry the loads; run.control follows a path that goes "
-             "on "
-             "or turns down";
+      return " breaks there, and what is left does not carry the loads; run.control follows a path that "
+             "goes on or turns down";
     case Loss::none:
       break;
   }
@@ -108,9 +107,8 @@ std::string StepStatus::message(const Model& model) const {
              when + ": " + where + finer;
     case Kind::folded:
       return where + " has folded " + when +
-             ": an element follows a bend, but not one beyond half a turn; a fracture_strain lets it break, "
-             "a "
-             "stiffer section or more elements keep it from folding" +
+             ": an element follows a bend, but not one beyond half a turn; a fracture_strain lets it "
+             "break, a stiffer section or more elements keep it from folding" +
              (by_tolerance ? "" : ", if a smaller time_step does not");
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";

@@ -18,8 +18,7 @@ constexpr int k_halvings = 6;
 constexpr int k_most_looks = 4;   // for candidates, of a step in which nodes move further than was expected
 constexpr double k_folded = 2.5;  // rad, from end to end of an element
 constexpr int k_parts = 4, k_most_divisions = 3;  // of a step that is taken again
-constexpr double k_lossy =
-    1e-3;  // of the largest energy: more left unexplained by a step is a contact missed
+constexpr double k_lossy = 1e-3;  // of the largest energy, left unexplained by a step or given by its method
 
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
                         Workspace::Impl& w);

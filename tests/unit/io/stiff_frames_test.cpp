@@ -67,6 +67,26 @@ masses = [{ node = 3, mass = 9 }]
   EXPECT_NEAR(carried, weight, 1e-6 * weight);
 }
 
+// A bookshelf falls on a desk of steel: it is a frame before it strikes. To change within the blow put 57 J
+// into it.
+TEST(StiffFrames, what_falls_on_another_body_brings_no_energy_of_its_model) {
+  const Scene scene = parse_scene(R"(topple = 1
+run = { duration = 1.25, settle = false }
+floor = {}
+furniture = [
+  { kind = "bookshelf", size = [0.3, 0.9, 1.8], tilt = "12 deg" },
+  { kind = "desk", at = [1.55, 0], yaw = "180 deg" },
+]
+)",
+                                  "s.toml");
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(scene.setup.model);
+  for (const BodyOutcome& body : run.outcome().bodies()) EXPECT_EQ(body.level, ModelLevel::frame);
+  const EnergyLedger& energy = run.energy();
+  EXPECT_GT(energy.largest, 100);
+  EXPECT_LT(std::abs(energy.model_switch), 1e-3 * energy.largest);
+}
+
 // A cabinet that knocks on its wall becomes a frame within a step: what was looked at of it before, by who
 // records it, must not count.
 TEST(StiffFrames, a_run_that_is_looked_at_is_the_run_that_is_not) {
