@@ -191,7 +191,7 @@ class FragilityChart {
   }
 
   static std::vector<std::string> shortened(std::vector<std::string> lines, double width) {
-    const auto most = static_cast<std::size_t>(width / 8.3);
+    const auto most = static_cast<std::size_t>(width / 8.9);
     for (std::string& line : lines)
       if (line.size() > most) line = line.substr(0, line.rfind(' ', most)) + " …";
     return lines;

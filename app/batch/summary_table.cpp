@@ -1,0 +1,216 @@
+// The summary in words.
+#include <fmt/format.h>
+#include <utf8.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/batch/load_steps.h"
+#include "app/batch/summary.h"
+#include "app/batch/ways_summary.h"
+#include "app/support/terms.h"
+#include "solver/body/model_level.h"
+#include "solver/planar/planar_case.h"
+
+namespace topple::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string text(const ordered_json& value, const char* format) {
+  return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
+}
+
+/// The line about `error_estimate`.
+std::string estimate_in_words(const ordered_json& e) {
+  const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
+  if (e.contains("failed"))
+    return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
+  if (!e["disagreements"].empty()) {
+    std::string words;
+    for (const auto& line : e["disagreements"])
+      words += (words.empty() ? "" : "; ") + line.get<std::string>();
+    return begin + "the verdict itself is open: " + words + "\n";
+  }
+  const auto part = [&](const char* name, const char* key, double scale, const char* unit) {
+    return e[key].is_null() ? "" : fmt::format("{} {:.2g} {}, ", name, scale * e[key].get<double>(), unit);
+  };
+  std::string words =
+      part("overturning", "overturn_time_s", 1, "s") + part("peak tilt", "peak_tilt_deg", 1, "deg") +
+      part("slide", "peak_slide_m", 1e3, "mm") + part("peak stress", "peak_stress_Pa", 1e-6, "MPa");
+  words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
+  return begin + words + "\n";
+}
+
+std::string static_head(const ordered_json& s) {
+  std::string out = fmt::format(
+      "{}: {} in {:.2f} s of wall time\nstatic: {} load steps, {} halved, {} iterations\n",
+      s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
+      s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
+  for (const auto& step : s["static"])
+    out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
+                       step["converged"].get<bool>() ? "converged" : "no equilibrium", loss_in_words(step));
+  const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
+  if (std::ranges::all_of(s["static"], stable)) out += "stable at every load factor\n";
+  return out + "\n";
+}
+
+// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h), planar ones
+// Taylor series.
+std::string integrators(const ordered_json& s) {
+  bool frames = false, others = false, blocks = false;
+  const auto look = [&](const ordered_json& model) {
+    const LevelTraits& level = level_called(model.get<std::string>());
+    (level.moves_nodes ? frames : level.has_block ? blocks : others) = true;
+  };
+  for (const auto& b : s["bodies"]) {
+    look(b["model"]);
+    for (const auto& change : b["models"]) look(change["model"]);
+  }
+  const auto named = s["integrator"].get<std::string>();  // of frames, if there are any
+  std::string words = frames ? named : "";
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+  if (frames && others && named != "central-difference") words += " (frames)";
+  if (others && !(frames && named == "central-difference")) add("central differences");
+  if (blocks) add("Taylor series (planar)");
+  return words.empty() ? "central differences" : words;
+}
+
+std::string allowed_error(const ordered_json& body, const ordered_json& change) {
+  const ordered_json& estimate = change["error_estimate"];
+  if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
+  if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
+  const bool may_strike =
+      body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
+  return fmt::format("; error about {:.2g} %{}", 100 * estimate.get<double>(),
+                     may_strike ? " until it strikes something, from which a frame springs back" : "");
+}
+
+// Of the model that a body begins with.
+std::string not_planar(const ordered_json& body, const ordered_json& model) {
+  const bool first = &model == &body["models"].front();
+  return !first || body["not_planar"].is_null() ? ""
+                                                : "; not planar: " + body["not_planar"].get<std::string>();
+}
+
+std::string dynamic_head(const ordered_json& s) {
+  std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
+                                s["status"].get<std::string>(), s["simulated_s"].get<double>());
+  if (!s["realtime_factor"].is_null())
+    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
+                       s["realtime_factor"].get<double>());
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n", integrators(s),
+                     s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
+                     s["steps"].get<long>(), s["rejected_steps"].get<long>(),
+                     s["newton_iterations"].get<long>());
+  const ordered_json& share = s["contact"]["member_share"];
+  out += fmt::format(
+      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}\n",
+      s["contact"]["law"].get<std::string>(), s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
+      share.is_null() || share == 1 ? ""
+                                    : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
+      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>(),
+      s["contact"]["restitution"].is_null()
+          ? ""
+          : fmt::format(", restitution {:.6g}", s["contact"]["restitution"].get<double>()));
+  return out + energy_in_words(s["energy"]) + "\n";
+}
+
+std::string damage_line(const ordered_json& b) {
+  const int hinges = b["hinges"].get<int>(), fractures = b["fractures"].get<int>();
+  if (hinges + fractures == 0) return "";
+  const auto counted = [](int count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return b["name"].get<std::string>() + ": " + (hinges > 0 ? counted(hinges, "plastic hinge") : "") +
+         (hinges > 0 && fractures > 0 ? ", " : "") +
+         (fractures > 0 ? counted(fractures, "broken section") : "") + "\n";
+}
+
+std::string anchor_line(const ordered_json& a) {
+  const double peak = a["peak_force_N"].get<double>();
+  std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
+  line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
+  if (a["broke"].get<bool>())
+    return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
+  if (!a["strength_N"].is_null())
+    line += fmt::format(", {:.0f} % of its strength", 100 * peak / a["strength_N"].get<double>());
+  if (!a["in_place"].get<bool>()) return line + ", taken away\n";
+  return line + (a["slack"].get<bool>() ? ", slack at the end\n" : "\n");
+}
+
+}  // namespace
+
+std::size_t letters(const std::string& text) {
+  const std::string clean = utf8::replace_invalid(text);
+  return static_cast<std::size_t>(utf8::distance(clean.begin(), clean.end()));
+}
+
+std::string fixing_line(const ordered_json& a) {
+  const auto at = [](const ordered_json& end) {
+    return fmt::format("node {} of {}, {:.0f} mm from it", end["node"].get<int>(),
+                       end["body"].get<std::string>(), 1e3 * end["distance_m"].get<double>());
+  };
+  const std::string to = a["leads_to"].get<std::string>();
+  return fmt::format("fixing {}: {} on {}, to {}", a["name"].get<std::string>(),
+                     a["fixing"].get<std::string>(), at(a["own_end"]),
+                     a["other_end"].is_null() ? to : at(a["other_end"]));
+}
+
+std::string energy_in_words(const ordered_json& e) {
+  constexpr double k_told = 1e-3;  // of what came in or was dissipated
+  const auto joules = [&](const char* key) { return e[key].is_null() ? 0 : e[key].get<double>(); };
+  const double plastic = joules("plastic_J"), switched = joules("model_switch_J");
+  const double size = std::max(std::abs(joules("input_J")), std::abs(joules("dissipated_J")));
+  return fmt::format(
+      "energy: {} J came in{}, {} J dissipated{}, balance error {}\n", text(e["input_J"], "{:.4g}"),
+      std::abs(switched) <= k_told * size ? ""
+                                          : fmt::format(", {:.3g} J as models of bodies changed", switched),
+      text(e["dissipated_J"], "{:.4g}"),
+      plastic == 0 ? "" : fmt::format(" ({:.4g} J of it by plastic flow)", plastic),
+      text(e["balance_error"], "{:.1e}"));
+}
+
+std::string summary_table(const ordered_json& s) {
+  std::string out = s["analysis"] == "static" ? static_head(s) : dynamic_head(s);
+  int width = 14;
+  for (const auto& b : s["bodies"])
+    width = std::max(width, static_cast<int>(letters(b["name"].get<std::string>())));
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
+                     "uplift", "impacts", "peak tilt", "final tilt", "peak slide", "peak stress");
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",
+                     "deg", "deg", "mm", "MPa");
+  for (const auto& b : s["bodies"]) {
+    out += fmt::format(
+        "{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", b["name"].get<std::string>(), width,
+        b["overturned"].get<bool>() ? text(b["overturn_time_s"], "{:.4f}") : "no",
+        text(b["first_uplift_s"], "{:.3f}"), b["impacts"].get<int>(), text(b["peak_tilt_deg"], "{:.3f}"),
+        text(b["final_tilt_deg"], "{:.3f}"),
+        b["peak_slide_m"].is_null() ? "-" : fmt::format("{:.2f}", 1e3 * b["peak_slide_m"].get<double>()),
+        b["peak_stress_Pa"].is_null() ? "-"
+                                      : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
+  }
+  for (const auto& b : s["bodies"])
+    for (const auto& model : b["models"])
+      out += fmt::format("{}: {} from {} s ({}{}{})\n", b["name"].get<std::string>(),
+                         model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
+                         model["reason"].get<std::string>(), not_planar(b, model), allowed_error(b, model));
+  for (const auto& b : s["bodies"])
+    if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
+      out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
+                         b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
+  for (const auto& b : s["bodies"]) out += damage_line(b);
+  for (const auto& a : s["anchors"]) out += anchor_line(a);
+  if (s.contains("error_estimate") && !s["error_estimate"].is_null())
+    out += estimate_in_words(s["error_estimate"]);
+  if (s.contains("ways")) out += ways_in_words(s["ways"], s["person_m"].get<double>());
+  for (const auto& p : s["probes"]) {
+    const auto& d = p["final"]["displacement_m"];
+    out += fmt::format("probe {}: {}, {}, {} m\n", p["name"].get<std::string>(), text(d[0], "{:.6g}"),
+                       text(d[1], "{:.6g}"), text(d[2], "{:.6g}"));
+  }
+  return out;
+}
+
+}  // namespace topple::app
