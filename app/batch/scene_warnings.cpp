@@ -19,6 +19,7 @@ namespace {
 
 constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
 constexpr double k_hangs = 1e-3;   // m, above what might bear it
+constexpr double k_top_of = 0.05;  // m, of what a body stands on: else it is within it
 constexpr double k_within = 1e-3;  // m, a wall
 constexpr double k_early = 0.05;   // of the acceleration that lifts a side
 constexpr double k_hardly = 0.02;  // of it
@@ -73,17 +74,34 @@ Heights heights(const Model& model, const State& start, const Body& body) {
   return found;
 }
 
-/// Another body lies below it in plan and reaches up to its bottom.
-bool is_borne(const Model& model, const State& start, int index, double bottom) {
+Vec2 centre_in_plan(const Model& model, const State& start, const Body& body) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+    sum += model.node_mass[i] * start.position[i];
+  return sum.head<2>() / body.mass;
+}
+
+/// The highest of what lies below a body in plan.
+struct Below {
+  int body = -1;                                          ///< -1: the floor, or nothing
+  double top = -std::numeric_limits<double>::infinity();  ///< m, may be above the bottom of the body
+  double aside = 0;  ///< m, of the centre of gravity, in plan; 0: above it, or on two
+};
+Below below(const Model& model, const State& start, int index, double bottom, bool floor) {
   constexpr double k_any_height = std::numeric_limits<double>::max();
   const auto print = footprint(model, start.position, index, k_any_height);
+  Below found;
+  if (floor) found.top = 0;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Heights of = heights(model, start, model.bodies[b]);
-    if (b == index || of.low > bottom || of.high < bottom - k_hangs) continue;
+    if (b == index || of.low > bottom || of.high < found.top - k_hangs) continue;
     const auto other = footprint(model, start.position, b, k_any_height);
-    if (nearest_points(print->core, other->core).distance <= print->radius + other->radius) return true;
+    if (nearest_points(print->core, other->core).distance > print->radius + other->radius) continue;
+    const bool one_of_two = of.high < found.top + k_hangs;
+    found = {b, std::max(of.high, found.top),
+             one_of_two ? 0 : other->distance(centre_in_plan(model, start, model.bodies[index]))};
   }
-  return false;
+  return found;
 }
 
 /// Where a wall pushes a body away as the run begins.
@@ -116,13 +134,22 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
         std::ranges::any_of(model.supports,
                             [&](const Support& support) { return model.node_body[support.node] == b; }) ||
         std::ranges::any_of(model.anchors, [&](const Anchor& anchor) { return anchor.body == b; });
+    if (held) continue;
     const double bottom = heights(model, start, body).low;
-    if (held || (floor && bottom <= k_hangs) || is_borne(model, start, b, bottom)) continue;
-    list.push_back(
-        floor ? fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above the floor and falls "
-                            "when the run begins",
-                            body.name, 1e3 * bottom)
-              : fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
+    const Below under = below(model, start, b, bottom, floor);
+    const std::string what =
+        under.body < 0 ? "the floor" : '"' + model.bodies[static_cast<std::size_t>(under.body)].name + '"';
+    if (!std::isfinite(under.top))
+      list.push_back(
+          fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
+    else if (bottom - under.top > k_hangs)
+      list.push_back(
+          fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above {} and falls when the "
+                      "run begins",
+                      body.name, 1e3 * (bottom - under.top), what));
+    else if (under.body >= 0 && bottom > k_hangs && under.top - bottom < k_top_of && under.aside > 0)
+      list.push_back(fmt::format("the centre of gravity of \"{}\" is {:.4g} mm beside {}, on which it stands",
+                                 body.name, 1e3 * under.aside, what));
   }
 }
 

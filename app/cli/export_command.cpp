@@ -63,8 +63,9 @@ void add_export(Commands& commands) {
       "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf", export_command);
   add_path(command, "RECORDING", data.recording, "", "recording").required();
   CLI::Option_group& what = *command.add_option_group("output", "what to write");
-  add_path(what, "--csv", data.csv, "DIR",
-           "folder for bodies.csv, nodes.csv, elements.csv, floor.csv, energy.csv, anchors.csv");
+  add_path(
+      what, "--csv", data.csv, "DIR",
+      "folder for bodies.csv, nodes.csv, elements.csv, contacts.csv, floor.csv, energy.csv, anchors.csv");
   add_path(what, "--xdmf", data.xdmf, "FILE.xdmf",
            "for ParaView 5.11 and later; the data go to FILE.xdmf.h5");
   add_path(what, "--vtk", data.vtk, "DIR",

@@ -115,10 +115,13 @@ void draw_criteria(const Player& player, TeachingState& state) {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##standing", model.bodies[static_cast<std::size_t>(*state.body)].name.c_str())) {
-    for (int b = 0; b < furniture; ++b)
-      if (has_limits(model, parameters, b) &&
-          ImGui::Selectable(model.bodies[static_cast<std::size_t>(b)].name.c_str(), b == *state.body))
+    for (int b = 0; b < furniture; ++b) {
+      const std::string& name = model.bodies[static_cast<std::size_t>(b)].name;
+      if (!has_limits(model, parameters, b))
+        ImGui::TextDisabled("%s", say(k_stands_not_freely, name).c_str());
+      else if (ImGui::Selectable(name.c_str(), b == *state.body))
         state.body = b;
+    }
     ImGui::EndCombo();
   }
   if (!state.limits_of || state.limits_of->first != *state.body || !(state.limits_of->second == parameters)) {

@@ -10,6 +10,8 @@ inline constexpr Phrase k_body{"body", "家具"};
 inline constexpr Phrase k_no_standing_body{
     "No body here stands freely on the floor, so the criteria say nothing.",
     "床に自立する家具がないため、判定基準は適用できません。"};
+inline constexpr Phrase k_stands_not_freely{"{0} (does not stand freely on the floor)",
+                                            "{0}（床に自立していない）"};
 inline constexpr Phrase k_no_floor_shake{"The floor does not shake here.", "このシーンでは床は揺れません。"};
 inline constexpr Phrase k_frequency_axis{"frequency, Hz", "周波数 [Hz]"};
 inline constexpr Phrase k_amplitude_axis{"amplitude, gal", "加速度振幅 [gal]"};

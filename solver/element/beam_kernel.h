@@ -72,7 +72,7 @@ template <class P>
           polynomial(x, 1. / 720, 1. / 15120, 1. / 403200, 1. / 11975040)};
 }
 
-/// log_factor, small_angle and small_angle_slope in closed form, for 0 < |psi| < pi.
+/// log_factor, small_angle and small_angle_slope in closed form, for 0 < |psi| < 2 pi.
 inline double large_log_factor(const PackQuaternion<double>& q) {
   const double s = std::sqrt(q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z);
   return 2 * elementary::atan2(s, q.w) / s;
@@ -91,16 +91,16 @@ inline PackAngleSlope<double> large_angle_slope(double x, double t) {
   return {tt * t * f.df1, tt * tt * f.df2, InverseJacobianCoefficient(x).dg};
 }
 
-/// The same for any |psi| < pi: per lane the series or the closed form.
+/// The same for any |psi| < 2 pi: per lane the series or the closed form.
 inline double any_log_factor(const PackQuaternion<double>& q) {
   const double s2 = q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z;
-  return s2 > k_small_angle / 4 * (q.w * q.w) ? large_log_factor(q) : log_factor(q);
+  return s2 > k_small_angle / 4 * (q.w * std::abs(q.w)) ? large_log_factor(q) : log_factor(q);
 }
 inline Four any_log_factor(const PackQuaternion<Four>& q) {
   Four factor = log_factor(q);
   for (int k = 0; k < 4; ++k) {
     const double s2 = q.v.x[k] * q.v.x[k] + q.v.y[k] * q.v.y[k] + q.v.z[k] * q.v.z[k];
-    if (s2 > k_small_angle / 4 * (q.w[k] * q.w[k]))
+    if (s2 > k_small_angle / 4 * (q.w[k] * std::abs(q.w[k])))
       factor.set(k, large_log_factor({{q.v.x[k], q.v.y[k], q.v.z[k]}, q.w[k]}));
   }
   return factor;
@@ -177,12 +177,10 @@ struct PackStrain {
 template <class P>
 [[gnu::always_inline]] inline PackStrain<P> pack_strain(const PackBeam<P>& beam, const PackEnds<P>& ends) {
   PackStrain<P> s;
-  PackQuaternion<P> turn = conjugate(ends.q1) * ends.q2;
-  const P one = with_sign_of(P(1), turn.w);
-  turn = {one * turn.v, one * turn.w};
+  const PackQuaternion<P> turn = conjugate(ends.q1) * ends.q2;
   const PackVector<P> along = transposed_times(beam.triad_matrix, turn.v);
-  const P limit =
-      P(k_small_angle / 4) * (turn.w * turn.w);  // tan^2 of half the angle: the series may fold back
+  // tan^2 of half the angle: the series may fold back; none beyond half a turn
+  const P limit = P(k_small_angle / 4) * (turn.w * with_sign_of(turn.w, P(1)));
   if (any_above(dot(turn.v, turn.v) - limit, 0)) [[unlikely]] {
     s.psi = any_log_factor(turn) * along;
     s.angle = any_angle(dot(s.psi, s.psi), beam.t);

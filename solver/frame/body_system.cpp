@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <new>
+#include <utility>
 
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
@@ -66,7 +67,7 @@ void BodySystem::start_forces(const Parameters& parameters, const StepInputs& no
       node_force_[i].moment[k] += factor * load->moment[k];
     }
   }
-  if (yields) beams_.remember(elements);
+  if (remembers) beams_.remember(elements);
   damp(parameters);
   ends_here = false;
 }
@@ -243,7 +244,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
                               std::vector<SectionForces>& sections) {
   BodyEnergy sum;
   sum.kinetic = kinetic_energy(motion);
-  if (ends_here && !yields) {
+  if (ends_here && !remembers) {
     sum.strain = beams_.latest_energy(sections);
     ends_here = false;
   } else {
@@ -263,7 +264,7 @@ BodyEnergy BodySystem::energy(const ContactLaw& law, const BodyMotion& motion, c
 }
 
 double BodySystem::elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections) {
-  if (yields) beams_.remember(elements);
+  if (remembers) beams_.remember(elements);
   return beams_.energy(motion.position, motion.rotation, sections);
 }
 
@@ -321,8 +322,13 @@ void BodySystem::place_carried(BodyMotion& motion) const {
 }
 
 void BodySystem::load_memory(const State& state, const BodyMotion& motion) {
-  for (std::size_t k = 0; yields && k < own_elements.size(); ++k)
+  const bool remembered =
+      std::exchange(remembers, yields || std::ranges::any_of(own_elements, [&](const OwnElement& own) {
+                                 return state.elements[own.element].hinge == Hinge::broken;
+                               }));
+  for (std::size_t k = 0; (remembers || remembered) && k < own_elements.size(); ++k)
     elements[k] = state.elements[own_elements[k].element];
+  if (remembered && !remembers) beams_.remember(elements);
   for (OwnAnchor& own : anchors) own.state = state.anchors[own.index];
   load_sticks(state);
   for (MemberPair& pair : member_pairs_) pair.start = gather(pair, motion.position);

@@ -206,6 +206,7 @@ class BodySystem {
   std::vector<OwnLoad> loads;
   std::vector<OwnAnchor> anchors;  ///< as they were loaded
   bool yields;                     ///< some element can
+  bool remembers;                  ///< forces depend on `elements`: some can yield, or one is torn
   bool ends_here = false;          ///< the latest evaluation was at the end of the step: energy() uses it
 
  private:

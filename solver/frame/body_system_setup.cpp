@@ -109,6 +109,7 @@ void BodySystem::add_elements() {
     }
   }
   elements.resize(own_elements.size());
+  remembers = yields;
 }
 
 void BodySystem::add_member_pairs() {

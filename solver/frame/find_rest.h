@@ -27,10 +27,10 @@ struct RestStep {
   double furthest;  ///< since find_rest began
 };
 
-/// Newton's method with K + M/sigma^2 for a balance of forces; sigma, s, doubles after short steps and halves
-/// after long ones. Where that leads to no rest in 100 rounds (contacts of q < 1 are infinitely stiff as they
-/// close) it begins again and goes with what a step leaves (switched evolution relaxation: Mulder and van
-/// Leer, 1985). Returns rest, tips_over, leaves or none. `body` has:
+/// Newton's method with K + M/sigma^2 for a balance of forces; sigma, s, doubles after steps below `most`, of
+/// the size, and halves after longer ones. Where that leads to no rest in 100 rounds (contacts of q < 1 are
+/// infinitely stiff as they close) it begins again and goes with what a step leaves (switched evolution
+/// relaxation: Mulder and van Leer, 1985). Returns rest, tips_over, leaves or none. `body` has:
 ///   double size            m
 ///   double balanced        N, greatest unbalanced force that counts as balance
 ///   double unbalance()     N, the unbalanced force; finds forces and tangent
@@ -38,11 +38,10 @@ struct RestStep {
 ///   optional<RestStep> step(sigma)    solves for a step; null: singular or not finite
 ///   void follow()          takes the step, stick springs included
 template <class Body>
-Balance find_rest(Body& body) {
+Balance find_rest(Body& body, double most = 0.01) {
   constexpr int k_most_rounds = 400, k_usual_rounds = 100;
   constexpr double k_first_sigma = 1e-3, k_last_sigma = 1e3;  // s
   constexpr double k_furthest = 0.25;                         // of the size: more is falling, not settling
-  constexpr double k_short = 0.01;                            // of the size
   double sigma = k_first_sigma, left = 0;
   for (int round = 0; round < k_most_rounds; ++round) {
     const double before = left;
@@ -58,7 +57,7 @@ Balance find_rest(Body& body) {
     if (!step) return Balance::none;
     if (!(step->furthest <= k_furthest * body.size)) return Balance::leaves;
     body.follow();
-    const bool shorter = step->length < k_short * body.size;
+    const bool shorter = step->length < most * body.size;
     const double factor = round <= k_usual_rounds || left < body.balanced
                               ? (shorter ? 2 : 0.5)
                               : std::clamp(before / left, 1. / 16, 2.);

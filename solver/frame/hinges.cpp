@@ -6,9 +6,12 @@
 
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
+#include "solver/math/elementary.h"
 
 namespace topple {
 namespace {
+
+const double k_torn = elementary::cos(5. / 2);  // half the turn between the ends of an element that tears
 
 BeamStrain strain_at(const BodySystem& s, std::size_t k, const BodyMotion& motion) {
   const auto [e, i, j] = s.own_elements[k];
@@ -46,27 +49,28 @@ bool breaks(const Model& model, const Element& element, const BeamStrain& strain
 }
 
 bool break_sections(BodySystem& s, const BodyMotion& trial) {
-  if (!s.yields) return false;
+  const auto breaks_here = [&](std::size_t k) {
+    const auto& [e, i, j] = s.own_elements[k];
+    if (s.elements[k].hinge == Hinge::broken) return false;
+    if (trial.rotation[i].dot(trial.rotation[j]) < k_torn) return true;
+    const Element& element = s.model.elements[e];
+    if (!(s.model.materials[s.model.members[element.member].material].fracture_strain > 0)) return false;
+    const BeamStrain strain = strain_at(s, k, trial);
+    const SectionResponse response = respond(element, s.elements[k], strain);
+    return hinges_of(element, response, s.elements[k].hinge) != Hinge::none &&
+           breaks(s.model, element, strain, response.forces);
+  };
   bool any = false;
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
-    const Element& element = s.model.elements[s.own_elements[k].element];
-    ElementState& state = s.elements[k];
-    if (!(s.model.materials[s.model.members[element.member].material].fracture_strain > 0) ||
-        state.hinge == Hinge::broken)
-      continue;
-    const BeamStrain strain = strain_at(s, k, trial);
-    const SectionResponse response = respond(element, state, strain);
-    if (hinges_of(element, response, state.hinge) == Hinge::none ||
-        !breaks(s.model, element, strain, response.forces))
-      continue;
-    state.hinge = Hinge::broken;
-    any = true;
+    if (!breaks_here(k)) continue;
+    s.elements[k].hinge = Hinge::broken;
+    s.remembers = any = true;
   }
   return any;
 }
 
 void hold_joints(BodySystem& s, const BodyMotion& start, const BodyMotion& trial) {
-  if (!s.yields) return;
+  if (!s.remembers) return;
   struct Joint {
     bool all_flow = true, held = false;
     int ends = 0, element = -1, place = 0;
@@ -107,7 +111,7 @@ void hold_joints(BodySystem& s, const BodyMotion& start, const BodyMotion& trial
 }
 
 bool release_joints(BodySystem& s, const BodyMotion& trial) {
-  if (!s.yields) return false;
+  if (!s.remembers) return false;
   double reach = s.size;
   for (const Vec3& x : trial.position) reach = std::max(reach, x.norm());
   bool any = false;
@@ -133,13 +137,13 @@ bool release_joints(BodySystem& s, const BodyMotion& trial) {
 }
 
 double commit_hinges(BodySystem& s, const BodyMotion& start, const BodyMotion& end, State& state) {
-  if (!s.yields) return 0;
+  if (!s.remembers) return 0;
   double taken = 0;
   for (std::size_t k = 0; k < s.elements.size(); ++k) {
     const int e = s.own_elements[k].element;
     const Element& element = s.model.elements[e];
     ElementState &now = s.elements[k], &before = state.elements[e];
-    if (before.hinge == Hinge::broken || !std::isfinite(element.capacity[0])) continue;
+    if (before.hinge == Hinge::broken) continue;
     const BeamStrain strain1 = strain_at(s, k, end);
     now.held = 0;
     const SectionResponse response = respond(element, now, strain1);

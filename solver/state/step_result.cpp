@@ -103,13 +103,9 @@ std::string StepStatus::message(const Model& model) const {
     case Kind::passed_through:
       return "members would pass through each other unseen in the step " + when + ": " + where + finer;
     case Kind::energy_lost:
-      return "a contact is not resolved: more than a tenth of the energy is unaccounted for after the step " +
-             when + ": " + where + finer;
-    case Kind::folded:
-      return where + " has folded " + when +
-             ": an element follows a bend, but not one beyond half a turn; a fracture_strain lets it "
-             "break, a stiffer section or more elements keep it from folding" +
-             (by_tolerance ? "" : ", if a smaller time_step does not");
+      return (body >= 0 ? "a contact is not resolved: " : "") +
+             ("more than a tenth of the energy is unaccounted for after the step " + when) +
+             (body >= 0 ? ": " + where : "") + finer;
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::bad_parameter:

@@ -49,7 +49,6 @@ struct StepStatus {
     uncontrolled,     ///< statics: the loads do not move the controlled direction
     passed_through,   ///< members would pass through each other unseen
     energy_lost,      ///< k_lost_balance is exceeded
-    folded,           ///< as one of those, of a frame of which an element has bent nearly half round
     bad_parameter     ///< a parameter is no finite number
   };
   Kind kind = Kind::ok;

@@ -171,7 +171,8 @@ void check(const StepInProgress& s, StepStatus& status) {
              std::abs(next.energy.unexplained()) > k_least_energy) {
     HardestContact hardest = hardest_contact(s.parameters, s.from, s.w);
     if (hardest.force == 0) hardest = hardest_contact(s.parameters, next, s.w);
-    if (hardest.force > 0) {
+    const bool flows = next.energy.plastic != s.from.energy.plastic;
+    if (hardest.force > 0 || flows) {
       status.kind = StepStatus::Kind::energy_lost;
       status.time = next.time;
       status.body = hardest.body;

@@ -44,8 +44,8 @@ HardestContact hardest_contact(const Parameters& parameters, const State& state,
 /// Sets step, time, floor motion and energies of `w.next`.
 void close_ledger(const StepInProgress& step);
 
-/// `status` becomes not_finite where a number at the end is not, energy_lost where a contact is closed at
-/// one of the ends and the balance error is above k_lost_balance.
+/// `status` becomes not_finite where a number at the end is not, energy_lost where the balance error is
+/// above k_lost_balance and a contact is closed at one of the ends, or a section flowed or broke.
 void check(const StepInProgress& step, StepStatus& status);
 
 }  // namespace topple

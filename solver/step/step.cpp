@@ -15,8 +15,7 @@ namespace topple {
 namespace {
 
 constexpr int k_halvings = 6;
-constexpr int k_most_looks = 4;   // for candidates, of a step in which nodes move further than was expected
-constexpr double k_folded = 2.5;  // rad, from end to end of an element
+constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes move further than was expected
 constexpr int k_parts = 4, k_most_divisions = 3;  // of a step that is taken again
 constexpr double k_lossy = 1e-3;  // of the largest energy, left unexplained by a step or given by its method
 
@@ -27,7 +26,6 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
 StepStatus in_parts(const Model& model, const Parameters& parameters, const State& from, double h,
                     int divisions, Workspace::Impl& w);
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w);
-void look_for_folds(const Model& model, const State& state, StepStatus& status);
 
 }  // namespace
 
@@ -44,8 +42,6 @@ StepStatus step(const Model& model, const Parameters& parameters, State& state, 
                       parameters.resolves_contacts ? k_most_divisions : 0, w);
     w.next.step_size = state.step_size;
   }
-  if (parameters.resolves_contacts && !(status.ok() && w.next.energy.balance_error() <= k_lost_balance))
-    look_for_folds(model, status.ok() ? w.next : state, status);
   if (status.ok()) accept(model, parameters, state, w);
   return status;
 }
@@ -147,31 +143,6 @@ void accept(const Model& model, const Parameters& parameters, State& state, Work
       w.parts.balance(parameters, StepInputs(parameters, w.next.time), w.changed, w.next);
   }
   take(w.next, state, w.moves_nodes(state));
-}
-
-// The rotation vector of an element that bends beyond half a turn jumps to the other side, and what it holds
-// with it: no step is short enough for that.
-void look_for_folds(const Model& model, const State& state, StepStatus& status) {
-  using Kind = StepStatus::Kind;
-  if (status.kind != Kind::newton_diverged && status.kind != Kind::not_accurate &&
-      status.kind != Kind::energy_lost && !status.ok())
-    return;
-  status.time = status.ok() ? state.time : status.time;
-  double least = std::cos(k_folded / 2);  // of half the angle
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    if (!traits(state.bodies[b].level).moves_nodes) continue;
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-      const auto& [i, j] = model.elements[e].node;
-      const double half = std::abs((state.rotation[i].conjugate() * state.rotation[j]).w());
-      if (half > least || state.elements[e].hinge == Hinge::broken) continue;
-      least = half;
-      status.kind = Kind::folded;
-      status.body = static_cast<int>(b);
-      status.element = e;
-      status.node = i;
-    }
-  }
 }
 
 }  // namespace

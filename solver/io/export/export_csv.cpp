@@ -116,6 +116,14 @@ void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
   }
 }
 
+void contacts_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
+  for (const ContactForce& one : contact_forces(model, row)) {
+    csv.number(row.time).text(model.bodies[static_cast<std::size_t>(one.body)].name).text(one.part);
+    const Eigen::Vector3f place = one.place.cast<float>(), force = one.force.cast<float>();
+    csv.text(one.against).numbers(place.data(), 3).numbers(force.data(), 3).end_row();
+  }
+}
+
 void energy_row(CsvFile& csv, const FrameRow& row) {
   csv.number(row.time).numbers(row.energy.data(), row.energy.size()).end_row();
 }
@@ -145,6 +153,7 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
   CsvFile nodes(within("nodes.csv"), "time_s,body,node,x_m,y_m,z_m,qw,qx,qy,qz");
   CsvFile elements(within("elements.csv"),
                    "time_s,body,member,element,N,Vy,Vz,T,My,Mz,stress_Pa,yield_ratio,s,hinge,peak_stress_Pa");
+  CsvFile contacts(within("contacts.csv"), "time_s,body,part,against,x_m,y_m,z_m,Fx,Fy,Fz");
   CsvFile floor(within("floor.csv"), "time_s,ax,ay,az,dx,dy,dz");
   std::string energies = "time_s";
   for (const EnergyTraits& column : energy_columns(!model.anchors.empty()))
@@ -157,12 +166,13 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
     bodies_rows(bodies, model, row);
     nodes_rows(nodes, model, row);
     elements_rows(elements, model, row);
+    contacts_rows(contacts, model, row);
     floor_row(floor, row);
     energy_row(energy, row);
     if (anchors) anchors_rows(*anchors, model, row);
   });
   if (!whole) return false;
-  std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &floor, &energy};
+  std::vector<CsvFile*> files = {&bodies, &nodes, &elements, &contacts, &floor, &energy};
   if (anchors) files.push_back(&*anchors);
   for (CsvFile* file : files) file->close();
   for (CsvFile* file : files) file->commit();

@@ -9,10 +9,10 @@
 
 namespace topple::io {
 
-/// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4) and energy.csv (EnergyLedger of the
-/// run), and anchors.csv where there are any, into `folder` (created when missing), of the way to the newest
-/// branch. Each file appears whole or not at all; false, and
-/// none does, when `proceed` gave it up. Throws WriteError, InputError.
+/// Writes bodies.csv, nodes.csv, elements.csv, floor.csv (interface 4), contacts.csv (contact_forces) and
+/// energy.csv (EnergyLedger of the run), and anchors.csv where there are any, into `folder` (created when
+/// missing), of the way to the newest branch. Each file appears whole or not at all; false, and none does,
+/// when `proceed` gave it up. Throws WriteError, InputError.
 bool export_csv(const Recording& recording, const host::Target& folder, const Proceed& proceed = {});
 
 /// export_csv with the model given. `node` and `element` count from 0 within the body and within the member;

@@ -25,6 +25,18 @@ struct NodeMotion {
   NodeMotion(const Model& model, const FrameRow& row);
 };
 
+/// A force on a body: of a plane on a contact point, or of all other bodies on one of its elements or panels.
+struct ContactForce {
+  int body;
+  std::string part;     ///< "node 3", from 0 in each body; the name of a member; "panel 2", likewise
+  std::string against;  ///< the plane; empty: other bodies
+  Vec3 place, force;    ///< m and N, floor's frame
+};
+std::vector<ContactForce> contact_forces(const Model& model, const FrameRow& row);
+
+/// Of every node what touches it, an element or a panel at it, three numbers each, N, floor's frame.
+std::vector<double> contact_on_nodes(const Model& model, const FrameRow& row);
+
 /// By element: the two nodes of each, its member and its body.
 struct ElementPlaces {
   std::vector<std::int32_t> nodes, member, body;
@@ -35,13 +47,14 @@ enum class FieldPlace { nodes, elements };
 
 /// Calls field(name, place, values, columns) for each field of a frame as ParaView gets it; `columns` numbers
 /// belong to each node or element. On nodes, from the reference pose: displacement_m, rotation_rad (rotation
-/// vector). On elements: N_N, Vy_N, Vz_N, T_Nm, My_Nm, Mz_Nm and stress_Pa at the stress point, yield_ratio,
-/// s, hinge (FrameRow::hinge), peak_stress_Pa of the ends.
+/// vector), contact_N (contact_on_nodes). On elements: N_N, Vy_N, Vz_N, T_Nm, My_Nm, Mz_Nm and stress_Pa at
+/// the stress point, yield_ratio, s, hinge (FrameRow::hinge), peak_stress_Pa of the ends.
 template <class Field>
 void each_field(const Model& model, const FrameRow& row, Field field) {
   const NodeMotion motion(model, row);
   field("displacement_m", FieldPlace::nodes, motion.displacement, 3);
   field("rotation_rad", FieldPlace::nodes, motion.rotation, 3);
+  field("contact_N", FieldPlace::nodes, contact_on_nodes(model, row), 3);
   constexpr std::array k_forces = {"N_N", "Vy_N", "Vz_N", "T_Nm", "My_Nm", "Mz_Nm"};
   const std::size_t elements = model.elements.size();
   for (std::size_t k = 0; k < k_forces.size(); ++k) {

@@ -380,12 +380,14 @@ void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const 
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
   find_overlaps(model, start.position, [&](int member, int other_member, int other) {
-    const Member& of = model.members[member];
-    const auto [first, later] = std::minmax(of.body, other);
+    const int body = model.members[member].body;
+    const auto [first, later] = std::minmax(body, other);
+    const auto named = [&](int b, int m) {
+      const std::string& name = model.bodies[b].name;
+      return '"' + name + '"' + (m < 0 || model.bodies[b].solid ? "" : " (" + model.members[m].name + ")");
+    };
     entries[later < static_cast<int>(entries.size()) ? later : first].fail(
-        "the bodies \"" + model.bodies[of.body].name + "\" (" + of.name + ") and \"" +
-        model.bodies[other].name + "\"" +
-        (other_member < 0 ? "" : " (" + model.members[other_member].name + ")") + " overlap at the start");
+        "the bodies " + named(body, member) + " and " + named(other, other_member) + " overlap at the start");
   });
 }
 

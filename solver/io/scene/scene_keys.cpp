@@ -95,7 +95,7 @@ void add_run(std::vector<Key>& keys) {
       .absent(parameters.beta)
       .only("integrator", {"newmark"})
       .only_in({"dynamic"});
-  rows.number("gamma", 0, 1, "of the Newmark method; 1/2 is of second order, more damps")
+  rows.number("gamma", 0.5, 1, "of the Newmark method; 1/2 is of second order, more damps, less would grow")
       .absent(parameters.gamma)
       .only("integrator", {"newmark"})
       .only_in({"dynamic"});
@@ -367,7 +367,7 @@ void add_section(std::vector<Key>& keys) {
 void add_probe(std::vector<Key>& keys) {
   Rows rows(keys, "probe");
   rows.plain("name", T::text, "name in the summary").absent_means("probe-1, ...");
-  rows.plain("body", T::text, "a cabinet, a frame, or a copy").required();
+  rows.plain("body", T::text, "a cabinet, a frame, a block, or a copy").required();
   rows.integer("node", 0, 1e6, "node of a frame's list").absent_means("the body itself");
 }
 

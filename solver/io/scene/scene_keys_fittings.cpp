@@ -37,7 +37,7 @@ void add_holding(Rows& rows, bool of_fixing) {
 void add_fitting_keys(std::vector<Key>& keys) {
   Rows anchor(keys, "anchor");
   anchor.plain("name", T::text, "name in the summary").absent_means("anchor-1, ...");
-  anchor.plain("body", T::text, "a cabinet, a frame, or a copy").required();
+  anchor.plain("body", T::text, "a cabinet, a frame, a block, or a copy").required();
   anchor
       .numbers("point", 3, D::length, "m", -k_far, k_far,
                "on the body where it starts; rigidly joined to the nearest node")

@@ -185,6 +185,7 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
             "0.1,\"shelf, \"\"blue\"\"\",0,0.1,0,0,0,0,0,0\n"
             "0.1,\"shelf, \"\"blue\"\"\",1,0,0,0,0,0,0,0\n"
             "0.1,b,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(bytes_of(path("out/csv/contacts.csv")), "time_s,body,part,against,x_m,y_m,z_m,Fx,Fy,Fz\n");
   EXPECT_EQ(bytes_of(path("out/csv/floor.csv")), "time_s,ax,ay,az,dx,dy,dz\n0.1,1.862,0,0,0,0,0\n");
   const std::string elements = bytes_of(path("out/csv/elements.csv"));
   EXPECT_TRUE(
@@ -193,7 +194,7 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
                            "0.1,\"shelf, \"\"blue\"\"\",post-1,0,1000,0,0,0,0,0,"))
       << elements;
   EXPECT_TRUE(elements.ends_with("post-1,1,0,0,0,0,0,0,0,,-0.25,2,0\n")) << elements;
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out/csv")), {}), 5);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out/csv")), {}), 6);
 }
 
 TEST_F(RecordingTest, tables_of_a_damaged_recording_do_not_appear_by_half) {

@@ -126,8 +126,8 @@ TEST_F(FailureTest, a_scene_that_collapses_under_its_own_weight_is_told) {
                   {"before the first step, at 0 s", "does not come to rest under gravity"});
 }
 
-// A moment that is greater than what a post of lead bears winds it up.
-TEST_F(FailureTest, an_element_that_folds_is_told_and_one_that_breaks_goes_on) {
+// A moment that is greater than what a post of lead bears winds it up until it tears.
+TEST_F(FailureTest, an_element_that_winds_up_tears_and_the_run_goes_on) {
   write_bytes("post.toml", R"(topple = 1
 [run]
 duration = 2
@@ -152,15 +152,11 @@ supports = [{ node = 0, fix = "xyzXYZ" }]
 masses = [{ node = 1, mass = 1, inertia = [1, 1, 1] }]
 loads = [{ node = 1, moment = [0, 5, 0] }]
 )");
-  for (const char* step : {"run.time_step=auto", "run.time_step=1e-3"}) {
-    const Ended folds = topple({"run", "post.toml", "--quiet", "--set", step});
-    EXPECT_EQ(folds.code, 1);
-    EXPECT_NE(folds.err.find("body \"post\", member \"member-0\" (element "), std::string::npos) << folds.err;
-    EXPECT_NE(folds.err.find(" has folded at "), std::string::npos) << folds.err;
+  for (const char* set : {"run.time_step=auto", "run.time_step=1e-3", "material.lead.fracture_strain=0.05"}) {
+    const Ended tears = topple({"run", "post.toml", "--quiet", "--set", set});
+    EXPECT_EQ(tears.code, 0) << tears.err;
+    EXPECT_NE(tears.out.find(" broken section"), std::string::npos) << tears.out;
   }
-  const Ended breaks = topple({"run", "post.toml", "--quiet", "--set", "material.lead.fracture_strain=0.05"});
-  EXPECT_EQ(breaks.code, 0) << breaks.err;
-  EXPECT_NE(breaks.out.find("1 broken section"), std::string::npos) << breaks.out;
 }
 
 // It falls for 0.1 s before it meets the floor; sixty-four parts of a step of 50 ms are still too long there.

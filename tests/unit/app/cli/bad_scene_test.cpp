@@ -130,15 +130,22 @@ TEST_F(BadSceneTest, all_errors_of_a_scene_are_told_at_once) {
 }
 
 TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
-  const std::string hangs = "[[block]]\nname = \"box\"\nsize = [0.2, 0.2, 0.2]\nmass = 1\nat = [2, 0, 0.3]\n";
+  const auto block = [](const std::string& name, const std::string& at) {
+    return "[[block]]\nname = \"" + name + "\"\nsize = [0.2, 0.2, 0.2]\nmass = 1\nat = [" + at + "]\n";
+  };
+  const std::string hangs = block("box", "2, 0, 0.3") + block("desk", "3, 0, 0") +
+                            block("lamp", "3, 0, 0.25") + block("shelf", "4, 0, 0") +
+                            block("vase", "4.15, 0, 0.21");
   const std::string bracket =
       "[[anchor]]\nname = \"bracket\"\nbody = \"free\"\npoint = [-0.19, 0, 1.79]\nto = [-0.25, 0, 1.79]\n"
       "type = \"bracket\"\nstiffness = \"1000 kN/m\"\n";
   write_bytes("s.toml", changed("alpha = \"50 kgf\"\n", "") + hangs + bracket);
   const Ended ended = topple({"check", "s.toml"});
   EXPECT_EQ(ended.code, 0);
-  EXPECT_NE(ended.err.find("\"box\" stands on nothing: it hangs 300 mm above the floor"), std::string::npos)
-      << ended.err;
+  for (const char* words : {"\"box\" stands on nothing: it hangs 300 mm above the floor",
+                            "\"lamp\" stands on nothing: it hangs 40 mm above \"desk\"",
+                            "the centre of gravity of \"vase\" is 50 mm beside \"shelf\""})
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("anchor \"bracket\" holds \"free\" in the middle of its member"),
             std::string::npos)
       << ended.err;

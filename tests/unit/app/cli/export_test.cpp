@@ -147,7 +147,28 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
     EXPECT_EQ(number(floor.back()[1 + static_cast<std::size_t>(k)]), last.floor_acceleration[k]);
     EXPECT_EQ(number(floor.back()[4 + static_cast<std::size_t>(k)]), last.floor_displacement[k]);
   }
-  EXPECT_EQ(files().size(), 2u + 2u + 5u);  // scene, recording, two folders, five tables
+  EXPECT_EQ(files().size(), 2u + 2u + 6u);  // scene, recording, two folders, six tables
+}
+
+// A block of 10 kg on one of 50 kg, settled: to 1e-6 of the weight, as rows are of single precision.
+TEST_F(ExportTest, what_stands_is_pushed_by_its_weight_and_pushes_back) {
+  write_bytes("stack.toml",
+              "topple = 1\n[run]\nduration = 0.02\n[floor]\n"
+              "[[block]]\nname = \"below\"\nsize = [0.4, 0.4, 0.2]\nmass = 50\n"
+              "[[block]]\nname = \"above\"\nsize = [0.2, 0.2, 0.2]\nmass = 10\nat = [0, 0, 0.21]\n");
+  ASSERT_EQ(topple({"run", "stack.toml", "-o", "stack.h5"}).code, 0);
+  ASSERT_EQ(topple({"export", "stack.h5", "--csv", "stack"}).code, 0);
+  std::map<std::string, double> last;  // Fz by body and what pushes it
+  for (const auto& row : rows("contacts.csv", "time_s,body,part,against,x_m,y_m,z_m,Fx,Fy,Fz", "stack/")) {
+    if (number(row[0]) < 0.02) continue;
+    EXPECT_TRUE(row[2].starts_with("node ") == !row[3].empty()) << row[2] << ", " << row[3];
+    last[row[1] + "/" + row[3]] += number(row[9]);
+  }
+  const double g = 9.80665, rounding = 1e-6 * 60 * g;
+  EXPECT_EQ(last.size(), 3u);
+  EXPECT_NEAR(last["below/floor"], 60 * g, rounding);
+  EXPECT_NEAR(last["above/"], 10 * g, rounding);
+  EXPECT_NEAR(last["below/"], -10 * g, rounding);
 }
 
 TEST_F(ExportTest, columns_of_all_tables_are_explained_in_their_order) {

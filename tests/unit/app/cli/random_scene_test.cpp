@@ -299,8 +299,6 @@ std::string reason(StepStatus::Kind kind) {
       return "passed through";
     case StepStatus::Kind::energy_lost:
       return "energy lost";
-    case StepStatus::Kind::folded:
-      return "folded";
     case StepStatus::Kind::bad_parameter:
       return "bad parameter";
   }

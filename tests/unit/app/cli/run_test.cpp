@@ -311,27 +311,26 @@ TEST_F(RunTest, an_explicit_step_above_its_limit_is_told_and_the_first_instant_k
   EXPECT_EQ(topple({"info", "a.h5", "--verify"}).code, 0);
 }
 
-TEST_F(RunTest, a_step_without_a_solution_is_told_and_what_converged_is_kept) {
+TEST_F(RunTest, a_step_that_is_refused_is_told_and_what_was_right_is_kept) {
   std::string torn = k_beam;
-  const std::string load = "\"-100 N\"]";
+  const std::string load = "[0, 0, \"-100 N\"]";
   torn.replace(torn.find(load), load.size(),
-               "-1e9], moment = [1e9, 0, 0], history = [[0.05, 0], [0.051, 1]]");
+               "[-1e9, 0, -1], moment = [0, 1e9, 0], history = [[0.05, 0], [0.051, 1]]");
   write_bytes("torn.toml", torn);
   const Ended ended = topple({"run", "torn.toml", "-o", "a.h5", "--json", "-"});
   EXPECT_EQ(ended.code, 1);
   const Json s = json_of(ended.out), what = info("a.h5");
   EXPECT_EQ(s["status"], "diverged");
   const std::string message = s["message"];
-  for (const char* part : {"body \"beam\", member \"member-0\" (element ", " has folded at 0.05",
-                           "if a smaller time_step does not"})
-    EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_TRUE(
+      message.starts_with("more than a tenth of the energy is unaccounted for after the step at 0.05"))
+      << message;
   EXPECT_TRUE(ended.err.starts_with("topple: torn: " + message + "; a.h5 holds everything up to "))
       << ended.err;
   EXPECT_EQ(what["status"], "diverged");
   EXPECT_NEAR(what["recorded_s"], s["simulated_s"], 1e-12);
-  EXPECT_NEAR(s["simulated_s"], 0.05, 4e-3);
-  EXPECT_EQ(what["frames"], 7);
-  EXPECT_NE(message.find("member \"member-0\" (element "), std::string::npos) << message;
+  EXPECT_NEAR(s["simulated_s"], 0.05, 1e-3);
+  EXPECT_EQ(what["frames"], 6);
   EXPECT_EQ(topple({"info", "a.h5", "--verify"}).code, 0);
   const Ended adaptive = topple({"run", "torn.toml", "--set", "run.time_step=auto"});
   EXPECT_EQ(adaptive.code, 1);
