@@ -22,6 +22,7 @@ constexpr double k_pinched = 0.95;              // 1 - l/L between members
 constexpr double k_same_interval = 1 + 1e-9;    // of a step and a sample interval, both rounded
 constexpr double k_good_balance = 1e-3;         // energy that nothing explains
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
+constexpr double k_switched = 0.01;             // energy that changes of models give or take
 constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
 constexpr double k_elastic_strain = 0.01;       // more than structural metals and wood have
 constexpr double k_most_g = 5;                  // of a shake; records above it are refused
@@ -120,6 +121,12 @@ void warn_of_energy(const Run& run, Warnings& list) {
   if (const double balance = e.balance_error(); balance > k_good_balance)
     list.push_back(fmt::format("energy balance error {:.1e} (of the {:.2g} J exchanged) is above {:.0e}; {}",
                                balance, e.largest, k_good_balance, finer));
+  if (e.largest >= k_numbers_of_interest && std::abs(e.model_switch) > k_switched * e.largest)
+    list.push_back(fmt::format(
+        "bodies that changed their model in a blow {} {:.3g} J, {:.0f} % of the largest energy exchanged; "
+        "model = \"frame\" follows them through it",
+        e.model_switch > 0 ? "got" : "lost", std::abs(e.model_switch),
+        100 * std::abs(e.model_switch) / e.largest));
   const double share = std::abs(e.numerical) / e.largest;
   if (e.largest < k_numbers_of_interest || share < k_numerical) return;
   const Parameters& p = run.parameters();

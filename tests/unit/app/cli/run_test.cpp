@@ -337,6 +337,20 @@ TEST_F(RunTest, a_step_that_is_refused_is_told_and_what_was_right_is_kept) {
   EXPECT_NE(adaptive.err.find("try a larger tolerance"), std::string::npos) << adaptive.err;
 }
 
+// At 20 m/s a step of 1 ms leads an elastic cabinet deep into the blow before it becomes a frame.
+TEST_F(RunTest, energy_that_a_change_of_models_put_in_is_warned_of) {
+  write_bytes("thrown.toml",
+              "topple = 1\n[run]\nduration = 0.04\nsettle = false\ngravity = [0, 0, 0]\n"
+              "[[cabinet]]\nname = \"hit\"\nsize = [0.38, 0.88, 1.79]\nmass = 40\nsection = \"box 30x1\"\n"
+              "material = \"steel\"\nshelves = 2\n[[block]]\nname = \"box\"\nsize = [0.2, 0.2, 0.2]\n"
+              "mass = 5\nat = [-0.8, 0, 0.3]\nvelocity = [20, 0, 0]\n");
+  const std::string words = "bodies that changed their model in a blow got ";
+  EXPECT_NE(topple({"run", "thrown.toml"}).err.find(words), std::string::npos);
+  const Ended frame = topple({"run", "thrown.toml", "--set", "cabinet.hit.model=frame"});
+  EXPECT_EQ(frame.code, 0) << frame.err;
+  EXPECT_EQ(frame.err.find(words), std::string::npos) << frame.err;
+}
+
 TEST_F(RunTest, a_body_with_nothing_to_stand_on_does_not_settle) {
   std::string text = k_shaken;
   text.replace(text.find("[floor]"), 7, "[[wall]]\nat = [-9, 0]\nnormal = [1, 0, 0]");
