@@ -22,6 +22,8 @@ constexpr double k_pinched = 0.95;              // 1 - l/L between members
 constexpr double k_same_interval = 1 + 1e-9;    // of a step and a sample interval, both rounded
 constexpr double k_good_balance = 1e-3;         // energy that nothing explains
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
+constexpr double k_yielded = 1.05;              // of the yield surface: frames stay within it
+constexpr double k_sunk = 0.1;                  // m below a floor
 constexpr double k_switched = 0.01;             // energy that changes of models give or take
 constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
 constexpr double k_elastic_strain = 0.01;       // more than structural metals and wood have
@@ -45,6 +47,26 @@ void warn_of_depth(const Run& run, Warnings& list) {
           fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
                       "larger alpha keeps them apart",
                       model.bodies[b].name, 1 - bodies[b].peak_pinch));
+}
+
+// Of a cabinet its corners meet the floor, and edges where they are asked for.
+void warn_of_pieces(const Run& run, Warnings& list) {
+  const Model& model = run.setup().model;
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const Body& body = model.bodies[b];
+    if (run.outcome().bodies()[b].fractures == 0) continue;
+    int sunk = 0;
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      sunk += std::ranges::any_of(model.planes, [&](const Plane& plane) {
+        return plane.normal.dot(run.state().position[i] - plane.point) < -k_sunk;
+      });
+    if (sunk > 0)
+      list.push_back(
+          fmt::format("{} of the {} nodes of \"{}\" fell through the floor or a wall with pieces that broke "
+                      "off: they meet it at "
+                      "{} points of the body alone; its tilt and slide are means over all",
+                      sunk, body.node_count, body.name, body.contact_point_count));
+  }
 }
 
 // With run.control the loads follow the path, and a body stays on it.
@@ -71,6 +93,12 @@ void warn_of_stress(const Run& run, Warnings& list) {
       yields = yields || material.yield > 0;
       stiffest = std::max(stiffest, material.young);
     }
+    if (const double ratio = bodies[b].peak_yield_ratio.value_or(0); ratio > k_yielded)
+      list.push_back(
+          fmt::format("the stress in body \"{}\", {:.4g} MPa, passed yield {:.3g} times while the body was "
+                      "elastic: no steel "
+                      "bears it; want = [\"stress\"], or model = \"frame\", lets it yield",
+                      body.name, 1e-6 * bodies[b].peak_stress, ratio));
     if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
       list.push_back(fmt::format(
           "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
@@ -90,6 +118,12 @@ void warn_of_step(const Run& run, Warnings& list) {
           "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
           "steps is not seen",
           1e3 * h, 1e3 * shake.record->interval));
+  if (const double rows = 1 / run.setup().run.output_rate; p.want_stress && h > k_same_interval * rows)
+    list.push_back(
+        fmt::format("time_step {:g} ms is longer than the {:g} ms between rows: the peaks told here are "
+                    "those at the ends of steps; "
+                    "tables and the window may show greater ones between them",
+                    1e3 * h, 1e3 * rows));
   double bounce = std::numeric_limits<double>::infinity();
   for (int b = 0; b < model.furniture_total(); ++b)
     if (traits(base_level(model, p, b).level).moves_nodes)
@@ -153,6 +187,7 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_depth(run, list);
   warn_of_shakes(run.parameters().shakes, list);
   warn_of_stress(run, list);
+  warn_of_pieces(run, list);
   warn_of_instability(run, list);
   if (is_static(run.setup())) return list;
   if (!run.parameters().adaptive) warn_of_step(run, list);

@@ -52,7 +52,9 @@ std::string static_head(const ordered_json& s) {
     out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
                        step["converged"].get<bool>() ? "converged" : "no equilibrium", loss_in_words(step));
   const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
-  if (std::ranges::all_of(s["static"], stable)) out += "stable at every load factor\n";
+  if (!s["static"].empty() && std::ranges::all_of(s["static"], stable))
+    out += s["status"] == "diverged" ? "stable at every load factor up to there\n"
+                                     : "stable at every load factor\n";
   return out + "\n";
 }
 
@@ -83,7 +85,7 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
-  return fmt::format("; error about {:.2g} %{}", 100 * estimate.get<double>(),
+  return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(),
                      may_strike ? " until it strikes something, from which a frame springs back" : "");
 }
 

@@ -101,6 +101,10 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const auto& shakes = player.parameters().shakes;
   const auto furniture = model.furniture_total();
   const Parameters& parameters = player.parameters();
+  if (shakes.front().building) {
+    ImGui::TextWrapped("%s", say(k_building_between).c_str());
+    return;
+  }
   if (!state.body || !has_limits(model, parameters, *state.body)) {
     state.body.reset();
     for (int b = 0; b < furniture && !state.body; ++b)

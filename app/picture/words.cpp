@@ -17,7 +17,6 @@ namespace {
 
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
-constexpr double k_falls = 1;          // m/s, at large: what moves faster has not come to lie
 constexpr double k_slid_least = 1e-3;  // m
 constexpr double k_on_floor = 0.05;    // m, highest base of what stands there: others go with what bears them
 constexpr double k_at_rest = 0.01;     // m/s: what moves slower at large rests there
@@ -29,19 +28,17 @@ using namespace window_words;
 
 enum class Stance { fallen, toppling, tipped, leaning, standing };
 
-bool is_slower(double speed, const Model& model, const Vec3& gravity, const io::FrameRow& row,
-               std::size_t body) {
+bool is_at_rest(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
   return io::kinetic_energy(model, gravity, row, static_cast<int>(body)) <
-         model.bodies[body].mass * speed * speed / 2;
+         model.bodies[body].mass * k_at_rest * k_at_rest / 2;
 }
 
 Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
   const double tilt = row.body[body].tilt * k_degrees, critical = row.body[body].critical_angle * k_degrees;
-  return tilt > k_lying && is_slower(k_falls, model, gravity, row, body)      ? Stance::fallen
-         : tilt > critical && is_slower(k_at_rest, model, gravity, row, body) ? Stance::tipped
-         : tilt > critical                                                    ? Stance::toppling
-         : tilt > k_upright                                                   ? Stance::leaning
-                                                                              : Stance::standing;
+  return tilt > k_lying     ? Stance::fallen
+         : tilt > critical  ? (is_at_rest(model, gravity, row, body) ? Stance::tipped : Stance::toppling)
+         : tilt > k_upright ? Stance::leaning
+                            : Stance::standing;
 }
 
 /// Kinds of shakes that have words.

@@ -117,12 +117,13 @@ inline constexpr Phrase k_slide{"peak slide, mm", "最大すべり [mm]"};
 inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
     "Overturns: the tilt passes the critical angle (centre of gravity above the edge of the base) for good "
-    "before the run ends. "
+    "before the run ends; its column tells that of the edge over which the body leaned most. "
     "Slide: horizontal travel of the middle of the base relative to the floor. Uplift: one side of the base "
     "carries less than "
     "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated numerical error, "
     "section {2}.",
-    "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。すべり："
+    "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。限界角は最も"
+    "傾いた側の値。すべり："
     "床に対する底面中心の水平移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
     "±は推定数値誤差（第{2}節）。"};
@@ -175,7 +176,7 @@ inline constexpr Phrase k_no_way{"closed", "通れない"};
 inline constexpr Phrase k_open_in{"way out open in", "出口まで通れる"};
 inline constexpr Phrase k_plan_figure{"Figure {0}: the room in plan at the end of the run, to scale.",
                                       "図{0}：計算終了時の部屋の平面図（縮尺どおり）。"};
-inline constexpr Phrase k_key_fallen{"overturned, as it lies", "転倒した家具"};
+inline constexpr Phrase k_key_fallen{"overturned, as it is at the end", "転倒した家具（終了時）"};
 inline constexpr Phrase k_key_standing{"standing, at the end", "立っている家具（終了時）"};
 inline constexpr Phrase k_key_start{"where it stood before", "揺れる前の位置"};
 inline constexpr Phrase k_key_way_before{"way before", "揺れる前の経路"};

@@ -29,19 +29,19 @@ std::string line_of(const study::FragilityPlan& plan, const study::FragilityCurv
   return out + "\n";
 }
 
-/// At the greatest level that was run.
+/// At the level where it is open least.
 std::string open_share(const study::FragilityPlan& plan, const study::FragilityCurve& closed) {
-  for (std::size_t i = closed.levels.size(); i-- > 0;) {
-    const study::Level& level = closed.levels[i];
-    if (level.runs == 0) continue;
-    const int open = level.runs - level.hits;
-    const study::Interval bounds = study::wilson(open, level.runs);
-    return fmt::format(
-        "  open      in {} of {} runs at {:.4g}{}: probability {:.3g} (95 %: {:.3g} to {:.3g})\n", open,
-        level.runs, level.intensity, plan.levels.unit.empty() ? "" : " " + plan.levels.unit,
-        static_cast<double>(open) / level.runs, bounds.low, bounds.high);
-  }
-  return "";
+  const auto share = [](const study::Level& level) {
+    return level.runs > 0 ? static_cast<double>(level.hits) / level.runs : -1;
+  };
+  const auto worst = std::ranges::max_element(closed.levels, {}, share);
+  if (worst == closed.levels.end() || worst->runs == 0) return "";
+  const int open = worst->runs - worst->hits;
+  const study::Interval bounds = study::wilson(open, worst->runs);
+  return fmt::format(
+      "  open      least at {:.4g}{}, in {} of {} runs: probability {:.3g} (95 %: {:.3g} to {:.3g})\n",
+      worst->intensity, plan.levels.unit.empty() ? "" : " " + plan.levels.unit, open, worst->runs,
+      static_cast<double>(open) / worst->runs, bounds.low, bounds.high);
 }
 
 std::string criteria_in_words(const study::FragilityPlan& plan, const study::FragilityResults& results,

@@ -51,13 +51,15 @@ std::string default_in_words(const study::PrecisionPlan& plan, const study::Prec
   std::string text = fmt::format("{}: {:.3g} ms per simulated s\n", in_words(plan, 0), 1e3 * *own.cost);
   for (int m = 0; m < study::k_measures; ++m) {
     const auto measure = static_cast<study::Measure>(m);
-    if (const auto place = place_of_default(plan, results, measure))
-      text += fmt::format("  {}: off by {}; {}\n", name(measure), percent(*own.errors[index(measure)]),
-                          place->cost_ratio > k_better || place->error_ratio > k_better
-                              ? fmt::format("others are as exact for {:.2g} of its cost, {:.2g} times nearer "
-                                            "for all of it",
-                                            1 / place->cost_ratio, place->error_ratio)
-                              : "no other is as exact for less, or nearer for the same");
+    if (const auto place = place_of_default(plan, results, measure)) {
+      const bool cheaper = place->cost_ratio > k_better, nearer = place->error_ratio > k_better;
+      text += fmt::format("  {}: off by {}; ", name(measure), percent(*own.errors[index(measure)]));
+      if (cheaper) text += fmt::format("others are as exact for {:.2g} of its cost", 1 / place->cost_ratio);
+      if (nearer)
+        text += fmt::format("{} {:.2g} times nearer for all of it", cheaper ? "," : "others are",
+                            place->error_ratio);
+      text += cheaper || nearer ? "\n" : "no other is as exact for less, or nearer for the same\n";
+    }
   }
   return text;
 }

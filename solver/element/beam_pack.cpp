@@ -163,9 +163,11 @@ void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const 
         pack_strain(packs_[n].beam, ends_of(motion.position, motion.rotation, packs_[n].i, packs_[n].j)));
   Four total(0);
   Responses responses;
+  tears_ = false;
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     Pack& pack = packs_[n];
     const PackStrain<Four>& strain = strains_[n];
+    tears_ |= any_above(strain.angle.x, k_torn * k_torn);
     PackSection<Four> section = elastic_section(pack.beam, strain);
     respond_to(elements, n, strain, section, responses);
     total = total + pack_energy(pack.beam, strain, section);
@@ -186,10 +188,12 @@ PackSection<Four> BeamPacks::viscous(std::span<const ElementState> elements, con
 void BeamPacks::subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                                   double velocity_factor, std::span<NodeForce> forces, BlockLu& lu) {
   Responses responses;
+  tears_ = false;
   for (std::size_t n = 0; n < packs_.size(); ++n) {
     const Pack& pack = packs_[n];
     const PackStrain<Four> strain =
         pack_strain(pack.beam, ends_of(motion.position, motion.rotation, pack.i, pack.j));
+    tears_ |= any_above(strain.angle.x, k_torn * k_torn);
     PackSection<Four> section = elastic_section(pack.beam, strain);
     const bool flows = respond_to(elements, n, strain, section, responses);
     PackStiffness<Four> stiffness{pack.beam.normal_stiffness, pack.beam.bending_stiffness};

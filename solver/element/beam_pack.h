@@ -31,6 +31,9 @@ struct NodeMotion {
   std::span<const Vec3> angular_velocity;  ///< rad/s, material axes
 };
 
+/// rad, turn of the ends of an element against each other at which it tears.
+inline constexpr double k_torn = 5;
+
 /// The elements of a system in their order, four to a pack; those that fill up the last have no stiffness.
 class BeamPacks {
  public:
@@ -48,6 +51,8 @@ class BeamPacks {
   /// of viscous forces by velocities.
   void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                          double velocity_factor, std::span<NodeForce> forces, BlockLu& lu);
+  /// Whether some element was beyond k_torn in the latest of them.
+  bool tears() const { return tears_; }
   /// Work that viscous forces take from one motion to another, by the trapezoidal rule, J.
   double viscous_work(std::span<const ElementState> elements, const NodeMotion& start,
                       const NodeMotion& end) const;
@@ -87,7 +92,7 @@ class BeamPacks {
   std::vector<Pack> packs_;
   std::vector<PackStrain<Four>> strains_;  // scratch
   double latest_energy_ = 0;
-  bool damped_ = false;
+  bool damped_ = false, tears_ = false;
 };
 
 }  // namespace topple

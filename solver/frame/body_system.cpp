@@ -322,10 +322,12 @@ void BodySystem::place_carried(BodyMotion& motion) const {
 }
 
 void BodySystem::load_memory(const State& state, const BodyMotion& motion) {
-  const bool remembered =
-      std::exchange(remembers, yields || std::ranges::any_of(own_elements, [&](const OwnElement& own) {
-                                 return state.elements[own.element].hinge == Hinge::broken;
-                               }));
+  const auto is_torn = [&](const OwnElement& own) {
+    return state.elements[own.element].hinge == Hinge::broken;
+  };
+  // what tears takes energy: before, there is nothing to look for
+  const bool torn = !yields && state.energy.plastic != 0 && std::ranges::any_of(own_elements, is_torn);
+  const bool remembered = std::exchange(remembers, yields || torn);
   for (std::size_t k = 0; (remembers || remembered) && k < own_elements.size(); ++k)
     elements[k] = state.elements[own_elements[k].element];
   if (remembered && !remembers) beams_.remember(elements);

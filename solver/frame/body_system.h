@@ -107,6 +107,8 @@ class BodySystem {
   double viscous_work(const BodyMotion& start, const BodyMotion& end) const {
     return beams_.viscous_work(elements, start, end);
   }
+  /// Whether some element was beyond k_torn in the latest evaluation.
+  bool tears() const { return beams_.tears(); }
   /// Elastic energy of the elements, J, with the flow so far; also fills this system's part of `sections`.
   double elastic_energy(const BodyMotion& motion, std::vector<SectionForces>& sections);
   /// Copies this system's part of an array over the model's nodes into one over its own; put: back.

@@ -10,8 +10,6 @@
 namespace topple {
 namespace {
 
-constexpr double k_torn = -0.8011436155469337;  // cosine of half of the 5 rad at which an element tears
-
 BeamStrain strain_at(const BodySystem& s, std::size_t k, const BodyMotion& motion) {
   const auto [e, i, j] = s.own_elements[k];
   return beam_strain(s.model.elements[e], beam_ends(motion.position[i], motion.rotation[i],
@@ -48,13 +46,14 @@ bool breaks(const Model& model, const Element& element, const BeamStrain& strain
 }
 
 bool break_sections(BodySystem& s, const BodyMotion& trial) {
+  if (!s.remembers && !s.tears()) return false;
   const auto breaks_here = [&](std::size_t k) {
-    const auto& [e, i, j] = s.own_elements[k];
-    if (s.elements[k].hinge == Hinge::broken) return false;
-    if (trial.rotation[i].dot(trial.rotation[j]) < k_torn) return true;
-    const Element& element = s.model.elements[e];
-    if (!(s.model.materials[s.model.members[element.member].material].fracture_strain > 0)) return false;
+    const Element& element = s.model.elements[s.own_elements[k].element];
+    const bool is_brittle = s.model.materials[s.model.members[element.member].material].fracture_strain > 0;
+    if (s.elements[k].hinge == Hinge::broken || !(is_brittle || s.tears())) return false;
     const BeamStrain strain = strain_at(s, k, trial);
+    if (strain.kappa.norm() * element.length > k_torn) return true;
+    if (!is_brittle) return false;
     const SectionResponse response = respond(element, s.elements[k], strain);
     return hinges_of(element, response, s.elements[k].hinge) != Hinge::none &&
            breaks(s.model, element, strain, response.forces);

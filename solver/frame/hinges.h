@@ -15,7 +15,7 @@ namespace topple {
 inline constexpr double k_unloading = 1e-3;
 
 /// Sections that at a converged solution flow beyond their limits break (breaks), and elements whose ends
-/// have turned by 5 rad against each other: strains are known up to a full turn. True: the step must be
+/// have turned by k_torn against each other: strains are known up to a full turn. True: the step must be
 /// solved again.
 bool break_sections(BodySystem& system, const BodyMotion& trial);
 

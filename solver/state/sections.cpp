@@ -1,5 +1,7 @@
 #include "solver/state/sections.h"
 
+#include "solver/element/plasticity.h"
+
 namespace topple {
 
 void section_forces(const Model& model, const State& state, int index, std::vector<SectionForces>& forces) {
@@ -9,7 +11,7 @@ void section_forces(const Model& model, const State& state, int index, std::vect
     const int i = element.node[0], j = element.node[1];
     const BeamStrain strain = beam_strain(
         element, beam_ends(state.position[i], state.rotation[i], state.position[j], state.rotation[j]));
-    forces[e] = section_forces(element, elastic_strain(state.elements[e], strain));
+    forces[e] = respond(element, state.elements[e], strain).forces;
   }
 }
 

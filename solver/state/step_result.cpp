@@ -6,6 +6,8 @@
 namespace topple {
 namespace {
 
+constexpr double k_no_load = 1e-3;  // load factor
+
 std::string format(const char* pattern, double a) {
   char text[96];
   std::snprintf(text, sizeof text, pattern, a);
@@ -30,14 +32,14 @@ const char* loss_in_words(Stability::Loss loss) {
   using Loss = Stability::Loss;
   switch (loss) {
     case Loss::limit_point:
-      return " carries no more there, a limit point; run.control follows a path that turns down";
+      return " carries no more there, a limit point; run.control with an arc follows a path that turns down";
     case Loss::buckling:
       return " buckles there, sideways to its loads";
     case Loss::mechanism:
-      return " is a mechanism there; run.control follows a path that goes on or turns down";
+      return " is a mechanism there; run.control with an arc follows a path that goes on or turns down";
     case Loss::fracture:
-      return " breaks there, and what is left does not carry the loads; run.control follows a path that "
-             "goes on or turns down";
+      return " breaks there, and what is left does not carry the loads; run.control with an arc follows a "
+             "path that goes on or turns down";
     case Loss::none:
       break;
   }
@@ -98,13 +100,16 @@ std::string StepStatus::message(const Model& model) const {
       return where + format(": the time integration is stable up to a time_step of %.4g s", limit) +
              ", met " + when + "; try a smaller one, or generalized-alpha";
     case Kind::no_equilibrium:
+      if (stability.loss == Stability::Loss::mechanism && load_factor < k_no_load)
+        return where + " is a mechanism before it carries anything: a part may be free to move";
       return format("no equilibrium was found at load factor %.6g: ", load_factor) + where +
              loss_in_words(stability.loss);
     case Kind::passed_through:
       return "members would pass through each other unseen in the step " + when + ": " + where + finer;
     case Kind::energy_lost:
       return (body >= 0 ? "a contact is not resolved: " : "") +
-             ("more than a tenth of the energy is unaccounted for after the step " + when) +
+             ("more than a tenth of the energy is unaccounted for after the step " + when +
+              ", which is not taken") +
              (body >= 0 ? ": " + where : "") + finer;
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/body/anchors.h"
 #include "solver/contact/contact_law.h"
@@ -9,6 +10,7 @@
 #include "solver/element/plasticity.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
+#include "solver/frame/start_vector.h"
 #include "solver/math/rotation.h"
 #include "solver/step/controlled_way.h"
 #include "solver/step/stability_of.h"
@@ -161,6 +163,30 @@ int LoadPath::controlled_body() const {
   return settings_.control ? model_->node_body[settings_.control->node] : -1;
 }
 
+// Nothing holds it: forces move it far more than bending would let them.
+bool LoadPath::is_free(const Parameters& parameters, const State& state, int body) {
+  constexpr double k_free = 1e8;
+  BodySystem& s = *systems_[body];
+  s.load(state, start_[body]);
+  s.load_memory(state, start_[body]);
+  trial_[body] = start_[body];
+  evaluate(s, at_rest(parameters), state, state.load_factor);
+  if (s.lu.factor() >= 0) return true;
+  double softest = std::numeric_limits<double>::infinity();
+  for (const auto& own : s.own_elements) {
+    const Element& element = s.model.elements[own.element];
+    softest = std::min(softest, element.bending_stiffness.minCoeff() / std::pow(element.length, 3));
+  }
+  std::vector<double> x(6 * s.count);
+  for (int i = 0; i < s.count; ++i) {
+    Eigen::Map<Vec3> force(&x[6 * i]), moment(&x[6 * i + 3]);
+    for (int k = 0; k < 3; ++k) force[k] = start_entry(6 * i + k);
+    s.clear_fixed(i, force, moment);
+  }
+  s.lu.solve(x.data());
+  return furthest_of(s, x).way * softest > k_free;
+}
+
 // What a load step goes along, six numbers per node of the controlled body.
 std::vector<double> LoadPath::controlled_way(const BodySystem& s, const State& state) const {
   std::vector<double> along(6 * s.count, 0.);
@@ -284,6 +310,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   const double tolerance = k_convergence * s.size;
   double last = k_none;  // whole correction
   int partial = 0;       // corrections that were not, one after the other
+  bool released = false;
   const auto blame = [&](int node) {
     status.node = s.first + node;
     status.element = s.element_at(status.node);
@@ -302,8 +329,15 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   for (int iteration = 1; iteration <= most; ++iteration) {
     status.newton_iterations = iteration;
     if (iteration > 1) hold_joints(s, start, trial);
-    if (const int node = find_correction(s, still, state, factor, way ? &*way : nullptr, step); node >= 0)
-      return blame(node);
+    const auto correction = [&] {
+      return find_correction(s, still, state, factor, way ? &*way : nullptr, step);
+    };
+    int leaping = correction();
+    if (leaping >= 0 && std::exchange(released, false)) {
+      step.reach = k_none;  // what was held, or is gone, may have to go further
+      leaping = correction();
+    }
+    if (leaping >= 0) return blame(leaping);
     bool found = partial >= k_patience && is_balanced(s, trial, step.forces) &&
                  (!way || std::abs(way->left()) < tolerance);
     if (!found) {
@@ -325,6 +359,7 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     if (release_joints(s, trial) || break_sections(s, trial)) {
       iteration = partial = 0;
       last = k_none;
+      released = true;
       continue;
     }
     evaluate(s, still, state, factor);
@@ -484,6 +519,11 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
     }
   }
   if (done > 0) ++state.step;
+  if (status.kind == StepStatus::Kind::no_equilibrium && state.step == 0 &&
+      is_free(parameters, state, status.body)) {
+    status.stability = {};
+    status.stability.loss = Stability::Loss::mechanism;
+  }
   if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
     status.stability = what_is_lost(parameters, state, status.body);
   status.time = state.time;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int k_most_errors = 200;
 constexpr const char* k_there_is_no = "there is no ";
+constexpr const char* k_overlap = " overlap at the start";
 
 bool same(const Place& a, const Place& b) {
   return a.line == b.line && a.column == b.column && a.override_text == b.override_text;
@@ -136,9 +137,15 @@ class Collector {
   }
 
   bool follows(const std::string& message, const std::string& error_path) const {
+    const auto moves_others = [](const std::string& path) {
+      return path.starts_with("furniture.") || path.starts_with("wall.");
+    };
+    if (message.ends_with(k_overlap) && (!names_.empty() || std::ranges::any_of(keys_, moves_others)))
+      return true;  // what stands where it should not
     for (const std::string& path : keys_) {
       if (path == error_path || path.starts_with(error_path + ".")) return true;  // an entry without its key
       const std::string key = path.substr(path.rfind('.') + 1);
+      if (message.find("belongs to `" + key + '`') != std::string::npos) return true;
       for (const char* how : {" is ", " = "})
         if (message.find("but " + key + how) != std::string::npos) return true;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "solver/contact/panel_place.h"
 #include "solver/io/scene/fixing_kinds.h"
 #include "solver/io/scene/scene_fittings.h"
 #include "solver/io/scene/scene_read.h"
@@ -218,19 +219,38 @@ class Fixing {
     return x(block.first_node) + turned * inside.cwiseMax(box.min()).cwiseMin(box.max());
   }
 
+  // Of its panels.
+  std::optional<Vec3> nearest_on_panels(int of, const Vec3& point) const {
+    std::optional<Vec3> nearest;
+    for (const Panel& panel : model().panels) {
+      if (panel.body != of) continue;
+      const NearestOnPanel on =
+          nearest_on_panel(point, {x(panel.node[0]), x(panel.node[1]), x(panel.node[2]), x(panel.node[3])});
+      const Vec3 foot = point - on.between;
+      if (!nearest || (foot - point).norm() < (*nearest - point).norm()) nearest = foot;
+    }
+    return nearest;
+  }
+
   // Of the other body: `point` itself where that is on it, else what of it is nearest: of a block a point of
-  // its faces, of others a node.
+  // its faces, of others a node, and for feet a point of a panel.
   Vec3 point_of_other(const Vec3& point) const {
     if (kind_.pin && entry_.has("at")) return point;
     if (const Body& other = model().bodies[target_.body]; other.solid) return nearest_on_block(other, point);
     const std::vector<int> others = nodes_of_body(target_.body, false);
-    return x(best(
+    const Vec3 nearest = x(best(
         others, [&](int node) { return (x(node) - point).norm(); }, [&](int node) { return -x(node).z(); }));
+    if (kind_.place != FixingPlace::feet) return nearest;
+    const std::optional<Vec3> face = nearest_on_panels(target_.body, point);
+    return face && (*face - point).norm() < (nearest - point).norm() - k_same ? *face : nearest;
   }
 
   void check_reach(const char* key, int of, const Vec3& point) const {
     if (const Body& body = model().bodies[of];
         body.solid && (nearest_on_block(body, point) - point).norm() <= k_off_body)
+      return;
+    if (const std::optional<Vec3> face = nearest_on_panels(of, point);
+        face && (*face - point).norm() <= k_off_body)
       return;
     const auto [member, distance] = nearest_member(model(), of, start_, point);
     if (distance > k_off_body)

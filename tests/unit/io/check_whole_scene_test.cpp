@@ -11,6 +11,16 @@ CheckedScene checked(const std::string& text, const Lines& overrides = {}) {
   return check_whole_scene({text, "s.toml", files_beside("s.toml")}, overrides);
 }
 
+// Without its place the second shelf stands where the first one does.
+TEST(CheckWholeScene, an_overlap_that_follows_from_a_misspelt_place_is_not_told) {
+  const std::string text =
+      "topple = 1\n[floor]\n[[furniture]]\nname = \"a\"\nkind = \"bookshelf\"\nat = [0, 0]\n"
+      "[[furniture]]\nname = \"b\"\nkind = \"bookshelf\"\nbesides = \"a\"\n";
+  const CheckedScene found = checked(text);
+  ASSERT_EQ(found.errors.size(), 1u) << testing::PrintToString(found.errors);
+  EXPECT_NE(found.errors[0].find("furniture.b.besides: "), std::string::npos) << found.errors[0];
+}
+
 TEST(CheckWholeScene, eight_errors_of_eight_kinds_are_told_in_the_order_of_the_file) {
   const std::string text =
       "topple = 1\n"

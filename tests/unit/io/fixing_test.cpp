@@ -56,6 +56,29 @@ std::string refusal(const std::string& rest) {
   return "";
 }
 
+// Its feet are further than 100 mm from every node of the desk, but on its top.
+TEST(Fixing, a_mat_sticks_a_television_to_the_top_of_a_desk) {
+  const Scene scene = parse_scene(R"(topple = 1
+floor = {}
+furniture = [
+  { name = "desk", kind = "desk", at = [0, 0] },
+  { name = "screen", kind = "television", size = [0.2, 0.5, 0.4], at = [0, 0, 0.71] },
+]
+fixing = [{ kind = "mat", body = "screen", to = "desk" }]
+)",
+                                  "s.toml");
+  const Model& model = scene.setup.model;
+  ASSERT_EQ(model.anchors.size(), 4u);
+  const State start = start_state(model, scene.setup.starts);
+  for (const Anchor& anchor : model.anchors) {
+    const Vec3 held = start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+    const Vec3 foot = Vec3(held.x(), held.y(), 0.7);
+    EXPECT_LT((held - foot).norm(), 0.05);  // half of the top's and of the screen's thickness, and the gap
+    EXPECT_LT(std::abs(held.x()), 0.11);
+    EXPECT_LT(std::abs(held.y()), 0.26);
+  }
+}
+
 // The plinth is twice as wide: no corner of it is within reach of one of the statue's.
 TEST(Fixing, a_mat_sticks_a_statue_to_the_face_of_its_plinth) {
   const Scene scene = parse_scene(R"(topple = 1

@@ -102,9 +102,60 @@ TEST_F(FailureTest, yield_stress_of_zero_is_bad_input) {
 
 TEST_F(FailureTest, a_mechanism_in_a_static_run_is_told) {
   expect_no_start(arm("analysis = \"static\"\ngravity = [0, 0, 0]\n", "xyz", "1 kg"),
-                  {"no equilibrium was found at load factor 0", "a mechanism"});
+                  {"is a mechanism before it carries anything: a part may be free to move"});
   expect_no_start(arm("analysis = \"static\"\n", "xyz", "1 kg"),
                   {"before the first step, at 0 s", "does not come to rest under gravity"});
+}
+
+// A load on the middle of the beam, where two members of one section meet and flow at once. Its peak is that
+// of the path by displacement, whose steps of 2 mm miss it by 0.3 %.
+TEST_F(FailureTest, a_portal_comes_to_its_collapse_load_by_loads_as_by_displacement) {
+  const auto portal = [](const std::string& run, const std::string& force) {
+    return "topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\nload_steps = 50\n" + run + R"(
+[[material]]
+name = "mild"
+young = "205 GPa"
+poisson = 0.3
+density = 7850
+yield = "235 MPa"
+[[section]]
+name = "col"
+shape = "solid"
+size = ["40 mm", "40 mm"]
+[[section]]
+name = "beam"
+shape = "solid"
+size = ["30 mm", "30 mm"]
+[[frame]]
+name = "p"
+nodes = [[0, 0, 0], [0, 0, 1.2], [1, 0, 1.2], [2, 0, 1.2], [2, 0, 0]]
+members = [{ nodes = [0, 1], section = "col", material = "mild" }, { nodes = [1, 2], section = "beam", material = "mild" },
+           { nodes = [2, 3], section = "beam", material = "mild" }, { nodes = [3, 4], section = "col", material = "mild" }]
+supports = [{ node = 0, fix = "xyzXYZ" }, { node = 4, fix = "xyzXYZ" }, { node = 1, fix = "yXZ" },
+            { node = 2, fix = "yXZ" }, { node = 3, fix = "yXZ" }]
+loads = [{ node = 1, force = [)" +
+           force + ", 0, 0] }, { node = 2, force = [0, 0, -" + force + "] }]\n";
+  };
+  write_bytes("loads.toml", portal("", "6500"));
+  write_bytes("way.toml",
+              portal("control = { body = \"p\", node = 1, dof = \"x\", to = \"100 mm\" }", "6500"));
+  double most[2] = {0, 0};
+  for (int k = 0; k < 2; ++k) {
+    const Ended ended = topple({"run", k == 0 ? "loads.toml" : "way.toml", "--json", "-", "--quiet"});
+    EXPECT_EQ(ended.code, k == 0 ? 1 : 0) << ended.err;
+    const Json summary = Json::parse(ended.out);
+    for (const auto& step : summary["static"])
+      if (step["converged"]) most[k] = std::max(most[k], step["factor"].get<double>());
+  }
+  EXPECT_GT(most[1], 0.87);
+  EXPECT_NEAR(most[0], most[1], 5e-3 * most[1]);
+}
+
+// Held in all directions but that of its load.
+TEST_F(FailureTest, a_frame_that_nothing_holds_is_told_to_be_free) {
+  std::string slides = arm("analysis = \"static\"\ngravity = [0, 0, 0]\n", "yzXYZ", "1 kg");
+  slides.replace(slides.find("[0, 0, -10]"), 11, "[10, 0, 0]");
+  expect_no_start(slides, {"is a mechanism before it carries anything: a part may be free to move"});
 }
 
 TEST_F(FailureTest, a_section_that_breaks_under_loads_that_stay_is_told) {
@@ -165,8 +216,9 @@ TEST_F(FailureTest, a_step_far_too_long_is_told_and_what_converged_stays_readabl
                               "cabinet.cabinet.at=[0, 0, 1]", "-o", "a.h5", "--json", "-", "--quiet"});
   EXPECT_EQ(ended.code, 1);
   const std::string message = Json::parse(ended.out)["message"];
-  for (const char* part : {"more than a tenth of the energy is unaccounted for after the step at 0.096",
-                           " s: body \"cabinet\", member \"", "(element ", "try a smaller time_step"})
+  for (const char* part :
+       {"more than a tenth of the energy is unaccounted for after the step at 0.096",
+        " s, which is not taken: body \"cabinet\", member \"", "(element ", "try a smaller time_step"})
     EXPECT_NE(message.find(part), std::string::npos) << message;
   EXPECT_NE(ended.err.find("a.h5 holds everything up to 0.05 s"), std::string::npos) << ended.err;
   EXPECT_EQ(topple({"info", "a.h5", "--verify"}).code, 0);
