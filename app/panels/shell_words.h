@@ -86,6 +86,8 @@ inline constexpr Phrase k_export_now{"Export", "書き出す"};
 inline constexpr Phrase k_picture_about{
     "The view as it is seen now, with title, legend and time unless Picture leaves them out.",
     "現在の視点の画像。「表示」で消していなければ題名・凡例・時刻が入ります。"};
+inline constexpr Phrase k_picture_of_row{"It shows {0:.3f} s, the newest instant that is recorded.",
+                                         "記録済みの最新時刻 {0:.3f} s の画像です。"};
 inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
                                       "現在の視点の動画。時間の範囲を選べます。"};
 inline constexpr Phrase k_tables_about{

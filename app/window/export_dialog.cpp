@@ -198,6 +198,10 @@ void ExportDialog::draw_choices(const Player& player) {
     }
   }
   quiet_text(say(*kinds[static_cast<int>(what)].second));
+  // what follows a run is drawn at its newest step, of which rows may not tell yet
+  if (const double last = player.way().empty() ? player.time() : player.way().back()->time;
+      what == What::picture && last < player.time())
+    quiet_text(say(ww::k_picture_of_row, last));
   ImGui::Dummy({0, 2});
   label(what == What::tables ? ww::k_folder : ww::k_file);
   ImGui::SetNextItemWidth(-1);
