@@ -18,7 +18,7 @@ class Replay {
   double first() const { return times_.front(); }  ///< s; a static run: its part of the way
   double last() const { return times_.back(); }
   io::FrameRow frame(std::int64_t number) const { return recording_.frame(frames_[number]); }
-  /// Those that held at a row.
+  /// Those with which a row came about.
   Parameters parameters(const io::Scene& scene, const io::FrameRow& row) const;
   /// Between two rows, or the first or last one.
   io::FrameRow at(double time) const;

@@ -129,8 +129,7 @@ void FramePart::list_forces(const Parameters&, const StepInputs& now, const Stat
   find_contacts(now, state);
   for (const TouchingPair& pair : contacts_.planes)
     forces.contacts.push_back({pair.point, pair.plane, pair.depth, pair.out.normal, pair.out.force});
-  for (const MemberTouch& touch : contacts_.members.touches)
-    forces.members.push_back(member_force(touch, system_.member_pairs()[touch.pair]));
+  forces.add(contacts_.members, system_.member_pairs());
   for (const RigidInSystem& one : system_.rigid) {
     const Body& body = system_.model.bodies[one.body];
     std::fill_n(sections_.begin() + body.first_element, body.element_count,

@@ -266,8 +266,7 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
 void IslandPart::list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                              Forces& forces) {
   ReducedPart::list_forces(parameters, now, state, forces);
-  for (const MemberTouch& touch : now_.touches)
-    forces.members.push_back(member_force(touch, coupling_.pairs()[touch.pair]));
+  forces.add(now_, coupling_.pairs());
 }
 
 HardestContact IslandPart::hardest_contact(const HardestContact& hardest) {

@@ -34,6 +34,8 @@ struct HardestContact {
 struct Forces {
   std::vector<ContactForce> contacts;
   std::vector<MemberForce> members;
+  /// Those of all touches, with what their blends do to the parts.
+  void add(const MemberContacts& found, std::span<const MemberPair> pairs);
 };
 
 /// Parts of one model share no body: each changes only its own bodies' entries of a State, but for the stick

@@ -18,6 +18,17 @@ constexpr std::size_t k_bodies_per_part = 16;  // of few unknowns: some microsec
 
 }  // namespace
 
+void Forces::add(const MemberContacts& found, std::span<const MemberPair> pairs) {
+  const std::size_t first = members.size();
+  for (const MemberTouch& touch : found.touches) members.push_back(member_force(touch, pairs[touch.pair]));
+  for (const MemberBlend& blend : found.blends) {
+    const auto touch = std::ranges::find(found.touches, blend.pair, &MemberTouch::pair);
+    if (touch == found.touches.end()) continue;
+    members[first + (touch - found.touches.begin())].force -=
+        blend.slope * blend.surplus * (blend.by_sine[0] + blend.by_sine[1]);  // of the nodes of a
+  }
+}
+
 Parts::Parts(const Model& model)
     : sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()}),
       model_(model),
