@@ -61,11 +61,10 @@ void warn_of_pieces(const Run& run, Warnings& list) {
         return plane.normal.dot(run.state().position[i] - plane.point) < -k_sunk;
       });
     if (sunk > 0)
-      list.push_back(
-          fmt::format("{} of the {} nodes of \"{}\" fell through the floor or a wall with pieces that broke "
-                      "off: they meet it at "
-                      "{} points of the body alone; its tilt and slide are means over all",
-                      sunk, body.node_count, body.name, body.contact_point_count));
+      list.push_back(fmt::format(
+          "{} of the {} nodes of \"{}\" fell through the floor or a wall with pieces that broke "
+          "off: they meet it at {} points of the body alone; its tilt and slide are means over all",
+          sunk, body.node_count, body.name, body.contact_point_count));
   }
 }
 
@@ -96,8 +95,7 @@ void warn_of_stress(const Run& run, Warnings& list) {
     if (const double ratio = bodies[b].peak_yield_ratio.value_or(0); ratio > k_yielded)
       list.push_back(
           fmt::format("the stress in body \"{}\", {:.4g} MPa, passed yield {:.3g} times while the body was "
-                      "elastic: no steel "
-                      "bears it; want = [\"stress\"], or model = \"frame\", lets it yield",
+                      "elastic: no steel bears it; want = [\"stress\"], or model = \"frame\", lets it yield",
                       body.name, 1e-6 * bodies[b].peak_stress, ratio));
     if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
       list.push_back(fmt::format(
@@ -121,8 +119,7 @@ void warn_of_step(const Run& run, Warnings& list) {
   if (const double rows = 1 / run.setup().run.output_rate; p.want_stress && h > k_same_interval * rows)
     list.push_back(
         fmt::format("time_step {:g} ms is longer than the {:g} ms between rows: the peaks told here are "
-                    "those at the ends of steps; "
-                    "tables and the window may show greater ones between them",
+                    "those at the ends of steps; tables and the window may show greater ones between them",
                     1e3 * h, 1e3 * rows));
   double bounce = std::numeric_limits<double>::infinity();
   for (int b = 0; b < model.furniture_total(); ++b)

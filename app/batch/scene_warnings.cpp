@@ -19,7 +19,7 @@ namespace {
 
 constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
 constexpr double k_hangs = 1e-3;   // m, above what might bear it
-constexpr double k_top_of = 0.05;  // m, of what a body stands on: else it is within it
+constexpr double k_top_of = 0.05;  // m, that what bears a body reaches above its bottom at most
 constexpr double k_within = 1e-3;  // m, a wall
 constexpr double k_early = 0.05;   // of the acceleration that lifts a side
 constexpr double k_hardly = 0.02;  // of it

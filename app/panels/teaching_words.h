@@ -15,10 +15,9 @@ inline constexpr Phrase k_stands_not_freely{"{0} (does not stand freely on the f
 inline constexpr Phrase k_no_floor_shake{"The floor does not shake here.", "このシーンでは床は揺れません。"};
 inline constexpr Phrase k_building_between{
     "A building stands between the ground that is set here and the floor: the criteria, which are for the "
-    "shake of the "
-    "floor itself, say nothing.",
-    "設定した地盤の揺れと床の間に建物があります。判定基準は床自体の揺れに対するものなので、ここでは適用できま"
-    "せん。"};
+    "shake of the floor itself, say nothing.",
+    "設定した地盤の揺れと床の間に建物があります。"
+    "判定基準は床自体の揺れに対するものなので、ここでは適用できません。"};
 inline constexpr Phrase k_frequency_axis{"frequency, Hz", "周波数 [Hz]"};
 inline constexpr Phrase k_amplitude_axis{"amplitude, gal", "加速度振幅 [gal]"};
 inline constexpr Phrase k_west{"West", "West"};

@@ -51,7 +51,7 @@ class BeamPacks {
   /// of viscous forces by velocities.
   void subtract_gradient(std::span<const ElementState> elements, const NodeMotion& motion,
                          double velocity_factor, std::span<NodeForce> forces, BlockLu& lu);
-  /// Whether some element was beyond k_torn in the latest of them.
+  /// Whether some element was beyond k_torn in the latest subtract_gradient.
   bool tears() const { return tears_; }
   /// Work that viscous forces take from one motion to another, by the trapezoidal rule, J.
   double viscous_work(std::span<const ElementState> elements, const NodeMotion& start,

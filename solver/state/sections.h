@@ -8,7 +8,7 @@
 
 namespace topple {
 
-/// Elastic section forces of every element at its stress point, from the nodes of `state`; zero when broken.
+/// Section forces of every element at its stress point, from the nodes of `state`; none beyond yield.
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces);
 /// Of one body's elements, into those of the model.
 void section_forces(const Model& model, const State& state, int body, std::vector<SectionForces>& forces);

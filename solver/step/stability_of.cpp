@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/frame/start_vector.h"
 
@@ -60,6 +61,25 @@ void add_softest_mode(BodySystem& s, const std::vector<double>& growth, Stabilit
   out.loss = hinged                                                     ? Stability::Loss::mechanism
              : std::abs(share) > k_beside * std::sqrt(loads) * greatest ? Stability::Loss::limit_point
                                                                         : Stability::Loss::buckling;
+}
+
+bool is_free(const BodySystem& s) {
+  constexpr double k_free = 1e8;
+  double softest = std::numeric_limits<double>::infinity();
+  for (const auto& own : s.own_elements) {
+    const Element& element = s.model.elements[own.element];
+    softest = std::min(softest, element.bending_stiffness.minCoeff() / std::pow(element.length, 3));
+  }
+  std::vector<double> x(6 * s.count);
+  for (int i = 0; i < s.count; ++i) {
+    Eigen::Map<Vec3> force(&x[6 * i]), moment(&x[6 * i + 3]);
+    for (int k = 0; k < 3; ++k) force[k] = start_entry(6 * i + k);
+    s.clear_fixed(i, force, moment);
+  }
+  s.lu.solve(x.data());
+  double furthest = 0;
+  for (int i = 0; i < s.count; ++i) furthest = std::max(furthest, Vec3(&x[6 * i]).norm());
+  return !(furthest * softest < k_free);
 }
 
 Stability stability_of(BodySystem& s, const std::vector<double>& growth) {

@@ -16,4 +16,8 @@ Stability stability_of(BodySystem& system, const std::vector<double>& growth);
 /// softest of those in which the system runs away: inverse iteration of several vectors at once.
 void add_softest_mode(BodySystem& system, const std::vector<double>& growth, Stability& out);
 
+/// Whether some motion of the system meets no resistance: unit forces on all nodes, with the tangent that
+/// stability_of() factored, move one 1e8 times as far as they would bend the softest element.
+bool is_free(const BodySystem& system);
+
 }  // namespace topple

@@ -10,7 +10,6 @@
 #include "solver/element/plasticity.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/settle.h"
-#include "solver/frame/start_vector.h"
 #include "solver/math/rotation.h"
 #include "solver/step/controlled_way.h"
 #include "solver/step/stability_of.h"
@@ -161,30 +160,6 @@ LoadPath::LoadPath(const Model& model, const StaticSettings& settings)
 
 int LoadPath::controlled_body() const {
   return settings_.control ? model_->node_body[settings_.control->node] : -1;
-}
-
-// Nothing holds it: forces move it far more than bending would let them.
-bool LoadPath::is_free(const Parameters& parameters, const State& state, int body) {
-  constexpr double k_free = 1e8;
-  BodySystem& s = *systems_[body];
-  s.load(state, start_[body]);
-  s.load_memory(state, start_[body]);
-  trial_[body] = start_[body];
-  evaluate(s, at_rest(parameters), state, state.load_factor);
-  if (s.lu.factor() >= 0) return true;
-  double softest = std::numeric_limits<double>::infinity();
-  for (const auto& own : s.own_elements) {
-    const Element& element = s.model.elements[own.element];
-    softest = std::min(softest, element.bending_stiffness.minCoeff() / std::pow(element.length, 3));
-  }
-  std::vector<double> x(6 * s.count);
-  for (int i = 0; i < s.count; ++i) {
-    Eigen::Map<Vec3> force(&x[6 * i]), moment(&x[6 * i + 3]);
-    for (int k = 0; k < 3; ++k) force[k] = start_entry(6 * i + k);
-    s.clear_fixed(i, force, moment);
-  }
-  s.lu.solve(x.data());
-  return furthest_of(s, x).way * softest > k_free;
 }
 
 // What a load step goes along, six numbers per node of the controlled body.
@@ -380,6 +355,8 @@ Stability LoadPath::what_is_lost(const Parameters& parameters, const State& stat
   evaluate(s, at_rest(parameters), state, state.load_factor);
   const std::vector<double> growth = growing_loads(s);
   Stability out = stability_of(s, growth);
+  if (out.negative_pivots >= 0 && out.loss != Stability::Loss::mechanism && is_free(s))
+    return {.loss = Stability::Loss::mechanism};
   if (out.negative_pivots == 0) add_softest_mode(s, growth, out);
   return out;
 }
@@ -519,11 +496,6 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
     }
   }
   if (done > 0) ++state.step;
-  if (status.kind == StepStatus::Kind::no_equilibrium && state.step == 0 &&
-      is_free(parameters, state, status.body)) {
-    status.stability = {};
-    status.stability.loss = Stability::Loss::mechanism;
-  }
   if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
     status.stability = what_is_lost(parameters, state, status.body);
   status.time = state.time;

@@ -82,7 +82,6 @@ class LoadPath {
   std::vector<double> growing_loads(const BodySystem& system) const;
   std::vector<double> controlled_way(const BodySystem& system, const State& state) const;
   Stability what_is_lost(const Parameters& parameters, const State& state, int body);
-  bool is_free(const Parameters& parameters, const State& state, int body);
   std::optional<double> first_travel(const Parameters& parameters, State& state);
   void accept(const Parameters& parameters, double factor, State& state);
   int controlled_body() const;

@@ -56,6 +56,10 @@ std::string refusal(const std::string& rest) {
   return "";
 }
 
+Vec3 held_point(const Anchor& anchor, const State& start) {
+  return start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+}
+
 // Its feet are further than 100 mm from every node of the desk, but on its top.
 TEST(Fixing, a_mat_sticks_a_television_to_the_top_of_a_desk) {
   const Scene scene = parse_scene(R"(topple = 1
@@ -71,7 +75,7 @@ fixing = [{ kind = "mat", body = "screen", to = "desk" }]
   ASSERT_EQ(model.anchors.size(), 4u);
   const State start = start_state(model, scene.setup.starts);
   for (const Anchor& anchor : model.anchors) {
-    const Vec3 held = start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+    const Vec3 held = held_point(anchor, start);
     const Vec3 foot = Vec3(held.x(), held.y(), 0.7);
     EXPECT_LT((held - foot).norm(), 0.05);  // half of the top's and of the screen's thickness, and the gap
     EXPECT_LT(std::abs(held.x()), 0.11);
@@ -97,7 +101,7 @@ fixing = [{ kind = "mat", body = "statue", to = "plinth" }]
   const State start = start_state(model, scene.setup.starts);
   for (const Anchor& anchor : model.anchors) {
     EXPECT_EQ(anchor.other.body, 0);
-    const Vec3 held = start.position[anchor.node] + start.rotation[anchor.node] * anchor.arm;
+    const Vec3 held = held_point(anchor, start);
     const Vec3 there =
         start.position[anchor.other.node] + start.rotation[anchor.other.node] * anchor.other.arm;
     EXPECT_LT((held - there).norm(), 1e-12);  // a pin

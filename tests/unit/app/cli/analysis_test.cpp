@@ -112,12 +112,6 @@ TEST_F(FailureTest, a_mechanism_in_a_static_run_is_told) {
 TEST_F(FailureTest, a_portal_comes_to_its_collapse_load_by_loads_as_by_displacement) {
   const auto portal = [](const std::string& run, const std::string& force) {
     return "topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\nload_steps = 50\n" + run + R"(
-[[material]]
-name = "mild"
-young = "205 GPa"
-poisson = 0.3
-density = 7850
-yield = "235 MPa"
 [[section]]
 name = "col"
 shape = "solid"
@@ -129,8 +123,8 @@ size = ["30 mm", "30 mm"]
 [[frame]]
 name = "p"
 nodes = [[0, 0, 0], [0, 0, 1.2], [1, 0, 1.2], [2, 0, 1.2], [2, 0, 0]]
-members = [{ nodes = [0, 1], section = "col", material = "mild" }, { nodes = [1, 2], section = "beam", material = "mild" },
-           { nodes = [2, 3], section = "beam", material = "mild" }, { nodes = [3, 4], section = "col", material = "mild" }]
+members = [{ nodes = [0, 1], section = "col", material = "steel" }, { nodes = [1, 2], section = "beam", material = "steel" },
+           { nodes = [2, 3], section = "beam", material = "steel" }, { nodes = [3, 4], section = "col", material = "steel" }]
 supports = [{ node = 0, fix = "xyzXYZ" }, { node = 4, fix = "xyzXYZ" }, { node = 1, fix = "yXZ" },
             { node = 2, fix = "yXZ" }, { node = 3, fix = "yXZ" }]
 loads = [{ node = 1, force = [)" +

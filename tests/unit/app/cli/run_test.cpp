@@ -337,6 +337,15 @@ TEST_F(RunTest, a_step_that_is_refused_is_told_and_what_was_right_is_kept) {
   EXPECT_NE(adaptive.err.find("try a larger tolerance"), std::string::npos) << adaptive.err;
 }
 
+TEST_F(RunTest, what_a_summary_cannot_tell_is_warned_of) {
+  EXPECT_NE(
+      topple({"run", "breaking"}).err.find("fell through the floor or a wall with pieces that broke off"),
+      std::string::npos);
+  EXPECT_NE(topple({"run", "paper-a", "--set", "run.time_step=50 ms"})
+                .err.find("longer than the 10 ms between rows"),
+            std::string::npos);
+}
+
 // At 20 m/s a step of 1 ms leads an elastic cabinet deep into the blow before it becomes a frame.
 TEST_F(RunTest, energy_that_a_change_of_models_put_in_is_warned_of) {
   write_bytes("thrown.toml",
