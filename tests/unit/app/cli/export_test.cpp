@@ -150,7 +150,7 @@ TEST_F(ExportTest, every_node_element_and_instant_has_its_row) {
   EXPECT_EQ(files().size(), 2u + 2u + 6u);  // scene, recording, two folders, six tables
 }
 
-// A block of 10 kg on one of 50 kg, settled: to 1e-6 of the weight, as rows are of single precision. 194 mm
+// A block of 10 kg on one of 50 kg, settled: to 1e-6 of the weight, as rows are of single precision. 198 mm
 // from the middle its edge is where the face below hands over to the member at its side.
 TEST_F(ExportTest, what_stands_is_pushed_by_its_weight_and_pushes_back) {
   for (const char* x : {"0", "0.098"}) {
