@@ -150,6 +150,10 @@ HardestContact hardest_contact(const Parameters& parameters, const State& state,
   return hardest;
 }
 
+bool contacts_dissipated(const EnergyLedger& from, const EnergyLedger& to) {
+  return to.normal_damping != from.normal_damping || to.friction != from.friction;
+}
+
 void close_ledger(const StepInProgress& s) {
   State& next = s.w.next;
   next.step = s.from.step + 1;
@@ -171,8 +175,8 @@ void check(const StepInProgress& s, StepStatus& status) {
              std::abs(next.energy.unexplained()) > k_least_energy) {
     HardestContact hardest = hardest_contact(s.parameters, s.from, s.w);
     if (hardest.force == 0) hardest = hardest_contact(s.parameters, next, s.w);
-    const bool flows = next.energy.plastic != s.from.energy.plastic;
-    if (hardest.force > 0 || flows) {
+    if (hardest.force > 0 || contacts_dissipated(s.from.energy, next.energy) ||
+        next.energy.plastic != s.from.energy.plastic) {
       status.kind = StepStatus::Kind::energy_lost;
       status.time = next.time;
       status.body = hardest.body;

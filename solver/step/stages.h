@@ -41,11 +41,15 @@ StepStatus advance_parts(StepInProgress& step);
 /// At `state`, for which it arranges the parts.
 HardestContact hardest_contact(const Parameters& parameters, const State& state, Workspace::Impl& w);
 
+/// Contacts took energy between two states.
+bool contacts_dissipated(const EnergyLedger& from, const EnergyLedger& to);
+
 /// Sets step, time, floor motion and energies of `w.next`.
 void close_ledger(const StepInProgress& step);
 
 /// `status` becomes not_finite where a number at the end is not, energy_lost where the balance error is
-/// above k_lost_balance and a contact is closed at one of the ends, or a section flowed or broke.
+/// above k_lost_balance and a contact is closed at one of the ends or took energy, or a section flowed or
+/// broke.
 void check(const StepInProgress& step, StepStatus& status);
 
 }  // namespace topple

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int k_halvings = 6;
 constexpr int k_most_looks = 4;  // for candidates, of a step in which nodes move further than was expected
-constexpr int k_parts = 4, k_most_divisions = 3;  // of a step that is taken again
+constexpr int k_parts = 4, k_most_divisions = 4;  // of a step that is taken again
 constexpr double k_lossy = 1e-3;  // of the largest energy, left unexplained by a step or given by its method
 
 StepStatus check_inputs(const Model& model, const Parameters& parameters, const State& state,
@@ -99,7 +99,8 @@ bool is_too_coarse(const Parameters& parameters, const State& from, double h, co
   const double left =
       std::max(std::abs(now.unexplained() - before.unexplained()), before.numerical - now.numerical);
   return w.parts.moves_nodes() && left > k_lossy * h / parameters.time_step * now.largest &&
-         (hardest_contact(parameters, from, w).force > 0 || hardest_contact(parameters, w.next, w).force > 0);
+         (contacts_dissipated(before, now) || hardest_contact(parameters, from, w).force > 0 ||
+          hardest_contact(parameters, w.next, w).force > 0);
 }
 
 // One step of size h into w.next, in parts where it is too coarse as a whole. After those the algorithmic

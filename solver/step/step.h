@@ -31,7 +31,7 @@ void resume(const Model& model, const State& state, Workspace& workspace);
 /// the step is much too long for what happens in it. The implicit methods halve their step within the call
 /// when Newton does not converge or members would pass through each other unseen: a fixed one down to 1/64,
 /// an adaptive one down to k_least_step. A fixed step in which frames that touch something lose energy is
-/// taken again in 4, 16 or 64 parts (Parameters::resolves_contacts).
+/// taken again in 4, 16, 64 or 256 parts (Parameters::resolves_contacts).
 StepStatus step(const Model& model, const Parameters& parameters, State& state, Workspace& workspace,
                 double until = std::numeric_limits<double>::infinity());
 

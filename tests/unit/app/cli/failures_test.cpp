@@ -16,7 +16,7 @@ struct Failure {
 
 constexpr Failure k_failures[] = {
     {"explicit-step", "is stable up to a time_step of", "run.time_step=4e-5"},
-    {"fast-impact", "a contact is not resolved", "run.time_step=1e-4"},
+    {"fast-impact", "a contact is not resolved", "run.time_step=2e-5"},
     {"fast-tumbling", "of the energy is unaccounted for", "run.time_step=1e-3"},
     {"friction-chatter", "friction changes sides", "run.time_step=2e-3"},
     {"long-bounce", "a contact is not resolved", "run.time_step=5e-5"},

@@ -120,7 +120,7 @@ Simulation spinning_cabinet(double spin, double h) {
 }
 
 TEST(GeneralizedAlpha, step_that_cannot_converge_is_reported_and_leaves_the_state) {
-  Simulation sim = spinning_cabinet(200, 5);
+  Simulation sim = spinning_cabinet(1000, 5);
   sim.state.time = 3;
   const std::uint64_t before = hash(sim.state);
   const StepStatus status = sim.advance();
