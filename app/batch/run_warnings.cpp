@@ -116,11 +116,6 @@ void warn_of_step(const Run& run, Warnings& list) {
           "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
           "steps is not seen",
           1e3 * h, 1e3 * shake.record->interval));
-  if (const double rows = 1 / run.setup().run.output_rate; p.want_stress && h > k_same_interval * rows)
-    list.push_back(
-        fmt::format("time_step {:g} ms is longer than the {:g} ms between rows: the peaks told here are "
-                    "those at the ends of steps; tables and the window may show greater ones between them",
-                    1e3 * h, 1e3 * rows));
   double bounce = std::numeric_limits<double>::infinity();
   for (int b = 0; b < model.furniture_total(); ++b)
     if (traits(base_level(model, p, b).level).moves_nodes)

@@ -1,10 +1,12 @@
 // The summary in words.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <utf8.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
@@ -94,6 +96,34 @@ std::string not_planar(const ordered_json& body, const ordered_json& model) {
   const bool first = &model == &body["models"].front();
   return !first || body["not_planar"].is_null() ? ""
                                                 : "; not planar: " + body["not_planar"].get<std::string>();
+}
+
+// Bodies that were computed alike share theirs.
+std::string model_lines(const ordered_json& bodies) {
+  constexpr std::size_t few = 4;
+  struct Alike {
+    std::vector<std::string> models, names;
+  };
+  std::vector<Alike> all;
+  for (const auto& b : bodies) {
+    std::vector<std::string> models;
+    for (const auto& model : b["models"])
+      models.push_back(fmt::format("{} from {} s ({}{}{})\n", model["model"].get<std::string>(),
+                                   text(model["from_s"], "{:.3f}"), model["reason"].get<std::string>(),
+                                   not_planar(b, model), allowed_error(b, model)));
+    auto group = std::ranges::find(all, models, &Alike::models);
+    if (group == all.end()) group = all.insert(all.end(), {std::move(models), {}});
+    group->names.push_back(b["name"].get<std::string>());
+  }
+  std::string out;
+  for (const auto& [models, names] : all) {
+    const std::size_t told = names.size() > few ? few - 1 : names.size();
+    std::string who =
+        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(told), ", "));
+    if (told < names.size()) who += fmt::format(" and {} more", names.size() - told);
+    for (const std::string& model : models) out += who + ": " + model;
+  }
+  return out;
 }
 
 std::string dynamic_head(const ordered_json& s) {
@@ -193,11 +223,7 @@ std::string summary_table(const ordered_json& s) {
         b["peak_stress_Pa"].is_null() ? "-"
                                       : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
   }
-  for (const auto& b : s["bodies"])
-    for (const auto& model : b["models"])
-      out += fmt::format("{}: {} from {} s ({}{}{})\n", b["name"].get<std::string>(),
-                         model["model"].get<std::string>(), text(model["from_s"], "{:.3f}"),
-                         model["reason"].get<std::string>(), not_planar(b, model), allowed_error(b, model));
+  out += model_lines(s["bodies"]);
   for (const auto& b : s["bodies"])
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
       out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",

@@ -40,7 +40,11 @@ double nearest_time(const Rows& rows, double time) {
 }  // namespace
 
 Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes)
-    : scene_(std::move(scene)), run_(run), most_bytes_(most_bytes), parameters_(scene_->setup.parameters) {}
+    : scene_(std::move(scene)),
+      run_(run),
+      most_bytes_(most_bytes),
+      parameters_(scene_->setup.parameters),
+      parameters_so_far_(parameters_) {}
 
 bool Player::update(double wall_s) {
   wall_s = std::min(wall_s, k_longest_pause);
@@ -159,7 +163,9 @@ void Player::update_parameters() {
   if (history_.branches.empty() || way_.empty()) return;
   const bool head = following_ && head_;
   const io::FrameRow& here = head ? *head_ : *row_before(way_, cursor_);
-  parameters_ = parameters_at(scene_->setup, history_, head ? status_.branch : here.branch, here.step);
+  const std::int32_t branch = head ? status_.branch : here.branch;
+  parameters_ = parameters_at(scene_->setup, history_, branch, here.step);
+  parameters_so_far_ = parameters_before(scene_->setup, history_, branch, here.step);
   if (head)
     for (const Edit& edit : posted_) apply(edit, scene_->setup.model, here.time, parameters_);
 }

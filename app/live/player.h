@@ -80,6 +80,8 @@ class Player {
   void redo();
   /// Of the frame shown, with the edits that the run has not applied yet.
   const Parameters& parameters() const { return parameters_; }
+  /// With which the frame shown came about.
+  const Parameters& parameters_so_far() const { return parameters_so_far_; }
 
   // What is seen.
   const io::Scene& scene() const { return *scene_; }
@@ -136,7 +138,7 @@ class Player {
   std::int32_t left_ = -1;  // branch that was left last; -1: none
   std::vector<RowPtr> way_, ghost_way_;
   RunExtent extent_;
-  Parameters parameters_;
+  Parameters parameters_, parameters_so_far_;
   std::vector<Edit> posted_;  // not yet applied by the run
   std::vector<Undo> undo_, redo_;
   bool playing_ = false, loop_ = false, following_ = true;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "app/panels/computed.h"
 #include "app/panels/panels.h"
@@ -73,6 +74,11 @@ constexpr float k_no_exponent = 1000;  // from here on four digits would get one
 
 constexpr float k_nothing = std::numeric_limits<float>::lowest();  // typed
 
+/// The number that is read where `x` is shown by all its digits: 1.32, not 1.3200000524520874.
+double decimal(float x) {
+  return std::stod(fmt::format("{}", x));
+}
+
 double azimuth(const Vec3& direction) {
   return std::atan2(direction.y(), direction.x()) * k_degrees;
 }
@@ -125,11 +131,11 @@ class Row {
     if (changed && ImGui::GetIO().WantTextInput)
       typed.SetFloat(item, number);
     else if (changed)
-      post(from_shown(number));
+      post(from_shown(decimal(number)));
     if (ImGui::IsItemDeactivated()) {
       const float last = typed.GetFloat(item, k_nothing);
       typed.SetFloat(item, k_nothing);
-      if (last != k_nothing) post(from_shown(last));
+      if (last != k_nothing) post(from_shown(decimal(last)));
     }
     end();
   }

@@ -27,8 +27,7 @@ constexpr double k_no_value = std::numeric_limits<double>::quiet_NaN();
 template <typename At>
 double greatest(const FrameContext& now, std::size_t index, At at) {
   const Member& member = now.model.members[index];
-  if (!traits(static_cast<ModelLevel>(now.row.level[static_cast<std::size_t>(member.body)])).has_stresses)
-    return k_no_value;
+  if (!io::has_stresses(now.row, member.body)) return k_no_value;
   double most = 0;
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
     for (const double xi : {-1., 1.}) {

@@ -204,6 +204,7 @@ std::size_t component_of(const Model& model, const io::FrameRow& row, const Diag
 void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& diagram,
                  render::SceneFrame& out) {
   const Member& member = model.members[diagram.member];
+  if (!io::has_stresses(row, member.body)) return;
   const std::size_t component = component_of(model, row, diagram);
   double length = 0;
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)

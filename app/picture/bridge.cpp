@@ -28,11 +28,6 @@ constexpr render::Float4 k_rigid_colour = {0.55f, 0.60f, 0.65f, 1};
 constexpr double k_tear = 0.6;          // depth of the teeth of a broken end, of the section
 constexpr double k_least_range = 1e-3;  // of a colour scale, in its unit
 
-// It has neither stresses nor deformation.
-bool is_rigid(const io::FrameRow& row, int body) {
-  return !traits(static_cast<ModelLevel>(row.level[static_cast<std::size_t>(body)])).has_stresses;
-}
-
 render::Station station(const Vec3& x, const Quat& q) {
   return {to_float(x),
           {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
@@ -225,7 +220,7 @@ double Bridge::colour_maximum(const io::FrameRow& row, const PictureSettings& se
 render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& settings) const {
   const int furniture = scene_.setup.model.furniture_total();
   int rigid = 0;
-  for (int b = 0; b < furniture; ++b) rigid += is_rigid(row, b);
+  for (int b = 0; b < furniture; ++b) rigid += !io::has_stresses(row, b);
   if (furniture > 0 && rigid == furniture) return {};
   const BeamQuantityTraits& name = traits(settings.colour);
   render::Legend out;
@@ -269,7 +264,7 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
     tube.body = static_cast<std::uint32_t>(member.body);
     if (model.bodies[member.body].ground)
       tube.colour = k_ground_colour;
-    else if (is_rigid(row, member.body))
+    else if (!io::has_stresses(row, member.body))
       tube.colour = k_rigid_colour;
     const auto begin = [&](float lead, float torn) {
       tube.first_station = static_cast<std::uint32_t>(stations.size());
@@ -285,7 +280,7 @@ void Bridge::add_tubes(const io::FrameRow& row, const ColourAt& colour,
     const std::size_t first = member.first_element;
     const std::size_t last = first + member.element_count - 1;
     begin(closing(member, model.elements[first].node[0]), 0);
-    if (is_rigid(row, member.body)) {  // straight
+    if (!io::has_stresses(row, member.body)) {  // straight
       const ElementCurve here = element_curve(model, row, first), there = element_curve(model, row, last);
       stations.push_back(station(here.place(0), here.axes(0)));
       stations.push_back(station(there.place(1), there.axes(1)));

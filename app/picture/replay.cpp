@@ -12,9 +12,7 @@ Replay::Replay(const io::Recording& recording, std::int32_t branch)
 }
 
 Parameters Replay::parameters(const io::Scene& scene, const io::FrameRow& row) const {
-  // what was changed at the row's own instant has not acted yet
-  return parameters_at(scene.setup, recording_.history(), row.branch,
-                       std::max<std::int64_t>(row.step - 1, 0));
+  return parameters_before(scene.setup, recording_.history(), row.branch, row.step);
 }
 
 io::FrameRow Replay::at(double time) const {

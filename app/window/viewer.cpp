@@ -214,7 +214,7 @@ void Viewer::draw_scene() {
     settings_.diagram.reset();
     if (picked && picked->kind == Subject::Kind::member)
       settings_.diagram = Diagram{picked->index, inspection_.component};
-    frame_ = bridge_.frame(*row_, player_.parameters(), settings_);
+    frame_ = bridge_.frame(*row_, player_.parameters_so_far(), settings_);
     frame_.dark = appearance_.dark;
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);

@@ -54,7 +54,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   };
   if (!low) add(fonts_.text, player_.scene().title);
   add(fonts_.small,
-      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters()));
+      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters_so_far()));
   const Model& model = player_.scene().setup.model;
   for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
     add(fonts_.small, words);

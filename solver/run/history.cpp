@@ -37,6 +37,11 @@ Parameters parameters_at(const Setup& setup, const History& history, std::int32_
   return parameters;
 }
 
+Parameters parameters_before(const Setup& setup, const History& history, std::int32_t branch,
+                             std::int64_t step) {
+  return parameters_at(setup, history, branch, std::max<std::int64_t>(step - 1, 0));
+}
+
 bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t step) {
   const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
   auto next =

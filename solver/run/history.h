@@ -44,6 +44,10 @@ struct History {
 /// Parameters of `branch` at `step`, edits posted there included.
 Parameters parameters_at(const Setup& setup, const History& history, std::int32_t branch, std::int64_t step);
 
+/// Parameters with which `branch` came to `step`: an edit that was posted there acts after it.
+Parameters parameters_before(const Setup& setup, const History& history, std::int32_t branch,
+                             std::int64_t step);
+
 /// Steps `run`, which stands on the way to `branch` with the parameters of its place, to `step` and applies
 /// the edits met. False when a step failed and left the state where it was.
 bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t step);

@@ -303,11 +303,10 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
   }
 }
 
-void Outcome::observe_sections(const Model& model, const State& state,
-                               const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+void Outcome::observe_stresses(const Model& model, const State& state,
+                               const std::vector<SectionForces>& sections) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const Element& element = model.elements[e];
-    const ElementState& now = state.elements[e];
     const Member& member = model.members[element.member];
     if (!traits(state.bodies[member.body].level).has_stresses) continue;
     BodyOutcome& o = bodies_[member.body];
@@ -325,7 +324,18 @@ void Outcome::observe_sections(const Model& model, const State& state,
           std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
     }
     if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
-    if (now.hinge == Hinge::none) continue;
+  }
+}
+
+void Outcome::observe_sections(const Model& model, const State& state,
+                               const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+  observe_stresses(model, state, sections);
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    const ElementState& now = state.elements[e];
+    const Member& member = model.members[element.member];
+    if (now.hinge == Hinge::none || !traits(state.bodies[member.body].level).has_stresses) continue;
+    BodyOutcome& o = bodies_[member.body];
     const auto tell = [&](Event::Kind kind, Hinge hinge, int& count) {
       ++count;
       events.push_back({.kind = kind,

@@ -76,10 +76,14 @@ StepStatus Run::advance() {
     return status_;
   }
   placed_ = false;
+  const double start = now_.state.time;
   status_ = topple::step(setup_->model, now_.parameters, now_.state, workspace_, setup_->run.duration);
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
-  if (status_.ok()) observe();
+  if (status_.ok()) {
+    observe_stresses_since(start);
+    observe();
+  }
   return status_;
 }
 
@@ -125,6 +129,17 @@ Snapshot Run::snapshot(double time) const {
       section_forces(model, within_, static_cast<int>(b), within_acting_.sections);
   contact_forces(model, now_.parameters, now_.state, workspace_);  // as the newest step left them
   return view(within_, within_acting_);
+}
+
+void Run::observe_stresses_since(double start) {
+  const double rate = setup_->run.output_rate, end = now_.state.time;
+  const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
+  if (std::ranges::none_of(now_.state.bodies, has_stresses)) return;
+  const InPhase phase(&workspace_.profile(), Phase::observe);
+  for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {
+    const Snapshot at = snapshot(row / rate);
+    now_.outcome.observe_stresses(setup_->model, at.state, at.sections);
+  }
 }
 
 void Run::observe() {

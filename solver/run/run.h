@@ -16,6 +16,9 @@
 
 namespace topple {
 
+/// Of an interval between recorded rows: time is a sum of rounded steps.
+inline constexpr double k_row_slack = 1e-6;
+
 enum class Analysis { dynamic, statics, modes };
 enum class StopWhen { never, all_overturned, at_rest };
 
@@ -137,6 +140,8 @@ class Run {
   }
   void find_acting(const State& state, Acting& acting) const;
   void observe();
+  // At the recorded times within the newest step, which began at `start`, s.
+  void observe_stresses_since(double start);
 
   const Setup* setup_;
   mutable RunPoint now_;  // nodes are placed when somebody looks

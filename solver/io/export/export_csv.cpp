@@ -109,10 +109,16 @@ void elements_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
     const Member& member = model.members[static_cast<std::size_t>(model.elements[e].member)];
     const float* f = row.section_force.data() + 6 * e;
     const ElementLoading loading = element_loading(model, row, e);
+    const bool known = has_stresses(row, member.body);
+    const auto number_if = [&](bool is, auto value) { is ? csv.number(value) : csv.none(); };
     csv.number(row.time).text(model.bodies[static_cast<std::size_t>(member.body)].name).text(member.name);
-    csv.number(static_cast<int>(e) - member.first_element).numbers(f, 6).number(loading.stress);
-    std::isfinite(model.elements[e].capacity[0]) ? csv.number(loading.yield_ratio) : csv.none();
-    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e])).number(loading.peak).end_row();
+    csv.number(static_cast<int>(e) - member.first_element);
+    for (int k = 0; k < 6; ++k) number_if(known, f[k]);
+    number_if(known, loading.stress);
+    number_if(known && std::isfinite(model.elements[e].capacity[0]), loading.yield_ratio);
+    csv.number(row.s[e]).number(static_cast<int>(row.hinge[e]));
+    number_if(known, loading.peak);
+    csv.end_row();
   }
 }
 

@@ -6,6 +6,10 @@
 
 namespace topple::io {
 
+bool has_stresses(const FrameRow& row, int body) {
+  return traits(static_cast<ModelLevel>(row.level[static_cast<std::size_t>(body)])).has_stresses;
+}
+
 const char* anchor_word(float state) {
   if (state == k_anchor_away) return "away";
   if (state == k_anchor_slack) return "slack";

@@ -111,6 +111,9 @@ struct FrameRow {
   std::vector<AnchorNumbers> anchor;  ///< a
 };
 
+/// The body was not rigid then.
+bool has_stresses(const FrameRow& row, int body);
+
 /// No NaN, no infinity in it.
 bool is_finite(const FrameRow& row);
 

@@ -12,11 +12,10 @@ namespace topple::io {
 namespace {
 
 constexpr double k_checkpoint_rate = 1;  // Hz, of simulated time
-constexpr double k_slack = 1e-6;         // of an interval: time is a sum of rounded steps
 
 /// Multiples of 1 / rate up to `time`.
 double intervals(double time, double rate) {
-  return std::floor(time * rate + k_slack);
+  return std::floor(time * rate + k_row_slack);
 }
 
 /// Kinetic, strain and gravity energy of a body, the last relative to the reference pose, J.
@@ -173,7 +172,7 @@ FrameRow row_of(const Run& run, const Snapshot& at) {
   FrameRow row = blank_row(row_shape(model));
   row.step = state.step;
   const double rate = run.setup().run.output_rate, multiple = std::round(state.time * rate);
-  const bool rounded = std::abs(state.time * rate - multiple) < k_slack;
+  const bool rounded = std::abs(state.time * rate - multiple) < k_row_slack;
   row.time = rounded && !is_static(run) ? multiple / rate : state.time;
   fill_nodes(state, row);
   fill_elements(model, at, row);
@@ -226,11 +225,11 @@ FrameRow frame_row(const Run& run, double time) {
 }
 
 bool is_ahead(const Run& run, double time) {
-  return (time - run.time()) * run.setup().run.output_rate > k_slack;
+  return (time - run.time()) * run.setup().run.output_rate > k_row_slack;
 }
 
 FrameRow frame_row_due(const Run& run, double time) {
-  const bool within = (run.time() - time) * run.setup().run.output_rate > k_slack;
+  const bool within = (run.time() - time) * run.setup().run.output_rate > k_row_slack;
   return within ? frame_row(run, time) : frame_row(run);
 }
 

@@ -169,6 +169,7 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
     row.section_force[0] = 1000;
     row.s[1] = -0.25f;
     row.hinge[1] = 2;
+    row.level.assign(row.level.size(), static_cast<std::uint8_t>(ModelLevel::frame));
     row.body[0].tilt = k_pi / 2;
     row.body[0].energy = 1.0 / 3;
     row.floor_acceleration[0] = 1.862;

@@ -196,7 +196,10 @@ TEST_F(PlayerTest, an_edit_changes_the_future_and_is_recorded_with_its_step) {
   ASSERT_TRUE(player().can_edit());
   player().edit(amplitude(600));
   EXPECT_NEAR(player().parameters().shakes[0].amplitude, 600 * k_gal, 1e-12);
+  player().update(0);
+  EXPECT_NEAR(player().parameters_so_far().shakes[0].amplitude, 300 * k_gal, 1e-12);
   run_to_end();
+  EXPECT_NEAR(player().parameters_so_far().shakes[0].amplitude, 600 * k_gal, 1e-12);
   ASSERT_EQ(player().edits().size(), 1u);
   EXPECT_EQ(player().edits()[0].step, step);
   EXPECT_EQ(player().edits()[0].branch, 0);
