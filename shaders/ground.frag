@@ -11,8 +11,7 @@ uniform float u_is_floor;
 uniform int u_dark;
 uniform vec4 u_wall;            // plane of the wall behind which the floor ends: normal, offset
 uniform mat4 u_contact_matrix;
-uniform float u_contact_size;   // m, side of the contact map
-uniform sampler2D u_contact;
+uniform sampler2D u_contact;    // contact_shade.frag
 out vec4 o_colour;
 
 // Cover of a square grid of lines, 0..1: as wide as a pixel allows, gone where lines would merge.
@@ -24,38 +23,11 @@ float grid(vec2 p, float spacing, float width) {
   return max(line.x, line.y);
 }
 
-vec2 nearness(vec2 at, vec2 offset, float radius) {
-  float level = log2(max(radius * float(textureSize(u_contact, 0).x) / u_contact_size, 1.0));
-  if (!k_fine) level = round(level);  // one level to read instead of two
-  return textureLod(u_contact, at + offset / u_contact_size, level).rg;
-}
-
 // Shade where bodies touch or nearly touch the floor.
 float contact_shade(vec3 p) {
   vec2 at = 0.5 + 0.5 * (u_contact_matrix * vec4(p, 1.0)).xy;
   bool inside = all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
-  int taps = inside ? k_contact_taps : 0;
-  float tight = 0.0;
-  float wide = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    float angle = 6.283184 / float(k_contact_taps) * float(i);
-    vec2 direction = vec2(cos(angle), sin(angle));
-    if (k_fine) {
-      // As far as it can be seen from low above the floor, where depth is foreshortened.
-      tight += 0.4 * nearness(at, 0.014 * direction, 0.014).r + 0.6 * nearness(at, 0.050 * direction, 0.042).r;
-      wide += 0.6 * nearness(at, 0.030 * direction, 0.030).g + 0.4 * nearness(at, 0.075 * direction, 0.060).g;
-    } else {
-      vec2 near = nearness(at, 0.036 * direction, 0.036);
-      tight += near.r;
-      wide += near.g;
-    }
-  }
-  tight /= float(k_contact_taps);
-  wide /= float(k_contact_taps);
-  // A beam covers little of its surroundings, and yet its foot must be seen: small covers count more.
-  tight = 1.0 - pow(1.0 - tight, 5.0);
-  wide = 1.0 - (1.0 - wide) * (1.0 - wide);
-  return (1.0 - 0.82 * tight) * (1.0 - 0.26 * wide);
+  return inside ? textureLod(u_contact, at, 0.0).r : 1.0;
 }
 
 // A colour in less light.

@@ -19,18 +19,28 @@ vec3 sky_light(vec3 normal) {
   return mix(vec3(0.36, 0.355, 0.35), vec3(0.56, 0.575, 0.59), 0.5 + 0.5 * normal.z);
 }
 
-// Share of the key light that reaches p: a square of taps, `reach` texels of a map of 2048 from the
-// middle to the outermost. Everything outside the map is lit; there the loop ends at once, which
-// spares a software rasteriser most of the floor.
+const int k_half_taps = k_shadow_taps * k_shadow_taps / 2;
+
+// Shade from the first `taps` of every second place of a square as on a chessboard, black or white, `reach`
+// texels of a map of 2048 from the middle to the outermost.
+float half_shade(vec3 at, float reach, int white, int taps) {
+  const float middle = 0.5 * float(k_shadow_taps - 1);
+  float shade = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    int row = 2 * i / k_shadow_taps, column = 2 * i % k_shadow_taps + (row + white) % 2;
+    vec2 offset = (vec2(column, row) - middle) / middle * reach / 2048.0;
+    shade += 1.0 - texture(u_shadow, vec3(at.xy + offset, at.z));
+  }
+  return shade;
+}
+
+// Share of the key light that reaches p. Everything outside the map is lit, and where the black places agree
+// there is no edge of a shadow: there loops end at once, which spares a software rasteriser most of the floor.
 float key_visibility(vec3 p, float reach) {
   vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
   bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
-  const float middle = 0.5 * float(k_shadow_taps - 1);
-  int taps = inside ? k_shadow_taps * k_shadow_taps : 0;
-  float shade = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    vec2 offset = (vec2(i % k_shadow_taps, i / k_shadow_taps) - middle) / middle * reach / 2048.0;
-    shade += 1.0 - texture(u_shadow, vec3(at.xy + offset, at.z));
-  }
-  return 1.0 - shade / float(k_shadow_taps * k_shadow_taps);
+  float black = half_shade(at, reach, 0, inside ? k_half_taps : 0);
+  bool edge = black > 0.0 && black < float(k_half_taps);
+  float white = half_shade(at, reach, 1, edge ? k_half_taps : 0);
+  return 1.0 - (edge ? 0.5 * (black + white) : black) / float(k_half_taps);
 }

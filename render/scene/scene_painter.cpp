@@ -94,7 +94,7 @@ Eigen::Vector4f wall_before_which_the_floor_lies(const SceneFrame& frame, const 
 
 ScenePainter::ScenePainter(const Gl& gl)
     : gl_(gl),
-      backdrop_(gl, "backdrop.vert", {"backdrop.frag"}),
+      backdrop_(gl, "whole.vert", {"backdrop.frag"}),
       panel_(gl, "panel.vert", {"panel.frag"}),
       ghost_(gl, "solid.vert", {"ghost.frag"}),
       outline_(gl, "solid.vert", {"outline.frag"}),
@@ -136,7 +136,7 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   gl_.BlendEquation(GL_FUNC_ADD);
   upload(frame, camera, target.height, left_out);
   Lighting& lighting = this->lighting(quality);
-  lighting.shadows.draw(low_, high_, floor_plane(frame, low_.z()), [this] { draw(solids_); });
+  lighting.shadows.draw(low_, high_, floor_plane(frame, low_.z()), solid_mesh_, [this] { draw(solids_); });
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   gl_.Viewport(0, 0, target.width, target.height);
@@ -184,7 +184,8 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
 }
 
 void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out) {
-  Mesh mesh = solid_mesh(frame, left_out);
+  solid_mesh_ = solid_mesh(frame, left_out);
+  Mesh mesh = solid_mesh_;
   solids_ = {0, static_cast<std::uint32_t>(mesh.indices.size())};
   std::tie(low_, high_) = drawable_bounds(frame);
   for (const Vertex& vertex : mesh.vertices) {
@@ -221,7 +222,7 @@ void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int hei
 ScenePainter::Lighting::Lighting(const Gl& gl, std::string_view constants, const ShadowSize& size)
     : ground(gl, "ground.vert", {constants, "light.glsl", "ground.frag"}),
       solid(gl, "solid.vert", {constants, "light.glsl", "solid.frag"}),
-      shadows(gl, size) {}
+      shadows(gl, constants, size) {}
 
 ScenePainter::Lighting& ScenePainter::lighting(Quality quality) {
   std::unique_ptr<Lighting>& lighting = lightings_[static_cast<std::size_t>(quality)];

@@ -62,6 +62,7 @@ class ScenePainter {
   std::array<std::unique_ptr<Lighting>, 2> lightings_;  // made when first drawn with
   GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
   std::array<GlObject, k_colour_map_count> colour_maps_;
+  Mesh solid_mesh_;
   IndexRange solids_, ghosts_, shells_, trails_, bands_, arrows_;
   GLsizei panel_vertex_count_ = 0;
   Eigen::Vector3f low_, high_;  // box around bounds and everything solid

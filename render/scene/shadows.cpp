@@ -1,6 +1,8 @@
 #include "render/scene/shadows.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -20,6 +22,11 @@ const Vector3f k_to_key = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
 
 constexpr GLuint k_key_unit = 1;
 constexpr GLuint k_contact_unit = 2;
+constexpr GLuint k_near_unit = 3;
+
+constexpr int k_shade_side = 256;        // of the map of contact shade, texels
+constexpr int k_near_side = 64;          // of the map of what is near the floor, texels
+constexpr float k_contact_high = 0.38f;  // m, above which contact.frag has nothing that eight bits hold
 
 /// Orthographic matrix with the rows x, y, z as axes; the box low..high in these becomes -1..1.
 Matrix4f box_matrix(const Matrix3f& rows, const Vector3f& low, const Vector3f& high) {
@@ -46,15 +53,18 @@ void bind_to(const Gl& gl, GLuint unit, const GlObject& texture) {
 
 }  // namespace
 
-Shadows::Shadows(const Gl& gl, const ShadowSize& size)
+Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& size)
     : gl_(gl),
       size_(size),
       key_program_(gl, "shadow.vert", {"shadow.frag"}),
       contact_program_(gl, "shadow.vert", {"contact.frag"}),
+      shade_program_(gl, "whole.vert", {constants, "contact_shade.frag"}),
       key_map_(make_texture(gl, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT}, size.key,
                             size.key, nullptr)),
       key_target_(make_framebuffer(gl)),
-      contact_target_(make_framebuffer(gl)) {
+      contact_target_(make_framebuffer(gl)),
+      shade_target_(make_framebuffer(gl)),
+      empty_array_(make_vertex_array(gl)) {
   gl.BindTexture(GL_TEXTURE_2D, key_map_.id());
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
@@ -65,6 +75,8 @@ Shadows::Shadows(const Gl& gl, const ShadowSize& size)
   contact_map_ =
       make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, size.contact, size.contact, nullptr);
 
+  near_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_near_side, k_near_side, nullptr);
+
   gl.BindFramebuffer(GL_FRAMEBUFFER, key_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, key_map_.id(), 0);
   const GLenum none = GL_NONE;
@@ -73,9 +85,13 @@ Shadows::Shadows(const Gl& gl, const ShadowSize& size)
   gl.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, contact_map_.id(), 0);
   check_framebuffer(gl, "contact map");
+  shade_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_shade_side, k_shade_side, nullptr);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, shade_target_.id());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shade_map_.id(), 0);
+  check_framebuffer(gl, "contact shade");
 }
 
-void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& floor,
+void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& floor, const Mesh& solids,
                    const std::function<void()>& draw_solids) {
   set_up_key(low, high);
   draw_solids();
@@ -86,6 +102,37 @@ void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& 
   gl_.Disable(GL_DEPTH_CLAMP);
   bind_to(gl_, k_contact_unit, contact_map_);
   gl_.GenerateMipmap(GL_TEXTURE_2D);
+  mark_near(floor, solids);
+  shade_contact();
+}
+
+// By the boxes of triangles, as far around as contact shade reaches.
+void Shadows::mark_near(const FloorPlane& floor, const Mesh& solids) {
+  constexpr float side = k_near_side;
+  std::array<std::uint8_t, k_near_side * k_near_side> near{};
+  const float margin = k_contact_margin / contact_width_ * side;
+  for (std::size_t i = 0; i + 2 < solids.indices.size(); i += 3) {
+    Eigen::Vector2f from(side, side), to(0, 0);
+    float height = k_contact_high;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      const Vector3f& x = solids.vertices[solids.indices[k]].position;
+      height = std::min(height, floor.normal.dot(x - floor.point));
+      const Eigen::Vector2f at = side *
+                                 (contact_matrix_.topLeftCorner<2, 3>() * x +
+                                  contact_matrix_.topRightCorner<2, 1>() + Eigen::Vector2f::Ones()) /
+                                 2;
+      from = from.cwiseMin(at);
+      to = to.cwiseMax(at);
+    }
+    if (height >= k_contact_high) continue;
+    const auto texel = [](float at) { return std::clamp(static_cast<int>(at), 0, k_near_side - 1); };
+    for (int y = texel(from.y() - margin); y <= texel(to.y() + margin); ++y)
+      for (int x = texel(from.x() - margin); x <= texel(to.x() + margin); ++x)
+        near[k_near_side * y + x] = 255;
+  }
+  bind_to(gl_, k_near_unit, near_map_);
+  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_near_side, k_near_side, 0, GL_RED, GL_UNSIGNED_BYTE, near.data());
 }
 
 void Shadows::set_up_key(const Vector3f& low, const Vector3f& high) {
@@ -134,9 +181,22 @@ void Shadows::set_up_contact(const Vector3f& low, const Vector3f& high, const Fl
   contact_program_.set("u_floor", floor.point);
 }
 
+// Once for each place on the floor, and not for each of the pixels that show it.
+void Shadows::shade_contact() {
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, shade_target_.id());
+  gl_.Viewport(0, 0, k_shade_side, k_shade_side);
+  gl_.Disable(GL_DEPTH_TEST);
+  shade_program_.use();
+  shade_program_.set("u_contact", static_cast<int>(k_contact_unit));
+  shade_program_.set("u_near", static_cast<int>(k_near_unit));
+  shade_program_.set("u_contact_size", contact_width_);
+  gl_.BindVertexArray(empty_array_.id());
+  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 void Shadows::bind() const {
   bind_to(gl_, k_key_unit, key_map_);
-  bind_to(gl_, k_contact_unit, contact_map_);
+  bind_to(gl_, k_contact_unit, shade_map_);
 }
 
 void Shadows::set(const Program& program) const {
@@ -145,7 +205,6 @@ void Shadows::set(const Program& program) const {
   program.set("u_shadow_matrix", key_matrix_);
   program.set("u_contact", static_cast<int>(k_contact_unit));
   program.set("u_contact_matrix", contact_matrix_);
-  program.set("u_contact_size", contact_width_);
 }
 
 }  // namespace topple::render

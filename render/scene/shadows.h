@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
 #include <Eigen/Core>
 
 #include "render/gl/gl.h"
 #include "render/gl/gl_objects.h"
+#include "render/scene/mesh.h"
 
 namespace topple::render {
 
@@ -27,11 +29,12 @@ struct ShadowSize {
 /// The maps and what shaders need to read them. `gl` must outlive them.
 class Shadows {
  public:
-  Shadows(const Gl& gl, const ShadowSize& size);
+  /// constants: shader that says how finely it is shaded (look_*.glsl).
+  Shadows(const Gl& gl, std::string_view constants, const ShadowSize& size);
 
-  /// Draws both maps of what `draw_solids` draws, which lies in the box low..high.
+  /// Draws both maps of what `draw_solids` draws: `solids`, which lie in the box low..high.
   void draw(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor,
-            const std::function<void()>& draw_solids);
+            const Mesh& solids, const std::function<void()>& draw_solids);
 
   /// Binds the maps to their texture units.
   void bind() const;
@@ -41,11 +44,14 @@ class Shadows {
  private:
   void set_up_key(const Eigen::Vector3f& low, const Eigen::Vector3f& high);
   void set_up_contact(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor);
+  void mark_near(const FloorPlane& floor, const Mesh& solids);
+  void shade_contact();
 
   const Gl& gl_;
   ShadowSize size_;
-  Program key_program_, contact_program_;
-  GlObject key_map_, contact_map_, key_target_, contact_target_;
+  Program key_program_, contact_program_, shade_program_;
+  GlObject key_map_, contact_map_, near_map_, shade_map_, key_target_, contact_target_, shade_target_,
+      empty_array_;
   Eigen::Matrix4f key_matrix_ = Eigen::Matrix4f::Identity();
   Eigen::Matrix4f contact_matrix_ = Eigen::Matrix4f::Identity();
   float contact_width_ = 1;  // m, side of the square that is mapped
