@@ -21,6 +21,7 @@ namespace {
 constexpr double k_pinched = 0.95;              // 1 - l/L between members
 constexpr double k_same_interval = 1 + 1e-9;    // of a step and a sample interval, both rounded
 constexpr double k_good_balance = 1e-3;         // energy that nothing explains
+constexpr double k_hardly_lifts = 1e-6;         // m, all bodies: an energy that tells nothing
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
 constexpr double k_yielded = 1.05;              // of the yield surface: frames stay within it
 constexpr double k_sunk = 0.1;                  // m below a floor
@@ -144,7 +145,10 @@ void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
   const bool by_tolerance = run.parameters().adaptive && !traits(run.parameters().integrator).is_explicit;
   const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
-  if (const double balance = e.balance_error(); balance > k_good_balance)
+  double weight = 0;
+  for (const Body& body : run.setup().model.bodies) weight += body.mass * run.parameters().gravity.norm();
+  if (const double balance = e.balance_error();
+      balance > k_good_balance && balance * e.largest > k_hardly_lifts * weight)
     list.push_back(fmt::format("energy balance error {:.1e} (of the {:.2g} J exchanged) is above {:.0e}; {}",
                                balance, e.largest, k_good_balance, finer));
   if (e.largest >= k_numbers_of_interest && std::abs(e.model_switch) > k_switched * e.largest)

@@ -10,7 +10,7 @@
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
-#include "solver/run/footprint.h"
+#include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 
@@ -18,8 +18,6 @@ namespace topple::app {
 namespace {
 
 constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
-constexpr double k_hangs = 1e-3;   // m, above what might bear it
-constexpr double k_top_of = 0.05;  // m, that what bears a body reaches above its bottom at most
 constexpr double k_within = 1e-3;  // m, a wall
 constexpr double k_early = 0.05;   // of the acceleration that lifts a side
 constexpr double k_hardly = 0.02;  // of it
@@ -58,52 +56,6 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
   }
 }
 
-/// Between which heights a body lies, m.
-struct Heights {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-};
-Heights heights(const Model& model, const State& start, const Body& body) {
-  Heights found;
-  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-    const double half = model.sections[model.members[model.elements[e].member].section].width / 2;
-    for (const int node : model.elements[e].node) {
-      found.low = std::min(found.low, start.position[node].z() - half);
-      found.high = std::max(found.high, start.position[node].z() + half);
-    }
-  }
-  return found;
-}
-
-Vec2 centre_in_plan(const Model& model, const State& start, const Body& body) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
-    sum += model.node_mass[i] * start.position[i];
-  return sum.head<2>() / body.mass;
-}
-
-/// The highest of what lies below a body in plan.
-struct Below {
-  int body = -1;                                          ///< -1: the floor, or nothing
-  double top = -std::numeric_limits<double>::infinity();  ///< m, may be above the bottom of the body
-  double aside = 0;  ///< m, of the centre of gravity, in plan; 0: above it, or on two
-};
-Below below(const Model& model, const State& start, int index, double bottom, bool floor) {
-  constexpr double k_any_height = std::numeric_limits<double>::max();
-  const auto print = footprint(model, start.position, index, k_any_height);
-  Below found;
-  if (floor) found.top = 0;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    const Heights of = heights(model, start, model.bodies[b]);
-    if (b == index || of.low > bottom || of.high < found.top - k_hangs) continue;
-    const auto other = footprint(model, start.position, b, k_any_height);
-    if (nearest_points(print->core, other->core).distance > print->radius + other->radius) continue;
-    const bool one_of_two = of.high < found.top + k_hangs;
-    found = {b, std::max(of.high, found.top),
-             one_of_two ? 0 : other->distance(centre_in_plan(model, start, model.bodies[index]))};
-  }
-  return found;
-}
-
 /// Where a wall pushes a body away as the run begins.
 void warn_of_walls(const Setup& setup, const State& start, std::vector<std::string>& list) {
   const Model& model = setup.model;
@@ -135,18 +87,19 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
                             [&](const Support& support) { return model.node_body[support.node] == b; }) ||
         std::ranges::any_of(model.anchors, [&](const Anchor& anchor) { return anchor.body == b; });
     if (held) continue;
-    const double bottom = heights(model, start, body).low;
-    const Below under = below(model, start, b, bottom, floor);
+    const double bottom = heights(model, start.position, b).low;
+    const Below under = below(model, start.position, b, floor);
     const std::string what =
         under.body < 0 ? "the floor" : '"' + model.bodies[static_cast<std::size_t>(under.body)].name + '"';
     if (!std::isfinite(under.top))
       list.push_back(
           fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
     else if (bottom - under.top > k_hangs)
-      list.push_back(
-          fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above {} and falls when the "
-                      "run begins",
-                      body.name, 1e3 * (bottom - under.top), what));
+      list.push_back(fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above {}{}", body.name,
+                                 1e3 * (bottom - under.top), what,
+                                 setup.run.settle
+                                     ? ", so that the run does not begin; settle = false lets it fall"
+                                     : " and falls when the run begins"));
     else if (under.body >= 0 && bottom > k_hangs && under.top - bottom < k_top_of && under.aside > 0)
       list.push_back(fmt::format("the centre of gravity of \"{}\" is {:.4g} mm beside {}, on which it stands",
                                  body.name, 1e3 * under.aside, what));

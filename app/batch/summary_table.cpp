@@ -85,6 +85,7 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const ordered_json& estimate = change["error_estimate"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
+  if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
   return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(),
@@ -160,6 +161,17 @@ std::string damage_line(const ordered_json& b) {
          (fractures > 0 ? counted(fractures, "broken section") : "") + "\n";
 }
 
+// Of a body that may come back yet.
+std::string lately_line(const ordered_json& b, const ordered_json& end) {
+  constexpr double lately = 1, far = 60;  // s, degrees
+  if (!b["overturned"].get<bool>() || end.is_null() || b["final_tilt_deg"].is_null()) return "";
+  const double since = end.get<double>() - b["overturn_time_s"].get<double>();
+  if (since > lately || b["final_tilt_deg"].get<double>() > far) return "";
+  return fmt::format(
+      "{}: beyond its critical angle for the last {:.3g} s alone; a longer run tells whether it comes back\n",
+      b["name"].get<std::string>(), since);
+}
+
 std::string anchor_line(const ordered_json& a) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
@@ -228,6 +240,7 @@ std::string summary_table(const ordered_json& s) {
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
       out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
                          b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
+  for (const auto& b : s["bodies"]) out += lately_line(b, s["simulated_s"]);
   for (const auto& b : s["bodies"]) out += damage_line(b);
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())

@@ -23,7 +23,7 @@ const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
 std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
   const Model& model = player.scene().setup.model;
   const Parameters& parameters = player.parameters();
-  if (!study::why_not_standing(model, body).empty()) return std::nullopt;
+  if (!study::why_no_block(model, body).empty()) return std::nullopt;
   const auto row = player.row();
   const bool planar = row && row->level[static_cast<std::size_t>(body)] ==
                                  static_cast<std::uint8_t>(ModelLevel::planar);  // on a hard floor
@@ -43,7 +43,7 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
 }
 
 bool has_limits(const Model& model, const Parameters& parameters, int body) {
-  return study::why_not_standing(model, body).empty() &&
+  return study::why_no_block(model, body).empty() &&
          (study::standing_towards(model, parameters, body, parameters.shakes.front().direction) ||
           study::standing_towards(model, parameters, body, -parameters.shakes.front().direction));
 }

@@ -94,6 +94,7 @@ double margin_share(const FrameContext& now, std::size_t index) {
 }
 
 double displacement_value(const FrameContext& now, std::size_t index) {
+  if (!io::has_stresses(now.row, static_cast<int>(index))) return k_no_value;
   const Body& body = now.model.bodies[index];
   const RigidFit fit = rigid_fit(now.model, now.row);
   double most = 0;

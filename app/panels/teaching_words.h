@@ -10,8 +10,8 @@ inline constexpr Phrase k_body{"body", "家具"};
 inline constexpr Phrase k_no_standing_body{
     "No body here stands freely on the floor, so the criteria say nothing.",
     "床に自立する家具がないため、判定基準は適用できません。"};
-inline constexpr Phrase k_stands_not_freely{"{0} (does not stand freely on the floor)",
-                                            "{0}（床に自立していない）"};
+inline constexpr Phrase k_stands_not_freely{"{0} (held, on another, or bears one)",
+                                            "{0}（固定・家具の上・家具を載せている）"};
 inline constexpr Phrase k_no_floor_shake{"The floor does not shake here.", "このシーンでは床は揺れません。"};
 inline constexpr Phrase k_building_between{
     "A building stands between the ground that is set here and the floor: the criteria, which are for the "

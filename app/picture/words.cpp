@@ -18,7 +18,6 @@ namespace {
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
 constexpr double k_slid_least = 1e-3;  // m
-constexpr double k_on_floor = 0.05;    // m, highest base of what stands there: others go with what bears them
 constexpr double k_at_rest = 0.01;     // m/s: what moves slower at large rests there
 constexpr std::size_t k_few_anchors = 4;
 
@@ -112,7 +111,7 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::standing:
       line += say(k_standing);
   }
-  if (now.slide > k_slid_least && model.bodies[body].base_centre.z() < k_on_floor)
+  if (now.slide > k_slid_least)
     line += say(k_slid, 1e3 * now.slide);
   return line;
 }

@@ -32,8 +32,10 @@ std::string base64(const std::string& bytes) {
 }
 
 std::string verdict(const ReportPage& page, const ordered_json& body) {
-  return "<span class=\"verdict-cell\">" +
-         page.say(body["overturned"].get<bool>() ? words::k_overturns : words::k_stays) + "</span>";
+  const Phrase& said = body["overturned"].get<bool>()              ? words::k_overturns
+                       : body["first_beyond_critical_s"].is_null() ? words::k_stays
+                                                                   : words::k_comes_back;
+  return "<span class=\"verdict-cell\">" + page.say(said) + "</span>";
 }
 
 /// The errors of body `b`, or nothing that says anything.

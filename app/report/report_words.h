@@ -108,6 +108,7 @@ inline constexpr Phrase k_body{"body", "家具"};
 inline constexpr Phrase k_verdict{"verdict", "判定"};
 inline constexpr Phrase k_overturns{"● overturns", "● 転倒"};
 inline constexpr Phrase k_stays{"○ stays", "○ 転倒せず"};
+inline constexpr Phrase k_comes_back{"○ leans over, comes back", "○ 傾いて戻る"};
 inline constexpr Phrase k_overturn_time{"overturns at, s", "転倒時刻 [s]"};
 inline constexpr Phrase k_uplift{"first uplift, s", "最初の浮上り [s]"};
 inline constexpr Phrase k_impacts{"impacts", "衝突回数"};
@@ -118,13 +119,14 @@ inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
     "Overturns: the tilt passes the critical angle (centre of gravity above the edge of the base) for good "
     "before the run ends; its column tells that of the edge over which the body leaned most. "
-    "Slide: horizontal travel of the middle of the base relative to the floor. Uplift: one side of the base "
+    "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
+    "side of the base "
     "carries less than "
     "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated numerical error, "
     "section {2}.",
     "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。限界角は最も"
     "傾いた側の値。すべり："
-    "床に対する底面中心の水平移動量。"
+    "床または載っている家具に対する底面中心の移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
     "±は推定数値誤差（第{2}節）。"};
 inline constexpr Phrase k_stress_note{

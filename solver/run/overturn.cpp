@@ -11,6 +11,7 @@
 #include "solver/element/section_forces.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
+#include "solver/run/bearer.h"
 
 namespace topple {
 namespace {
@@ -94,10 +95,15 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
   return {barrier(tilt(pose)), barrier(0)};
 }
 
-double slide(const Model& model, int index, const BodyPose& pose) {
+double slide(const Model& model, int index, const BodyPose& pose, int bearer, const BodyPose& on) {
   const Body& body = model.bodies[index];
-  const Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
+  Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
+  if (bearer >= 0) now = on.rotation.conjugate() * (now - on.centre) + model.bodies[bearer].centre_of_gravity;
   return (now - body.base_centre).head<2>().norm();
+}
+
+BodyPose bearer_pose(const Model& model, const State& state, int bearer) {
+  return bearer < 0 ? BodyPose{Vec3::Zero(), Quat::Identity()} : body_pose(model, state, bearer);
 }
 
 Outcome::Outcome(const Model& model)
@@ -113,6 +119,8 @@ Outcome::Outcome(const Model& model)
     unit_stress_.emplace_back(of(Vec3::UnitX(), zero), of(zero, Vec3::UnitX()), of(zero, Vec3::UnitY()),
                               of(zero, Vec3::UnitZ()));
   }
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    bearers_.push_back(bearer_of(model, model.node_position, b));
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
@@ -203,13 +211,14 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   const BodyPose pose = body_pose(model, state, body);
   const double before = o.tilt - o.critical, time_before = o.time;
   o.time = state.time;
-  o.vertical = pose.rotation.conjugate() * Vec3::UnitZ();
+  const BodyPose on = bearer_pose(model, state, bearers_[b]);
+  o.vertical = pose.rotation.conjugate() * (on.rotation * Vec3::UnitZ());
   o.tilt = tilt(pose);
   o.peak_tilt = std::max(o.peak_tilt, o.tilt);
   if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
   if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
   o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
-  o.slide = topple::slide(model, body, pose);
+  o.slide = topple::slide(model, body, pose, bearers_[b], on);
   o.peak_slide = std::max(o.peak_slide, o.slide);
   o.critical = critical_angle(model, body, pose);
   const double beyond = o.tilt - o.critical;

@@ -42,8 +42,13 @@ struct OverturnBarrier {
 /// gravity: m/s^2.
 OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, double gravity);
 
-/// Horizontal travel of the mid-point of the base relative to the floor since the reference pose, m.
-double slide(const Model& model, int body, const BodyPose& pose);
+/// Travel of the mid-point of the base along what bears the body since the reference pose, m: along the
+/// floor, or along the piece that it stands on there (bearer.h), in the axes of that, where `on` is its pose
+/// now. bearer: its index, -1: none.
+double slide(const Model& model, int body, const BodyPose& pose, int bearer, const BodyPose& on);
+
+/// Of what bears a body; bearer -1: of the floor.
+BodyPose bearer_pose(const Model& model, const State& state, int bearer);
 
 /// Something that happened to a body, at the end of a step.
 struct Event {
@@ -101,7 +106,7 @@ struct BodyOutcome {
     Vec3 vertical = Vec3::Zero();  ///< then, in the body's axes
   };
   std::vector<Side> sides;        ///< of the support polygon
-  Vec3 vertical = Vec3::UnitZ();  ///< at this observation, in the body's axes
+  Vec3 vertical = Vec3::UnitZ();  ///< of what bears it, at this observation, in the body's axes
   double time = 0;                ///< of this observation
 };
 
@@ -126,6 +131,9 @@ class Outcome {
   void observe_stresses(const Model& model, const State& state, const std::vector<SectionForces>& sections);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
   const std::vector<AnchorOutcome>& anchors() const { return anchors_; }
+  const std::vector<int>& bearers() const {
+    return bearers_;
+  }                                        ///< per body, in the reference pose (bearer.h)
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
@@ -145,6 +153,7 @@ class Outcome {
 
   std::vector<BodyOutcome> bodies_;
   std::vector<AnchorOutcome> anchors_;
+  std::vector<int> bearers_;
   std::vector<char> broke_;                             ///< per element
   std::vector<char> flowed_;                            ///< per node: a section beside it has flowed
   int furniture_;                                       ///< bodies

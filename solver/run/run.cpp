@@ -122,7 +122,7 @@ void Run::find_acting(const State& state, Acting& acting) const {
 
 Snapshot Run::snapshot(double time) const {
   const Model& model = setup_->model;
-  within_ = state_within_step(model, now_.state, time, workspace_);
+  state_within_step(model, now_.state, time, workspace_, within_);
   find_acting(within_, within_acting_);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (traits(within_.bodies[b].level).moves_nodes)

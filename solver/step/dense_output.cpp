@@ -24,9 +24,11 @@ struct Hermite {
   // x, v: at the end on entry, at t on return.
   template <class Vector>
   void move(const Vector& x0, const Vector& v0, Vector& x, Vector& v) const {
-    const Vector x1 = x, v1 = v;
-    x = value[0] * x0 + rate[0] * v0 + value[1] * x1 + rate[1] * v1;
-    v = value_rate[0] * x0 + rate_rate[0] * v0 + value_rate[1] * x1 + rate_rate[1] * v1;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double x1 = x[i], v1 = v[i];
+      x[i] = value[0] * x0[i] + rate[0] * v0[i] + value[1] * x1 + rate[1] * v1;
+      v[i] = value_rate[0] * x0[i] + rate_rate[0] * v0[i] + value_rate[1] * x1 + rate_rate[1] * v1;
+    }
   }
 
   // Of the rotation vector psi from the start, q = q0 exp(psi), w = T(-psi) dpsi/dt in material axes.
@@ -63,11 +65,12 @@ void move_body(const Hermite& hermite, const BodyState& start, BodyState& at) {
 
 }  // namespace
 
-State state_between(const Model& model, const State& start, const State& end, double time) {
+void state_between(const Model& model, const State& start, const State& end, double time, State& at) {
   const double h = end.time - start.time, t = (time - start.time) / h;
   const Hermite hermite(h, t);
   const auto mix = [&](const auto& a, auto& b) { b = (1 - t) * a + t * b; };
-  State at = end, placed;
+  at = end;
+  State placed;
   const State* from = &start;
   if (!std::ranges::equal(start.bodies, end.bodies, {}, &BodyState::level, &BodyState::level)) {
     placed = start;
@@ -95,12 +98,11 @@ State state_between(const Model& model, const State& start, const State& end, do
   at.step = start.step;
   at.time = time;
   place_nodes(model, at);
-  return at;
 }
 
-State state_within_step(const Model& model, const State& end, double time, Workspace& workspace) {
+void state_within_step(const Model& model, const State& end, double time, Workspace& workspace, State& at) {
   Workspace::Impl& w = workspace.impl();
-  State at = state_between(model, w.next, end, time);
+  state_between(model, w.next, end, time, at);
   bool any = false;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (!traits(w.next.bodies[b].level).has_block || !traits(at.bodies[b].level).has_block) continue;
@@ -108,7 +110,6 @@ State state_within_step(const Model& model, const State& end, double time, Works
     w.parts.planar(b).place_within(*w.parameters, w.next, time, at);
   }
   if (any) place_nodes(model, at);
-  return at;
 }
 
 }  // namespace topple

@@ -11,9 +11,9 @@ namespace topple {
 /// with velocities as their derivatives (both of third order); stick springs, plastic strains and energies
 /// linear; the rest as at the end, or as when it began for anchors and the number of the step. Nodes are
 /// placed.
-State state_between(const Model& model, const State& start, const State& end, double time);
+void state_between(const Model& model, const State& start, const State& end, double time, State& at);
 
 /// The same within the newest step, which ended in `end`, until another is tried with `workspace`.
-State state_within_step(const Model& model, const State& end, double time, Workspace& workspace);
+void state_within_step(const Model& model, const State& end, double time, Workspace& workspace, State& at);
 
 }  // namespace topple

@@ -129,6 +129,7 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
     const int index = static_cast<int>(b);
     const BodyPose pose = body_pose(model, at.state, index);
     const double critical = critical_angle(model, index, pose);
+    const int bearer = run.outcome().bearers()[b];
     const Vec3& x = pose.centre;
     const Quat& q = pose.rotation;
     row.body[b] = {.x = x.x(),
@@ -139,7 +140,7 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
                    .qy = q.y(),
                    .qz = q.z(),
                    .tilt = tilt(pose),
-                   .slide = slide(model, index, pose),
+                   .slide = slide(model, index, pose, bearer, bearer_pose(model, at.state, bearer)),
                    .energy = body_energy(run, at, model.bodies[b]),
                    .critical_angle = std::isfinite(critical) ? critical : 0};
     row.level[b] = static_cast<std::uint8_t>(at.state.bodies[b].level);

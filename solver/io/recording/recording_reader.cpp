@@ -27,11 +27,14 @@ constexpr unsigned k_metadata_attempts = 20;
 constexpr int k_open_attempts = 5;
 constexpr const char* k_not_finite = " holds a number that is not finite";
 
+bool is_level(double number) {
+  return std::ranges::any_of(k_model_levels,
+                             [&](const LevelTraits& row) { return static_cast<double>(row.kind) == number; });
+}
+
 bool is_level_change(const EventRecord& event) {
-  return std::ranges::any_of(
-             k_model_levels,
-             [&](const LevelTraits& row) { return static_cast<double>(row.kind) == event.value[0]; }) &&
-         event.value[1] >= 0 && event.value[1] <= static_cast<double>(LevelReason::solid);
+  return is_level(event.value[0]) && event.value[1] >= 0 &&
+         event.value[1] <= static_cast<double>(LevelReason::solid);
 }
 
 /// What the file's first bytes say, before HDF5 sees it.
@@ -353,6 +356,8 @@ struct Recording::Impl {
       throw Hdf5Error("frame " + std::to_string(index) + " is damaged (checksum differs)");
     }
     if (!is_finite(row)) throw Hdf5Error("frame " + std::to_string(index) + k_not_finite);
+    if (!std::ranges::all_of(row.level, is_level))
+      throw Hdf5Error("frame " + std::to_string(index) + " has a body on no known level");
     return row;
   }
 

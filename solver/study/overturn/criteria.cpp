@@ -6,6 +6,7 @@
 
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
+#include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
 
 namespace topple::study {
@@ -103,6 +104,12 @@ Criterion curve(const std::string& name, const std::string& label, const std::st
 
 }  // namespace
 
+std::string why_no_block(const Model& model, int body) {
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (bearer_of(model, model.node_position, b) == body) return "bears \"" + model.bodies[b].name + '"';
+  return why_not_standing(model, body);
+}
+
 double west_acceleration(const Standing& body) {
   return body.gravity * body.rigid_limit();
 }
@@ -128,7 +135,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
   const Model& model = scene.model;
   bool symmetric = false;
   for (int b = 0; b < model.furniture_total(); ++b) {
-    if (!why_not_standing(model, b).empty()) continue;
+    if (!why_no_block(model, b).empty()) continue;
     const auto ahead = standing_towards(model, scene.parameters, b, shake.direction),
                behind = standing_towards(model, scene.parameters, b, -shake.direction);
     if (!ahead || !behind) continue;
@@ -143,7 +150,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
     }
   }
   if (out.bodies.empty()) {
-    out.why_not = "no body stands freely on the floor with edges across the shake";
+    out.why_not = "no body stands freely on the floor, bears nothing and has edges across the shake";
     return out;
   }
   const Standing& body = out.body;

@@ -18,6 +18,10 @@ struct Criterion {
   std::vector<double> x, y;  ///< in the axes' units
 };
 
+/// Why the criteria of a block alone do not hold of a body: it does not stand freely (alone.h), or "bears
+/// "vase"". Empty: they do.
+std::string why_no_block(const Model& model, int body);
+
 /// Acceleration at which a rigid block lifts an edge, m/s^2: g b/h (West; Milne 1885).
 double west_acceleration(const Standing& body);
 

@@ -183,7 +183,7 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
   const bool acceleration = plan.measure->key.dimension == io::Dimension::acceleration,
              velocity = plan.measure->key.name == "pgv";
   out.why_not =
-      !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_not_standing(setup.model, body);
+      !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_block(setup.model, body);
   if (!out.why_not.empty()) return out;
   const Standing at = pushed(setup, body);
   out.corner = evaluation_frequency(at);
@@ -197,10 +197,17 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
   return out;
 }
 
+// Of a steady sine its own, as in the criteria over frequency: it starts with a greater velocity.
 double median_frequency(const FragilityPlan& plan) {
   std::vector<double> all;
   for (const io::Scene& scene : plan.scenes) {
-    const FloorPeak peak = floor_peak(scene.setup.parameters.shakes, scene.setup.run.duration);
+    const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
+    if (shakes.size() == 1 && traits(shakes[0].kind).steady && !shakes[0].building &&
+        plan.measure->key.name != "pgv") {
+      all.push_back(shakes[0].frequency);
+      continue;
+    }
+    const FloorPeak peak = floor_peak(shakes, scene.setup.run.duration);
     all.push_back(peak.velocity > 0 ? peak.acceleration / (2 * k_pi * peak.velocity) : 0);
   }
   std::ranges::sort(all);

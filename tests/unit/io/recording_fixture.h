@@ -115,7 +115,9 @@ inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) 
     fill(numbers);
     body = std::bit_cast<BodyNumbers>(numbers);
   }
-  fill(row.level);
+  for (std::size_t b = 0; b < row.level.size(); ++b)
+    row.level[b] =
+        static_cast<std::uint8_t>((b + static_cast<std::size_t>(step)) % std::size(k_model_levels));
   fill(row.floor_acceleration);
   fill(row.floor_displacement);
   for (AnchorNumbers& anchor : row.anchor) {

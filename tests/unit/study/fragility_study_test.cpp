@@ -53,6 +53,45 @@ TEST(FragilityStudy, a_known_threshold_and_a_known_scatter_come_back) {
   EXPECT_EQ(found.curves[0][1].fit.why_not, "no run slides farther");
 }
 
+// The floor of a sine that begins at rest is faster than A/w at first. What bears something has no criteria
+// of its own.
+TEST(FragilityStudy, criteria_are_those_of_a_steady_sine_and_of_a_block_alone) {
+  const FragilityPlan plan = plan_fragility(io::parse_scene(R"(topple = 1
+[run]
+duration = "4 s"
+[[shake]]
+type = "sine"
+frequency = "1.3 Hz"
+amplitude = "220 gal"
+taper = 1
+[floor]
+[[block]]
+name = "pedestal"
+size = [0.4, 0.4, 1.0]
+mass = 60
+at = [0, 0]
+[[block]]
+name = "vase"
+size = [0.25, 0.25, 0.6]
+mass = 12
+at = [0, 0, 1.0]
+[[block]]
+name = "showcase"
+size = [0.4, 0.6, 2.0]
+mass = 140
+at = [2, 0]
+)",
+                                                            "s.toml"),
+                                            "pga=100 gal..300 gal:2", {.runs = 1}, 0.05);
+  const FragilityResults found = gather(plan, run_all(plan));
+  const topple::Setup& setup = plan.scene.setup;
+  EXPECT_EQ(found.frequency, 1.3);
+  EXPECT_EQ(found.criteria[0].why_not, "bears \"vase\"");
+  EXPECT_EQ(found.criteria[1].why_not, "does not touch the floor");
+  const Standing body = *standing_towards(setup.model, setup.parameters, 2, Vec3::UnitX());
+  EXPECT_NEAR(found.criteria[2].ishiyama, ishiyama_velocity(body) * 2 * std::numbers::pi * 1.3 / k_gal, 1e-9);
+}
+
 // What a stronger floor brings back upright has no lognormal curve, however well one can be fitted.
 TEST(FragilityStudy, shares_that_fall_have_no_curve) {
   const FragilityPlan plan = plan_fragility(pulsed(), "pga=100 gal..1500 gal:24",

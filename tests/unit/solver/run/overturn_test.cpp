@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solver/model/block.h"
 #include "solver/state/sections.h"
 #include "unit/solver/fixtures.h"
 
@@ -161,11 +162,39 @@ TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_of_the_base_can
 TEST(Overturn, slide_is_the_horizontal_travel_of_the_base) {
   const Standing s = standing();
   const Vec3 centre = s.model.bodies[0].centre_of_gravity;
-  EXPECT_NEAR(slide(s.model, 0, {centre + Vec3(0.3, -0.4, 2), Quat::Identity()}), 0.5, 1e-12);
+  EXPECT_NEAR(slide(s.model, 0, {centre + Vec3(0.3, -0.4, 2), Quat::Identity()}, -1, {}), 0.5, 1e-12);
   // turning about the base's middle does not slide it
   const Quat turn = exp_quaternion(Vec3(0.2, 0.1, 1));
   const Vec3 base = s.model.bodies[0].base_centre;
-  EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}), 0, 1e-12);
+  EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}, -1, {}), 0, 1e-12);
+}
+
+BlockSpec box(const std::string& name, double height, const Vec3& at) {
+  BlockSpec spec;
+  spec.name = name;
+  spec.size = {0.4, 0.4, height};
+  spec.mass = 10;
+  spec.at = at;
+  return spec;
+}
+
+TEST(Overturn, slide_of_what_stands_on_another_body_is_along_that) {
+  Model model = steel_model();
+  add_block(model, box("pedestal", 1, Vec3::Zero()));
+  add_block(model, box("vase", 0.5, {0.05, 0, 1}));
+  add_block(model, box("beside", 0.5, {1, 0, 0}));
+  add_block(model, box("hangs", 0.5, {1, 0, 0.6}));
+  model.planes.push_back(ground());
+  const Outcome outcome(model);
+  EXPECT_EQ(outcome.bearers(), (std::vector{-1, 0, -1, -1}));
+  // carried along as the pedestal tips and walks, and then 30 mm along its top
+  const Quat turn = exp_quaternion(Vec3(0.2, 0.1, 1));
+  const Vec3 walked(0.3, -0.2, 0.05);
+  const auto moved = [&](int body, const Vec3& along) {
+    return BodyPose{walked + turn * (model.bodies[body].centre_of_gravity + along), turn};
+  };
+  EXPECT_NEAR(slide(model, 1, moved(1, Vec3::Zero()), 0, moved(0, Vec3::Zero())), 0, 1e-12);
+  EXPECT_NEAR(slide(model, 1, moved(1, {0.018, 0.024, 0.1}), 0, moved(0, Vec3::Zero())), 0.03, 1e-12);
 }
 
 struct Observed {

@@ -1,0 +1,34 @@
+// What bodies stand on.
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "solver/model/model.h"
+
+namespace topple {
+
+/// Between which heights the members of a body lie, contact widths included, m.
+struct Heights {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+};
+/// position: per node of the model, as everywhere here.
+Heights heights(const Model& model, std::span<const Vec3> position, int body);
+
+/// The highest of what lies below a body in plan.
+struct Below {
+  int body = -1;                                          ///< -1: the floor, or nothing
+  double top = -std::numeric_limits<double>::infinity();  ///< m, may be above the bottom of the body
+  double aside = 0;  ///< m, of the centre of gravity, in plan; 0: above it, or on two
+};
+/// floor: there is one, at z = 0.
+Below below(const Model& model, std::span<const Vec3> position, int body, bool floor);
+
+/// The piece of furniture whose top is at the bottom of a body, from k_hangs above it to k_top_of below; -1:
+/// none.
+int bearer_of(const Model& model, std::span<const Vec3> position, int body);
+
+inline constexpr double k_hangs = 1e-3;   ///< m
+inline constexpr double k_top_of = 0.05;  ///< m
+
+}  // namespace topple
