@@ -38,8 +38,8 @@ void add_trails(const Model& model, const RunExtent& extent, const io::FrameRow&
 std::size_t component_of(const Model& model, const io::FrameRow& row, const Diagram& diagram);
 
 /// A band along a member, red where positive and blue where negative, with its least and greatest value; as
-/// high at every instant. In the plane in which the force acts, moments on the side that they stretch. None of
-/// a body that is computed without stresses.
+/// high at every instant. In the plane in which the force acts, moments on the side that they stretch. None
+/// of a body that is computed without stresses.
 void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& diagram,
                  render::SceneFrame& out);
 

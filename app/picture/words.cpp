@@ -111,8 +111,7 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::standing:
       line += say(k_standing);
   }
-  if (now.slide > k_slid_least)
-    line += say(k_slid, 1e3 * now.slide);
+  if (now.slide > k_slid_least) line += say(k_slid, 1e3 * now.slide);
   return line;
 }
 

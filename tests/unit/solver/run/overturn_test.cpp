@@ -169,7 +169,7 @@ TEST(Overturn, slide_is_the_horizontal_travel_of_the_base) {
   EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}, -1, {}), 0, 1e-12);
 }
 
-BlockSpec box(const std::string& name, double height, const Vec3& at) {
+BlockSpec piece(const std::string& name, double height, const Vec3& at) {
   BlockSpec spec;
   spec.name = name;
   spec.size = {0.4, 0.4, height};
@@ -180,10 +180,10 @@ BlockSpec box(const std::string& name, double height, const Vec3& at) {
 
 TEST(Overturn, slide_of_what_stands_on_another_body_is_along_that) {
   Model model = steel_model();
-  add_block(model, box("pedestal", 1, Vec3::Zero()));
-  add_block(model, box("vase", 0.5, {0.05, 0, 1}));
-  add_block(model, box("beside", 0.5, {1, 0, 0}));
-  add_block(model, box("hangs", 0.5, {1, 0, 0.6}));
+  add_block(model, piece("pedestal", 1, Vec3::Zero()));
+  add_block(model, piece("vase", 0.5, {0.05, 0, 1}));
+  add_block(model, piece("beside", 0.5, {1, 0, 0}));
+  add_block(model, piece("hangs", 0.5, {1, 0, 0.6}));
   model.planes.push_back(ground());
   const Outcome outcome(model);
   EXPECT_EQ(outcome.bearers(), (std::vector{-1, 0, -1, -1}));
