@@ -7,9 +7,10 @@ namespace topple::app {
 namespace {
 
 constexpr int k_most_jobs = 256;
-constexpr std::string_view k_endings[] = {".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", ".webp",
-                                          ".svg",  ".ppm", ".mp4",  ".avi", ".mov", ".mkv", ".webm", ".wmv",
-                                          ".mpeg", ".mpg", ".pdf",  ".ps",  ".eps", ".html"};
+constexpr std::string_view k_endings[] = {".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff",
+                                          ".webp", ".svg", ".ppm",  ".mp4", ".avi", ".mov", ".mkv",
+                                          ".webm", ".wmv", ".mpeg", ".mpg", ".pdf", ".ps",  ".eps",
+                                          ".html", ".glb", ".gltf", ".obj"};
 
 std::string not_empty(const std::string& text) {
   return text.empty() ? "is empty" : "";

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
+#include "app/gltf/export_gltf.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
@@ -21,7 +22,8 @@ struct ExportOptions {
   std::string recording;
   std::string csv;     ///< folder; or
   std::string xdmf;    ///< file; or
-  std::string vtk;     ///< folder
+  std::string vtk;     ///< folder; or
+  std::string gltf;    ///< file
   bool force = false;  ///< in place of files of any kind
 };
 
@@ -46,6 +48,10 @@ int export_command(const ExportOptions& options) {
       throw BadInput("--xdmf: " + options.xdmf + ": ParaView finds no data behind a name with a colon");
     return end(io::export_xdmf(recording, {options.xdmf, options.force}, proceed), options.xdmf);
   }
+  if (!options.gltf.empty()) {
+    require_writable_file("--gltf", {options.gltf, options.force}, host::FileKind::gltf, options.recording);
+    return end(export_gltf(recording, {options.gltf, options.force}, proceed), options.gltf);
+  }
   const std::string& folder = options.csv.empty() ? options.vtk : options.csv;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -58,9 +64,11 @@ int export_command(const ExportOptions& options) {
 }  // namespace
 
 void add_export(Commands& commands) {
-  const auto [command, data] = commands.add(
-      "export", "data of a recording for spreadsheets and ParaView",
-      "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf", export_command);
+  const auto [command, data] =
+      commands.add("export", "data of a recording for spreadsheets, ParaView and 3D viewers",
+                   "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf\n  "
+                   "topple export paper-a.h5 --gltf paper-a.glb",
+                   export_command);
   add_path(command, "RECORDING", data.recording, "", "recording").required();
   CLI::Option_group& what = *command.add_option_group("output", "what to write");
   add_path(
@@ -70,6 +78,8 @@ void add_export(Commands& commands) {
            "for ParaView 5.11 and later; the data go to FILE.xdmf.h5");
   add_path(what, "--vtk", data.vtk, "DIR",
            "folder for frames.pvd and a .vtp file a frame, for what reads VTK's own format");
+  add_path(what, "--gltf", data.gltf, "FILE.glb",
+           "for 3D viewers and Blender: an animated model, coloured by stress");
   what.require_option(1);
   add_force(command, data.force);
 }

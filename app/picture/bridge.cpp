@@ -17,14 +17,11 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_stations = 6;           // per element: bends of an element look smooth at any size on screen
 constexpr double k_floor_margin = 2.2;  // m, floor beyond where bodies go
 constexpr double k_wall_margin = 0.6;   // m, wall beyond the bodies beside it
 constexpr double k_wall_reach = 0.8;    // m, bodies nearer than this stand beside a wall
 constexpr double k_wall_height = 2.4;   // m, least
 constexpr double k_at_wall = 1e-6;      // m, a door's from its wall's face
-constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1};
-constexpr render::Float4 k_rigid_colour = {0.55f, 0.60f, 0.65f, 1};
 constexpr double k_tear = 0.6;          // depth of the teeth of a broken end, of the section
 constexpr double k_least_range = 1e-3;  // of a colour scale, in its unit
 

@@ -12,6 +12,13 @@
 
 namespace topple::app {
 
+/// Of an element, its ends among them: its bends look smooth at any size on screen.
+inline constexpr int k_stations = 6;
+
+/// Of members of the floor, and of those without stresses.
+inline constexpr render::Float4 k_ground_colour = {0.80f, 0.79f, 0.76f, 1},
+                                k_rigid_colour = {0.55f, 0.60f, 0.65f, 1};
+
 /// The row at `time` between two neighbours: positions and numbers linear, rotations by the shorter arc.
 io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 

@@ -52,6 +52,7 @@ FileKind kind_of_bytes(std::string_view head) {
   if (head.empty()) return FileKind::any;
   if (head.starts_with("\x89HDF\r\n\x1a\n")) return FileKind::hdf5;
   if (head.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::png;
+  if (head.starts_with("glTF")) return FileKind::gltf;
   if (head.size() >= 8 && head.substr(4, 4) == "ftyp") return FileKind::mp4;
   if (head.starts_with(k_byte_order_mark)) head.remove_prefix(k_byte_order_mark.size());
   head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
@@ -89,6 +90,8 @@ std::string_view in_words(FileKind kind) {
       return "an XDMF file";
     case FileKind::vtk:
       return "a VTK file";
+    case FileKind::gltf:
+      return "a glTF file";
     case FileKind::json:
       return "JSON";
     case FileKind::csv:

@@ -15,6 +15,7 @@ enum class FileKind {
   html,
   xdmf,
   vtk,
+  gltf,  ///< binary
   json,  ///< an object
   csv,   ///< as many commas in the second line as in the first, one at least
   text,  ///< none of these

@@ -14,6 +14,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/cli/failing_write_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/failures_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/full_disk_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/cli/gltf_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/interrupt_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/manual_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/recording_formats_test.cpp
@@ -23,6 +24,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/cli/usage_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/verification_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/verify_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/gltf/key_frames_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/appearance_test.cpp

@@ -19,6 +19,7 @@ TEST(FileKinds, first_bytes_tell_what_a_file_holds) {
       {"\n<!DOCTYPE html>\n<html><svg/>", FileKind::html},
       {"<?xml version=\"1.0\"?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf>", FileKind::xdmf},
       {"<?xml version=\"1.0\"?>\n<VTKFile>_" + std::string(8, '\0'), FileKind::vtk},
+      {std::string("glTF\2\0\0\0", 8), FileKind::gltf},
       {"{\n  \"topple\": 1}", FileKind::json},
       {"time_s,body\n0,a\n", FileKind::csv},
       {"time_s,body\n", FileKind::csv},

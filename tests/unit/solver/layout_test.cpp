@@ -79,6 +79,7 @@ const std::map<std::string, Rooms> k_parts = {
      {{"app/support", {}},
       {"app/picture", {"support"}},
       {"app/batch", {"support"}},
+      {"app/gltf", {"picture", "support"}},
       {"app/report", {"support"}},
       {"app/live", {"batch", "picture", "support"}},
       {"app/study", {"batch", "support"}},
@@ -86,7 +87,8 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/chart", {"live", "picture", "support"}},
       {"app/panels", {"chart", "live", "study", "picture", "support"}},
       {"app/window", {"panels", "chart", "live", "study", "picture", "support"}},
-      {"app/cli", {"window", "validate", "panels", "report", "live", "study", "batch", "picture", "support"}},
+      {"app/cli",
+       {"window", "validate", "panels", "report", "live", "study", "batch", "gltf", "picture", "support"}},
       {"app", {"cli"}}}},  // main.cpp
 };
 

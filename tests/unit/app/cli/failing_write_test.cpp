@@ -125,6 +125,7 @@ TEST_F(FailingWriteTest, whichever_write_of_other_results_fails_they_appear_whol
        "data"},
       {{"export", "a.h5", "--xdmf", "a.xdmf"}, {"a.xdmf", "a.xdmf.h5"}, "a.xdmf"},
       {{"export", "a.h5", "--vtk", "vtk"}, vtk, "vtk"},
+      {{"export", "a.h5", "--gltf", "a.glb"}, {"a.glb"}, "a.glb"},
       {{"run", "s.toml", "--json", "b.json"}, {"b.json"}, "b.json"},
       {{"render", "a.h5", "--still", "a.png", "--at", "0", "--size", "96x64"}, {"a.png"}, "a.png"},
       {{"recover", "cut.h5", "-o", "r.h5"}, {"r.h5"}, "r.h5"}};

@@ -89,6 +89,8 @@ TEST_F(UsageTest, files_are_not_called_what_they_are_not) {
   expect({"report", "s.toml", "--output", "x.pdf"}, ".pdf", ".html");
   expect({"run", "s.toml", "--output", "x.png"}, ".png", ".h5");
   expect({"export", "a.h5", "--xdmf", "x.png"}, ".png", ".xdmf");
+  expect({"export", "a.h5", "--gltf", "x.gltf"}, ".gltf", ".glb");
+  expect({"export", "a.h5", "--gltf", "x.obj"}, ".obj", ".glb");
 }
 
 TEST_F(UsageTest, help_says_that_a_recording_replaces_an_older_one) {
@@ -102,7 +104,7 @@ TEST_F(UsageTest, what_is_missing_is_named) {
   expect_one_line({"render", "s.toml", "--still", "a.png"}, 2, "--still requires --at");
   expect_one_line({"render", "s.toml", "--at", "0"}, 2, "--at requires --still");
   expect_one_line({"render", "s.toml", "--png", "p", "--mp4", "a.mp4"}, 2, "2 were given");
-  expect_one_line({"export", "a.h5"}, 2, "[--csv,--xdmf,--vtk] is required");
+  expect_one_line({"export", "a.h5"}, 2, "[--csv,--xdmf,--vtk,--gltf] is required");
   expect_one_line({"export", "a.h5", "--csv", "d", "--xdmf", "x"}, 2, "2 were given");
   expect_one_line({"check"}, 2, "SCENES is required");
   expect_one_line({"info"}, 2, "FILE is required");
