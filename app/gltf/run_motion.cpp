@@ -44,7 +44,7 @@ std::optional<std::vector<std::int64_t>> survey(const io::Scene& scene, const Re
     if (!is_finite(row) || (!run.times.empty() && time <= run.times.back())) continue;
     run.extent.add(model, scene.setup.parameters, row);
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
-      run.deforms[b] = run.deforms[b] || traits(static_cast<ModelLevel>(row.level[b])).has_stresses;
+      run.deforms[b] = run.deforms[b] || io::has_stresses(row, static_cast<int>(b));
     for (std::size_t e = 0; e < model.elements.size(); ++e)
       run.breaks[e] = run.breaks[e] || row.hinge[e] == k_broken;
     rows.push_back(i);

@@ -83,6 +83,37 @@ TEST_F(SummaryTest, what_does_not_exist_is_null) {
   EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
 }
 
+TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
+  Json s = summary(scene_, run_, "completed", 0);
+  Json body = s["bodies"][0];
+  body["models"] = Json::array(
+      {{{"from_s", 0}, {"model", "rigid"}, {"reason", "it is asked for"}, {"error_estimate", 0.01}}});
+  s["bodies"] = Json::array();
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    body["name"] = name;
+    body["models"][0]["error_estimate"] = *name == 'b' ? 0.02 : 0.01;
+    s["bodies"].push_back(body);
+  }
+  const std::string table = summary_table(s);
+  EXPECT_NE(table.find("\na, c, d and 2 more: rigid from 0.000 s"), std::string::npos) << table;
+  EXPECT_NE(table.find("\nb: rigid from 0.000 s"), std::string::npos) << table;
+}
+
+TEST_F(SummaryTest, what_is_beyond_its_critical_angle_as_the_run_ends_may_come_back) {
+  Json s = summary(scene_, run_, "completed", 0);
+  s["simulated_s"] = 10;
+  Json& body = s["bodies"][0];
+  body["overturned"] = true;
+  body["overturn_time_s"] = 9.993;
+  body["final_tilt_deg"] = 11.67;
+  EXPECT_NE(summary_table(s).find("beyond its critical angle for the last 0.007 s alone"), std::string::npos);
+  body["overturn_time_s"] = 8.9;
+  EXPECT_EQ(summary_table(s).find("for the last"), std::string::npos);
+  body["overturn_time_s"] = 9.5;
+  body["final_tilt_deg"] = 85;
+  EXPECT_EQ(summary_table(s).find("for the last"), std::string::npos);
+}
+
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
   io::Scene strong =
       io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});
