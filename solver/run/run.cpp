@@ -136,6 +136,7 @@ void Run::observe_stresses_since(double start) {
   const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
   if (std::ranges::none_of(now_.state.bodies, has_stresses)) return;
   const InPhase phase(&workspace_.profile(), Phase::observe);
+  if (within_.bodies.empty()) snapshot(end);  // takes its memory with the first step
   for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {
     const Snapshot at = snapshot(row / rate);
     now_.outcome.observe_stresses(setup_->model, at.state, at.sections);
