@@ -175,11 +175,13 @@ std::string lately_line(const ordered_json& b, const ordered_json& end) {
 std::string anchor_line(const ordered_json& a) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
+  if (!a["in_place"].get<bool>() && peak == 0)
+    return line + fmt::format("anchor {}: not in place\n", a["name"].get<std::string>());
   line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
   if (a["broke"].get<bool>())
     return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
   if (!a["strength_N"].is_null())
-    line += fmt::format(", {:.0f} % of its strength", 100 * peak / a["strength_N"].get<double>());
+    line += fmt::format(", {:.0f} % of its strength", std::floor(100 * peak / a["strength_N"].get<double>()));
   if (!a["in_place"].get<bool>()) return line + ", taken away\n";
   return line + (a["slack"].get<bool>() ? ", slack at the end\n" : "\n");
 }

@@ -158,9 +158,10 @@ std::vector<std::string> about_member(const FrameContext& now, std::size_t index
 
 std::vector<std::string> about_body(const FrameContext& now, std::size_t index) {
   const Body& body = now.model.bodies[index];
-  std::vector<std::string> lines{
-      say(window_words::k_body_line, body.mass, body.member_count,
-          say(window_words::phrase_of(static_cast<ModelLevel>(now.row.level[index]))))};
+  const std::string level = say(window_words::phrase_of(static_cast<ModelLevel>(now.row.level[index])));
+  std::vector<std::string> lines{body.solid
+                                     ? say(window_words::k_block_line, body.mass, level)
+                                     : say(window_words::k_body_line, body.mass, body.member_count, level)};
   for (const BodyTouch& touch : touches(now.model, now.row, index))
     lines.push_back(say(window_words::k_touched_by, touch.by, value_text(touch.force.norm()),
                         value_text(touch.force.z()), touch.place.z()));

@@ -34,7 +34,7 @@ double critical_angle(const Player& player, std::size_t body) {
 
 /// Tilts over the critical angle of the body; of one that has none, over a quarter turn.
 double tilt_share(const Player& player, const io::FrameRow& row, std::size_t body) {
-  const double critical = critical_angle(player, body);
+  const double critical = row.body[body].critical_angle;
   return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
 }
 

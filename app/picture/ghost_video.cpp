@@ -60,13 +60,20 @@ class Actor {
   const Bridge bridge_;
 };
 
-void add_ghost(const render::SceneFrame& ghost, render::SceneFrame& out) {
+bool is_furniture(const Actor& of, const render::Tube& tube) {
+  const Model& model = of.replay().scene.setup.model;
+  return tube.member < model.members.size() &&  // else of an anchor
+         !model.bodies[static_cast<std::size_t>(model.members[tube.member].body)].ground;
+}
+
+void add_ghost(const Actor& of, const render::SceneFrame& ghost, render::SceneFrame& out) {
   const auto profiles = static_cast<std::uint32_t>(out.profiles.size());
   out.profiles.insert(out.profiles.end(), ghost.profiles.begin(), ghost.profiles.end());
   out.ghost_stations = ghost.stations;
   for (render::Tube tube : ghost.tubes) {
-    if (tube.colour[3] != 0) continue;  // ground: that of A is drawn
+    if (!is_furniture(of, tube)) continue;
     tube.profile += profiles;
+    tube.colour = {};
     out.ghost_tubes.push_back(tube);
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -89,10 +96,10 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
   const io::FrameRow row_a = a.row(time), row_b = b.row(time);
   render::SceneFrame frame = a.frame(row_a);
   for (render::Tube& tube : frame.tubes)
-    if (tube.colour[3] == 0) tube.colour = k_blue;
+    if (is_furniture(a, tube)) tube.colour = k_blue;
   frame.rings.clear();                          // of A alone
   frame.legend.maximum = frame.legend.minimum;  // no colour stands for a stress here
-  add_ghost(b.frame(row_b), frame);
+  add_ghost(b, b.frame(row_b), frame);
   frame.trace.label = "floor acceleration of A, gal";
   frame.trace.cursor = static_cast<float>(time);
   frame.caption.title = fmt::format("t = {:.2f} s, seen from the floor", time);

@@ -54,7 +54,7 @@ inline constexpr Phrase k_strap{"strap", "ベルト"};
 inline constexpr Phrase k_bracket{"bracket", "L型金具"};
 inline constexpr Phrase k_pole{"pole", "突っ張り棒"};
 inline constexpr Phrase k_away{"taken away", "取り外し"};
-inline constexpr Phrase k_holds{"holds", "有効"};
+inline constexpr Phrase k_holds{"holding", "有効"};
 inline constexpr Phrase k_slack{"slack", "たるみ"};
 inline constexpr Phrase k_broken_anchor{"broken", "破断"};
 inline constexpr Phrase k_pulls{"pulls {0:.0f} N", "引張 {0:.0f} N"};
@@ -350,6 +350,8 @@ inline constexpr Phrase k_pin_about{"Keep it here while another one is looked at
                                     "別の対象を見る間も表示を残す"};
 inline constexpr Phrase k_member_line{"{0}, {1}, {2:.0f} mm long", "{0}、{1}、長さ {2:.0f} mm"};
 inline constexpr Phrase k_body_line{"{0:.4g} kg, {1} members, {2}", "{0:.4g} kg、部材 {1}、モデル {2}"};
+inline constexpr Phrase k_block_line{"{0:.4g} kg, a solid block, {1}",
+                                     "{0:.4g} kg、剛なブロック、モデル {1}"};
 inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at {3:.2f} m",
                                      "{0} から {1} N（上向き {2} N）、高さ {3:.2f} m"};
 inline constexpr Phrase k_anchor_line{"{0} of {1}, {2:.4g} kN/m, {3:.0f} mm long",

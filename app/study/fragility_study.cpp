@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/study/study.h"
+#include "solver/body/model_level.h"
 #include "solver/study/overturn/fragility_chart.h"
 
 namespace topple::app {
@@ -54,6 +55,25 @@ std::string criteria_in_words(const study::FragilityPlan& plan, const study::Fra
       c.west, c.ishiyama, c.evaluation, plan.levels.unit, c.corner, results.frequency);
 }
 
+/// What is computed more coarsely than a run of the scene does.
+std::string coarser_in_words(const study::FragilityPlan& plan) {
+  const Setup& setup = plan.scene.setup;
+  Parameters finer = setup.parameters;
+  finer.accuracy = Parameters{}.accuracy;
+  std::string text;
+  for (int b = 0; b < setup.model.furniture_total(); ++b) {
+    const ModelLevel here = base_level(setup.model, setup.parameters, b).level,
+                     there = base_level(setup.model, finer, b).level;
+    if (here != there)
+      text += fmt::format(
+          "{} is {} here; a run of the scene makes it {}, in which what stands on it may lift earlier: "
+          "--set run.accuracy={:g}\n",
+          setup.model.bodies[static_cast<std::size_t>(b)].name, traits(here).word, traits(there).word,
+          finer.accuracy);
+  }
+  return text;
+}
+
 std::string in_words(const study::FragilityPlan& plan, const study::FragilityResults& results) {
   std::string text = fmt::format("probability over the {}{}, sliding over {:g} mm\n", plan.measure->title,
                                  plan.levels.unit.empty() ? "" : ", " + plan.levels.unit, 1e3 * plan.slide);
@@ -69,6 +89,7 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
   if (results.failed > 0)
     text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
   const bool all = results.planar == results.runs;
+  text += coarser_in_words(plan);
   return text + fmt::format("{} of {} runs as planar blocks{}\n", results.planar, results.runs,
                             all ? ""
                             : results.why_not_planar.empty()

@@ -221,6 +221,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   o.slide = topple::slide(model, body, pose, bearers_[b], on);
   o.peak_slide = std::max(o.peak_slide, o.slide);
   o.critical = critical_angle(model, body, pose);
+  if (o.tilt == o.peak_tilt) o.critical_of_peak = o.critical;
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
     const bool crossed = state.step > 0 && before < 0;

@@ -78,6 +78,7 @@ struct BodyOutcome {
   double tilt = 0, peak_tilt = 0;
   double slide = 0, peak_slide = 0;
   double critical = 0;                 ///< critical angle in the present direction
+  double critical_of_peak = 0;         ///< in that of the greatest tilt
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_beyond;  ///< it came there first, whether it came back or not
   std::optional<double> first_uplift;

@@ -121,6 +121,12 @@ void Run::find_acting(const State& state, Acting& acting) const {
 }
 
 Snapshot Run::snapshot(double time) const {
+  look_within(time);
+  place_nodes(setup_->model, within_);
+  return view(within_, within_acting_);
+}
+
+void Run::look_within(double time) const {
   const Model& model = setup_->model;
   state_within_step(model, now_.state, time, workspace_, within_);
   find_acting(within_, within_acting_);
@@ -128,7 +134,6 @@ Snapshot Run::snapshot(double time) const {
     if (traits(within_.bodies[b].level).moves_nodes)
       section_forces(model, within_, static_cast<int>(b), within_acting_.sections);
   contact_forces(model, now_.parameters, now_.state, workspace_);  // as the newest step left them
-  return view(within_, within_acting_);
 }
 
 void Run::observe_stresses_since(double start) {
@@ -136,10 +141,10 @@ void Run::observe_stresses_since(double start) {
   const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
   if (std::ranges::none_of(now_.state.bodies, has_stresses)) return;
   const InPhase phase(&workspace_.profile(), Phase::observe);
-  if (within_.bodies.empty()) snapshot(end);  // takes its memory with the first step
+  if (within_.bodies.empty()) look_within(end);  // takes its memory with the first step
   for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {
-    const Snapshot at = snapshot(row / rate);
-    now_.outcome.observe_stresses(setup_->model, at.state, at.sections);
+    look_within(row / rate);
+    now_.outcome.observe_stresses(setup_->model, within_, within_acting_.sections);
   }
 }
 

@@ -139,6 +139,8 @@ class Run {
     return {state, acting.contacts, acting.between_members, acting.sections};
   }
   void find_acting(const State& state, Acting& acting) const;
+  // What is within_ and acts there, but for places of nodes that follow from those of their body.
+  void look_within(double time) const;
   void observe();
   // At the recorded times within the newest step, which began at `start`, s.
   void observe_stresses_since(double start);

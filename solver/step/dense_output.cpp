@@ -97,19 +97,14 @@ void state_between(const Model& model, const State& start, const State& end, dou
   at.anchors = start.anchors;
   at.step = start.step;
   at.time = time;
-  place_nodes(model, at);
 }
 
 void state_within_step(const Model& model, const State& end, double time, Workspace& workspace, State& at) {
   Workspace::Impl& w = workspace.impl();
   state_between(model, w.next, end, time, at);
-  bool any = false;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    if (!traits(w.next.bodies[b].level).has_block || !traits(at.bodies[b].level).has_block) continue;
-    any = true;
-    w.parts.planar(b).place_within(*w.parameters, w.next, time, at);
-  }
-  if (any) place_nodes(model, at);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (traits(w.next.bodies[b].level).has_block && traits(at.bodies[b].level).has_block)
+      w.parts.planar(b).place_within(*w.parameters, w.next, time, at);
 }
 
 }  // namespace topple

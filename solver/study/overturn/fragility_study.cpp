@@ -119,6 +119,13 @@ void drop_extrapolated(const FragilityPlan& plan, FragilityCurve& curve, const c
   const Level& end = above ? *std::ranges::max_element(curve.levels, {}, share)
                            : *std::ranges::min_element(curve.levels, {}, share);
   curve.fit.fit.reset();
+  if (above == (share(end) >= 0.5)) {  // it was met, and left again
+    const Level& last = above ? curve.levels.back() : curve.levels.front();
+    curve.fit.why_not =
+        fmt::format("it does not become more frequent steadily: {} of {} runs at {:.4g}, {} of {} at {:.4g}",
+                    end.hits, end.runs, end.intensity, last.hits, last.runs, last.intensity);
+    return;
+  }
   curve.fit.why_not = fmt::format(
       "the median lies {} the levels, a run {} in {} {:.2g} % of the cases, at {:.4g}",
       above ? "above" : "below", verb, above ? "at most" : "at least", 100 * share(end), end.intensity);
@@ -176,6 +183,14 @@ Standing pushed(const Setup& setup, int body) {
   return least ? *least : standing(setup.model, setup.parameters, body);
 }
 
+std::string why_no_criteria(const Setup& setup, int body) {
+  const std::vector<bool>& in_place = setup.parameters.anchors;
+  for (std::size_t k = 0; k < setup.model.anchors.size(); ++k)
+    if (setup.model.anchors[k].body == body && (in_place.empty() || in_place[k]))
+      return "is held by \"" + setup.model.anchors[k].name + '"';
+  return why_no_block(setup.model, body);
+}
+
 /// In the axis's unit; 0: the axis is neither of acceleration nor of velocity.
 BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) {
   const Setup& setup = plan.scene.setup;
@@ -183,7 +198,7 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
   const bool acceleration = plan.measure->key.dimension == io::Dimension::acceleration,
              velocity = plan.measure->key.name == "pgv";
   out.why_not =
-      !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_block(setup.model, body);
+      !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_criteria(setup, body);
   if (!out.why_not.empty()) return out;
   const Standing at = pushed(setup, body);
   out.corner = evaluation_frequency(at);

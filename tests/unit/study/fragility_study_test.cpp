@@ -110,6 +110,21 @@ TEST(FragilityStudy, shares_that_fall_have_no_curve) {
       << overturns.fit.why_not;
 }
 
+// Two of four runs at a level in the middle, none at the last: no median lies above the levels.
+TEST(FragilityStudy, half_of_few_runs_that_are_met_and_left_again_are_told_as_that) {
+  const FragilityPlan plan = plan_fragility(pulsed(), "pga=100 gal..1000 gal:4", {.runs = 4}, 0.05);
+  std::vector<std::string> rows;
+  for (int k = 0; k < plan.cases(); ++k) {
+    const int hits = k / plan.chunks() / plan.records() == 2 ? 2 : 0;
+    const std::string all = "[" + std::to_string(hits) + ",0,0]";
+    rows.push_back("{\"runs\":4,\"failed\":0,\"planar\":4,\"status\":\"completed\",\"hits\":[" + all + "," +
+                   all + "],\"closed\":[],\"cpu_s\":0}");
+  }
+  const FragilityCurve lifts = gather(plan, rows).curves[0][0];
+  EXPECT_FALSE(lifts.fit.fit);
+  EXPECT_EQ(lifts.fit.why_not.find("the median lies"), std::string::npos) << lifts.fit.why_not;
+}
+
 TEST(FragilityStudy, levels_of_any_measure_are_reached) {
   const io::Scene scene = pulsed();
   for (const MotionMeasure& measure : motion_measures()) {

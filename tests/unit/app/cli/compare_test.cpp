@@ -71,6 +71,19 @@ TEST_F(CompareTest, the_video_holds_both_until_the_longer_one_ends) {
   EXPECT_EQ(std::stoi(bytes_of("n")), 10);  // 0.3 s at 30 a second, both ends
 }
 
+// Rigid bodies have no stresses that colour them, and are shown as the others.
+TEST_F(CompareTest, rigid_bodies_of_A_are_blue_in_the_video) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  record("rigid.h5", "run.want=['motion']");
+  EXPECT_EQ(topple({"compare", "rigid.h5", "rigid.h5", "--mp4", "both.mp4", "--quiet"}).code, 0);
+  ASSERT_EQ(std::system("ffmpeg -v error -y -i both.mp4 -frames:v 1 -f rawvideo -pix_fmt rgb24 p.rgb"), 0);
+  const std::string rgb = bytes_of("p.rgb");
+  int blue = 0;
+  for (std::size_t i = 0; i + 2 < rgb.size(); i += 3)
+    blue += static_cast<unsigned char>(rgb[i + 2]) > static_cast<unsigned char>(rgb[i]) + 60;
+  EXPECT_GT(blue, 2000);
+}
+
 TEST_F(CompareTest, without_ffmpeg_there_is_no_video_and_one_line) {
   const Ended ended =
       topple({"compare", "s.toml", "s.toml", "--mp4", "both.mp4", "--quiet"}, {.set = {{"PATH", "/none"}}});
