@@ -33,7 +33,7 @@ double critical_angle(const Player& player, std::size_t body) {
 }
 
 /// Tilts over the critical angle of the body; of one that has none, over a quarter turn.
-double tilt_share(const Player& player, const io::FrameRow& row, std::size_t body) {
+double tilt_share(const io::FrameRow& row, std::size_t body) {
   const double critical = row.body[body].critical_angle;
   return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
 }
@@ -44,7 +44,7 @@ std::vector<std::size_t> coloured_bodies(const Player& player) {
   std::vector<std::pair<double, std::size_t>> shares;
   for (std::size_t b = 0; b < furniture; ++b) {
     double most = 0;
-    for (const RowPtr& row : player.way()) most = std::max(most, tilt_share(player, *row, b));
+    for (const RowPtr& row : player.way()) most = std::max(most, tilt_share(*row, b));
     shares.emplace_back(-most, b);
   }
   std::ranges::sort(shares);
@@ -125,8 +125,7 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   for (std::size_t b = 0; b < furniture; ++b) shares |= critical_angle(player, b) > 0;
   const auto tilt = [&player, shares](std::size_t b) -> Value {
     if (!shares) return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
-    return
-        [&player, b](const io::FrameRow& row) { return std::min(tilt_share(player, row, b), k_tilt_room); };
+    return [b](const io::FrameRow& row) { return std::min(tilt_share(row, b), k_tilt_room); };
   };
   double most = 0;
   for (std::size_t b = 0; b < furniture; ++b) most = std::max(most, peak(rows, tilt(b)));
