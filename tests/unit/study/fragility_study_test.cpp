@@ -74,7 +74,7 @@ at = [0, 0]
 name = "vase"
 size = [0.25, 0.25, 0.6]
 mass = 12
-at = [0, 0, 1.0]
+at = [0, 0, 1.02]
 [[block]]
 name = "showcase"
 size = [0.4, 0.6, 2.0]
