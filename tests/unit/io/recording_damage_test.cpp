@@ -211,7 +211,7 @@ TEST_F(RecordingTest, no_changed_bit_anywhere_makes_a_file_read_wrong_or_for_eve
     }
     ASSERT_EQ(in_child([&] { return read_damaged(path("a.h5"), open); }), 0);
     const std::string whole = bytes_of(path("a.h5"));
-    for (int trial = 0; trial < (open ? 200 : 400); ++trial) {
+    for (int trial = 0; trial < (open ? 80 : 160); ++trial) {
       // Half of the trials in the first 16 KB, where the metadata are densest.
       const std::size_t place =
           random() % (trial % 2 == 0 ? std::min<std::size_t>(whole.size(), 16384) : whole.size());
