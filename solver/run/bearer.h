@@ -8,6 +8,9 @@
 
 namespace topple {
 
+inline constexpr double k_hangs = 1e-3;   ///< m, gap from which on a body hangs above what is below it
+inline constexpr double k_top_of = 0.05;  ///< m, by which what bears a body reaches above its bottom at most
+
 /// Between which heights the members of a body lie, contact widths included, m.
 struct Heights {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -24,11 +27,8 @@ struct Below {
 /// floor: there is one, at z = 0.
 Below below(const Model& model, std::span<const Vec3> position, int body, bool floor);
 
-/// The piece of furniture whose top is at the bottom of a body, from k_hangs above it to k_top_of below; -1:
-/// none.
+/// The piece of furniture on which a body stands: below it in plan, with its top between k_hangs under the
+/// bottom of the body and k_top_of over that. -1: none.
 int bearer_of(const Model& model, std::span<const Vec3> position, int body);
-
-inline constexpr double k_hangs = 1e-3;   ///< m
-inline constexpr double k_top_of = 0.05;  ///< m
 
 }  // namespace topple

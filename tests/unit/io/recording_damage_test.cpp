@@ -194,6 +194,17 @@ int read_damaged(const std::string& damaged, bool open) {
   }
 }
 
+TEST_F(RecordingTest, a_body_on_a_level_that_there_is_not_is_refused) {
+  {
+    RecordingWriter writer(path("a.h5"), "fake", k_text, small_model(), k_small);
+    FrameRow row = fake_row(k_small, 0, 0);
+    row.level[0] = 200;
+    writer.append(row);
+    writer.finish("completed", "{}");
+  }
+  EXPECT_THROW(Recording(path("a.h5")).frame(0), InputError);
+}
+
 TEST_F(RecordingTest, no_changed_bit_anywhere_makes_a_file_read_wrong_or_for_ever) {
   constexpr unsigned seed = 20240607;
   std::mt19937 random(seed);
