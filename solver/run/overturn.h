@@ -127,8 +127,8 @@ class Outcome {
   void observe(const Model& model, const Parameters& parameters, const State& state,
                const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                const std::vector<SectionForces>& sections, std::vector<Event>& events);
-  /// Takes in stresses at a time within the step that is observed next, where they may be greater than at its
-  /// ends: what is recorded then is no news to the summary.
+  /// Takes in stresses at a time within the step that is observed next: they may be greater there than at its
+  /// ends, and no recorded row is to hold more than the peaks.
   void observe_stresses(const Model& model, const State& state, const std::vector<SectionForces>& sections);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
   const std::vector<AnchorOutcome>& anchors() const { return anchors_; }

@@ -139,7 +139,7 @@ class Run {
     return {state, acting.contacts, acting.between_members, acting.sections};
   }
   void find_acting(const State& state, Acting& acting) const;
-  // What is within_ and acts there, but for places of nodes that follow from those of their body.
+  // Sets within_ and what acts there; nodes of bodies that are no frames are not placed.
   void look_within(double time) const;
   void observe();
   // At the recorded times within the newest step, which began at `start`, s.
