@@ -9,7 +9,6 @@
 #include "app/batch/summary.h"
 #include "app/support/clock.h"
 #include "app/support/errors.h"
-#include "app/support/interrupt.h"
 #include "app/support/progress.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
@@ -22,31 +21,34 @@ namespace {
 
 constexpr int k_many_bodies = 32;  // that are not frames: a step of fewer is over before it is shared out
 
-/// Threads that make steps of `setup` faster.
-int paying_jobs(const Setup& setup) {
-  if (is_static(setup)) return 1;
-  int frames = 0, others = 0;
-  for (int b = 0; b < setup.model.furniture_total(); ++b)
-    ++(traits(base_level(setup.model, setup.parameters, b).level).moves_nodes ? frames : others);
-  if (frames < 2 && others < k_many_bodies) return 1;
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, frames + others);
-}
+using Keep = std::function<void(const io::Observation&)>;
 
-/// Steps to the end of `run`, a failure or Ctrl+C. `recorder`: null, or what has the first instant already.
-void step_through(Run& run, io::Observer& observer, io::Recorder* recorder, Progress& progress) {
-  while (!run.over() && !interrupted()) {
+/// Steps to the end of `run`, a failure or an interrupt. `keep`: empty, or what has the first instant
+/// already.
+void step_through(Run& run, io::Observer& observer, const Keep& keep, const RunManner& manner,
+                  Progress& progress) {
+  while (!run.over() && !manner.interrupted()) {
     if (!run.advance().ok()) break;
-    if (recorder) {
+    if (keep) {
       const InPhase phase(&run.profile(), Phase::record);
-      recorder->write(observer.observe(run));
-      recorder->flush_if_due();
+      keep(observer.observe(run));
     }
     progress.update(run.time());
   }
-  if (recorder) {
+  if (keep) {
     const InPhase phase(&run.profile(), Phase::record);
-    recorder->write(observer.last(run));
+    keep(observer.last(run));
   }
+}
+
+/// Into the recorder, unless it is null, and to who observes; empty: nobody wants it.
+Keep keep_in(io::Recorder* recorder, const RunManner& manner) {
+  if (!recorder) return manner.observe;
+  return [recorder, &manner](const io::Observation& observation) {
+    if (manner.observe) manner.observe(observation);
+    recorder->write(observation);
+    recorder->flush_if_due();
+  };
 }
 
 /// The error of a recording that broke off, and how far it can be read.
@@ -68,14 +70,15 @@ std::string status_of(const Run& run) {
                                : "interrupted";
 }
 
-/// "error_estimate" of the summary of `run`; null when Ctrl+C came first.
+/// "error_estimate" of the summary of `run`; null when an interrupt came first.
 nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::optional<study::Team>& team,
-                                bool quiet) {
+                                const RunManner& manner) {
   const Setup finer = study::refined(scene.setup);
   Run second(finer);
   if (team) second.share(team->share());
-  Progress progress(scene.name + ", " + refinement_in_words(finer), "s simulated", finer.run.duration, quiet);
-  while (second.status().ok() && !second.over() && !interrupted()) {
+  Progress progress(scene.name + ", " + refinement_in_words(finer), "s simulated", finer.run.duration,
+                    manner.quiet);
+  while (second.status().ok() && !second.over() && !manner.interrupted()) {
     if (!second.advance().ok()) break;
     progress.update(second.time());
   }
@@ -93,6 +96,15 @@ void warn_of_open_verdicts(const nlohmann::ordered_json& error, nlohmann::ordere
 
 }  // namespace
 
+int paying_jobs(const Setup& setup) {
+  if (is_static(setup)) return 1;
+  int frames = 0, others = 0;
+  for (int b = 0; b < setup.model.furniture_total(); ++b)
+    ++(traits(base_level(setup.model, setup.parameters, b).level).moves_nodes ? frames : others);
+  if (frames < 2 && others < k_many_bodies) return 1;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, frames + others);
+}
+
 const char* extent_unit(bool loads) {
   return loads ? " of the way" : " s";
 }
@@ -109,17 +121,16 @@ RecordedRun record(const io::Scene& scene, const host::Target& target, const Run
   try {
     if (run.status().ok()) {
       io::Observer observer;
-      if (recorded) {
-        recorder->write(observer.observe(run));
-        recorder->flush();
-      }
+      const Keep keep = keep_in(recorded ? &*recorder : nullptr, manner);
+      if (keep) keep(observer.observe(run));
+      if (recorded) recorder->flush();
       begun = recorded;
       Progress progress(scene.name, is_static(scene.setup) ? "of the load path" : "s simulated",
                         scene.setup.run.duration, manner.quiet);
       const int jobs = manner.profile ? 1 : manner.jobs.value_or(paying_jobs(scene.setup));
       if (jobs > 1) run.share(team.emplace(jobs).share());
       if (manner.profile) start_profile(run.profile());
-      step_through(run, observer, recorded ? &*recorder : nullptr, progress);
+      step_through(run, observer, keep, manner, progress);
     }
     nlohmann::ordered_json profile;
     if (manner.profile) profile = profile_summary(run.profile(), run.step());
@@ -131,7 +142,7 @@ RecordedRun record(const io::Scene& scene, const host::Target& target, const Run
     if (manner.estimate && run.over() && run.status().ok()) {
       if (recorded) recorder->flush();
       nlohmann::ordered_json& error = result.summary["error_estimate"];
-      error = estimate(scene, run, team, manner.quiet);
+      error = estimate(scene, run, team, manner);
       estimated = !error.is_null();
       if (estimated) warn_of_open_verdicts(error, result.summary["warnings"]);
     }

@@ -42,7 +42,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_least_side = 64, k_most_side = 8192;   // px
 constexpr double k_slowest = 0.001, k_fastest = 1000;  // times real time
 constexpr float k_farthest = 1e4;                      // of the camera, m or degrees
 
@@ -315,12 +314,12 @@ Reader size_of(RenderOptions& options) {
     const std::size_t cross = std::min(text.find('x'), text.size());
     const auto side = [](std::string_view digits) {
       const int value = number_in<int>(digits).value_or(0);
-      return value >= k_least_side && value <= k_most_side ? value : 0;
+      return value >= k_least_picture && value <= k_most_picture ? value : 0;
     };
     options.width = side(std::string_view(text).substr(0, cross));
     options.height = side(std::string_view(text).substr(std::min(cross + 1, text.size())));
     if (options.width > 0 && options.height > 0) return std::string();
-    return fmt::format("\"{}\" is not WIDTHxHEIGHT with {}..{} each", text, k_least_side, k_most_side);
+    return fmt::format("\"{}\" is not WIDTHxHEIGHT with {}..{} each", text, k_least_picture, k_most_picture);
   };
 }
 

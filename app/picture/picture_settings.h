@@ -22,6 +22,7 @@ struct Diagram {
   std::optional<std::size_t> component;  ///< N, Vy, Vz, T, My, Mz; absent: the moment that is greatest now
 };
 
+inline constexpr int k_least_picture = 64, k_most_picture = 8192;  ///< px, of its sides
 inline constexpr double k_most_exaggeration = 200;
 inline constexpr double k_least_maximum = 1e-6, k_most_maximum = 1e12;  ///< of a fixed range
 

@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace ww = window_words;
 
-constexpr int k_least_side = 64, k_most_side = 8192;  // px, as of topple render
 constexpr int k_most_rate = 240;
 constexpr std::chrono::milliseconds k_recorded{200};  // more than a recording lags behind its run
 
@@ -211,7 +210,7 @@ void ExportDialog::draw_choices(const Player& player) {
     label(ww::k_size);
     ImGui::SetNextItemWidth(2 * number);
     ImGui::InputInt2("px##size", size);
-    for (int& side : size) side = std::clamp(side, k_least_side, k_most_side);
+    for (int& side : size) side = std::clamp(side, k_least_picture, k_most_picture);
     for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
       ImGui::SameLine();
       if (ImGui::SmallButton(fmt::format("{}×{}", width, height).c_str())) size[0] = width, size[1] = height;
