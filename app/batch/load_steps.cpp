@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/support/terms.h"
+
 namespace topple::app {
 namespace {
 
@@ -44,9 +46,11 @@ ordered_json load_steps_json(const Run& run) {
     if (words != std::end(k_losses)) one["loss"] = words->word;
     if (s.node >= 0) {
       const int body = model.node_body[s.node];
+      const Member* const within = member_within(model, s.node);
       one["mode"] = {
           {"body", model.bodies[body].name},
           {"node", s.node - model.bodies[body].first_node},
+          {"within", within == nullptr ? ordered_json(nullptr) : ordered_json(within->name)},
           {"direction", {finite(s.direction.x()), finite(s.direction.y()), finite(s.direction.z())}}};
     }
     list.push_back(one);
@@ -63,11 +67,14 @@ std::string loss_in_words(const ordered_json& step) {
   std::string out =
       pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
   out += std::string(": ") + loss.words;
-  if (const ordered_json& mode = step["mode"]; !mode.is_null())
-    out +=
-        fmt::format("; node {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", mode["node"].get<int>(),
-                    mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
-                    mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
+  if (const ordered_json& mode = step["mode"]; !mode.is_null()) {
+    const ordered_json within = mode.value("within", ordered_json());
+    const std::string place = within.is_null() ? fmt::format("node {}", mode["node"].get<int>())
+                                               : "the inside of member \"" + within.get<std::string>() + "\"";
+    out += fmt::format("; {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", place,
+                       mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
+                       mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
+  }
   return out;
 }
 

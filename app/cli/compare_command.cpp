@@ -28,9 +28,10 @@ namespace {
 using nlohmann::ordered_json;
 
 struct CompareOptions {
-  std::string a, b;  ///< scenes or recordings
-  std::string json;  ///< file, "-" or empty
-  std::string mp4;   ///< ghost video; empty: none
+  std::string a, b;                ///< scenes or recordings
+  std::string json;                ///< file, "-" or empty
+  std::string mp4;                 ///< ghost video; empty: none
+  std::optional<double> from, to;  ///< s, of it
   bool quiet = false;
   bool force = false;  ///< in place of files of any kind
 };
@@ -83,6 +84,8 @@ void check(const CompareOptions& options, const Side& a, const Side& b) {
     if (!options.mp4.empty())
       require_writable_file("--mp4", {options.mp4, options.force}, host::FileKind::mp4, source);
   }
+  if (options.from && options.to && *options.from > *options.to)
+    throw BadInput(fmt::format("--from: {:g} s is after --to, {:g} s", *options.from, *options.to));
   if (!options.mp4.empty() && same_file(options.json, options.mp4))
     throw BadInput("--json: " + options.json + " is the video; choose another name");
 }
@@ -271,7 +274,7 @@ int compare_command(const CompareOptions& options) {
   if (pictures && a.recording && b.recording) {
     const Replay of_a(*a.recording), of_b(*b.recording);
     const int drawn = draw_ghost_video({options.mp4, options.force}, {a.source, a.scene, of_a},
-                                       {b.source, b.scene, of_b}, options.quiet);
+                                       {b.source, b.scene, of_b}, options.from, options.to, options.quiet);
     if (drawn != k_done) return drawn;
   }
   if (options.json == "-") {
@@ -295,8 +298,10 @@ void add_compare(Commands& commands) {
   add_path(command, "B", compare.b, "", "scene or recording").required();
   add_json(command, compare.json, "write the differences as JSON");
   add_force(command, compare.force);
-  add_path(command, "--mp4", compare.mp4, "FILE.mp4",
-           "video of both on one clock, A solid, B translucent (needs ffmpeg)");
+  CLI::Option& video = add_path(command, "--mp4", compare.mp4, "FILE.mp4",
+                                "video of both on one clock, A solid, B translucent (needs ffmpeg)");
+  add_read(command, "--from", "SECONDS", seconds(compare.from), "first instant of it").needs(&video);
+  add_read(command, "--to", "SECONDS", seconds(compare.to), "last instant of it").needs(&video);
   add_quiet(command, compare.quiet);
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/chart/lane.h"
 #include "app/chart/log_chart.h"
+#include "app/panels/panels.h"
 #include "app/panels/teaching_panel.h"
 #include "app/panels/teaching_words.h"
 #include "solver/model/accelerogram.h"
@@ -123,7 +124,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
       const std::string& name = model.bodies[static_cast<std::size_t>(b)].name;
       if (!has_limits(model, parameters, b))
         ImGui::TextDisabled("%s", say(k_stands_not_freely, name).c_str());
-      else if (ImGui::Selectable(name.c_str(), b == *state.body))
+      else if (list_entry(name, b == *state.body))
         state.body = b;
     }
     ImGui::EndCombo();

@@ -185,9 +185,12 @@ void draw_losses(ImDrawList& list, const Player& player, const PathChart& chart,
     const std::string words = say(row_of(k_loss_words, told.loss).words);
     if (std::hypot(mouse.x - points[i].x, mouse.y - points[i].y) < 1.5f * radius && told.node >= 0) {
       const Body& body = model.bodies[static_cast<std::size_t>(model.node_body[told.node])];
-      ImGui::SetTooltip("%s", say(k_moves_most, instant_in_words(player.scene().setup, row), words,
-                                  told.node - body.first_node, body.name)
-                                  .c_str());
+      const Member* const within = member_within(model, told.node);
+      const std::string place =
+          within == nullptr ? say(k_node, told.node - body.first_node) : say(k_inside_of, within->name);
+      ImGui::SetTooltip(
+          "%s",
+          say(k_moves_most, instant_in_words(player.scene().setup, row), words, place, body.name).c_str());
     }
     const ImVec4 room = room_for_word(chart, points[i], radius + 3, {text_width(words), line}, taken, points);
     if (room.z == 0) continue;

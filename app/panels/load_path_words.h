@@ -14,7 +14,8 @@ inline constexpr Phrase k_limit_point{"limit point", "極限点"};
 inline constexpr Phrase k_buckles{"buckles sideways", "横に座屈"};
 inline constexpr Phrase k_mechanism{"mechanism", "崩壊機構"};
 inline constexpr Phrase k_section_breaks{"a section breaks", "断面の破断"};
-inline constexpr Phrase k_moves_most{"{0}: {1}; node {2} of {3} moves most",
-                                     "{0}：{1}、{3} の節点{2}が最も動く"};
+inline constexpr Phrase k_moves_most{"{0}: {1}; {2} of {3} moves most", "{0}：{1}、{3} の{2}が最も動く"};
+inline constexpr Phrase k_node{"node {0}", "節点{0}"};
+inline constexpr Phrase k_inside_of{"the inside of {0}", "{0} の中間"};
 
 }  // namespace topple::app::window_words

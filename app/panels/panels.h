@@ -31,6 +31,9 @@ struct Box {
 render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
                                       const io::Scene* scene);
 
+/// An entry of a list that drops down, which Return takes as Space and a click do.
+bool list_entry(const std::string& label, bool chosen);
+
 /// Begins a window that fills `box` and does nothing else; ImGui::End() ends it. Keys move among what is in
 /// it.
 void begin_panel(const char* name, const Box& box);

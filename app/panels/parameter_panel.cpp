@@ -152,7 +152,7 @@ class Row {
     const bool narrow = ImGui::CalcTextSize(shown.c_str()).x + ImGui::GetStyle().FramePadding.x > room;
     if (ImGui::BeginCombo("##value", shown.c_str(), narrow ? ImGuiComboFlags_NoArrowButton : 0)) {
       for (const int number : key_.numbers)
-        if (legal(number) && ImGui::Selectable(word(number).c_str(), number == now) && number != now)
+        if (legal(number) && list_entry(word(number), number == now) && number != now)
           post_anew(Vec3(number, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {

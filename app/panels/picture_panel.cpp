@@ -27,7 +27,7 @@ bool choose(const char* id, const Phrase* names, std::size_t count, std::size_t&
   bool changed = false;
   if (!ImGui::BeginCombo(id, say(names[chosen]).c_str())) return false;
   for (std::size_t i = 0; i < count; ++i)
-    if (ImGui::Selectable(say(names[i]).c_str(), i == chosen) && i != chosen) {
+    if (list_entry(say(names[i]), i == chosen) && i != chosen) {
       chosen = i;
       changed = true;
     }
@@ -44,6 +44,14 @@ bool choose(const char* id, const Phrase (&names)[n], Choice& choice) {
 }
 
 }  // namespace
+
+bool list_entry(const std::string& label, bool chosen) {
+  if (ImGui::Selectable(label.c_str(), chosen)) return true;
+  // Dear ImGui before 1.90 takes Space alone
+  if (!ImGui::IsItemFocused() || !ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter))) return false;
+  ImGui::CloseCurrentPopup();
+  return true;
+}
 
 void choose_colour(PictureSettings& settings, BeamQuantity colour) {
   settings.colour = colour;

@@ -7,6 +7,7 @@
 
 #include "app/chart/lane.h"
 #include "app/chart/log_chart.h"
+#include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
 #include "app/panels/shell_words.h"
 #include "app/panels/teaching_words.h"
@@ -215,7 +216,7 @@ void draw_measure(Measure& measure) {
   ImGui::SetNextItemWidth(18 * ImGui::GetFontSize());
   if (ImGui::BeginCombo("##measure", say(row_of(k_measures, measure).name).c_str())) {
     for (const auto& [kind, name] : k_measures)
-      if (ImGui::Selectable(say(name).c_str(), kind == measure)) measure = kind;
+      if (list_entry(say(name), kind == measure)) measure = kind;
     ImGui::EndCombo();
   }
 }

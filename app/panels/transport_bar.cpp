@@ -128,7 +128,7 @@ void choose_branch(Player& player) {
   ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
     for (const Branch& branch : branches)
-      if (ImGui::Selectable(name(branch.id).c_str(), branch.id == player.shown_branch()))
+      if (list_entry(name(branch.id), branch.id == player.shown_branch()))
         player.show_branch(branch.id);
     ImGui::EndCombo();
   }

@@ -405,7 +405,10 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
     out.caption.lines.push_back(
         say(window_words::k_now, shake_in_words(parameters), whole(a), whole(1e3 * d)));
-    out.trace = {.label = say(window_words::k_floor_trace),
+    const bool along_one = std::ranges::all_of(parameters.shakes, [&](const Shake& other) {
+      return other.direction.cross(shake.direction).norm() < 1e-6;
+    });
+    out.trace = {.label = say(along_one ? window_words::k_floor_trace : window_words::k_first_shake_trace),
                  .at = extent_.time_s,
                  .value = extent_.acceleration_gal,
                  .cursor = static_cast<float>(row.time)};

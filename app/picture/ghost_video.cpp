@@ -116,11 +116,16 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
 }  // namespace
 
 int draw_ghost_video(const host::Target& target, const NamedReplay& of_a, const NamedReplay& of_b,
-                     bool quiet) {
+                     std::optional<double> from, std::optional<double> to, bool quiet) {
+  const Actor a(of_a), b(of_b);
+  const double begin = std::min(a.first(), b.first()), end = std::max(a.last(), b.last());
+  const double first = std::max(from.value_or(begin), begin), last = std::min(to.value_or(end), end);
+  if (first > last)
+    throw BadInput(
+        fmt::format("--from, --to: nothing lies between {:g} and {:g} s; the motions have {:g}..{:g} s",
+                    from.value_or(begin), to.value_or(end), begin, end));
   try {
-    const Actor a(of_a), b(of_b);
     VideoWriter video(target, k_width, k_height, k_frame_rate);
-    const double first = std::min(a.first(), b.first()), last = std::max(a.last(), b.last());
     const int count = static_cast<int>(std::floor((last - first) * k_frame_rate + 1e-6)) + 1;
     Progress progress("drawing", "pictures", count, quiet);
     const auto draw = [&](render::Picture& picture, int i) {

@@ -73,6 +73,7 @@ inline constexpr Phrase k_floor_sweep{"floor: sweep {0:.4g} to {1:.4g} Hz, {2:.4
 inline constexpr Phrase k_floor_pulse{"floor: pulse {0:g} s, {1:.4g} gal", "床：パルス {0:g} s、{1:.4g} gal"};
 inline constexpr Phrase k_floor_record{"floor: record {0:.3g} s, peak {1:.4g} gal",
                                        "床：加速度記録 {0:.3g} s、最大 {1:.4g} gal"};
+inline constexpr Phrase k_more_shakes{"{0}, and {1} more", "{0}、ほか{1}件"};
 inline constexpr Phrase k_now{"{0};  now {1:+.0f} gal, {2:+.0f} mm", "{0}　現在 {1:+.0f} gal、{2:+.0f} mm"};
 
 // status
@@ -149,6 +150,8 @@ inline constexpr Phrase k_tilt_share_lane{"tilt / critical", "傾斜／限界角
 inline constexpr Phrase k_critical_at_one{"1: critical", "1：限界"};
 inline constexpr Phrase k_critical_and_cut{"1: critical; cut above {0}", "1：限界、{0} 超は省略"};
 inline constexpr Phrase k_floor_trace{"floor acceleration, gal", "床の加速度 [gal]"};
+inline constexpr Phrase k_first_shake_trace{"floor acceleration along the first shake, gal",
+                                            "床の加速度（第1の揺れの方向）[gal]"};
 inline constexpr Phrase k_anchor_breaks{"{0}: anchor {1} breaks at {2:.0f} N",
                                         "{0}：固定具 {1} が {2:.0f} N で破断"};
 inline constexpr Phrase k_event{"{0}: {1} {2}", "{0}：{1} {2}"};

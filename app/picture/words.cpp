@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 
@@ -185,16 +186,20 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
 }
 
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
-  return is_static(setup) ? say(k_load_instant, row.step, setup.run.statics.load_steps, row.load_factor)
-                          : fmt::format("t = {:.2f} s", row.time);
+  if (is_static(setup)) return say(k_load_instant, row.step, setup.run.statics.load_steps, row.load_factor);
+  const double hundredths = 100 / setup.run.output_rate;  // between rows
+  return fmt::format("t = {:.{}f} s", row.time, hundredths == std::round(hundredths) ? 2 : 3);
 }
 
 std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
-  for (const ShakeWords& words : k_shake_words)
-    if (words.kind == shake.kind) return words.say_it(shake) + building_in_words(shake);
-  return traits(shake.kind).word;
+  const auto* const words = std::ranges::find(k_shake_words, shake.kind, &ShakeWords::kind);
+  const std::string one =
+      (words == std::end(k_shake_words) ? traits(shake.kind).word : words->say_it(shake)) +
+      building_in_words(shake);
+  const std::size_t more = parameters.shakes.size() - 1;
+  return more > 0 ? say(k_more_shakes, one, more) : one;
 }
 
 }  // namespace topple::app

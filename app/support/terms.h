@@ -19,4 +19,12 @@ inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;
 }
 
+/// The member within which a node lies; null: the node is one of those that scenes name.
+inline const Member* member_within(const Model& model, int node) {
+  for (const Member& member : model.members)
+    for (int e = member.first_element; e + 1 < member.first_element + member.element_count; ++e)
+      if (model.elements[static_cast<std::size_t>(e)].node[1] == node) return &member;
+  return nullptr;
+}
+
 }  // namespace topple::app

@@ -71,6 +71,29 @@ TEST_F(CompareTest, the_video_holds_both_until_the_longer_one_ends) {
   EXPECT_EQ(std::stoi(bytes_of("n")), 10);  // 0.3 s at 30 a second, both ends
 }
 
+TEST_F(CompareTest, a_part_of_the_video_is_asked_for_by_its_times) {
+  record("a.h5", "run.duration=0.3 s");
+  const std::vector<std::string> both{"compare", "a.h5", "a.h5", "--mp4", "both.mp4", "--quiet"};
+  const auto with = [&](std::vector<std::string> times) {
+    times.insert(times.begin(), both.begin(), both.end());
+    return topple(times);
+  };
+  EXPECT_EQ(with({"--from", "0.1", "--to", "0.2"}).code, 0);
+  const Ended turned = with({"--from", "0.2", "--to", "0.1", "--force"}),
+              late = with({"--from", "3", "--force"});
+  EXPECT_EQ(turned.code, 2);
+  EXPECT_NE(turned.err.find("--from: 0.2 s is after --to, 0.1 s"), std::string::npos) << turned.err;
+  EXPECT_EQ(late.code, 2);
+  EXPECT_NE(late.err.find("nothing lies between 3 and 0.3 s"), std::string::npos) << late.err;
+  EXPECT_EQ(bytes_of("both.mp4").substr(4, 4), "ftyp");
+  EXPECT_EQ(topple({"compare", "a.h5", "a.h5", "--from", "0.1"}).code, 2);
+  if (std::system("command -v ffprobe >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffprobe is not installed";
+  ASSERT_EQ(std::system(
+                "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 both.mp4 >n"),
+            0);
+  EXPECT_EQ(std::stoi(bytes_of("n")), 4);  // 0.1 s at 30 a second, both ends
+}
+
 // Rigid bodies have no stresses that colour them, and are shown as the others.
 TEST_F(CompareTest, rigid_bodies_of_A_are_blue_in_the_video) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
