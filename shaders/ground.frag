@@ -40,7 +40,8 @@ void main() {
   vec3 paint = u_dark == 1 ? vec3(0.285, 0.300, 0.320) : u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
   float shade = mix(0.66, 1.0, key_visibility(v_position + 0.002 * u_normal, 5.0));
   if (u_is_floor > 0.5) shade *= contact_shade(v_position);
-  vec3 colour = shaded(paint, shade);
+  vec3 colour = paint;
+  for (int i = 0; i < (shade < 1.0 ? 1 : 0); ++i) colour = shaded(paint, shade);
 
   vec2 p = v_plane - u_grid_origin;
   float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));

@@ -3,6 +3,7 @@ uniform vec3 u_eye;
 uniform vec3 u_to_key;
 uniform mat4 u_shadow_matrix;
 uniform sampler2DShadow u_shadow;
+uniform sampler2D u_caster;    // 0 where nothing in the map above is near
 
 const vec3 k_key_colour = vec3(1.0, 0.985, 0.96);
 
@@ -34,12 +35,14 @@ float half_shade(vec3 at, float reach, int white, int taps) {
   return shade;
 }
 
-// Share of the key light that reaches p. Everything outside the map is lit, and where the black places agree
-// there is no edge of a shadow: there loops end at once, which spares a software rasteriser most of the floor.
+// Share of the key light that reaches p. Everything outside the map and away from what casts shadows is lit,
+// and where the black places agree there is no edge of a shadow: there loops end at once, which spares a
+// software rasteriser most of the floor.
 float key_visibility(vec3 p, float reach) {
   vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
   bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
-  float black = half_shade(at, reach, 0, inside ? k_half_taps : 0);
+  bool near = inside && textureLod(u_caster, at.xy, 0.0).r > 0.0;
+  float black = half_shade(at, reach, 0, near ? k_half_taps : 0);
   bool edge = black > 0.0 && black < float(k_half_taps);
   float white = half_shade(at, reach, 1, edge ? k_half_taps : 0);
   return 1.0 - (edge ? 0.5 * (black + white) : black) / float(k_half_taps);

@@ -171,9 +171,9 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   draw_flat(trails_);
   gl_.DepthMask(GL_TRUE);
   // Forces begin inside of members: what follows is seen through all that was drawn.
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  if (bands_.count + arrows_.count > 0) gl_.Clear(GL_DEPTH_BUFFER_BIT);
   draw_flat(bands_);
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  if (bands_.count > 0 && arrows_.count > 0) gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
   use_lit(lighting.solid, lighting, camera);

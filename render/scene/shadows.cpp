@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -23,9 +24,12 @@ const Vector3f k_to_key = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
 constexpr GLuint k_key_unit = 1;
 constexpr GLuint k_contact_unit = 2;
 constexpr GLuint k_near_unit = 3;
+constexpr GLuint k_caster_unit = 4;
 
-constexpr int k_shade_side = 256;        // of the map of contact shade, texels
-constexpr int k_near_side = 64;          // of the map of what is near the floor, texels
+constexpr int k_shade_side = 256;  // of the map of contact shade, texels
+constexpr int k_coarse_side = 256;  // of the maps of what is near the floor, or between it and light, texels
+constexpr float k_shadow_reach =
+    8.0f / 2048;                         // of the key map, that light.glsl looks aside, with a texel's slack
 constexpr float k_contact_high = 0.38f;  // m, above which contact.frag has nothing that eight bits hold
 
 /// Orthographic matrix with the rows x, y, z as axes; the box low..high in these becomes -1..1.
@@ -75,7 +79,8 @@ Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& siz
   contact_map_ =
       make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, size.contact, size.contact, nullptr);
 
-  near_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_near_side, k_near_side, nullptr);
+  for (GlObject* map : {&near_map_, &caster_map_})
+    *map = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_coarse_side, k_coarse_side, nullptr);
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, key_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, key_map_.id(), 0);
@@ -102,37 +107,39 @@ void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& 
   gl_.Disable(GL_DEPTH_CLAMP);
   bind_to(gl_, k_contact_unit, contact_map_);
   gl_.GenerateMipmap(GL_TEXTURE_2D);
-  mark_near(floor, solids);
+  constexpr float k_any = std::numeric_limits<float>::infinity();
+  mark({k_near_unit, near_map_}, contact_matrix_, k_contact_margin / contact_width_, {floor, k_contact_high},
+       solids);
+  mark({k_caster_unit, caster_map_}, key_matrix_, k_shadow_reach, {floor, k_any}, solids);
   shade_contact();
 }
 
-// By the boxes of triangles, as far around as contact shade reaches.
-void Shadows::mark_near(const FloorPlane& floor, const Mesh& solids) {
-  constexpr float side = k_near_side;
-  std::array<std::uint8_t, k_near_side * k_near_side> near{};
-  const float margin = k_contact_margin / contact_width_ * side;
+void Shadows::mark(const Coarse& coarse, const Matrix4f& to_map, float margin, const Highest& highest,
+                   const Mesh& solids) {
+  constexpr float side = k_coarse_side;
+  std::array<std::uint8_t, k_coarse_side * k_coarse_side> marked{};
   for (std::size_t i = 0; i + 2 < solids.indices.size(); i += 3) {
     Eigen::Vector2f from(side, side), to(0, 0);
-    float height = k_contact_high;
+    float height = highest.height;
     for (std::size_t k = i; k < i + 3; ++k) {
       const Vector3f& x = solids.vertices[solids.indices[k]].position;
-      height = std::min(height, floor.normal.dot(x - floor.point));
-      const Eigen::Vector2f at = side *
-                                 (contact_matrix_.topLeftCorner<2, 3>() * x +
-                                  contact_matrix_.topRightCorner<2, 1>() + Eigen::Vector2f::Ones()) /
-                                 2;
+      height = std::min(height, highest.floor.normal.dot(x - highest.floor.point));
+      const Eigen::Vector2f at =
+          side *
+          (to_map.topLeftCorner<2, 3>() * x + to_map.topRightCorner<2, 1>() + Eigen::Vector2f::Ones()) / 2;
       from = from.cwiseMin(at);
       to = to.cwiseMax(at);
     }
-    if (height >= k_contact_high) continue;
-    const auto texel = [](float at) { return std::clamp(static_cast<int>(at), 0, k_near_side - 1); };
-    for (int y = texel(from.y() - margin); y <= texel(to.y() + margin); ++y)
-      for (int x = texel(from.x() - margin); x <= texel(to.x() + margin); ++x)
-        near[k_near_side * y + x] = 255;
+    if (height >= highest.height) continue;
+    const auto texel = [](float at) { return std::clamp(static_cast<int>(at), 0, k_coarse_side - 1); };
+    for (int y = texel(from.y() - side * margin); y <= texel(to.y() + side * margin); ++y)
+      for (int x = texel(from.x() - side * margin); x <= texel(to.x() + side * margin); ++x)
+        marked[k_coarse_side * y + x] = 255;
   }
-  bind_to(gl_, k_near_unit, near_map_);
+  bind_to(gl_, coarse.unit, coarse.map);
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_near_side, k_near_side, 0, GL_RED, GL_UNSIGNED_BYTE, near.data());
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_coarse_side, k_coarse_side, 0, GL_RED, GL_UNSIGNED_BYTE,
+                 marked.data());
 }
 
 void Shadows::set_up_key(const Vector3f& low, const Vector3f& high) {
@@ -197,11 +204,13 @@ void Shadows::shade_contact() {
 void Shadows::bind() const {
   bind_to(gl_, k_key_unit, key_map_);
   bind_to(gl_, k_contact_unit, shade_map_);
+  bind_to(gl_, k_caster_unit, caster_map_);
 }
 
 void Shadows::set(const Program& program) const {
   program.set("u_to_key", k_to_key);
   program.set("u_shadow", static_cast<int>(k_key_unit));
+  program.set("u_caster", static_cast<int>(k_caster_unit));
   program.set("u_shadow_matrix", key_matrix_);
   program.set("u_contact", static_cast<int>(k_contact_unit));
   program.set("u_contact_matrix", contact_matrix_);

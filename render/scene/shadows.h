@@ -44,14 +44,26 @@ class Shadows {
  private:
   void set_up_key(const Eigen::Vector3f& low, const Eigen::Vector3f& high);
   void set_up_contact(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor);
-  void mark_near(const FloorPlane& floor, const Mesh& solids);
+  /// A map of 64 x 64 texels that holds where something lies, widely.
+  struct Coarse {
+    GLuint unit;
+    const GlObject& map;
+  };
+  /// What lies higher over the floor does not count, m.
+  struct Highest {
+    const FloorPlane& floor;
+    float height;
+  };
+  /// Marks the boxes of triangles in the map that `to_map` makes -1..1 of; margin: around them, of its side.
+  void mark(const Coarse& coarse, const Eigen::Matrix4f& to_map, float margin, const Highest& highest,
+            const Mesh& solids);
   void shade_contact();
 
   const Gl& gl_;
   ShadowSize size_;
   Program key_program_, contact_program_, shade_program_;
-  GlObject key_map_, contact_map_, near_map_, shade_map_, key_target_, contact_target_, shade_target_,
-      empty_array_;
+  GlObject key_map_, contact_map_, near_map_, caster_map_, shade_map_, key_target_, contact_target_,
+      shade_target_, empty_array_;
   Eigen::Matrix4f key_matrix_ = Eigen::Matrix4f::Identity();
   Eigen::Matrix4f contact_matrix_ = Eigen::Matrix4f::Identity();
   float contact_width_ = 1;  // m, side of the square that is mapped
