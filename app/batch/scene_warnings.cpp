@@ -10,6 +10,7 @@
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
+#include "solver/reduced/tipping.h"
 #include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
@@ -154,6 +155,25 @@ void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
 
 }  // namespace
 
+std::string bending_warning(const Setup& setup) {
+  constexpr int k_room = 5;  // bodies, of which the cost is felt
+  const Parameters& p = setup.parameters;
+  int bending = 0;
+  double most = 0;
+  for (int b = 0; b < setup.model.furniture_total(); ++b) {
+    if (base_level(setup.model, p, b).reason != LevelReason::bending) continue;
+    ++bending;
+    most = std::max(most, rigid_error(setup.model, p, b));
+  }
+  if (bending < k_room) return "";
+  return fmt::format(
+      "{} bodies bend too much to be rigid at run.accuracy = {:g}, the most by {:.2g} of the critical angle: "
+      "they are elastic, and frames where they strike something, which takes many times as long; "
+      "run.accuracy = "
+      "{:g} lets them be rigid, model = \"rigid\" makes them so",
+      bending, p.accuracy, most, std::ceil(100 * most + 1) / 100);
+}
+
 std::vector<std::string> scene_warnings(const Setup& setup) {
   std::vector<std::string> list;
   if (setup.run.analysis != Analysis::dynamic) return list;
@@ -162,6 +182,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   warn_of_alpha(setup, list);
+  if (std::string bending = bending_warning(setup); !bending.empty()) list.push_back(std::move(bending));
   warn_of_shakes(setup.parameters.shakes, list);
   return list;
 }

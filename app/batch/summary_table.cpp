@@ -85,11 +85,16 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const ordered_json& estimate = change["error_estimate"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
-  if (estimate == 0) return "";  // a block, or nothing pushed it
+  if (estimate == 0) return "";       // a block, or nothing pushed it
+  constexpr int k_many_impacts = 10;  // which carry on what differs before each
+  const int impacts = body["impacts"].get<int>();
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
-  return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(),
-                     may_strike ? " until it strikes something, from which a frame springs back" : "");
+  const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
+                             : impacts > k_many_impacts
+                                 ? fmt::format(" before its {} impacts, which enlarge that", impacts)
+                                 : "";
+  return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);
 }
 
 // Of the model that a body begins with.
@@ -130,9 +135,10 @@ std::string model_lines(const ordered_json& bodies) {
 std::string dynamic_head(const ordered_json& s) {
   std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
                                 s["status"].get<std::string>(), s["simulated_s"].get<double>());
-  if (!s["realtime_factor"].is_null())
-    out += fmt::format(" ({:.2f} s of wall time, {:.1f} times real time)", s["wall_s"].get<double>(),
-                       s["realtime_factor"].get<double>());
+  const double real_time = s["realtime_factor"].is_null() ? 0 : s["realtime_factor"].get<double>();
+  if (real_time > 0)
+    out += fmt::format(" ({:.2f} s of wall time, {:.{}g} times real time)", s["wall_s"].get<double>(),
+                       real_time, real_time < 10 ? 2 : 4);
   out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n", integrators(s),
                      s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
                      s["steps"].get<long>(), s["rejected_steps"].get<long>(),
@@ -172,6 +178,25 @@ std::string lately_line(const ordered_json& b, const ordered_json& end) {
       b["name"].get<std::string>(), since);
 }
 
+// Of a body that a slight change may topple, or keep from it.
+std::string chance_line(const ordered_json& b) {
+  constexpr int k_many_impacts = 10;
+  constexpr double k_near = 0.8;  // of the critical angle
+  if (b["peak_tilt_deg"].is_null() || b["critical_tilt_deg"].is_null()) return "";
+  const double share = b["peak_tilt_deg"].get<double>() / b["critical_tilt_deg"].get<double>();
+  const bool fell = b["overturned"].get<bool>();
+  const auto before = [&](const ordered_json& impact) { return impact < b["overturn_time_s"]; };
+  const auto impacts = fell ? std::ranges::count_if(b["impact_times_s"], before) : 0;
+  if (fell ? impacts <= k_many_impacts : share < k_near || share > 1) return "";
+  return fmt::format(
+      "{}: {}, so that a slight change may {}; topple report gives the share of such runs in which it "
+      "falls\n",
+      b["name"].get<std::string>(),
+      fell ? fmt::format("overturned after {} impacts", impacts)
+           : fmt::format("came to {:.0f} % of its critical angle", 100 * share),
+      fell ? "keep it upright" : "topple it");
+}
+
 std::string anchor_line(const ordered_json& a) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
@@ -181,7 +206,7 @@ std::string anchor_line(const ordered_json& a) {
   if (a["broke"].get<bool>())
     return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
   if (!a["strength_N"].is_null())
-    line += fmt::format(", {:.0f} % of its strength", std::floor(100 * peak / a["strength_N"].get<double>()));
+    line += ", " + percent_of(peak, a["strength_N"].get<double>()) + " of its strength";
   if (!a["in_place"].get<bool>()) return line + ", taken away\n";
   return line + (a["slack"].get<bool>() ? ", slack at the end\n" : "\n");
 }
@@ -243,6 +268,7 @@ std::string summary_table(const ordered_json& s) {
       out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
                          b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
   for (const auto& b : s["bodies"]) out += lately_line(b, s["simulated_s"]);
+  for (const auto& b : s["bodies"]) out += chance_line(b);
   for (const auto& b : s["bodies"]) out += damage_line(b);
   for (const auto& a : s["anchors"]) out += anchor_line(a);
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())

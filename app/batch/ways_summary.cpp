@@ -64,6 +64,14 @@ ordered_json ways_json(const Run& run) {
   return out;
 }
 
+std::string hits_in_words(const ordered_json& way) {
+  std::string hits;
+  for (const auto& hit : way["hit_by"])
+    hits += fmt::format("{}{} at {:.2f} s", hits.empty() ? "" : ", ", hit["body"].get<std::string>(),
+                        hit["time_s"].get<double>());
+  return hits;
+}
+
 std::string ways_in_words(const ordered_json& ways, double person) {
   std::string out;
   for (const auto& way : ways) {
@@ -81,11 +89,8 @@ std::string ways_in_words(const ordered_json& ways, double person) {
       out +=
           way["blocked_by"].empty() ? ": the door is narrower" : ", blocked by " + joined(way["blocked_by"]);
     }
-    std::string hits;
-    for (const auto& hit : way["hit_by"])
-      hits += fmt::format("{}{} at {:.2f} s", hits.empty() ? "; hit by " : ", ",
-                          hit["body"].get<std::string>(), hit["time_s"].get<double>());
-    out += hits + "\n";
+    const std::string hits = hits_in_words(way);
+    out += (hits.empty() ? "" : "; hit by " + hits) + "\n";
   }
   return out;
 }

@@ -22,4 +22,7 @@ nlohmann::ordered_json ways_json(const Run& run);
 /// person: m.
 std::string ways_in_words(const nlohmann::ordered_json& ways, double person);
 
+/// "shelf at 2.31 s, desk at 2.40 s" of one of them; empty: nothing hits there.
+std::string hits_in_words(const nlohmann::ordered_json& way);
+
 }  // namespace topple::app

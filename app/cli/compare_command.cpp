@@ -9,6 +9,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/batch/summary.h"
+#include "app/batch/ways_summary.h"
 #include "app/cli/command.h"
 #include "app/picture/ghost_video.h"
 #include "app/picture/replay.h"
@@ -237,6 +238,11 @@ std::string leads_out(const ordered_json& way) {
   return (way["open"].get<bool>() ? "open, " : "closed, ") + text(way, "widest_m", 1, 2) + " m";
 }
 
+std::string hit_by(const ordered_json& way) {
+  const std::string hits = way.is_null() ? "-" : hits_in_words(way);
+  return hits.empty() ? "nothing" : hits;
+}
+
 std::string tables(const ordered_json& result) {
   const std::string a = result["a"]["source"], b = result["b"]["source"];
   Table parameters, outcomes;
@@ -250,8 +256,11 @@ std::string tables(const ordered_json& result) {
   for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
   for (const ordered_json& one : result["anchors"])
     outcomes.row(one["name"].get<std::string>() + ": greatest force, N", holds(one["a"]), holds(one["b"]));
-  for (const ordered_json& one : result["ways"])
-    outcomes.row("way out from " + one["name"].get<std::string>(), leads_out(one["a"]), leads_out(one["b"]));
+  for (const ordered_json& one : result["ways"]) {
+    const std::string place = one["name"];
+    outcomes.row("way out from " + place, leads_out(one["a"]), leads_out(one["b"]));
+    outcomes.row(place + ": hit by", hit_by(one["a"]), hit_by(one["b"]));
+  }
   return (result["parameters"].empty() ? "no parameter differs\n" : parameters.text()) + "\n" +
          outcomes.text();
 }

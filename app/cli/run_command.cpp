@@ -4,6 +4,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/batch/run_profile.h"
+#include "app/batch/scene_warnings.h"
 #include "app/batch/summary.h"
 #include "app/cli/command.h"
 #include "app/cli/modes_command.h"
@@ -55,6 +56,8 @@ int run_command(const RunOptions& options) {
     if (same_file(options.json, options.recording))
       throw BadInput("--json: " + options.json + " is the recording; choose another name");
   }
+  if (const std::string bending = bending_warning(scene.setup); !bending.empty() && !is_static(scene.setup))
+    log_message("warning: " + bending);
   const RecordedRun result = record(scene, {options.recording, options.force},
                                     {.quiet = options.quiet,
                                      .profile = options.profile,

@@ -286,10 +286,13 @@ void draw_integrator(const Parameter& of) {
 
 void draw_anchor(const Parameter& of) {
   const Anchor& anchor = of.model().anchors[static_cast<std::size_t>(of.index)];
+  const auto name = [&](int body) { return of.model().bodies[static_cast<std::size_t>(body)].name; };
   const auto row = of.player.row();
   const bool broke = row && row->anchor[static_cast<std::size_t>(of.index)].state == io::k_anchor_broken;
   of.row().tick(broke ? say(k_anchor_broke, anchor.name) : anchor.name,
-                say(k_anchor_about, of.model().bodies[static_cast<std::size_t>(anchor.body)].name));
+                anchor.other.body < 0
+                    ? say(k_anchor_about, name(anchor.body))
+                    : say(k_anchor_between_about, name(anchor.body), name(anchor.other.body)));
 }
 
 /// What sets a parameter; one without a row has a slider.

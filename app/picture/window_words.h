@@ -59,7 +59,7 @@ inline constexpr Phrase k_slack{"slack", "たるみ"};
 inline constexpr Phrase k_broken_anchor{"broken", "破断"};
 inline constexpr Phrase k_pulls{"pulls {0:.0f} N", "引張 {0:.0f} N"};
 inline constexpr Phrase k_pushes{"pushes {0:.0f} N", "圧縮 {0:.0f} N"};
-inline constexpr Phrase k_of_strength{", {0:.0f} % of its strength", "（耐力の{0:.0f} %）"};
+inline constexpr Phrase k_of_strength{", {0} of its strength", "（耐力の{0}）"};
 inline constexpr Phrase k_anchors{"anchors: {0}", "固定具：{0}"};
 
 // the instant, the floor
@@ -237,6 +237,9 @@ inline constexpr Phrase k_anchor_broke{"{0} (broken)", "{0}（破断）"};
 inline constexpr Phrase k_anchor_about{
     "ties {0} to the wall or floor. One that is put in place starts without force",
     "{0} を壁または床に固定する。取り付けた時点の力は0"};
+inline constexpr Phrase k_anchor_between_about{
+    "ties {0} to {1}. One that is put in place starts without force",
+    "{0} を {1} に連結する。取り付けた時点の力は0"};
 inline constexpr Phrase k_direction_about{"of the acceleration, counter-clockwise from x (a cabinet's depth)",
                                           "加速度の方向。x軸（家具の奥行方向）から反時計回り"};
 // {0} is the scene reference's own line

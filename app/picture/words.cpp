@@ -148,6 +148,12 @@ std::string anchor_type_in_words(const Anchor& anchor) {
 
 namespace {
 
+/// A bracket without force holds: it would pull and push.
+float state_of(const Anchor& anchor, const io::AnchorNumbers& now) {
+  const bool slack = now.state == io::k_anchor_slack && anchor.type != Anchor::Type::bracket;
+  return now.state == io::k_anchor_slack && !slack ? io::k_anchor_holds : now.state;
+}
+
 const Phrase& anchor_state(float state) {
   if (state == io::k_anchor_away) return k_away;
   if (state == io::k_anchor_slack) return k_slack;
@@ -162,10 +168,11 @@ std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::si
   const bool named_by_type = anchor.name == anchor_type(anchor);
   const std::string line =
       anchor_type_in_words(anchor) + (named_by_type ? "" : " " + anchor.name) + say(k_colon);
-  if (now.state != io::k_anchor_holds) return line + say(anchor_state(now.state));
+  const float state = state_of(anchor, now);
+  if (state != io::k_anchor_holds || now.tension == 0) return line + say(anchor_state(state));
   const double force = std::abs(now.tension);
   return line + say(now.tension > 0 ? k_pulls : k_pushes, force) +
-         (std::isfinite(anchor.strength) ? say(k_of_strength, 100 * force / anchor.strength) : "");
+         (std::isfinite(anchor.strength) ? say(k_of_strength, percent_of(force, anchor.strength)) : "");
 }
 
 std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow& row) {
@@ -177,7 +184,8 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
   std::string counts;
   for (const float state : {io::k_anchor_holds, io::k_anchor_slack, io::k_anchor_broken, io::k_anchor_away}) {
     int count = 0;
-    for (std::size_t k = 0; k < model.anchors.size(); ++k) count += row.anchor[k].state == state;
+    for (std::size_t k = 0; k < model.anchors.size(); ++k)
+      count += state_of(model.anchors[k], row.anchor[k]) == state;
     if (count > 0)
       counts += fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(anchor_state(state)));
   }

@@ -1,5 +1,6 @@
 """Furniture that tips over when the floor shakes. Docstrings of the module say what is what."""
 
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any, SupportsFloat, Union
 
@@ -193,3 +194,6 @@ class Simulation:
     def anchors(self) -> list[str]: ...
 
 def open(path: str | PathLike[str]) -> Result: ...
+def sweep(
+    scene: Scene, cases: Sequence[Mapping[str, _Value]], jobs: int | None = None
+) -> list[dict[str, Any]]: ...

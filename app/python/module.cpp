@@ -6,6 +6,7 @@
 #include "app/python/result.h"
 #include "app/python/scene.h"
 #include "app/python/simulation.h"
+#include "app/python/sweep.h"
 #include "app/support/errors.h"
 #include "solver/io/common/errors.h"
 
@@ -62,6 +63,7 @@ Lengths in m, times in s, forces in N, angles in rad: SI, unless a text says a u
   add_result(module);
   add_scene(module);
   add_simulation(module);
+  add_sweep(module);
 }
 
 }  // namespace topple::python

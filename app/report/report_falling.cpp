@@ -184,7 +184,7 @@ std::string holding_table(ReportPage& page) {
     const bool fixing = !a["fixing"].is_null(), bounded = !a["strength_N"].is_null();
     assumed = assumed || fixing;
     const double peak = a["peak_force_N"].get<double>();
-    std::string share = bounded ? shown(100 * peak / a["strength_N"].get<double>(), 0) + " %" : "\u2013";
+    std::string share = bounded ? percent_of(peak, a["strength_N"].get<double>()) : "\u2013";
     if (a["broke"].get<bool>())
       share = page.say(words::k_anchor_broke, shown(a["break_time_s"].get<double>(), 2));
     rows.push_back({escaped(a["name"].get<std::string>()), escaped(a["body"].get<std::string>()),

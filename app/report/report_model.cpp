@@ -104,7 +104,9 @@ std::string step(const ReportPage& page) {
 std::string assumptions_section(ReportPage& page) {
   const Setup& setup = page.report().scene->setup;
   const Model& model = setup.model;
-  const auto some = [&](auto what) { return std::ranges::any_of(model.materials, what); };
+  const bool all_rigid = std::ranges::all_of(
+      page.report().summary["bodies"], [](const auto& body) { return body["peak_stress_Pa"].is_null(); });
+  const auto some = [&](auto what) { return !all_rigid && std::ranges::any_of(model.materials, what); };
   std::vector<std::string> list{page.say(words::k_as_given), page.say(words::k_contents)};
   if (!model.planes.empty()) list.push_back(page.say(words::k_rigid_floor));
   if (model.furniture_total() < static_cast<int>(model.bodies.size()))

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "app/study/coarser_models.h"
 #include "app/study/study.h"
-#include "solver/body/model_level.h"
 #include "solver/study/overturn/fragility_chart.h"
 
 namespace topple::app {
@@ -51,27 +51,10 @@ std::string criteria_in_words(const study::FragilityPlan& plan, const study::Fra
   const study::BodyCriteria& c = results.criteria[b];
   if (!c.why_not.empty()) return "  no criteria: " + c.why_not + "\n";
   return fmt::format(
-      "  West {:.4g}, Ishiyama {:.4g}, evaluation A_R50 {:.4g} {} (corner {:.3g} Hz, motion {:.3g} Hz)\n",
-      c.west, c.ishiyama, c.evaluation, plan.levels.unit, c.corner, results.frequency);
-}
-
-/// What is computed more coarsely than a run of the scene does.
-std::string coarser_in_words(const study::FragilityPlan& plan) {
-  const Setup& setup = plan.scene.setup;
-  Parameters finer = setup.parameters;
-  finer.accuracy = Parameters{}.accuracy;
-  std::string text;
-  for (int b = 0; b < setup.model.furniture_total(); ++b) {
-    const ModelLevel here = base_level(setup.model, setup.parameters, b).level,
-                     there = base_level(setup.model, finer, b).level;
-    if (here != there)
-      text += fmt::format(
-          "{} is {} here; a run of the scene makes it {}, in which what stands on it may lift earlier: "
-          "--set run.accuracy={:g}\n",
-          setup.model.bodies[static_cast<std::size_t>(b)].name, traits(here).word, traits(there).word,
-          finer.accuracy);
-  }
-  return text;
+      "  West {:.4g}, Ishiyama {:.4g}, evaluation A_R50 {:.4g} {} (corner {:.3g} Hz, motion {:.3g} Hz){}\n",
+      c.west, c.ishiyama, c.evaluation, plan.levels.unit, c.corner, results.frequency,
+      c.along_a_line ? ""
+                     : ", of motion over the nearest edge alone; the axis takes all directions together");
 }
 
 std::string in_words(const study::FragilityPlan& plan, const study::FragilityResults& results) {
@@ -89,12 +72,12 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
   if (results.failed > 0)
     text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
   const bool all = results.planar == results.runs;
-  text += coarser_in_words(plan);
+  text += coarser_in_words(plan.scene, plan.set);
   return text + fmt::format("{} of {} runs as planar blocks{}\n", results.planar, results.runs,
                             all ? ""
                             : results.why_not_planar.empty()
                                 ? study::k_climbed
-                                : ", the others as rigid bodies; the scene itself is none: " +
+                                : ", the others as bodies in space; the scene itself is none: " +
                                       results.why_not_planar);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/study/coarser_models.h"
 #include "app/study/present_studies.h"
 #include "app/study/study.h"
 #include "solver/study/common/map_panel.h"
@@ -66,7 +67,8 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
 std::string models_in_words(const study::OverturnPlan& plan, const study::OverturnMap& map) {
   if (map.planar == map.run) return fmt::format("{} runs as planar blocks\n", map.run);
   const std::string why = study::why_not_planar(plan);
-  return fmt::format("{} of {} runs as planar blocks{}\n", map.planar, map.run,
+  return coarser_in_words(plan.scene, plan.set) +
+         fmt::format("{} of {} runs as planar blocks{}\n", map.planar, map.run,
                      why.empty() ? study::k_climbed : "; the scene itself is none: " + why);
 }
 

@@ -1,6 +1,10 @@
 // What all parts of the program say of a scene in the same way.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <string>
+
 #include "solver/io/scene/scene_words.h"
 #include "solver/model/table.h"
 #include "solver/run/run.h"
@@ -17,6 +21,13 @@ inline const char* anchor_type(const Anchor& anchor) {
 /// Its rows go by load step and load factor, not by time.
 inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;
+}
+
+/// "83 %" of `whole`, "0.9 %"; below the whole never that: ">99 %".
+inline std::string percent_of(double part, double whole) {
+  const double percent = 100 * part / whole;
+  if (percent > 99 && percent < 100) return ">99 %";
+  return percent < 1 ? fmt::format("{:.1g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
 /// The member within which a node lies; null: the node is one of those that scenes name.

@@ -68,6 +68,7 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
   if (most_miss < least_hit)
     return fmt::format("every run {} from {:.6g} on and none up to {:.6g}: the median lies between", verb,
                        least_hit, most_miss);
+  if (levels.size() == 1) return fmt::format("there are runs at {:.6g} alone", least_hit);
   if (most_miss == least_hit)
     return fmt::format("runs differ at {:.6g} alone: the median lies near it", least_hit);
   if (most_hit <= least_miss) return "it does not become more frequent";

@@ -170,15 +170,22 @@ FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& record
   return curve;
 }
 
-/// Towards the edge that the shake pushes it to, where it goes along one line; else the nearest.
-Standing pushed(const Setup& setup, int body) {
+bool along_a_line(const Setup& setup) {
   const std::vector<Shake>& shakes = setup.parameters.shakes;
-  const bool line = shakes.size() == 1 && (!shakes[0].record || shakes[0].record->components.size() == 1);
+  return std::ranges::all_of(shakes, [&](const Shake& shake) {
+    return shake.direction.cross(shakes.front().direction).norm() < 1e-9 &&
+           (!shake.record || shake.record->components.size() == 1);
+  });
+}
+
+/// Towards the edge that the shakes push it to, where they go along one line; else the nearest.
+Standing pushed(const Setup& setup, int body) {
+  const bool line = along_a_line(setup);
   std::optional<Standing> least;
   for (const double sense : {1., -1.})
-    if (const auto at =
-            line ? standing_towards(setup.model, setup.parameters, body, sense * shakes[0].direction)
-                 : std::nullopt)
+    if (const auto at = line ? standing_towards(setup.model, setup.parameters, body,
+                                                sense * setup.parameters.shakes.front().direction)
+                             : std::nullopt)
       if (!least || at->rigid_limit() < least->rigid_limit()) least = at;
   return least ? *least : standing(setup.model, setup.parameters, body);
 }
@@ -201,6 +208,7 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
       !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_criteria(setup, body);
   if (!out.why_not.empty()) return out;
   const Standing at = pushed(setup, body);
+  out.along_a_line = along_a_line(setup);
   out.corner = evaluation_frequency(at);
   const double median = evaluation_acceleration(at), turn = 2 * k_pi * frequency;
   // of a floor that goes by acceleration below the corner, by velocity above

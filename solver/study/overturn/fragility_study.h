@@ -95,7 +95,8 @@ struct FragilityCurve {
 struct BodyCriteria {
   std::string why_not;  ///< "": there are
   double west = 0, ishiyama = 0, evaluation = 0;
-  double corner = 0;  ///< Hz, of the evaluation
+  double corner = 0;         ///< Hz, of the evaluation
+  bool along_a_line = true;  ///< the floor moves so; else they are of the nearest edge, the measure of all
 };
 
 struct FragilityResults {

@@ -130,6 +130,7 @@ TEST(Fragility, where_there_is_no_maximum_it_says_why) {
   EXPECT_EQ(why({{1, 9, 0}, {2, 9, 0}, {3, 9, 9}}),
             "every run overturns from 3 on and none up to 2: the median lies between");
   EXPECT_EQ(why({{1, 9, 0}, {2, 9, 4}, {3, 9, 9}}), "runs differ at 2 alone: the median lies near it");
+  EXPECT_EQ(why({{1, 0, 0}, {2, 9, 4}, {3, 0, 0}}), "there are runs at 2 alone");
   EXPECT_EQ(why({{1, 9, 8}, {2, 9, 4}, {3, 9, 1}}), "it does not become more frequent");
   EXPECT_EQ(why({{1, 9, 9}, {2, 9, 0}}), "it does not become more frequent");
   EXPECT_TRUE(fit_fragility({{1, 9, 0}, {2, 9, 4}, {3, 9, 5}, {4, 9, 9}}).fit);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/support/terms.h"
 #include "unit/app/scenes.h"
 
 namespace topple::app {
@@ -112,6 +113,54 @@ TEST_F(SummaryTest, what_is_beyond_its_critical_angle_as_the_run_ends_may_come_b
   body["overturn_time_s"] = 9.5;
   body["final_tilt_deg"] = 85;
   EXPECT_EQ(summary_table(s).find("for the last"), std::string::npos);
+}
+
+TEST_F(SummaryTest, what_a_slight_change_may_topple_is_told) {
+  Json s = summary(scene_, run_, "completed", 0);
+  s["simulated_s"] = 10;
+  Json& body = s["bodies"][0];
+  body["overturned"] = false;
+  body["critical_tilt_deg"] = 10;
+  body["peak_tilt_deg"] = 7.9;
+  EXPECT_EQ(summary_table(s).find("a slight change"), std::string::npos);
+  body["peak_tilt_deg"] = 9.5;
+  EXPECT_NE(summary_table(s).find(
+                "free: came to 95 % of its critical angle, so that a slight change may topple it"),
+            std::string::npos)
+      << summary_table(s);
+  body["overturned"] = true;
+  body["peak_tilt_deg"] = body["final_tilt_deg"] = 90;
+  body["overturn_time_s"] = 5.05;
+  body["impact_times_s"] = Json::array();
+  for (int k = 0; k < 10; ++k) body["impact_times_s"].push_back(0.5 * k);
+  EXPECT_EQ(summary_table(s).find("a slight change"), std::string::npos);
+  body["impact_times_s"].push_back(5.);
+  body["impact_times_s"].push_back(6.);  // it lies
+  EXPECT_NE(
+      summary_table(s).find("free: overturned after 11 impacts, so that a slight change may keep it upright"),
+      std::string::npos)
+      << summary_table(s);
+}
+
+TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_many_impacts) {
+  Json s = summary(scene_, run_, "completed", 0);
+  Json& body = s["bodies"][0];
+  body["models"] = Json::array(
+      {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-5}}});
+  body["impacts"] = 10;
+  EXPECT_NE(summary_table(s).find("off from a frame by about 0.004 %)\n"), std::string::npos)
+      << summary_table(s);
+  body["impacts"] = 78;
+  EXPECT_NE(summary_table(s).find("by about 0.004 % before its 78 impacts, which enlarge that)\n"),
+            std::string::npos);
+}
+
+TEST(Terms, a_share_of_a_strength_is_rounded_and_never_whole_before_it_is) {
+  EXPECT_EQ(percent_of(1659, 2000), "83 %");
+  EXPECT_EQ(percent_of(178, 20000), "0.9 %");
+  EXPECT_EQ(percent_of(0, 20000), "0 %");
+  EXPECT_EQ(percent_of(1999, 2000), ">99 %");
+  EXPECT_EQ(percent_of(2000, 2000), "100 %");
 }
 
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {

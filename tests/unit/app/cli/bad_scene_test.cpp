@@ -153,6 +153,25 @@ TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
   EXPECT_EQ(ended.err.find("is soft"), std::string::npos) << ended.err;
 }
 
+TEST_F(BadSceneTest, a_room_that_bends_too_much_for_rigid_bodies_is_warned_of) {
+  write_bytes("room.toml", shelves_of_books(5));
+  write_bytes("few.toml", shelves_of_books(4));
+  const std::string words = "5 bodies bend too much to be rigid at run.accuracy = 0.01";
+  for (const char* command : {"check", "run"}) {
+    const Ended ended = topple({command, "room.toml"}), few = topple({command, "few.toml"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+    EXPECT_EQ(few.err.find("bend too much"), std::string::npos) << few.err;
+  }
+  const Ended ended = topple({"run", "room.toml"});
+  const std::size_t remedy = ended.err.find("run.accuracy = 0.0", ended.err.find(words) + words.size());
+  ASSERT_NE(remedy, std::string::npos) << ended.err;
+  const std::string set = "run.accuracy=" + ended.err.substr(remedy + 15, 4);
+  const Ended rigid = topple({"run", "room.toml", "--set", set});
+  EXPECT_NE(rigid.out.find(": rigid from 0.000 s"), std::string::npos) << set << rigid.out;
+  EXPECT_EQ(rigid.err.find("bend too much"), std::string::npos) << rigid.err;
+}
+
 // The cabinets withstand 94.9 of 177.5 gal (as in CriteriaTest), which is what the window says too.
 TEST_F(BadSceneTest, soft_contacts_are_said_to_tip_as_early_as_they_do) {
   const Ended ended = topple({"check", "paper-a"});

@@ -152,5 +152,23 @@ TEST_F(FragilityTest, what_it_cannot_do_is_told_in_one_line) {
   EXPECT_FALSE(std::filesystem::exists("out"));
 }
 
+TEST_F(FragilityTest, bodies_that_a_run_of_the_scene_makes_finer_are_told) {
+  write_bytes("s.toml", shelves_of_books(1));
+  const auto said = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"study",      "fragility", "s.toml", "--x", "pga=280 gal..300 gal:2lin",
+                                   "--ensemble", "1",         "-o",     "out", "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = topple(words);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.out;
+  };
+  const std::string coarser = said({});
+  EXPECT_NE(coarser.find("shelf-0: rigid here, at run.accuracy = 0.05; a run of the scene has elastic"),
+            std::string::npos)
+      << coarser;
+  const std::string alike = said({"--set", "run.accuracy=0.01"});
+  EXPECT_EQ(alike.find("a run of the scene has"), std::string::npos) << alike;
+}
+
 }  // namespace
 }  // namespace topple::app
