@@ -191,7 +191,10 @@ void LiveWorker::report_head() {
   row.branch = status_.branch;
   const std::vector<bool>& on = run_->parameters().anchors;
   for (std::size_t k = 0; k < on.size(); ++k)  // taken away by an edit: the next step lets go of it
-    if (!on[k]) row.anchor[k] = {0, 0, row.anchor[k].natural_length, io::k_anchor_away};
+    if (!on[k])
+      row.anchor[k] = {0, 0, row.anchor[k].natural_length, io::k_anchor_away};
+    else if (row.anchor[k].state == io::k_anchor_away)
+      row.anchor[k].state = io::k_anchor_slack;  // as the next step begins with it
   auto head = std::make_shared<const io::FrameRow>(std::move(row));
   publish([&head](LiveReport& report) { report.head = std::move(head); });
   set(status_.kind);

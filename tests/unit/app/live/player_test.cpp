@@ -253,6 +253,7 @@ TEST_F(PlayerTest, an_anchor_is_taken_away_and_put_back_and_the_run_repeats) {
   EXPECT_EQ(player().row()->anchor[1].state, io::k_anchor_away);
   player().undo();
   EXPECT_TRUE(player().parameters().anchors[1]);
+  EXPECT_TRUE(until([&] { return player().row()->anchor[1].state == io::k_anchor_slack; }));  // nor now
   run_to(0.6);
   EXPECT_NE(player().row()->anchor[1].state, io::k_anchor_away);
   player().scrub(0.3);
