@@ -34,7 +34,7 @@ class FailingWriteTest : public ProgramTest {
   static void each_write(const std::vector<std::string>& call, const std::string& failure, Expect expect) {
     const bool every = getenv("TOPPLE_EVERY_WRITE") != nullptr;
     int tried = 0, writes = 0;
-    for (int write = 1; !HasFailure(); write += every ? 1 : std::max(1, write / 8)) {
+    for (int write = 1; !HasFailure(); write += every ? 1 : std::max(1, write / 4)) {
       SCOPED_TRACE(failure + " of write " + std::to_string(write));
       const Ended ended = topple(call, failing(write, failure));
       writes = std::atoi(bytes_of("count").c_str());

@@ -157,7 +157,7 @@ int watched_mkdir(const char* path, mode_t mode) {
 namespace topple::app {
 namespace {
 
-constexpr int k_events = 2000;
+constexpr int k_events = 1200;
 
 class RandomEvents : public ShellTest, public ::testing::WithParamInterface<unsigned> {
  protected:
