@@ -39,7 +39,7 @@ bool list_entry(const std::string& label, bool chosen);
 void begin_panel(const char* name, const Box& box);
 
 /// What a person asks of the shell around the viewer (shell.h).
-enum class ShellRequest { none, scenes, save, export_view };
+enum class ShellRequest { none, scenes, save, export_view, furnish, new_room, shake };
 
 /// Buttons for play, pause, steps, speed, loop, restart, branches, undo and redo, and for the shell, in as
 /// many rows as the width of the box asks for; `height`: that they need.

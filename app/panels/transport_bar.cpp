@@ -7,6 +7,7 @@
 
 #include "app/panels/panels.h"
 #include "app/panels/shell_words.h"
+#include "app/picture/furnish_words.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 
@@ -171,6 +172,7 @@ ShellRequest draw_transport_bar(Player& player, const Box& box, float& height) {
   gap();
   ShellRequest asked = ShellRequest::none;
   const std::tuple<const Phrase&, const Phrase&, ShellRequest> shell[] = {
+      {furnish_words::k_furnish, furnish_words::k_furnish_about, ShellRequest::furnish},
       {k_scenes, k_scenes_about, ShellRequest::scenes},
       {k_save, k_save_about, ShellRequest::save},
       {k_export, k_export_about, ShellRequest::export_view}};

@@ -152,6 +152,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
     for (const topple::Panel& sheet : model.panels) {
       if (model.bodies[sheet.body].solid) continue;
       render::Panel panel;
+      panel.body = static_cast<std::uint32_t>(sheet.body);
       for (int k = 0; k < 4; ++k) panel.corners[k] = to_float(position(drawn, sheet.node[k]) + shift);
       out.panels.push_back(panel);
     }

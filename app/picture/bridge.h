@@ -32,6 +32,8 @@ class Bridge {
                            const PictureSettings& settings = {}) const;
   /// The bodies of another row as a ghost in `out`.
   void add_ghost(const io::FrameRow& row, const PictureSettings& settings, render::SceneFrame& out) const;
+  /// Of its tubes.
+  const std::vector<render::Profile>& profiles() const { return profiles_; }
   /// Where the colours of a row end, in the quantity's unit.
   double colour_maximum(const io::FrameRow& row, const PictureSettings& settings) const;
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "app/panels/shell_words.h"
+#include "app/picture/furnish_words.h"
 #include "app/window/opening.h"
 #include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene.h"
@@ -185,7 +186,13 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   draw_scenes(fonts);
   ImGui::EndChild();
   ImGui::EndChild();
+  ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", say(ww::k_choose_keys).c_str());
+  const std::string new_room = say(furnish_words::k_new_room) + "…";
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(new_room.c_str()).x -
+                  2 * ImGui::GetStyle().FramePadding.x);
+  if (ImGui::Button(new_room.c_str())) new_room_ = true;
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_new_room_about).c_str());
   ImGui::End();
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/panels/panels.h"
@@ -30,6 +31,8 @@ class Chooser {
   void draw(const Box& box, const render::OverlayFonts& fonts);
   /// What was chosen since the last call: the name of a scene or a path.
   std::optional<std::string> take_choice();
+  /// A new room was asked for since the last call.
+  bool take_new_room() { return std::exchange(new_room_, false); }
 
   /// Names that the filter lets through: files first, then built-in scenes.
   std::vector<std::string> shown() const;
@@ -56,6 +59,7 @@ class Chooser {
   bool in_recent_ = false;  ///< where the selection is
   int selected_ = 0, columns_ = 1;
   std::optional<std::string> choice_;
+  bool new_room_ = false;
 };
 
 }  // namespace topple::app

@@ -91,6 +91,13 @@ LiveSource open_records(const io::Scene& present, const std::vector<std::string>
   return source;
 }
 
+LiveSource open_room(io::Scene scene) {
+  LiveSource source;
+  source.output = default_recording(scene.name);
+  source.scene = std::make_shared<const io::Scene>(std::move(scene));
+  return source;
+}
+
 std::vector<std::string> recent_files() {
   std::vector<std::string> paths;
   const std::string folder = state_folder();

@@ -32,6 +32,9 @@ LiveSource open_source(const ViewOptions& options, const std::string& program = 
 /// `present` with accelerograms as the record of its first shake. Throws io::InputError.
 LiveSource open_records(const io::Scene& present, const std::vector<std::string>& files);
 
+/// A run of this scene, recorded in state_folder().
+LiveSource open_room(io::Scene scene);
+
 /// Files that were opened last, the latest first, at most k_most_recent.
 inline constexpr std::size_t k_most_recent = 12;
 std::vector<std::string> recent_files();

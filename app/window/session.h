@@ -27,6 +27,7 @@ class Session {
   Player& player() { return player_; }
   Viewer& viewer() { return viewer_; }
   const io::Scene& scene() const { return *scene_; }
+  const std::shared_ptr<const io::Scene>& scene_ptr() const { return scene_; }
   /// What opens it anew: a file or the name of a built-in scene.
   const std::string& source() const { return source_; }
   /// The file that holds what is shown; empty: none.

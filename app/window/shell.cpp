@@ -70,6 +70,9 @@ void Shell::show(LiveSource source, const std::string& path) {
         std::launch::async, [run = Session::leave(std::move(session_))] { return run->close("stopped"); }));
   }
   applied_.reset();
+  furnishing_ = false;
+  if (!shaking_) room_.reset();
+  shaken_ = shaking_ ? source.scene.get() : nullptr;
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);
@@ -119,8 +122,18 @@ bool Shell::finish_opening() {
   Opening done = std::move(*opening_);
   opening_.reset();
   try {
-    show(done.take(), opening_path_);
+    LiveSource source = done.take();
+    std::optional<EarlierRun> before;
+    if (shaking_ && session_) before = EarlierRun(session_->scene_ptr(), session_->player().way());
+    show(std::move(source), opening_path_);
+    if (shaking_) {
+      session_->viewer().look(room_->orbit());
+      if (before) session_->viewer().show_beside(*std::move(before));
+      session_->player().play();
+    }
+    shaking_ = false;
   } catch (const std::exception& error) {
+    shaking_ = false;
     message_ = {say(ww::k_not_opened), error.what(), session_ ? say(ww::k_kept_open) : ""};
   }
   return true;
@@ -145,7 +158,8 @@ bool Shell::update(double wall_s) {
       message_ = {say(ww::k_record_broke_off), status.record_failure, ""};
     return true;
   });
-  const bool seen = session_ && session_->viewer().update(wall_s);
+  bool seen = session_ && session_->viewer().update(wall_s);
+  if (furnishing_) seen = room_->update(wall_s) || seen;
   if (session_) watch_trouble();
   if (demo_) start_demo();
   if (news || message_.has_value() != had_message) frames_due_ = k_frames_of_news;
@@ -189,7 +203,17 @@ bool Shell::covered() const {
 
 void Shell::ask(ShellRequest request) {
   if (request == ShellRequest::scenes) chooser_.open();
-  if (!session_) return;
+  if (request == ShellRequest::new_room) furnish_new_room();
+  if (request == ShellRequest::shake) shake_room();
+  if (request == ShellRequest::furnish) furnish();
+  if (furnishing_ && request == ShellRequest::save) {
+    try {
+      save_.open(to_save_.emplace(room_->room().loader()()));
+    } catch (const io::InputError& error) {
+      room_->room().refuse(error.what());
+    }
+  }
+  if (!session_ || furnishing_) return;
   if (request == ShellRequest::save) save_.open(session_->scene());
   if (request == ShellRequest::export_view) export_.open(session_->player());
 }
@@ -206,14 +230,18 @@ void Shell::press(const render::KeyPress& press) {
   } else if (chooser_.is_open()) {
     if (press.key != render::key::escape)
       chooser_.press(press);
-    else if (session_)
+    else if (session_ || furnishing_)
       chooser_.close();
   } else if (press.control && press.key == 'O') {
     ask(ShellRequest::scenes);
   } else if (press.control && press.key == 'S') {
     ask(ShellRequest::save);
+  } else if (furnishing_) {
+    press_in_room(press);
   } else if (press.control && press.key == 'E') {
     ask(ShellRequest::export_view);
+  } else if (press.key == render::key::f2 && !ImGui::GetIO().WantTextInput) {
+    ask(ShellRequest::furnish);
   } else if (session_) {
     session_->viewer().press(press);
   }
@@ -224,6 +252,7 @@ const render::OverlayFonts& Shell::fonts() const {
 }
 
 void Shell::build() {
+  if (furnishing_) return build_room();
   if (!session_) {
     build_over();
     ImGui::Render();
@@ -246,6 +275,10 @@ void Shell::build_over() {
   if (chooser_.is_open()) {
     chooser_.draw(window, fonts());
     if (const auto choice = chooser_.take_choice()) open(*choice);
+    if (chooser_.take_new_room()) furnish_new_room();
+  } else if (save_.is_open() && furnishing_) {
+    const std::string saved = save_.draw(*to_save_, to_save_->setup.parameters, window, fonts());
+    if (!saved.empty()) room_->show_message(saved);
   } else if (save_.is_open()) {
     const std::string saved = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
     if (!saved.empty()) session_->viewer().show_message(saved);
@@ -277,6 +310,7 @@ void Shell::draw_opening(const Box& window) {
 }
 
 render::Surface Shell::surface() const {
+  if (furnishing_) return room_->surface();
   if (session_) return session_->viewer().surface();
   const ImGuiIO& io = ImGui::GetIO();
   return {.width = static_cast<int>(std::lround(io.DisplaySize.x * io.DisplayFramebufferScale.x)),
@@ -288,6 +322,7 @@ void Shell::report_frame_time(double ms) {
 }
 
 std::string Shell::title() const {
+  if (furnishing_) return "topple: " + room_->room().scene().name;
   return session_ ? "topple: " + session_->scene().name : "topple";
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/furnish/furnish_view.h"
 #include "app/window/chooser.h"
 #include "app/window/export_dialog.h"
 #include "app/window/message.h"
@@ -37,6 +38,12 @@ class Shell {
   /// scene that is open.
   void drop(const std::vector<std::string>& paths);
   void choose_scene() { chooser_.open(); }
+  /// Furnishes the room of what is open, whose run pauses; or goes back to that run.
+  void furnish();
+  /// Furnishes a new room.
+  void furnish_new_room();
+  /// Runs the furnished room; the run before it stays as a ghost.
+  void shake_room();
 
   /// As of Viewer.
   bool update(double wall_s);
@@ -48,7 +55,7 @@ class Shell {
 
   /// "topple: paper-a".
   std::string title() const;
-  bool playing() const { return session_ && session_->player().playing(); }
+  bool playing() const { return !furnishing_ && session_ && session_->player().playing(); }
   /// Closes everything as LiveRun::close does; the last in the list is what was open.
   std::vector<LiveStatus> close(const std::string& status);
 
@@ -58,6 +65,9 @@ class Shell {
   ExportDialog& export_dialog() { return export_; }
   const std::optional<Message>& message() const { return message_; }
   bool opening() const { return opening_.has_value(); }
+  bool furnishing() const { return furnishing_; }
+  /// The room that is or was furnished last; null: none.
+  FurnishView* room() { return room_.get(); }
 
  private:
   bool covered() const;
@@ -67,6 +77,10 @@ class Shell {
   void ask(ShellRequest request);
   void watch_trouble();
   void build_over();
+  void build_room();
+  float interface_scale() const;
+  std::string text_of_session() const;
+  void press_in_room(const render::KeyPress& press);
   void draw_opening(const Box& window);
   void answer_message();
   void start_demo();
@@ -86,6 +100,11 @@ class Shell {
   std::optional<Opening> opening_;
   std::string opening_path_;
   std::unique_ptr<Session> session_;
+  std::unique_ptr<FurnishView> room_;
+  bool furnishing_ = false;            ///< room_ is shown, not the session
+  bool shaking_ = false;               ///< what is being opened is room_
+  const io::Scene* shaken_ = nullptr;  ///< the session's that came of room_; null: it did not
+  std::optional<io::Scene> to_save_;   ///< room_ as it is saved
   std::vector<std::future<LiveStatus>> closing_;
   std::string shown_failure_, shown_trouble_;  ///< for which a message was shown
   struct WantedDemo {

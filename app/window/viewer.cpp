@@ -47,6 +47,26 @@ bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::
 
 }  // namespace
 
+EarlierRun::EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way)
+    : scene_(std::move(scene)),
+      way_(std::move(way)),
+      extent_(std::make_unique<const RunExtent>()),
+      bridge_(std::make_unique<const Bridge>(*scene_, *extent_)) {}
+
+void EarlierRun::add(double time, const PictureSettings& settings, render::SceneFrame& out) const {
+  if (way_.empty() || time > way_.back()->time) return;
+  const auto later = std::ranges::lower_bound(way_, time, {}, [](const RowPtr& row) { return row->time; });
+  const io::FrameRow& after = **later;
+  const io::FrameRow row = later == way_.begin() ? after : blend(**(later - 1), after, time);
+  render::SceneFrame ghost;
+  bridge_->add_ghost(row, settings, ghost);
+  const auto profiles = static_cast<std::uint32_t>(out.profiles.size());
+  out.profiles.insert(out.profiles.end(), bridge_->profiles().begin(), bridge_->profiles().end());
+  out.ghost_stations = std::move(ghost.ghost_stations);
+  out.ghost_tubes = std::move(ghost.ghost_tubes);
+  for (render::Tube& tube : out.ghost_tubes) tube.profile += profiles;
+}
+
 render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
                                       const io::Scene* scene) {
   window_language() = appearance.language;
@@ -223,6 +243,8 @@ void Viewer::draw_scene() {
           player_.scene().setup.model.elements[static_cast<std::size_t>(failed_element_)].member;
     if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
       bridge_.add_ghost(*ghost, settings_, frame_);
+    else if (ghost_shown_ && earlier_ && player_.ghost_way().empty())
+      earlier_->add(row_->time, settings_, frame_);
   }
   if (follows_ && scene_changed_) move_with_followed();
   if (!fitted_) {
@@ -242,6 +264,12 @@ void Viewer::draw_scene() {
                     drawn_still_ ? render::Quality::still : render::Quality::interactive);
   words_due_ = words_due_ || changed;  // legend and labels were written for what was drawn before
   scene_changed_ = camera_changed_ = false;
+}
+
+void Viewer::look(const render::Orbit& orbit) {
+  orbit_ = from_ = to_ = orbit;
+  flight_ = 1;
+  fitted_ = moved_ = camera_changed_ = true;
 }
 
 void Viewer::follow(const std::optional<std::size_t>& body) {

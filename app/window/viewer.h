@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,21 @@
 #include "render/scene/pick.h"
 
 namespace topple::app {
+
+/// A run that was left for one of another model, beside which it is drawn.
+class EarlierRun {
+ public:
+  /// `way`: its rows, in the order of time.
+  EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way);
+  /// Its bodies at `time`, as ghosts; as long as it lasted.
+  void add(double time, const PictureSettings& settings, render::SceneFrame& out) const;
+
+ private:
+  std::shared_ptr<const io::Scene> scene_;
+  std::vector<RowPtr> way_;
+  std::unique_ptr<const RunExtent> extent_;
+  std::unique_ptr<const Bridge> bridge_;
+};
 
 class Viewer {
  public:
@@ -82,6 +98,13 @@ class Viewer {
   const Appearance& appearance() const { return appearance_; }
   const render::OverlayFonts& fonts() const { return fonts_; }
   const render::Orbit& orbit() const { return orbit_; }
+  /// The scene is seen so, from the next frame on.
+  void look(const render::Orbit& orbit);
+  /// Of letters and panels, as shown.
+  float scale() const { return scale_; }
+  /// Something else was drawn in its place.
+  void redraw() { scene_changed_ = true; }
+  void show_beside(EarlierRun run) { earlier_ = std::move(run); }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
   void choose_settings(const PictureSettings& settings) {
@@ -158,6 +181,7 @@ class Viewer {
   Histories histories_;
   TeachingState teaching_;
   PrecisionState precision_;
+  std::optional<EarlierRun> earlier_;
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;

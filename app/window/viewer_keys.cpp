@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "app/picture/furnish_words.h"
 #include "app/picture/row.h"
 #include "app/picture/window_words.h"
 #include "app/window/viewer.h"
@@ -52,6 +53,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {k_wheel, k_key_wheel},
       {k_click, k_key_click},
       {{"Esc", "Esc"}, k_key_let_go, render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
+      {{"F2", "F2"}, furnish_words::k_key_furnish},
       {{"Ctrl+O", "Ctrl+O"}, k_key_scenes},
       {{"Ctrl+S", "Ctrl+S"}, k_key_save},
       {{"Ctrl+E", "Ctrl+E"}, k_key_export},

@@ -8,6 +8,7 @@
 
 #include "app/chart/theme.h"
 #include "app/panels/shell_words.h"
+#include "app/picture/furnish_words.h"
 #include "app/picture/image_files.h"
 #include "app/picture/words.h"
 #include "app/support/files.h"
@@ -62,6 +63,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
   if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
     add(fonts_.small, say(k_ghost_is, *ghost));
+  else if (earlier_ && ghost_shown_)
+    add(fonts_.small, say(furnish_words::k_ghost_before));
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;
@@ -136,7 +139,7 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
   } else if (tab_ == Tab::picture) {
     if (row && draw_picture_settings(settings_, bridge_.colour_maximum(*row, settings_)))
       scene_changed_ = true;
-    if (!player_.ghost_way().empty() && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
+    if ((earlier_ || !player_.ghost_way().empty()) && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
       scene_changed_ = true;
     ImGui::Separator();
     static constexpr std::pair<Phrase, render::NamedView> views[] = {{k_front, render::NamedView::front},

@@ -99,7 +99,8 @@ struct Window::Parts {
   static void note_key(GLFWwindow* w, int code, int scancode, int action, int modifiers) {
     Parts& parts = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
     parts.input = true;
-    if (action != GLFW_PRESS || code == GLFW_KEY_UNKNOWN) return;
+    const bool repeats = action == GLFW_REPEAT && code >= GLFW_KEY_RIGHT && code <= GLFW_KEY_UP;
+    if ((action != GLFW_PRESS && !repeats) || code == GLFW_KEY_UNKNOWN) return;
     // GLFW names keys after the American keyboard; what counts is what stands on them.
     const char* const name = code < 256 ? glfwGetKeyName(code, scancode) : nullptr;
     const bool one = name != nullptr && name[0] != '\0' && name[1] == '\0';

@@ -43,6 +43,7 @@ struct Tube {
 /// A translucent sheet of a cabinet: a quadrilateral, corners in order.
 struct Panel {
   std::array<Float3, 4> corners;
+  std::uint32_t body = 0;
 };
 
 /// A floor or wall: a rectangle with a metric grid (1 m bold, 0.1 m faint). `normal` points to the

@@ -136,6 +136,10 @@ bool holds_tables(const Node& node) {
 
 }  // namespace
 
+std::string written_value(const Node& node) {
+  return written(node);
+}
+
 std::string written_text(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {

@@ -95,6 +95,9 @@ void apply_override(Node& root, const std::string& override_text);
 /// A text as a TOML basic string: escaped, with double quotes around it.
 std::string written_text(std::string_view text);
 
+/// A value as TOML, on one line.
+std::string written_value(const Node& node);
+
 /// TOML text of the tree; comments are lost, order is kept.
 std::string write_toml(const Node& root);
 

@@ -122,9 +122,24 @@ std::vector<FurniturePiece> furniture_of(const Scene& scene) {
   const Node root = parse_toml(scene.text, origin);
   std::vector<SceneFile> files;
   std::vector<FurniturePiece> all;
-  for (const Piece& piece : read_pieces(root, origin, kept_files(scene), files))
-    all.push_back({piece.name, all.size() + 1, piece.size, rocking_size(piece), piece.mass,
-                   piece.contents_mass, piece.contents_cg});
+  std::vector<Piece> pieces = read_pieces(root, origin, kept_files(scene), files);
+  for (const Piece& piece : pieces)
+    all.push_back({.name = piece.name,
+                   .kind = piece.entry.text("kind"),
+                   .table = piece.kind.table,
+                   .number = all.size() + 1,
+                   .size = piece.size,
+                   .rocking_size = rocking_size(piece),
+                   .mass = piece.mass,
+                   .contents_mass = piece.contents_mass,
+                   .contents_cg = piece.contents_cg,
+                   .at = Vec3::Zero(),
+                   .yaw = 0});
+  place_pieces(pieces, Entry(origin, "", "", &root, root.place));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    all[i].at = pieces[i].stand.at;
+    all[i].yaw = pieces[i].stand.yaw;
+  }
   return all;
 }
 

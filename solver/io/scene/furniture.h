@@ -19,12 +19,16 @@ void expand_furniture(Node& root, const std::string& origin, const ReadSceneFile
 /// What a [[furniture]] of a scene is, what it leaves to its kind included.
 struct FurniturePiece {
   std::string name;
+  std::string kind;      ///< "bookshelf", or a file
+  std::string table;     ///< of the body that it becomes: "cabinet", "frame" or "block"
   std::size_t number;    ///< of the entry, from 1
   Vec3 size;             ///< m, outer
   Vec3 rocking_size;     ///< m, between the centre lines of its edges, about which it rocks
   double mass;           ///< kg, empty
   double contents_mass;  ///< kg
   Vec3 contents_cg;      ///< m, from the middle of the outer base
+  Vec3 at;               ///< m, middle of the footprint
+  double yaw;            ///< rad
 };
 
 /// The [[furniture]] of a scene, in its order.

@@ -35,6 +35,13 @@ struct FurnitureKind {
   Vec3 contents_cg;                       ///< m, from the middle of the outer base
 };
 
+/// Where a piece stands.
+struct Stand {
+  Vec3 at;     ///< m, middle of the footprint
+  Vec3 front;  ///< unit, horizontal: where its front looks
+  double yaw;  ///< rad, of the front
+};
+
 /// A piece whose body has yet to be fitted to it.
 struct Piece {
   Entry entry;  ///< [[furniture]]
@@ -46,6 +53,7 @@ struct Piece {
   double contents_mass = 0;         ///< kg
   Vec3 contents_cg = Vec3::Zero();  ///< m, from the middle of the outer base
   SectionWidth width = {};
+  Stand stand = {};  ///< after place_pieces()
 
   /// Its body, for what is read of it.
   Entry body_entry() const { return entry.as(kind.table, body); }
@@ -60,13 +68,6 @@ void fit(Piece& piece);
 
 /// Size of a piece between the centre lines of its edges, m.
 Vec3 rocking_size(const Piece& piece);
-
-/// Where a piece stands.
-struct Stand {
-  Vec3 at;     ///< m, middle of the footprint
-  Vec3 front;  ///< unit, horizontal: where its front looks
-  double yaw;  ///< rad, of the front
-};
 
 /// Puts the fitted body there.
 void put(Piece& piece, const Stand& stand);

@@ -53,7 +53,8 @@ class Arrangement {
   void run() {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       check_choice(pieces_[i].entry);
-      put(pieces_[i], stand(i));
+      pieces_[i].stand = stand(i);
+      put(pieces_[i], pieces_[i].stand);
     }
   }
 

@@ -24,6 +24,9 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/cli/usage_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/verification_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cli/verify_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/furnish/furnish_view_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/furnish/room_edits_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/furnish/snap_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf/key_frames_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/live_recorder_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp

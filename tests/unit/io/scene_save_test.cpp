@@ -52,6 +52,52 @@ TEST(RewriteToml, what_is_written_inline_is_written_anew) {
   EXPECT_NE(text.find("settle = true"), std::string::npos);
 }
 
+TEST(RewriteToml, entries_come_and_go_with_all_of_their_lines) {
+  const std::string text =
+      "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[0, 0, 0],  # here\n  "
+      "[1, 0, "
+      "0]]\n\n[[furniture]]\nkind = \"chair\"\n[furniture.contents]\nmass = 1\n\n[run]\nduration = 1 # s\n";
+  EXPECT_EQ(rewrite_toml(text, {change({"furniture", "2"}, std::nullopt)}),
+            "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[0, 0, 0],  # "
+            "here\n  [1, 0, "
+            "0]]\n\n[run]\nduration = 1 # s\n");
+  EXPECT_EQ(rewrite_toml(
+                text, {change({"furniture", "1"}, std::nullopt), change({"furniture", "1"}, std::nullopt)}),
+            "topple = 1\n\n# at the back\n\n[run]\nduration = 1 # s\n");
+  EXPECT_EQ(rewrite_toml(text, {change({"furniture", "1", "copies", "1"}, "[2, 0, 0]"),
+                                change({"furniture", "1", "copies", "2"}, std::nullopt)}),
+            "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[2, 0, "
+            "0]]\n\n[[furniture]]\n"
+            "kind = \"chair\"\n[furniture.contents]\nmass = 1\n\n[run]\nduration = 1 # s\n");
+  EXPECT_EQ(rewrite_toml(text, {change({"furniture", "3"}, "{ kind = \"table\", at = [1, 2.5] }")}),
+            "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[0, 0, 0],  # "
+            "here\n  [1, 0, "
+            "0]]\n\n[[furniture]]\nkind = \"chair\"\n[furniture.contents]\nmass = 1\n\n[[furniture]]\nkind = "
+            "\"table\"\nat = "
+            "[1, 2.5]\n\n[run]\nduration = 1 # s\n");
+  EXPECT_EQ(rewrite_toml("a = 1", {change({"wall", "1"}, "{ at = [0, 1] }")}),
+            "a = 1\n\n[[wall]]\nat = [0, 1]\n");
+  EXPECT_EQ(rewrite_toml("a = 1\n[ceiling] # high\nat = 3\n", {change({"ceiling"}, std::nullopt)}),
+            "a = 1\n");
+}
+
+TEST(RewriteToml, entries_within_brackets_come_and_go) {
+  const std::string text =
+      "wall = [\n  { name = \"a\", at = [0, 1] }, # left\n  { name = \"b\", at = [2, 1] },\n]\n[floor]\n";
+  EXPECT_EQ(rewrite_toml(text, {change({"wall", "1"}, std::nullopt)}),
+            "wall = [\n  # left\n  { name = \"b\", at = [2, 1] },\n]\n[floor]\n");
+  EXPECT_EQ(
+      rewrite_toml(text, {change({"wall", "2"}, std::nullopt), change({"wall", "1", "name"}, std::nullopt),
+                          change({"wall", "1", "normal"}, "[1, 0, 0]")}),
+      "wall = [\n  { at = [0, 1], normal = [1, 0, 0] }, # left\n  ]\n[floor]\n");
+  EXPECT_EQ(
+      rewrite_toml(text, {change({"wall", "3"}, "{ at = [5, 5] }")}),
+      "wall = [\n  { name = \"a\", at = [0, 1] }, # left\n  { name = \"b\", at = [2, 1] }, { at = [5, 5] "
+      "},\n]\n[floor]\n");
+  EXPECT_EQ(rewrite_toml("wall = [{ at = 1 }] # only\n[floor]\n", {change({"wall", "1"}, std::nullopt)}),
+            "[floor]\n");
+}
+
 const std::string k_to_be_saved = R"(topple = 1
 title = "A scene to be saved"   # 題
 [run]

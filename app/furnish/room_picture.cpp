@@ -1,0 +1,166 @@
+#include "app/furnish/room_picture.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/picture/bridge.h"
+#include "app/picture/row.h"
+#include "app/picture/solid_bodies.h"
+#include "solver/math/rotation.h"
+
+namespace topple::app {
+namespace {
+
+constexpr double k_farthest_sight = 100;  // m, of a place on the floor from the eye
+
+io::FrameRow start_row(const Setup& setup) {
+  const Model& model = setup.model;
+  io::FrameRow row = io::blank_row(io::row_shape(model));
+  const State start = start_state(model, setup.starts);
+  for (std::size_t i = 0; i < start.position.size(); ++i) {
+    for (int k = 0; k < 3; ++k)
+      row.position[3 * i + static_cast<std::size_t>(k)] = static_cast<float>(start.position[i][k]);
+    const Quat& q = start.rotation[i];
+    const double parts[] = {q.w(), q.x(), q.y(), q.z()};
+    for (std::size_t k = 0; k < 4; ++k) row.rotation[4 * i + k] = static_cast<float>(parts[k]);
+  }
+  for (std::size_t b = 0; b < row.body.size(); ++b) {
+    const BodyStart how = b < setup.starts.size() ? setup.starts[b] : BodyStart{};
+    const Quat turn = exp_quaternion(how.rotation);
+    const Vec3 centre = how.pivot + turn * (model.bodies[b].centre_of_gravity - how.pivot);
+    row.body[b].x = centre.x(), row.body[b].y = centre.y(), row.body[b].z = centre.z();
+    row.body[b].qw = turn.w(), row.body[b].qx = turn.x(), row.body[b].qy = turn.y(),
+    row.body[b].qz = turn.z();
+  }
+  return row;
+}
+
+bool is_of(const Model& model, const render::Tube& tube, std::size_t body) {
+  return tube.member < model.members.size() && tube.body == body;
+}
+
+}  // namespace
+
+render::SceneFrame start_frame(const io::Scene& scene) {
+  const io::FrameRow row = start_row(scene.setup);
+  RunExtent extent;
+  extent.add(scene.setup.model, scene.setup.parameters, row);
+  PictureSettings settings;
+  settings.words = false;
+  render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters, settings);
+  SolidBodies(scene).dress(row, frame);
+  return frame;
+}
+
+PieceShape shape_of(const render::SceneFrame& frame, const Model& model, const RoomPiece& piece) {
+  PieceShape shape;
+  const Quat back(Eigen::AngleAxisd(-piece.spot.yaw, Vec3::UnitZ()));
+  const Vec3 at(piece.spot.at.x(), piece.spot.at.y(), piece.floor);
+  const auto local = [&](render::Float3& x) { x = to_float(back * (Vec3(x[0], x[1], x[2]) - at)); };
+  for (render::Tube tube : frame.tubes) {
+    if (!is_of(model, tube, piece.body)) continue;
+    const std::size_t first = shape.stations.size();
+    for (std::size_t k = 0; k < tube.station_count; ++k) {
+      render::Station station = frame.stations[tube.first_station + k];
+      local(station.position);
+      const Quat turn =
+          back * Quat(station.rotation[0], station.rotation[1], station.rotation[2], station.rotation[3]);
+      station.rotation = {static_cast<float>(turn.w()), static_cast<float>(turn.x()),
+                          static_cast<float>(turn.y()), static_cast<float>(turn.z())};
+      shape.stations.push_back(station);
+    }
+    shape.profiles.push_back(frame.profiles[tube.profile]);
+    tube.profile = static_cast<std::uint32_t>(shape.profiles.size() - 1);
+    tube.first_station = static_cast<std::uint32_t>(first);
+    shape.tubes.push_back(tube);
+  }
+  for (render::Panel panel : frame.panels) {
+    if (panel.body != piece.body) continue;
+    for (render::Float3& corner : panel.corners) local(corner);
+    shape.panels.push_back(panel);
+  }
+  return shape;
+}
+
+void hide_body(const Model& model, std::size_t body, render::SceneFrame& frame) {
+  std::erase_if(frame.tubes, [&](const render::Tube& tube) { return is_of(model, tube, body); });
+  std::erase_if(frame.panels, [&](const render::Panel& panel) { return panel.body == body; });
+}
+
+void add_shape(const PieceShape& shape, const Spot& spot, double floor, std::size_t body,
+               const std::optional<render::Float4>& colour, render::SceneFrame& frame) {
+  const Quat turn(Eigen::AngleAxisd(spot.yaw, Vec3::UnitZ()));
+  const Vec3 at(spot.at.x(), spot.at.y(), floor);
+  const auto placed = [&](render::Float3& x) { x = to_float(at + turn * Vec3(x[0], x[1], x[2])); };
+  const auto profiles = static_cast<std::uint32_t>(frame.profiles.size());
+  const auto stations = static_cast<std::uint32_t>(frame.stations.size());
+  frame.profiles.insert(frame.profiles.end(), shape.profiles.begin(), shape.profiles.end());
+  for (render::Station station : shape.stations) {
+    placed(station.position);
+    const Quat now =
+        turn * Quat(station.rotation[0], station.rotation[1], station.rotation[2], station.rotation[3]);
+    station.rotation = {static_cast<float>(now.w()), static_cast<float>(now.x()), static_cast<float>(now.y()),
+                        static_cast<float>(now.z())};
+    frame.stations.push_back(station);
+  }
+  for (render::Tube tube : shape.tubes) {
+    tube.profile += profiles;
+    tube.first_station += stations;
+    tube.body = static_cast<std::uint32_t>(body);
+    if (colour) tube.colour = *colour;
+    frame.tubes.push_back(tube);
+  }
+  if (colour) return;  // sheets have no colour of their own
+  for (render::Panel panel : shape.panels) {
+    for (render::Float3& corner : panel.corners) placed(corner);
+    panel.body = static_cast<std::uint32_t>(body);
+    frame.panels.push_back(panel);
+  }
+}
+
+Sightline sightline(const render::Camera& camera, float width, float height, float x, float y) {
+  const Eigen::Matrix4d back = (camera.projection * camera.view).cast<double>().inverse();
+  const Eigen::Vector4d clip(2. * x / width - 1, 1 - 2. * y / height, 1, 1);
+  const Eigen::Vector4d far = back * clip;
+  const Eigen::Vector3d eye = camera.eye.cast<double>();
+  return {eye, (far.head<3>() / far.w() - eye).normalized()};
+}
+
+std::optional<Vec2> on_level(const Sightline& sight, double height) {
+  const double way = (height - sight.from.z()) / sight.direction.z();
+  if (!(way > 0) || way > k_farthest_sight) return std::nullopt;
+  return Vec2((sight.from + way * sight.direction).head<2>());
+}
+
+std::optional<std::size_t> ground_at(const Sightline& sight, const std::vector<render::Ground>& grounds) {
+  std::optional<std::size_t> found;
+  double nearest = k_farthest_sight;
+  const auto vector = [](const render::Float3& v) { return Vec3(v[0], v[1], v[2]); };
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
+    const render::Ground& ground = grounds[i];
+    const Vec3 normal = vector(ground.normal), along = vector(ground.along);
+    const double slope = sight.direction.dot(normal);
+    if (slope >= 0) continue;  // seen from behind
+    const double way = (vector(ground.centre) - sight.from).dot(normal) / slope;
+    if (!(way > 0) || way > nearest) continue;
+    const Vec3 from = sight.from + way * sight.direction - vector(ground.centre);
+    if (std::abs(from.dot(along)) > ground.half_length ||
+        std::abs(from.dot(normal.cross(along))) > ground.half_width)
+      continue;
+    nearest = way;
+    found = i;
+  }
+  return found;
+}
+
+std::optional<Eigen::Vector2f> pixel_of(const render::Camera& camera, float width, float height,
+                                        const Eigen::Vector3f& place) {
+  const Eigen::Vector4f clip =
+      camera.projection * camera.view * Eigen::Vector4f(place.x(), place.y(), place.z(), 1);
+  if (!(clip.w() > 1e-3f)) return std::nullopt;
+  return Eigen::Vector2f((clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height);
+}
+
+}  // namespace topple::app

@@ -1,0 +1,153 @@
+// What the window says while a room is furnished.
+#pragma once
+
+#include "app/picture/window_words.h"
+
+namespace topple::app::furnish_words {
+
+// what is refused
+inline constexpr Phrase k_is_anchored{
+    "{0} is held by the anchor \"{1}\", which has its own place: take that away first",
+    "{0} は固定具「{1}」で留められています。先に固定具を外してください"};
+inline constexpr Phrase k_copy_is_held{
+    "{0} is one of several copies, and a fixing, anchor or probe names {1}: take that away first",
+    "{0} は複製の一つで、{1} を参照する固定具または測定点があります。先にそれを外してください"};
+inline constexpr Phrase k_frame_turns_not{
+    "{0} is a [[frame]] whose nodes have their own places: it cannot be turned",
+    "{0} は節点座標で書かれた [[frame]] なので回転できません"};
+inline constexpr Phrase k_frame_copied{
+    "{0} is one of several copies of a [[frame]]: write more of them in the file",
+    "{0} は [[frame]] の複製です。追加はファイルに書いてください"};
+inline constexpr Phrase k_copies_share_name{"{0} is one of several copies, which share one name",
+                                            "{0} は複製の一つで、名前を共有しています"};
+inline constexpr Phrase k_wall_too_short{
+    "a wall of {0:.0f} mm has no length: choose two places 100 mm apart or more",
+    "長さ {0:.0f} mm の壁は作れません。100 mm 以上離れた2点を選んでください"};
+inline constexpr Phrase k_no_room_for_copy{"there is no room for a second one beside {0}",
+                                           "{0} の隣に置く場所がありません"};
+inline constexpr Phrase k_not_to_there{"a {0} does not lead to {1}", "{0} は {1} には取り付けられません"};
+inline constexpr Phrase k_only_shaken{"only a scene that is shaken can be furnished",
+                                      "家具を配置できるのは加振するシーンだけです"};
+
+// what to do
+inline constexpr Phrase k_furnish{"Furnish", "配置"};
+inline constexpr Phrase k_furnish_about{"Place, move and fix furniture in this room (F2)",
+                                        "この部屋の家具を配置・移動・固定する（F2）"};
+inline constexpr Phrase k_key_furnish{"furnish the room", "部屋の家具を配置"};
+inline constexpr Phrase k_shake_it{"Shake it", "揺らす"};
+inline constexpr Phrase k_shake_it_about{"A run of this room under the same shake (Space)",
+                                         "同じ加振でこの部屋を計算する（Space）"};
+inline constexpr Phrase k_new_room{"New room", "新しい部屋"};
+inline constexpr Phrase k_new_room_about{"A floor, two walls and a bookshelf to begin with",
+                                         "床・2面の壁・本棚から始める"};
+inline constexpr Phrase k_back{"Back", "戻る"};
+inline constexpr Phrase k_back_about{"To the run as it was; the room stays as it is here (F2)",
+                                     "元の計算に戻る。ここでの配置は残る（F2）"};
+inline constexpr Phrase k_undo_furnish{"Takes the last change back (Ctrl+Z)",
+                                       "直前の変更を取り消す（Ctrl+Z）"};
+inline constexpr Phrase k_redo_furnish{"Makes it again (Ctrl+Y)", "取り消した変更をやり直す（Ctrl+Y）"};
+
+inline constexpr Phrase k_hint_select{
+    "Click a piece to select it, drag it to move it. Choose one at the right and click where it is to stand.",
+    "クリックで選択、ドラッグで移動。右の一覧から選び、置く場所をクリックします。"};
+inline constexpr Phrase k_hint_selected{
+    "{0}: drag or arrows move it, Q and E turn it, Ctrl+D copies it, Del removes it.",
+    "{0}：ドラッグまたは矢印で移動、Q・E で回転、Ctrl+D で複製、Del で削除。"};
+inline constexpr Phrase k_hint_place{
+    "Click where the {0} is to stand; Q and E turn it, Esc lets go. With Shift: several.",
+    "{0} を置く場所をクリック。Q・E で回転、Esc で中止、Shift で続けて配置。"};
+inline constexpr Phrase k_hint_wall_from{"A wall: click one place that it goes through.",
+                                         "壁：通る点をクリックしてください。"};
+inline constexpr Phrase k_hint_wall_to{"A wall: click a second place. Its face will look at the furniture.",
+                                       "壁：もう1点をクリック。表面は家具の側を向きます。"};
+inline constexpr Phrase k_hint_fixing_from{"{0}: click the piece that it holds.",
+                                           "{0}：固定する家具をクリックしてください。"};
+inline constexpr Phrase k_hint_fixing_to{
+    "{0}: click what it holds {1} to: a wall, the floor or another piece.",
+    "{0}：{1} の取り付け先（壁・床・別の家具）をクリックしてください。"};
+inline constexpr Phrase k_checking{"checking …", "確認中…"};
+inline constexpr Phrase k_furnishing{"furnishing", "配置中"};
+
+inline constexpr Phrase k_ghost_before{"pale: the run before the room was changed",
+                                       "淡色：変更前の部屋の計算"};
+
+// the panel
+inline constexpr Phrase k_tab_kinds{"Furniture", "家具"};
+inline constexpr Phrase k_tab_piece{"Selected", "選択中"};
+inline constexpr Phrase k_tab_room{"Walls, fixings", "壁・固定具"};
+inline constexpr Phrase k_own_kind{"a file of your own, \"my-shelf.toml\"",
+                                   "自作のファイル（my-shelf.toml）"};
+inline constexpr Phrase k_nothing_selected{"Nothing is selected. Click a piece in the room.",
+                                           "選択されていません。部屋の家具をクリックしてください。"};
+inline constexpr Phrase k_name{"name", "名前"};
+inline constexpr Phrase k_depth{"depth, mm", "奥行 [mm]"};
+inline constexpr Phrase k_width{"width, mm", "幅 [mm]"};
+inline constexpr Phrase k_height{"height, mm", "高さ [mm]"};
+inline constexpr Phrase k_mass{"mass, empty, kg", "質量（空）[kg]"};
+inline constexpr Phrase k_contents{"contents, kg", "内容物 [kg]"};
+inline constexpr Phrase k_feet_friction{"friction of feet", "脚の摩擦係数"};
+inline constexpr Phrase k_material{"material", "材料"};
+inline constexpr Phrase k_of_kind{"as the kind", "種類の既定"};
+inline constexpr Phrase k_x{"x, m", "x [m]"};
+inline constexpr Phrase k_y{"y, m", "y [m]"};
+inline constexpr Phrase k_turned{"turned, °", "向き [°]"};
+inline constexpr Phrase k_all_copies{"one of {0} copies, which share these", "{0} 個の複製で共通"};
+inline constexpr Phrase k_reset_about{"as the kind has it", "種類の既定に戻す"};
+inline constexpr Phrase k_in_file{"Its size and mass are written in the file.",
+                                  "寸法と質量はファイルに書かれています。"};
+inline constexpr Phrase k_walls{"Walls", "壁"};
+inline constexpr Phrase k_add_wall{"Wall through two places", "2点を通る壁"};
+inline constexpr Phrase k_ceiling{"ceiling, m", "天井 [m]"};
+inline constexpr Phrase k_fixings{"Fixings", "固定具"};
+inline constexpr Phrase k_fixings_about{"Choose one, then click a piece and what it is held to.",
+                                        "種類を選び、家具と取り付け先を順にクリックします。"};
+inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
+inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};
+
+// keys
+inline constexpr Phrase k_arrow_keys{"arrows", "矢印"};
+inline constexpr Phrase k_key_move{"move by 10 mm, with Shift by 100 mm", "10 mm 移動（Shift で 100 mm）"};
+inline constexpr Phrase k_key_turn_piece{"turn by 15°, with Shift by 1°", "15° 回転（Shift で 1°）"};
+inline constexpr Phrase k_key_delete{"remove the selected piece", "選択した家具を削除"};
+inline constexpr Phrase k_key_copy{"a second one beside it", "隣に複製"};
+inline constexpr Phrase k_key_undo_room{"undo", "元に戻す"};
+inline constexpr Phrase k_key_redo_room{"redo", "やり直す"};
+inline constexpr Phrase k_key_shake{"shake the room", "部屋を揺らす"};
+inline constexpr Phrase k_key_back{"back to the run, and here again", "計算と配置の切り替え"};
+inline constexpr Phrase k_key_views{"views, all of the room", "視点、全体表示"};
+inline constexpr Phrase k_key_drag{"drag a piece: move it; the room: turn the view",
+                                   "家具をドラッグ：移動、背景：視点の回転"};
+inline constexpr Phrase k_key_let_go_room{"let go", "選択・操作の解除"};
+
+// kinds of furniture, by their names in scenes
+inline constexpr Phrase k_kinds[] = {{"bookshelf", "本棚"},
+                                     {"cabinet", "書庫"},
+                                     {"chair", "椅子"},
+                                     {"chest", "たんす"},
+                                     {"cupboard", "食器棚"},
+                                     {"desk", "事務机"},
+                                     {"filing-cabinet", "書類整理庫"},
+                                     {"locker", "ロッカー"},
+                                     {"piano", "ピアノ"},
+                                     {"refrigerator", "冷蔵庫"},
+                                     {"school-chair", "学校用椅子"},
+                                     {"school-desk", "学校用机"},
+                                     {"server-rack", "サーバーラック"},
+                                     {"shelf-rack", "スチールラック"},
+                                     {"table", "テーブル"},
+                                     {"television", "テレビ"},
+                                     {"wardrobe", "洋服だんす"},
+                                     {"washing-machine", "洗濯機"}};
+inline constexpr Phrase k_fixing_kinds[] = {{"L-bracket", "L型金具"},  {"strap", "ベルト"},
+                                            {"pole", "突っ張り棒"},    {"mat", "粘着マット"},
+                                            {"stopper", "ストッパー"}, {"connector", "連結金具"}};
+
+/// The word of a table in the language of the window; as it is where the table does not have it.
+template <std::size_t n>
+std::string in_words(const Phrase (&table)[n], const std::string& word) {
+  for (const Phrase& one : table)
+    if (one.english == word) return say(one);
+  return word;
+}
+
+}  // namespace topple::app::furnish_words

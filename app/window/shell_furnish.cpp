@@ -1,0 +1,99 @@
+// Furnishing the room of what is open, and running it.
+#include <imgui.h>
+
+#include "app/furnish/room_edits.h"
+#include "app/panels/shell_words.h"
+#include "app/picture/furnish_words.h"
+#include "app/window/shell.h"
+#include "solver/io/edit/scene_save.h"
+
+namespace topple::app {
+namespace {
+
+namespace fw = furnish_words;
+
+constexpr const char* k_room_file = "my-room.toml";
+
+}  // namespace
+
+/// The scene that is open with the sliders as they are.
+std::string Shell::text_of_session() const {
+  try {
+    return io::edited_scene(session_->scene(), session_->player().parameters()).text;
+  } catch (const io::InputError&) {  // no scene can state them
+    return session_->scene().text;
+  }
+}
+
+void Shell::furnish() {
+  if (furnishing_ || !session_) {
+    furnishing_ = furnishing_ && !session_;
+    if (session_) session_->viewer().redraw();
+    return;
+  }
+  if (session_->scene().setup.run.analysis != Analysis::dynamic) {
+    session_->viewer().show_message(say(fw::k_only_shaken));
+    return;
+  }
+  session_->player().pause();
+  try {
+    const std::string text = text_of_session();
+    if (room_ && shaken_ == &session_->scene()) {
+      room_->change([text](const io::Scene&) { return text; });
+      room_->redraw();
+    } else {
+      io::Scene scene = session_->scene();
+      scene.text = text;
+      const std::string& source = session_->source();
+      room_ = std::make_unique<FurnishView>(stage_, scene,
+                                            source.ends_with(".toml") ? source : scene.name + ".toml",
+                                            session_->viewer().orbit());
+    }
+    furnishing_ = true;
+  } catch (const io::InputError& error) {
+    session_->viewer().show_message(say(window_words::k_refused, error.what()));
+  }
+}
+
+void Shell::furnish_new_room() {
+  chooser_.close();
+  if (session_) session_->player().pause();
+  const io::Scene scene = io::parse_scene(new_room(), k_room_file);
+  room_ = std::make_unique<FurnishView>(stage_, scene, k_room_file);
+  shaken_ = nullptr;
+  furnishing_ = true;
+}
+
+void Shell::shake_room() {
+  if (!furnishing_ || opening_) return;
+  shaking_ = true;
+  open_in_background(room_->room().scene().name, "",
+                     [load = room_->room().loader()] { return open_room(load()); });
+}
+
+float Shell::interface_scale() const {
+  if (session_) return session_->viewer().scale();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return scale_ * static_cast<float>(fitting(appearance_, scale_, size.x, size.y).scale);
+}
+
+void Shell::press_in_room(const render::KeyPress& press) {
+  if (room_->press(press)) return;
+  if (press.control) {
+    if (session_) session_->viewer().press(press);  // letters and theme
+  } else if (press.key == ' ') {
+    ask(ShellRequest::shake);
+  } else if (press.key == render::key::f2) {
+    ask(ShellRequest::furnish);
+  }
+}
+
+void Shell::build_room() {
+  if (covered())
+    room_->build(fonts(), interface_scale(), [this] { build_over(); });
+  else
+    room_->build(fonts(), interface_scale());
+  if (!covered()) ask(room_->asked());
+}
+
+}  // namespace topple::app

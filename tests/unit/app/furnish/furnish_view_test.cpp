@@ -1,0 +1,190 @@
+// A person furnishes a room with mouse and keyboard.
+#include "app/furnish/furnish_view.h"
+
+#include "app/furnish/room_edits.h"
+#include "app/picture/furnish_words.h"
+#include "shell_fixture.h"
+
+namespace topple::app {
+namespace {
+
+class FurnishTest : public ShellTest {
+ protected:
+  void SetUp() override {
+    shell_->furnish_new_room();
+    frames(30);  // the palette draws a picture a frame
+  }
+  void frames(int count) {
+    for (int i = 0; i < count; ++i) frame();
+  }
+  FurnishView& view() { return *shell_->room(); }
+  Furnishing& room() { return view().room(); }
+  ImVec2 pixel(const Vec2& at) {
+    const auto found = view().pixel_of_floor(at);
+    return found ? ImVec2(found->x(), found->y()) : ImVec2(-1, -1);
+  }
+  void move_to(ImVec2 at) {
+    ImGui::GetIO().MousePos = at;
+    frames(2);
+  }
+  void click_floor(const Vec2& at) {
+    click_at(pixel(at), [this] { frame(); });
+  }
+  void place(const std::string& kind, const Vec2& at) {
+    view().arm_kind(kind);
+    click_floor(at);
+    ASSERT_TRUE(room().refused().empty()) << room().refused();
+  }
+  void drag(ImVec2 from, ImVec2 to) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = from;
+    frames(2);
+    io.MouseDown[0] = true;
+    frames(2);
+    for (int i = 1; i <= 5; ++i) {
+      const float u = static_cast<float>(i) / 5;
+      io.MousePos = {from.x + u * (to.x - from.x), from.y + u * (to.y - from.y)};
+      frame();
+    }
+    frames(2);
+    io.MouseDown[0] = false;
+    frames(3);
+  }
+  ImVec2 middle_of(const RoomPiece& piece) {
+    const auto found =
+        pixel_of(view().orbit().camera(view().scene_box().width / view().scene_box().height),
+                 view().scene_box().width, view().scene_box().height,
+                 Vec3(piece.spot.at.x(), piece.spot.at.y(), piece.floor + piece.size.z() / 2).cast<float>());
+    return {found->x(), found->y()};
+  }
+};
+
+TEST_F(FurnishTest, a_click_in_the_palette_and_one_in_the_room_place_a_piece) {
+  click("kind", "content");
+  ASSERT_TRUE(view().armed());
+  move_to(pixel({0.5, -0.5}));
+  ASSERT_TRUE(view().ghost_spot());
+  EXPECT_LT((view().ghost_spot()->at - Vec2(0.5, -0.5)).norm(), 0.02);
+  click_floor({0.5, -0.5});
+  ASSERT_EQ(room().pieces().size(), 2u) << room().refused();
+  EXPECT_FALSE(view().armed());
+  EXPECT_EQ(view().selected(), room().pieces().back().name);
+  EXPECT_LT((room().pieces().back().spot.at - Vec2(0.5, -0.5)).norm(), 0.02);
+}
+
+TEST_F(FurnishTest, the_ghost_is_red_where_the_reader_refuses_the_piece) {
+  view().arm_kind("refrigerator");
+  move_to(pixel({-1.75, 0.0}));  // in the bookshelf
+  EXPECT_TRUE(until([&] { return view().ghost_is_red(); }));
+  click_floor({-1.75, 0.0});
+  EXPECT_EQ(room().pieces().size(), 1u);
+  EXPECT_NE(room().refused().find("overlap"), std::string::npos) << room().refused();
+  EXPECT_TRUE(view().armed());
+  move_to(pixel({0.5, -1}));
+  EXPECT_TRUE(until([&] { return !view().ghost_is_red(); }));
+}
+
+TEST_F(FurnishTest, a_piece_is_dragged_and_every_step_can_be_taken_back) {
+  place("chest", {0.6, -0.6});
+  const std::string before = room().text();
+  const RoomPiece chest = *room().piece("chest");
+  const ImVec2 from = middle_of(chest);
+  const ImVec2 was = pixel(chest.spot.at), wanted = pixel({0.2, 0.4});
+  drag(from, {from.x + wanted.x - was.x, from.y + wanted.y - was.y});
+  EXPECT_GT((room().piece("chest")->spot.at - chest.spot.at).norm(), 0.3) << room().refused();
+  EXPECT_EQ(view().selected(), "chest");
+  press('Z', true);
+  EXPECT_EQ(room().text(), before);
+  press('Y', true);
+  EXPECT_NE(room().text(), before);
+}
+
+TEST_F(FurnishTest, keys_move_turn_copy_and_remove_what_is_selected) {
+  place("chest", {0.5, -0.5});
+  press('1');  // from the front: y to the right, x towards the viewer
+  const Spot spot = room().piece("chest")->spot;
+  press(render::key::right);
+  EXPECT_LT((room().piece("chest")->spot.at - spot.at - Vec2(0, 0.01)).norm(), 1e-9);
+  shell_->press({render::key::down, false, true});
+  frames(2);
+  EXPECT_LT((room().piece("chest")->spot.at - spot.at - Vec2(0.1, 0.01)).norm(), 1e-9);
+  press('Q');
+  EXPECT_NEAR(room().piece("chest")->spot.yaw, spot.yaw + 15 * k_pi / 180, 1e-9);
+  press('E');
+  EXPECT_NEAR(room().piece("chest")->spot.yaw, spot.yaw, 1e-9);
+  press('D', true);
+  ASSERT_EQ(room().pieces().size(), 3u) << room().refused();
+  EXPECT_EQ(view().selected(), "chest-2");
+  press(render::key::del);
+  EXPECT_EQ(room().pieces().size(), 2u);
+  EXPECT_FALSE(room().piece("chest-2"));
+}
+
+TEST_F(FurnishTest, two_clicks_make_a_wall_and_two_a_fixing) {
+  view().arm_wall();
+  click_floor({-1, -1.2});
+  click_floor({1, -1.2});
+  EXPECT_EQ(room().scene().setup.model.planes.size(), 4u) << room().refused();
+  view().arm_fixing("L-bracket");
+  click_at(middle_of(*room().piece("bookshelf")), [this] { frame(); });
+  EXPECT_TRUE(view().armed());
+  click_at(middle_of({.spot = {{-2, 1.2}, 0}, .size = {0, 0, 1.6}}),
+           [this] { frame(); });  // on the wall behind it
+  EXPECT_FALSE(view().armed()) << room().refused();
+  EXPECT_EQ(room().scene().setup.model.anchors.size(), 2u);
+  view().arm_wall();
+  click_floor({1, 1});
+  click_floor({1, 1});
+  EXPECT_NE(room().refused().find("no length"), std::string::npos) << room().refused();
+}
+
+TEST_F(FurnishTest, a_room_is_shaken_and_the_run_before_it_stays_as_a_ghost) {
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  EXPECT_EQ(shell_->session()->scene().text, new_room());
+  player().play();
+  ASSERT_TRUE(until([&] { return player().time() > 0.1; }));
+  press(render::key::f2);
+  ASSERT_TRUE(shell_->furnishing());
+  place("desk", {0.6, -0.4});
+  const std::string text = room().text();
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  EXPECT_EQ(shell_->session()->scene().text, text);
+  EXPECT_TRUE(shell_->session()->viewer().ghost_shown());
+  press(render::key::f2);
+  press('Z', true);
+  EXPECT_EQ(room().text(), new_room()) << "undo reaches behind the run";
+}
+
+TEST_F(FurnishTest, a_room_is_saved_as_it_is_written) {
+  place("desk", {0.6, -0.4});
+  const std::string path = (scratch_ / "mine.toml").string();
+  save_as(path);
+  EXPECT_EQ(read(path), room().text());
+}
+
+TEST_F(FurnishTest, a_scene_is_furnished_with_its_comments_and_its_sliders) {
+  shell_->open(write("own.toml", "# mine\n" + new_room()));
+  ASSERT_TRUE(until([&] { return ready(); }));
+  player().edit({Edit::Key::friction, 0, Vec3(0.45, 0, 0)});
+  ASSERT_TRUE(until([&] { return player().parameters_so_far().contact.friction == 0.45; }));
+  press(render::key::f2);
+  ASSERT_TRUE(shell_->furnishing());
+  EXPECT_TRUE(room().text().starts_with("# mine\n# A room of your own."));
+  EXPECT_NE(room().text().find("friction = 0.45"), std::string::npos) << room().text();
+}
+
+TEST_F(FurnishTest, the_last_piece_and_a_bad_file_are_refused_in_the_words_of_the_reader) {
+  view().select("bookshelf");
+  press(render::key::del);
+  EXPECT_NE(room().refused().find("there are no bodies"), std::string::npos) << room().refused();
+  EXPECT_EQ(room().text(), new_room());
+  const std::string file =
+      write("bad-shelf.toml", "topple = 1\n[kind]\nsource = \"x\"\n[[block]]\nsize = [1, 1]\n");
+  EXPECT_FALSE(room().change([&](const io::Scene& s) { return with_piece(s, file, {{1, 0}, 0}); }));
+  EXPECT_NE(room().refused().find("bad-shelf.toml:5:8"), std::string::npos) << room().refused();
+}
+
+}  // namespace
+}  // namespace topple::app
