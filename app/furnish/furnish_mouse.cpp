@@ -1,5 +1,6 @@
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -83,11 +84,11 @@ void FurnishView::handle_mouse() {
   handle_camera(inside, io.MouseDown[0] && pressed_.empty());
   if (moves_piece && !ghost_) {
     const RoomPiece& piece = *room_.piece(pressed_);
-    ghost_ = Ghost{shape_of(base_, room_.scene().setup.model, piece),
-                   {piece.spot, piece.half},
-                   piece.floor,
-                   piece.name,
-                   piece.spot};
+    ghost_ = Ghost{.shape = shape_of(base_, room_.scene().setup.model, piece),
+                   .footprint = {piece.spot, piece.half},
+                   .floor = piece.floor,
+                   .name = piece.name,
+                   .spot = piece.spot};
     select(pressed_);
     frame_changed_ = true;
   }
@@ -113,10 +114,15 @@ void FurnishView::begin_drag(float x, float y) {
   if (!body) return;
   for (const RoomPiece& piece : room_.pieces()) {
     if (piece.body != *body) continue;
-    const auto at = on_level(sight_at(x, y), piece.floor);
-    if (!at) return;
+    // where the line of sight passes its middle
+    const Sightline sight = sight_at(x, y);
+    const Vec2 level = sight.direction.head<2>(), to = piece.spot.at - sight.from.head<2>();
+    const double way = level.dot(to) / std::max(level.squaredNorm(), 1e-12);
+    grab_level_ =
+        std::clamp(sight.from.z() + way * sight.direction.z(), piece.floor, piece.floor + piece.size.z());
+    const auto at = on_level(sight, grab_level_);
     pressed_ = piece.name;
-    grab_ = *at - piece.spot.at;
+    grab_ = at ? Vec2(*at - piece.spot.at) : Vec2(Vec2::Zero());
   }
 }
 
@@ -130,15 +136,29 @@ RoomEdit FurnishView::edit_of_ghost() const {
   };
 }
 
+/// On the floor, or at the foot of the wall that is seen there.
+std::optional<Vec2> FurnishView::place_at(float x, float y) const {
+  const Sightline sight = sight_at(x, y);
+  const auto ground = ground_at(sight, base_.grounds);
+  if (!ground || base_.grounds[*ground].is_floor) return on_level(sight, 0);
+  const render::Ground& wall = base_.grounds[*ground];
+  const Vec3 normal(wall.normal[0], wall.normal[1], wall.normal[2]),
+      centre(wall.centre[0], wall.centre[1], wall.centre[2]);
+  const double way = (centre - sight.from).dot(normal) / sight.direction.dot(normal);
+  return Vec2((sight.from + way * sight.direction).head<2>());
+}
+
 void FurnishView::move_ghost(float x, float y) {
-  const auto at = on_level(sight_at(x, y), ghost_->floor);
-  if (!at) return;
   const bool fresh = ghost_->name.empty();
+  const auto at = fresh ? place_at(x, y) : on_level(sight_at(x, y), grab_level_);
+  if (!at) return;
   ghost_->footprint.spot = {fresh ? *at : Vec2(*at - grab_), ghost_->footprint.spot.yaw};
   const std::vector<WallLine> walls = wall_lines(room_.scene().setup.model);
   const Spot spot = snapped(ghost_->footprint, footprints_but(ghost_->name), walls, fresh && !ghost_->turned);
-  if (spot == ghost_->spot) return;
+  if (spot == ghost_->spot && ghost_->seen) return;
   ghost_->spot = spot;
+  ghost_->seen = true;
+  room_.forget_refusal();
   frame_changed_ = true;
   room_.ask(edit_of_ghost());
 }

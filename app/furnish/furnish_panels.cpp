@@ -26,13 +26,13 @@ namespace sw = window_words;
 constexpr std::array k_materials{"aluminium", "plastic", "stainless steel", "steel", "wood"};
 constexpr float k_label_share = 0.5f;  // of the width of the panel
 
-void fill(char* to, std::size_t size, const std::string& text) {
+void fill_field(char* to, std::size_t size, const std::string& text) {
   const std::size_t length = std::min(text.size(), size - 1);
   std::memcpy(to, text.data(), length);
   to[length] = '\0';
 }
 
-void label(const Phrase& words) {
+void field_label(const Phrase& words) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(say(words).c_str());
   ImGui::SameLine(k_label_share * ImGui::GetWindowContentRegionMax().x);
@@ -49,7 +49,7 @@ bool small_x(const char* id, const Phrase& about) {
   return pressed;
 }
 
-bool button(const Phrase& name, const Phrase& about, bool enabled, bool chosen = false) {
+bool room_button(const Phrase& name, const Phrase& about, bool enabled, bool chosen = false) {
   const float width = ImGui::CalcTextSize(say(name).c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
   if (ImGui::GetCursorPosX() + width > ImGui::GetWindowContentRegionMax().x) ImGui::NewLine();
   ImGui::BeginDisabled(!enabled);
@@ -69,7 +69,7 @@ void FurnishView::draw_side(const render::OverlayFonts& fonts) {
   static constexpr std::pair<Phrase, Tab> k_tabs_of_room[] = {
       {fw::k_tab_kinds, Tab::kinds}, {fw::k_tab_piece, Tab::piece}, {fw::k_tab_room, Tab::room}};
   for (const auto& [name, tab] : k_tabs_of_room)
-    if (button(name, name, true, tab == tab_)) tab_ = tab;
+    if (room_button(name, name, true, tab == tab_)) tab_ = tab;
   ImGui::NewLine();
   ImGui::Separator();
   ImGui::BeginChild("content", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
@@ -103,7 +103,7 @@ void FurnishView::draw_kinds(const render::OverlayFonts& fonts) {
 }
 
 bool FurnishView::number_field(const Phrase& words, double value, const char* format, double& changed) const {
-  label(words);
+  field_label(words);
   double now = value;
   ImGui::PushID(words.english.data());
   ImGui::InputDouble("##value", &now, 0, 0, format);
@@ -122,16 +122,16 @@ void FurnishView::draw_piece() {
     return;
   }
   const RoomPiece piece = *found;
-  if (named_ != piece.name) fill(name_, sizeof name_, named_ = piece.name);
+  if (named_ != piece.name) fill_field(name_, sizeof name_, named_ = piece.name);
   if (!piece.kind.empty()) ImGui::TextDisabled("%s", fw::in_words(fw::k_kinds, piece.kind).c_str());
-  label(fw::k_name);
+  field_label(fw::k_name);
   ImGui::InputText("##name", name_, sizeof name_);
   if (ImGui::IsItemDeactivatedAfterEdit() && named_ != name_) {
     const std::string name = name_;
     if (change([piece, name](const io::Scene& scene) { return with_name(scene, piece, name); }))
       selected_ = named_ = name;
     else
-      fill(name_, sizeof name_, named_);
+      fill_field(name_, sizeof name_, named_);
   }
   const auto stand = [&](const Spot& spot) {
     change([piece, spot](const io::Scene& scene) { return with_moved(scene, piece, spot); });
@@ -185,7 +185,7 @@ void FurnishView::draw_piece_numbers(const RoomPiece& piece) {
   if (number_field(fw::k_feet_friction, present, "%.2f", now)) set("friction", fmt::format("{:g}", now));
   reset("friction", friction);
   if (piece.becomes == "cabinet") {
-    label(fw::k_material);
+    field_label(fw::k_material);
     const io::Node* const material = entry.find("material");
     if (ImGui::BeginCombo("##material", material ? material->text.c_str() : say(fw::k_of_kind).c_str())) {
       for (const char* const one : k_materials)
@@ -217,7 +217,7 @@ void FurnishView::draw_walls() {
     if (small_x(plane.name.c_str(), fw::k_remove_about)) removed = plane.name;
   }
   if (!removed.empty()) change([removed](const io::Scene& scene) { return without_wall(scene, removed); });
-  if (button(fw::k_add_wall, fw::k_add_wall, true, tool_.kind == Tool::Kind::wall)) arm_wall();
+  if (room_button(fw::k_add_wall, fw::k_add_wall, true, tool_.kind == Tool::Kind::wall)) arm_wall();
   ImGui::NewLine();
   const io::Node root = io::parse_toml(room_.text(), origin_);
   const io::Node* const ceiling = root.find("ceiling");
@@ -244,7 +244,7 @@ void FurnishView::draw_fixings() {
   ImGui::TextDisabled("%s", say(fw::k_fixings_about).c_str());
   ImGui::PopTextWrapPos();
   for (const Phrase& kind : fw::k_fixing_kinds)
-    if (button(kind, kind, true, tool_.kind == Tool::Kind::fixing && tool_.word == kind.english))
+    if (room_button(kind, kind, true, tool_.kind == Tool::Kind::fixing && tool_.word == kind.english))
       arm_fixing(std::string(kind.english));
   ImGui::NewLine();
   const io::Node root = io::parse_toml(room_.text(), origin_);
@@ -266,19 +266,19 @@ void FurnishView::draw_fixings() {
 void FurnishView::draw_bar() {
   begin_panel("transport", bar_);
   ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-  if (button(fw::k_shake_it, fw::k_shake_it_about, true)) asked_ = ShellRequest::shake;
+  if (room_button(fw::k_shake_it, fw::k_shake_it_about, true)) asked_ = ShellRequest::shake;
   ImGui::PopStyleColor();
   const auto step = [&](void (Furnishing::*way)()) {
     let_go();
     (room_.*way)();
     room_changed_ = true;
   };
-  if (button(sw::k_undo, fw::k_undo_furnish, room_.can_undo())) step(&Furnishing::undo);
-  if (button(sw::k_redo, fw::k_redo_furnish, room_.can_redo())) step(&Furnishing::redo);
-  if (button(fw::k_new_room, fw::k_new_room_about, true)) begin_new_room();
-  if (button(sw::k_scenes, sw::k_scenes_about, true)) asked_ = ShellRequest::scenes;
-  if (button(sw::k_save, sw::k_save_about, true)) asked_ = ShellRequest::save;
-  if (button(fw::k_back, fw::k_back_about, true)) asked_ = ShellRequest::furnish;
+  if (room_button(sw::k_undo, fw::k_undo_furnish, room_.can_undo())) step(&Furnishing::undo);
+  if (room_button(sw::k_redo, fw::k_redo_furnish, room_.can_redo())) step(&Furnishing::redo);
+  if (room_button(fw::k_new_room, fw::k_new_room_about, true)) begin_new_room();
+  if (room_button(sw::k_scenes, sw::k_scenes_about, true)) asked_ = ShellRequest::scenes;
+  if (room_button(sw::k_save, sw::k_save_about, true)) asked_ = ShellRequest::save;
+  if (room_button(fw::k_back, fw::k_back_about, true)) asked_ = ShellRequest::furnish;
   bar_height_ = ImGui::GetCursorPosY() + ImGui::GetFrameHeight() + ImGui::GetStyle().WindowPadding.y;
   ImGui::End();
 }

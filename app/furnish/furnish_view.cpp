@@ -9,6 +9,7 @@
 
 #include "app/chart/theme.h"
 #include "app/furnish/room_edits.h"
+#include "app/picture/bridge.h"
 #include "app/picture/furnish_words.h"
 #include "render/scene/text_layout.h"
 
@@ -16,9 +17,16 @@ namespace topple::app {
 namespace {
 
 constexpr double k_quiet_room = 0.4;  // s without change after which the room is drawn at its best
-constexpr render::Float4 k_red = {0.86f, 0.20f, 0.16f, 1};
+constexpr render::Float4 k_red = {0.86f, 0.20f, 0.16f, 1}, k_marked = {0.05f, 0.45f, 0.85f, 1},
+                         k_light = {0.35f, 0.72f, 1, 1};
 constexpr float k_room_to_furnish = 0.6f;  // m, around what stands there
 constexpr float k_least_side = 320, k_most_of_width = 0.45f;
+
+render::Float4 mixed(render::Float4 a, const render::Float4& b, float share) {
+  if (a[3] == 0) a = k_rigid_colour;
+  for (std::size_t k = 0; k < 4; ++k) a[k] += share * (b[k] - a[k]);
+  return a;
+}
 
 }  // namespace
 
@@ -48,7 +56,7 @@ void FurnishView::arm_kind(const std::string& kind) {
   const Palette::Card* const card = palette_.card(kind);
   if (!card) return;
   tool_ = {Tool::Kind::place, kind, {}, {}};
-  ghost_ = Ghost{card->shape, {{}, card->half}, 0, "", {{1e3, 1e3}, 0}};
+  ghost_ = Ghost{card->shape, {{}, card->half}};
 }
 
 void FurnishView::arm_wall() {
@@ -127,22 +135,27 @@ void FurnishView::compose() {
   frame_ = base_;
   frame_.dark = window_is_dark();
   const Model& model = room_.scene().setup.model;
-  frame_.highlighted_body = -1;
+  const auto tint = [&](std::size_t body, float share) {
+    for (render::Tube& tube : frame_.tubes)
+      if (tube.body == body && tube.member < model.members.size())
+        tube.colour = mixed(tube.colour, k_light, share);
+  };
   const RoomPiece* const chosen = selected_piece();
   if (ghost_) {
     std::size_t body = model.bodies.size();
     if (const RoomPiece* const moved = room_.piece(ghost_->name))
       hide_body(model, body = moved->body, frame_);
-    if (ghost_->spot.at.norm() < 500) {
-      add_shape(ghost_->shape, ghost_->spot, ghost_->floor, body,
-                ghost_->red ? std::optional(k_red) : std::nullopt, frame_);
-      frame_.highlighted_body = static_cast<std::int64_t>(body);
-    }
-  } else if (hovered_) {
-    frame_.highlighted_body = static_cast<std::int64_t>(*hovered_);
-  } else if (chosen) {
-    frame_.highlighted_body = static_cast<std::int64_t>(chosen->body);
+    if (!ghost_->seen) return;
+    add_shape(ghost_->shape, ghost_->spot, ghost_->floor, body,
+              ghost_->red ? std::optional(k_red) : std::nullopt, frame_);
+    add_footprint({ghost_->spot, ghost_->footprint.half}, ghost_->floor, ghost_->red ? k_red : k_marked,
+                  frame_);
+    return;
   }
+  if (hovered_) tint(*hovered_, 0.35f);
+  if (!chosen) return;
+  if (hovered_ != chosen->body) tint(chosen->body, 0.15f);
+  add_footprint({chosen->spot, chosen->half}, chosen->floor, k_marked, frame_);
 }
 
 void FurnishView::fit_view(render::NamedView view) {
@@ -183,31 +196,6 @@ std::optional<Eigen::Vector2f> FurnishView::pixel_of_floor(const Vec2& at) const
   return Eigen::Vector2f(pixel->x() + scene_.left, pixel->y() + scene_.top);
 }
 
-void FurnishView::draw_footprint(const Footprint& of, double floor, unsigned colour, float thickness) const {
-  const Vec2 front(std::cos(of.spot.yaw), std::sin(of.spot.yaw)), left(-front.y(), front.x());
-  const render::Camera camera = orbit_.camera(scene_.width / scene_.height);
-  const auto pixel = [&](double along, double across) -> std::optional<ImVec2> {
-    const Vec2 at = of.spot.at + along * front + across * left;
-    const auto found =
-        pixel_of(camera, scene_.width, scene_.height, Vec3(at.x(), at.y(), floor).cast<float>());
-    if (!found) return std::nullopt;
-    return ImVec2(scene_.left + found->x(), scene_.top + found->y());
-  };
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const double d = of.half.x(), w = of.half.y(), tip = d + 0.18;
-  const std::pair<Vec2, Vec2> lines[] = {{{d, -w}, {d, w}},
-                                         {{d, w}, {-d, w}},
-                                         {{-d, w}, {-d, -w}},
-                                         {{-d, -w}, {d, -w}},
-                                         {{d, 0}, {tip, 0}},
-                                         {{tip, 0}, {tip - 0.07, 0.05}},
-                                         {{tip, 0}, {tip - 0.07, -0.05}}};
-  for (const auto& [a, b] : lines) {
-    const auto from = pixel(a.x(), a.y()), to = pixel(b.x(), b.y());
-    if (from && to) list.AddLine(*from, *to, colour, thickness);
-  }
-}
-
 void FurnishView::draw_words_at_mouse(const std::string& words, unsigned colour,
                                       const render::OverlayFonts& fonts) const {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -233,11 +221,6 @@ void FurnishView::draw_words_at_mouse(const std::string& words, unsigned colour,
 void FurnishView::draw_over_scene(const render::OverlayFonts& fonts) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect({scene_.left, scene_.top}, {scene_.left + scene_.width, scene_.top + scene_.height});
-  if (const RoomPiece* const piece = selected_piece(); piece && !ghost_)
-    draw_footprint({piece->spot, piece->half}, piece->floor, theme().line, 2 * scale_);
-  if (ghost_ && ghost_->spot.at.norm() < 500)
-    draw_footprint({ghost_->spot, ghost_->footprint.half}, ghost_->floor,
-                   ghost_->red ? theme().positive : theme().line, 2 * scale_);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (tool_.kind == Tool::Kind::wall && tool_.from && scene_.contains(mouse.x, mouse.y))
     if (const auto from = pixel_of_floor(*tool_.from))

@@ -65,7 +65,9 @@ class FurnishView {
   void arm_fixing(const std::string& kind);
   bool armed() const { return tool_.kind != Tool::Kind::select; }
   /// Where the piece that follows the mouse would stand; none: there is none.
-  std::optional<Spot> ghost_spot() const { return ghost_ ? std::optional(ghost_->spot) : std::nullopt; }
+  std::optional<Spot> ghost_spot() const {
+    return ghost_ && ghost_->seen ? std::optional(ghost_->spot) : std::nullopt;
+  }
   /// It cannot stand there, as far as it is known.
   bool ghost_is_red() const { return ghost_ && ghost_->red; }
 
@@ -86,11 +88,12 @@ class FurnishView {
   /// A piece that follows the mouse.
   struct Ghost {
     PieceShape shape;
-    Footprint footprint;
-    double floor = 0;
-    std::string name;  ///< of the piece that is moved; empty: a new one
-    Spot spot;
-    bool turned = false;  ///< by hand
+    Footprint footprint;    ///< where the mouse has it
+    double floor = 0;       ///< m
+    std::string name = {};  ///< of the piece that is moved; empty: a new one
+    Spot spot = {};         ///< where it would stand
+    bool seen = false;      ///< the mouse has been over the room
+    bool turned = false;    ///< by hand
     bool red = false;
     std::string why = {};  ///< it is red
   };
@@ -101,7 +104,6 @@ class FurnishView {
   void draw_scene();
   void fit_view(render::NamedView view);
   void draw_over_scene(const render::OverlayFonts& fonts);
-  void draw_footprint(const Footprint& of, double floor, unsigned colour, float thickness) const;
   void draw_words_at_mouse(const std::string& words, unsigned colour,
                            const render::OverlayFonts& fonts) const;
 
@@ -117,6 +119,7 @@ class FurnishView {
   std::vector<Footprint> footprints_but(const std::string& name) const;
   std::optional<std::size_t> body_at(float x, float y) const;
   Sightline sight_at(float x, float y) const;
+  std::optional<Vec2> place_at(float x, float y) const;
 
   void let_go();
   void nudge(int right, int away, bool far);
@@ -152,7 +155,8 @@ class FurnishView {
   Tool tool_;
   std::optional<Ghost> ghost_;
   std::string selected_, pressed_;  ///< pressed_: the piece on which the button went down
-  Vec2 grab_ = Vec2::Zero();        ///< m, from the middle of that piece
+  Vec2 grab_ = Vec2::Zero();        ///< m, from the middle of that piece, at this height
+  double grab_level_ = 0;           ///< m
   std::optional<std::size_t> hovered_;
   bool dragging_ = false, dragged_ = false, from_card_ = false;
   bool room_changed_ = true, frame_changed_ = true, camera_changed_ = true, drawn_still_ = false;

@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "app/picture/bridge.h"
 #include "app/picture/row.h"
@@ -37,6 +39,24 @@ io::FrameRow start_row(const Setup& setup) {
   return row;
 }
 
+/// A part of the room that is large enough to furnish, on the side of the walls where the furniture is.
+void widen(const Model& model, RunExtent& extent) {
+  constexpr double k_least = 3.6;  // m
+  for (int k = 0; k < 2; ++k) {
+    const double missing = k_least - (extent.high[k] - extent.low[k]);
+    if (!(missing > 0)) continue;
+    extent.low[k] -= missing / 2;
+    extent.high[k] += missing / 2;
+    for (const WallLine& wall : wall_lines(model)) {
+      if (std::abs(wall.normal[k]) < 0.99) continue;
+      const double within = wall.normal[k] > 0 ? std::max(wall.at[k] - extent.low[k], 0.)
+                                               : std::min(wall.at[k] - extent.high[k], 0.);
+      extent.low[k] += within;
+      extent.high[k] += within;
+    }
+  }
+}
+
 bool is_of(const Model& model, const render::Tube& tube, std::size_t body) {
   return tube.member < model.members.size() && tube.body == body;
 }
@@ -47,6 +67,7 @@ render::SceneFrame start_frame(const io::Scene& scene) {
   const io::FrameRow row = start_row(scene.setup);
   RunExtent extent;
   extent.add(scene.setup.model, scene.setup.parameters, row);
+  widen(scene.setup.model, extent);
   PictureSettings settings;
   settings.words = false;
   render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters, settings);
@@ -117,6 +138,41 @@ void add_shape(const PieceShape& shape, const Spot& spot, double floor, std::siz
     for (render::Float3& corner : panel.corners) placed(corner);
     panel.body = static_cast<std::uint32_t>(body);
     frame.panels.push_back(panel);
+  }
+}
+
+void add_footprint(const Footprint& of, double floor, const render::Float4& colour,
+                   render::SceneFrame& frame) {
+  constexpr double k_line = 0.012, k_off = 0.03, k_mark = 0.10;  // m
+  const Quat turn(Eigen::AngleAxisd(of.spot.yaw, Vec3::UnitZ()));
+  const Vec3 at(of.spot.at.x(), of.spot.at.y(), floor + k_line / 4);
+  const auto profile = static_cast<std::uint32_t>(frame.profiles.size());
+  constexpr float k_wide = static_cast<float>(k_line / 2), k_flat = static_cast<float>(k_line / 6);
+  frame.profiles.push_back(
+      {.outline = {{-k_wide, -k_flat}, {k_wide, -k_flat}, {k_wide, k_flat}, {-k_wide, k_flat}}});
+  const double d = of.half.x() + k_off, w = of.half.y() + k_off;
+  const std::array<Vec2, 2> lines[] = {{Vec2(d, -w), Vec2(d, w)},
+                                       {Vec2(d, w), Vec2(-d, w)},
+                                       {Vec2(-d, w), Vec2(-d, -w)},
+                                       {Vec2(-d, -w), Vec2(d, -w)},
+                                       {Vec2(d, -k_mark), Vec2(d + k_mark, 0)},
+                                       {Vec2(d + k_mark, 0), Vec2(d, k_mark)}};
+  for (const auto& [a, b] : lines) {
+    const Vec2 way = b - a;
+    const Quat along = turn * Quat(Eigen::AngleAxisd(std::atan2(way.y(), way.x()), Vec3::UnitZ()));
+    render::Tube tube;
+    tube.first_station = static_cast<std::uint32_t>(frame.stations.size());
+    tube.station_count = 2;
+    tube.profile = profile;
+    tube.member = tube.body = std::numeric_limits<std::uint32_t>::max();
+    tube.lead = tube.trail = k_wide;
+    tube.colour = colour;
+    for (const Vec2& end : {a, b})
+      frame.stations.push_back({to_float(at + turn * Vec3(end.x(), end.y(), 0)),
+                                {static_cast<float>(along.w()), static_cast<float>(along.x()),
+                                 static_cast<float>(along.y()), static_cast<float>(along.z())},
+                                0});
+    frame.tubes.push_back(tube);
   }
 }
 

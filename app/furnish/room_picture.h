@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "app/furnish/snap.h"
 #include "app/picture/room_piece.h"
 #include "render/scene/camera.h"
 #include "render/scene/scene_frame.h"
@@ -30,6 +31,10 @@ void hide_body(const Model& model, std::size_t body, render::SceneFrame& frame);
 /// Puts the shape there as `body`; `colour`: of all of it, absent: as it is.
 void add_shape(const PieceShape& shape, const Spot& spot, double floor, std::size_t body,
                const std::optional<render::Float4>& colour, render::SceneFrame& frame);
+
+/// Lines on the floor around a piece, with a mark where its front looks.
+void add_footprint(const Footprint& of, double floor, const render::Float4& colour,
+                   render::SceneFrame& frame);
 
 /// A line of sight, m.
 struct Sightline {

@@ -24,6 +24,8 @@ class Shortest {
   void offer(double way) {
     if (std::abs(way) <= k_snap_reach && (!way_ || std::abs(way) < std::abs(*way_))) way_ = way;
   }
+  /// However far it is.
+  void force(double way) { way_ = way; }
   const std::optional<double>& way() const { return way_; }
 
  private:
@@ -72,7 +74,8 @@ Spot snapped(const Footprint& piece, std::span<const Footprint> others, std::spa
       const double cosine = wall.normal.dot(axes[k]);
       if (std::abs(cosine) < 1 - k_parallel) continue;
       const double gap = wall.normal.dot(now.spot.at - wall.at) - now.half[static_cast<int>(k)];
-      to_wall.offer((k_gap_at_wall - gap) * std::copysign(1., cosine));
+      const double way = (k_gap_at_wall - gap) * std::copysign(1., cosine);
+      gap < k_gap_at_wall ? to_wall.force(way) : to_wall.offer(way);
     }
     ways[k] = to_wall.way();
   }

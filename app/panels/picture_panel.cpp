@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/panels.h"
+#include "app/picture/furnish_words.h"
 #include "app/picture/window_words.h"
 
 namespace topple::app {
@@ -113,6 +114,8 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
   changed |= ImGui::Checkbox(say(k_panels).c_str(), &settings.panels);
   changed |= ImGui::Checkbox(say(k_words).c_str(), &settings.words);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_words_about).c_str());
+  changed |= ImGui::Checkbox(say(furnish_words::k_solid).c_str(), &settings.solid);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_solid_about).c_str());
   return changed;
 }
 

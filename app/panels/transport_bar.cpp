@@ -172,10 +172,10 @@ ShellRequest draw_transport_bar(Player& player, const Box& box, float& height) {
   gap();
   ShellRequest asked = ShellRequest::none;
   const std::tuple<const Phrase&, const Phrase&, ShellRequest> shell[] = {
-      {furnish_words::k_furnish, furnish_words::k_furnish_about, ShellRequest::furnish},
       {k_scenes, k_scenes_about, ShellRequest::scenes},
       {k_save, k_save_about, ShellRequest::save},
-      {k_export, k_export_about, ShellRequest::export_view}};
+      {k_export, k_export_about, ShellRequest::export_view},
+      {furnish_words::k_furnish, furnish_words::k_furnish_about, ShellRequest::furnish}};
   for (const auto& [label, about, request] : shell)
     if (text_button(say(label), about, true)) asked = request;
   const auto row = loads ? player.row() : std::nullopt;

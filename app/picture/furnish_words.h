@@ -104,6 +104,12 @@ inline constexpr Phrase k_fixings_about{"Choose one, then click a piece and what
 inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
 inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};
 
+// the picture of a run
+inline constexpr Phrase k_solid{"solid furniture", "家具の外観を表示"};
+inline constexpr Phrase k_solid_about{"As it looks in a room, without stresses (S)",
+                                      "応力を示さず、部屋で見える姿で表示（S）"};
+inline constexpr Phrase k_key_solid{"solid furniture or its beams", "家具の外観／骨組"};
+
 // keys
 inline constexpr Phrase k_arrow_keys{"arrows", "矢印"};
 inline constexpr Phrase k_key_move{"move by 10 mm, with Shift by 100 mm", "10 mm 移動（Shift で 100 mm）"};

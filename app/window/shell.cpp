@@ -128,6 +128,9 @@ bool Shell::finish_opening() {
     show(std::move(source), opening_path_);
     if (shaking_) {
       session_->viewer().look(room_->orbit());
+      PictureSettings settings = session_->viewer().settings();
+      settings.solid = true;  // as the room was seen
+      session_->viewer().choose_settings(settings);
       if (before) session_->viewer().show_beside(*std::move(before));
       session_->player().play();
     }

@@ -26,10 +26,10 @@ std::string Shell::text_of_session() const {
 }
 
 void Shell::furnish() {
-  if (furnishing_ || !session_) {
-    furnishing_ = furnishing_ && !session_;
-    if (session_) session_->viewer().redraw();
-    return;
+  if (!session_) return chooser_.open();
+  if (furnishing_) {
+    furnishing_ = false;
+    return session_->viewer().redraw();
   }
   if (session_->scene().setup.run.analysis != Analysis::dynamic) {
     session_->viewer().show_message(say(fw::k_only_shaken));

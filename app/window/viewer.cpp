@@ -236,6 +236,11 @@ void Viewer::draw_scene() {
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters_so_far(), settings_);
     frame_.dark = appearance_.dark;
+    if (settings_.solid && is_finite(*row_)) {
+      if (!solid_) solid_.emplace(player_.scene());
+      solid_->dress(*row_, frame_);
+      frame_.legend = {};
+    }
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);
     else if (failed_element_ >= 0)
@@ -362,6 +367,7 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
   } else if (found->member >= members) {
     inspect(Subject{Subject::Kind::anchor, found->member - members});
   } else {
+    if (settings_.solid) return inspect(Subject{Subject::Kind::body, found->body});
     const Subject member{Subject::Kind::member, found->member};
     inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
   }

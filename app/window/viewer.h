@@ -15,6 +15,7 @@
 #include "app/panels/precision_panel.h"
 #include "app/panels/teaching_panel.h"
 #include "app/picture/bridge.h"
+#include "app/picture/solid_bodies.h"
 #include "render/gl/key_press.h"
 #include "render/output/stage.h"
 #include "render/scene/font.h"
@@ -182,6 +183,7 @@ class Viewer {
   TeachingState teaching_;
   PrecisionState precision_;
   std::optional<EarlierRun> earlier_;
+  std::optional<SolidBodies> solid_;  ///< once they were wanted
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none
   bool scene_changed_ = true, camera_changed_ = true;

@@ -60,7 +60,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
   for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
     add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
-  if (frame_.legend.quantity.empty() && !frame_.tubes.empty()) add(fonts_.small, say(k_all_rigid));
+  if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && !settings_.solid)
+    add(fonts_.small, say(k_all_rigid));
   if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
     add(fonts_.small, say(k_ghost_is, *ghost));
   else if (earlier_ && ghost_shown_)

@@ -233,6 +233,8 @@ void erase_inline(std::string& text, std::size_t begin, std::size_t end) {
     begin = before;
   }
   text.erase(begin, end - begin);
+  const std::size_t from = line_begin(text, begin), to = line_end(text, begin);
+  if (to < text.size() && text.find_first_not_of(" \t\r\n", from) >= to) text.erase(from, to - from);
 }
 
 /// Takes out the lines from that of `begin` to `end`, and an empty one behind them where one is before them.

@@ -66,8 +66,8 @@ TEST(RewriteToml, entries_come_and_go_with_all_of_their_lines) {
             "topple = 1\n\n# at the back\n\n[run]\nduration = 1 # s\n");
   EXPECT_EQ(rewrite_toml(text, {change({"furniture", "1", "copies", "1"}, "[2, 0, 0]"),
                                 change({"furniture", "1", "copies", "2"}, std::nullopt)}),
-            "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[2, 0, "
-            "0]]\n\n[[furniture]]\n"
+            "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[2, 0, 0],  # "
+            "here\n  ]\n\n[[furniture]]\n"
             "kind = \"chair\"\n[furniture.contents]\nmass = 1\n\n[run]\nduration = 1 # s\n");
   EXPECT_EQ(rewrite_toml(text, {change({"furniture", "3"}, "{ kind = \"table\", at = [1, 2.5] }")}),
             "topple = 1\n\n# at the back\n[[furniture]] # one\nkind = \"desk\"\ncopies = [[0, 0, 0],  # "
@@ -89,7 +89,7 @@ TEST(RewriteToml, entries_within_brackets_come_and_go) {
   EXPECT_EQ(
       rewrite_toml(text, {change({"wall", "2"}, std::nullopt), change({"wall", "1", "name"}, std::nullopt),
                           change({"wall", "1", "normal"}, "[1, 0, 0]")}),
-      "wall = [\n  { at = [0, 1], normal = [1, 0, 0] }, # left\n  ]\n[floor]\n");
+      "wall = [\n  { at = [0, 1], normal = [1, 0, 0] }, # left\n]\n[floor]\n");
   EXPECT_EQ(
       rewrite_toml(text, {change({"wall", "3"}, "{ at = [5, 5] }")}),
       "wall = [\n  { name = \"a\", at = [0, 1] }, # left\n  { name = \"b\", at = [2, 1] }, { at = [5, 5] "

@@ -38,6 +38,12 @@ TEST(Snap, turned_by_hand_it_keeps_its_turn_and_stands_off_by_its_side) {
   EXPECT_NEAR(spot.at.x() - 0.45 + 2, k_gap_at_wall, 1e-12);
 }
 
+TEST(Snap, behind_a_wall_it_comes_back_into_the_room) {
+  const std::vector<WallLine> walls{k_back};
+  EXPECT_NEAR(snapped(footprint(-5, 0), {}, walls, false).at.x(), -2 + 0.2 + k_gap_at_wall, 1e-12);
+  EXPECT_NEAR(snapped(footprint(-2, 0.3), {}, walls, true).at.x(), -2 + 0.2 + k_gap_at_wall, 1e-12);
+}
+
 TEST(Snap, in_a_corner_it_stands_off_both_walls) {
   const std::vector<WallLine> walls{k_back, k_side};
   const Spot spot = snapped(footprint(-1.75, 1.5), {}, walls, true);
@@ -55,8 +61,8 @@ TEST(Snap, beside_another_piece_it_stands_sixty_millimetres_off_with_backs_in_li
 TEST(Snap, never_moves_a_piece_further_than_its_reach) {
   const std::vector<Footprint> others{{{{0, 0}, 0}, {0.3, 0.5}}, {{{1.1, 0.4}, k_pi / 2}, {0.3, 0.5}}};
   const std::vector<WallLine> walls{k_back, k_side};
-  for (double x = -1.9; x < 2; x += 0.0371)
-    for (double y = -2; y < 1.9; y += 0.0413)
+  for (double x = -1.5; x < 2; x += 0.0371)
+    for (double y = -2; y < 1.5; y += 0.0413)
       for (const double yaw : {0., 0.3, k_pi / 2}) {
         const Spot spot = snapped(footprint(x, y, yaw), others, walls, true);
         ASSERT_TRUE(spot.at.allFinite());

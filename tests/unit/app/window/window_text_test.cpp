@@ -12,6 +12,7 @@
 #include <set>
 
 #include "app/chart/theme.h"
+#include "app/furnish/room_edits.h"
 #include "app/panels/precision_words.h"
 #include "app/panels/teaching_words.h"
 #include "app/picture/image_files.h"
@@ -348,6 +349,29 @@ TEST_P(WindowText, is_read_in_the_chooser_dialogs_and_messages) {
   shell_->drop({broken});
   ASSERT_TRUE(eventually([this] { frame(); }, [this] { return shell_->message().has_value(); }));
   check("message");
+}
+
+TEST_P(WindowText, is_read_while_a_room_is_furnished) {
+  start_shell();
+  shell_->furnish_new_room();
+  for (int i = 0; i < 20; ++i) frame();  // a picture of the palette each
+  FurnishView& room = *shell_->room();
+  check("furnish-kinds");
+  room.arm_kind("server-rack");
+  check("furnish-armed");
+  room.arm_fixing("L-bracket");
+  room.show(FurnishView::Tab::room);
+  check("furnish-room");
+  room.change([](const io::Scene& scene) { return with_fixing(scene, "L-bracket", "bookshelf", "back"); });
+  check("furnish-fixed");
+  shell_->press({render::key::escape, false, false});
+  room.select("bookshelf");
+  check("furnish-piece");
+  shell_->press({render::key::del, false, false});
+  EXPECT_FALSE(room.room().refused().empty());
+  check("furnish-refused");
+  shell_->press({render::key::f1, false, false});
+  check("furnish-keys");
 }
 
 TEST_P(WindowText, is_read_in_tooltips_of_the_panels) {
