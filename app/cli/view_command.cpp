@@ -62,6 +62,7 @@ void show(render::Window& window, render::Stage& stage, Shell& shell) {
     if (shell.update(Seconds(now - last).count())) frames_due = std::max(frames_due, 1);
     last = now;
     for (const render::KeyPress& press : window.take_keys()) shell.press(press);
+    if (shell.take_full_screen()) window.toggle_full_screen();
     if (window.take_input()) frames_due = k_frames_of_input;
     if (ImGui::GetIO().WantTextInput) frames_due = std::max(frames_due, 1);  // the caret blinks
     if (shell.title() != title) window.set_title(title = shell.title());

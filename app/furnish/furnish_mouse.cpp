@@ -82,8 +82,8 @@ void FurnishView::handle_mouse() {
         dragged_ || io.MouseDragMaxDistanceSqr[button] > k_click_moves * k_click_moves * scale_ * scale_;
   const bool moves_piece = dragging_ && dragged_ && !pressed_.empty() && io.MouseDown[0];
   handle_camera(inside, io.MouseDown[0] && pressed_.empty());
-  if (moves_piece && !ghost_) {
-    const RoomPiece& piece = *room_.piece(pressed_);
+  if (const RoomPiece* const found = room_.piece(pressed_); found && moves_piece && !ghost_) {
+    const RoomPiece& piece = *found;
     ghost_ = Ghost{.shape = shape_of(base_, room_.scene().setup.model, piece),
                    .footprint = {piece.spot, piece.half},
                    .floor = piece.floor,
@@ -201,7 +201,7 @@ void FurnishView::click(float x, float y) {
         return;
       }
       let_go();
-      select(name);
+      selected_ = name;  // the palette stays: another piece may follow
       break;
     }
     case Tool::Kind::wall: {

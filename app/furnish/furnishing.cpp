@@ -22,7 +22,7 @@ std::vector<std::string> as_rigid(const std::string& text, const std::string& or
       const io::Node& entry = list->items[k].value;
       if (entry.kind == io::Node::Kind::table && !entry.find("model") && !entry.find("restitution") &&
           !entry.find("damping"))
-        overrides.push_back(std::string(table) + "." + std::to_string(k + 1) + ".model=rigid");
+        overrides.push_back(std::string(table) + "." + std::to_string(k + 1) + ".model=\"rigid\"");
     }
   }
   return overrides;
@@ -36,9 +36,9 @@ Furnishing::Furnishing(const io::Scene& scene, std::string origin)
   texts_.push_back(scene.text);
 }
 
-std::string Furnishing::words_of(const io::InputError& error) {
+std::string Furnishing::words_of(const io::InputError& error) const {
   const auto* const placed = dynamic_cast<const io::SceneError*>(&error);
-  if (!placed || placed->place.file) return error.what();
+  if (!placed || !std::string(error.what()).starts_with(origin_ + ":")) return error.what();
   return placed->path.empty() ? placed->message : placed->path + ": " + placed->message;
 }
 

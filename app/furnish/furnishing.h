@@ -59,7 +59,7 @@ class Furnishing {
   std::function<io::Scene()> loader() const;
 
   /// What an error says, without the file and line of the room itself.
-  static std::string words_of(const io::InputError& error);
+  std::string words_of(const io::InputError& error) const;
 
  private:
   using ScenePtr = std::shared_ptr<const io::Scene>;

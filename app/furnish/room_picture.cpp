@@ -36,6 +36,7 @@ io::FrameRow start_row(const Setup& setup) {
     row.body[b].qw = turn.w(), row.body[b].qx = turn.x(), row.body[b].qy = turn.y(),
     row.body[b].qz = turn.z();
   }
+  for (io::AnchorNumbers& anchor : row.anchor) anchor.state = io::k_anchor_slack;
   return row;
 }
 
@@ -57,6 +58,34 @@ void widen(const Model& model, RunExtent& extent) {
   }
 }
 
+/// Walls as long as the room, from corner to corner: the bridge draws them near bodies alone.
+void lengthen_walls(const Model& model, const RunExtent& extent, render::SceneFrame& frame) {
+  constexpr double k_beyond = 0.3;  // m, of what stands in the room
+  for (std::size_t i = 0; i < model.planes.size(); ++i) {
+    render::Ground& ground = frame.grounds[i];
+    if (ground.is_floor) continue;
+    const Plane& plane = model.planes[i];
+    const Vec2 along(ground.along[0], ground.along[1]), at = plane.point.head<2>();
+    double low = 1e30, high = -1e30;
+    for (const double x : {extent.low.x(), extent.high.x()})
+      for (const double y : {extent.low.y(), extent.high.y()}) {
+        low = std::min(low, along.dot(Vec2(x, y) - at) - k_beyond);
+        high = std::max(high, along.dot(Vec2(x, y) - at) + k_beyond);
+      }
+    for (const WallLine& other : wall_lines(model)) {
+      const double slope = other.normal.dot(along);
+      if (std::abs(slope) < 1e-6) continue;
+      const double corner = other.normal.dot(other.at - at) / slope;
+      slope > 0 ? low = std::max(low, corner) : high = std::min(high, corner);
+    }
+    if (!(low < high)) continue;
+    const Vec2 middle = at + (low + high) / 2 * along;
+    ground.centre[0] = static_cast<float>(middle.x());
+    ground.centre[1] = static_cast<float>(middle.y());
+    ground.half_length = static_cast<float>((high - low) / 2);
+  }
+}
+
 bool is_of(const Model& model, const render::Tube& tube, std::size_t body) {
   return tube.member < model.members.size() && tube.body == body;
 }
@@ -71,6 +100,7 @@ render::SceneFrame start_frame(const io::Scene& scene) {
   PictureSettings settings;
   settings.words = false;
   render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters, settings);
+  lengthen_walls(scene.setup.model, extent, frame);
   SolidBodies(scene).dress(row, frame);
   return frame;
 }

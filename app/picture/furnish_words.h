@@ -110,6 +110,10 @@ inline constexpr Phrase k_solid_about{"As it looks in a room, without stresses (
                                       "応力を示さず、部屋で見える姿で表示（S）"};
 inline constexpr Phrase k_key_solid{"solid furniture or its beams", "家具の外観／骨組"};
 
+inline constexpr Phrase k_key_hide{"the scene alone, for a projector",
+                                   "シーンだけを表示（プロジェクター用）"};
+inline constexpr Phrase k_key_full_screen{"full screen", "全画面表示"};
+
 // keys
 inline constexpr Phrase k_arrow_keys{"arrows", "矢印"};
 inline constexpr Phrase k_key_move{"move by 10 mm, with Shift by 100 mm", "10 mm 移動（Shift で 100 mm）"};

@@ -43,6 +43,7 @@ Shell::~Shell() {
 }
 
 std::vector<LiveStatus> Shell::close(const std::string& status) {
+  keep_room();
   std::vector<LiveStatus> all;
   if (session_) {
     std::unique_ptr<LiveRun> run = Session::leave(std::move(session_));
@@ -71,7 +72,10 @@ void Shell::show(LiveSource source, const std::string& path) {
   }
   applied_.reset();
   furnishing_ = false;
-  if (!shaking_) room_.reset();
+  if (!shaking_) {
+    keep_room();
+    room_.reset();
+  }
   shaken_ = shaking_ ? source.scene.get() : nullptr;
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
@@ -88,6 +92,7 @@ void Shell::show(LiveSource source, const std::string& path) {
 void Shell::open_in_background(const std::string& what, const std::string& path,
                                std::function<LiveSource()> read) {
   opening_path_ = path;
+  shaking_ = false;
   opening_.emplace(what, std::move(read), wake_);
 }
 
@@ -224,6 +229,8 @@ void Shell::ask(ShellRequest request) {
 void Shell::press(const render::KeyPress& press) {
   if (press.control && press.key == 'Q') {
     wants_to_close_ = true;
+  } else if (press.key == render::key::f11) {
+    full_screen_ = true;
   } else if (message_) {
     if (press.key == render::key::escape || press.key == render::key::enter) message_.reset();
   } else if (save_.is_open()) {
@@ -281,7 +288,10 @@ void Shell::build_over() {
     if (chooser_.take_new_room()) furnish_new_room();
   } else if (save_.is_open() && furnishing_) {
     const std::string saved = save_.draw(*to_save_, to_save_->setup.parameters, window, fonts());
-    if (!saved.empty()) room_->show_message(saved);
+    if (!saved.empty()) {
+      room_->show_message(saved);
+      kept_room_ = room_->room().text();
+    }
   } else if (save_.is_open()) {
     const std::string saved = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
     if (!saved.empty()) session_->viewer().show_message(saved);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/furnish/furnish_view.h"
@@ -52,6 +53,8 @@ class Shell {
   render::Surface surface() const;
   void report_frame_time(double ms);
   bool wants_to_close() const { return wants_to_close_; }
+  /// The window is to fill the screen, or no longer, since the last call.
+  bool take_full_screen() { return std::exchange(full_screen_, false); }
 
   /// "topple: paper-a".
   std::string title() const;
@@ -81,6 +84,7 @@ class Shell {
   float interface_scale() const;
   std::string text_of_session() const;
   void press_in_room(const render::KeyPress& press);
+  void keep_room();
   void draw_opening(const Box& window);
   void answer_message();
   void start_demo();
@@ -105,6 +109,7 @@ class Shell {
   bool shaking_ = false;               ///< what is being opened is room_
   const io::Scene* shaken_ = nullptr;  ///< the session's that came of room_; null: it did not
   std::optional<io::Scene> to_save_;   ///< room_ as it is saved
+  std::string kept_room_;              ///< its text when it was written last
   std::vector<std::future<LiveStatus>> closing_;
   std::string shown_failure_, shown_trouble_;  ///< for which a message was shown
   struct WantedDemo {
@@ -114,7 +119,7 @@ class Shell {
   std::optional<WantedDemo> demo_;  ///< begins when its scene is there
   std::string before_demo_;         ///< what was open when a demo opened its scene; empty: nothing
   int frames_due_ = 0;
-  bool wants_to_close_ = false;
+  bool wants_to_close_ = false, full_screen_ = false;
 };
 
 }  // namespace topple::app

@@ -1,5 +1,8 @@
 // Furnishing the room of what is open, and running it.
+#include <fmt/format.h>
 #include <imgui.h>
+
+#include <filesystem>
 
 #include "app/furnish/room_edits.h"
 #include "app/panels/shell_words.h"
@@ -11,6 +14,7 @@ namespace topple::app {
 namespace {
 
 namespace fw = furnish_words;
+namespace fs = std::filesystem;
 
 constexpr const char* k_room_file = "my-room.toml";
 
@@ -55,7 +59,27 @@ void Shell::furnish() {
   }
 }
 
+/// What was furnished and not saved is not lost: it stands among the recent files.
+void Shell::keep_room() {
+  if (!room_ || !room_->room().can_undo() || room_->room().text() == kept_room_) return;
+  const std::string folder = state_folder();
+  if (folder.empty()) return;
+  std::error_code ignored;
+  fs::path path;
+  int number = 1;
+  do path = fs::path(folder) / fmt::format("{}-unsaved-{}.toml", room_->room().scene().name, number++);
+  while (fs::exists(path, ignored));
+  try {
+    const io::Scene scene = room_->room().loader()();
+    save_scene(scene, scene.setup.parameters, path.string(), false);
+    remember_recent(path.string());
+    kept_room_ = room_->room().text();
+  } catch (const std::runtime_error&) {  // a full disk does not keep anybody from leaving
+  }
+}
+
 void Shell::furnish_new_room() {
+  keep_room();
   chooser_.close();
   if (session_) session_->player().pause();
   const io::Scene scene = io::parse_scene(new_room(), k_room_file);
@@ -66,9 +90,9 @@ void Shell::furnish_new_room() {
 
 void Shell::shake_room() {
   if (!furnishing_ || opening_) return;
-  shaking_ = true;
   open_in_background(room_->room().scene().name, "",
                      [load = room_->room().loader()] { return open_room(load()); });
+  shaking_ = true;
 }
 
 float Shell::interface_scale() const {

@@ -151,6 +151,12 @@ bool Viewer::update(double wall_s) {
 
 void Viewer::lay_out() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (panels_hidden_) {
+    scene_ = {0, 0, std::max(size.x, 16.f), std::max(size.y, 16.f)};
+    plots_ = timeline_ = transport_ = side_ = path_ = status_ = {};
+    asked_ = ShellRequest::none;
+    return;
+  }
   const float line = fonts_.small->FontSize;
   const float side = std::min(k_side_panel * scale_, k_most_side * size.x);
   const float status = static_cast<float>(status_lines_.size()) * ImGui::GetTextLineHeightWithSpacing() +
@@ -212,17 +218,21 @@ void Viewer::build(const std::function<void()>& over) {
   row_ = std::move(row);
   handle_mouse();
   if (row_) draw_words(*row_);
+  if (!panels_hidden_) draw_panels();
+  if (precision_.open) draw_precision(player_, precision_, refused_);
+  if (keys_shown_) draw_key_table();
+  if (over) over();
+  ImGui::Render();
+  draw_scene();
+}
+
+void Viewer::draw_panels() {
   draw_side_panel(row_);
   asked_ = draw_transport_bar(player_, transport_, transport_height_);
   draw_timeline(player_, timeline_);
   if (is_static(player_.scene().setup)) draw_load_path(player_, path_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();
-  if (precision_.open) draw_precision(player_, precision_, refused_);
-  if (keys_shown_) draw_key_table();
-  if (over) over();
-  ImGui::Render();
-  draw_scene();
 }
 
 void Viewer::draw_scene() {

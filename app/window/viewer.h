@@ -150,6 +150,7 @@ class Viewer {
   void write_status();
   void draw_status();
   void draw_key_table();
+  void draw_panels();
   float aspect() const { return scene_.width / scene_.height; }
 
   Player& player_;
@@ -194,7 +195,7 @@ class Viewer {
   std::vector<std::string> status_lines_;
   bool to_next_panel_ = false;
   ShellRequest asked_ = ShellRequest::none;
-  bool keys_shown_ = false, ghost_shown_ = true;
+  bool keys_shown_ = false, ghost_shown_ = true, panels_hidden_ = false;
   std::string refused_;
   std::string message_;  // what was written, or why it was not
   double frame_ms_ = 0;

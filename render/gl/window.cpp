@@ -116,6 +116,8 @@ struct Window::Parts {
   GLFWwindow* window = nullptr;
   ImGuiContext* imgui = nullptr;
   bool input = true;
+  Size windowed = {};  // when it fills no screen
+  int left = 0, top = 0;
   std::vector<KeyPress> keys;
   std::vector<std::string> drops;
 };
@@ -161,6 +163,19 @@ bool Window::iconified() const {
 
 void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(parts_->window, title.c_str());
+}
+
+void Window::toggle_full_screen() {
+  Parts& parts = *parts_;
+  GLFWmonitor* const screen = glfwGetPrimaryMonitor();
+  if (glfwGetWindowMonitor(parts.window)) {
+    glfwSetWindowMonitor(parts.window, nullptr, parts.left, parts.top, parts.windowed.width,
+                         parts.windowed.height, GLFW_DONT_CARE);
+  } else if (const GLFWvidmode* const mode = screen ? glfwGetVideoMode(screen) : nullptr) {
+    glfwGetWindowPos(parts.window, &parts.left, &parts.top);
+    parts.windowed = size();
+    glfwSetWindowMonitor(parts.window, screen, 0, 0, mode->width, mode->height, mode->refreshRate);
+  }
 }
 
 bool Window::should_close() const {

@@ -39,6 +39,9 @@ class Window : public Context {
 
   void set_title(const std::string& title);
 
+  /// Fills the first screen, or goes back to where it was.
+  void toggle_full_screen();
+
   /// The person, or close(), wants it closed.
   bool should_close() const;
   void close();
@@ -54,7 +57,7 @@ class Window : public Context {
   /// part uncovered; true at first. wake() does not count.
   bool take_input();
 
-  /// Keys pressed since the last call, in order; those held down do not repeat. None is lost when a picture
+  /// Keys pressed since the last call, in order; of those held down arrows alone repeat. None is lost when a picture
   /// takes long.
   std::vector<KeyPress> take_keys();
 

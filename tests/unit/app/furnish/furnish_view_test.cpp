@@ -167,6 +167,16 @@ TEST_F(FurnishTest, a_room_is_saved_as_it_is_written) {
   EXPECT_EQ(read(path), room().text());
 }
 
+TEST_F(FurnishTest, what_was_not_saved_stands_among_the_recent_files) {
+  place("desk", {0.6, -0.4});
+  const std::string text = room().text();
+  shell_->open(write("rocking.toml", k_rocking));
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  const std::vector<std::string> recent = recent_files();
+  ASSERT_EQ(recent.size(), 2u);
+  EXPECT_EQ(read(recent.at(1)), text);
+}
+
 TEST_F(FurnishTest, a_scene_is_furnished_with_its_comments_and_its_sliders) {
   shell_->open(write("own.toml", "# mine\n" + new_room()));
   ASSERT_TRUE(until([&] { return ready(); }));
