@@ -24,7 +24,7 @@ namespace fw = furnish_words;
 namespace sw = window_words;
 
 constexpr std::array k_materials{"aluminium", "plastic", "stainless steel", "steel", "wood"};
-constexpr float k_label_share = 0.5f;  // of the width of the panel
+constexpr float k_label_share = 0.46f;  // of the width of the panel
 
 void fill_field(char* to, std::size_t size, const std::string& text) {
   const std::size_t length = std::min(text.size(), size - 1);

@@ -87,7 +87,7 @@ inline constexpr Phrase k_mass{"mass, empty, kg", "質量（空）[kg]"};
 inline constexpr Phrase k_contents{"contents, kg", "内容物 [kg]"};
 inline constexpr Phrase k_feet_friction{"friction of feet", "脚の摩擦係数"};
 inline constexpr Phrase k_material{"material", "材料"};
-inline constexpr Phrase k_of_kind{"as the kind", "種類の既定"};
+inline constexpr Phrase k_of_kind{"by kind", "種類の既定"};
 inline constexpr Phrase k_x{"x, m", "x [m]"};
 inline constexpr Phrase k_y{"y, m", "y [m]"};
 inline constexpr Phrase k_turned{"turned, °", "向き [°]"};
