@@ -36,7 +36,7 @@ struct PictureSettings {
   bool alone = false;  ///< one picture of the run: an impact's arrows get a scale of their own
   bool panels = true;
   bool solid = false;  ///< furniture as it looks, in place of its beams (solid_bodies.h); in the window
-  bool words = true;  ///< title, captions, labels, legend and the floor's curve
+  bool words = true;   ///< title, captions, labels, legend and the floor's curve
   Trails trails = Trails::none;
   std::optional<Diagram> diagram = {};
 };

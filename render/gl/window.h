@@ -57,8 +57,8 @@ class Window : public Context {
   /// part uncovered; true at first. wake() does not count.
   bool take_input();
 
-  /// Keys pressed since the last call, in order; of those held down arrows alone repeat. None is lost when a picture
-  /// takes long.
+  /// Keys pressed since the last call, in order; of those held down arrows alone repeat. None is lost when a
+  /// picture takes long.
   std::vector<KeyPress> take_keys();
 
   /// Paths of files dropped on the window since the last call.
