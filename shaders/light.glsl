@@ -40,6 +40,7 @@ float half_shade(vec3 at, float reach, int white, int taps) {
 // software rasteriser most of the floor.
 float key_visibility(vec3 p, float reach) {
   vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
+  at.z = min(at.z, 1.0);  // what maps of fixed point do by themselves
   bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
   bool near = inside && textureLod(u_caster, at.xy, 0.0).r > 0.0;
   float black = half_shade(at, reach, 0, near ? k_half_taps : 0);

@@ -8,6 +8,7 @@
 #include "app/picture/body_colour.h"
 #include "app/picture/row.h"
 #include "solver/contact/proximity.h"
+#include "solver/math/ranges.h"
 
 namespace topple::app {
 namespace {
@@ -210,7 +211,7 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
     length += model.elements[e].length;
   const std::vector<Ordinate> all = ordinates(model, row, member, component);
-  const auto [least, most] = std::ranges::minmax_element(all, {}, &Ordinate::value);
+  const auto [least, most] = ranges::minmax_element(all, {}, &Ordinate::value);
   const double greatest = std::max(std::abs(least->value), std::abs(most->value));
   const double scale = greatest > 0 ? std::min(k_diagram * length, k_highest_diagram) / greatest : 0;
   const auto is_something = [&](const Ordinate& o) { return std::abs(o.value) > k_nothing * greatest; };
@@ -222,8 +223,8 @@ void add_diagram(const Model& model, const io::FrameRow& row, const Diagram& dia
     out.bands.back().base.push_back(to_float(base));
     out.bands.back().edge.push_back(to_float(edge));
   };
-  bool positive = std::ranges::find_if(all, is_something) == all.end() ||
-                  std::ranges::find_if(all, is_something)->value > 0;
+  bool positive =
+      ranges::find_if(all, is_something) == all.end() || ranges::find_if(all, is_something)->value > 0;
   begin_band(all.front(), positive);
   for (std::size_t i = 1; i < all.size(); ++i) {
     const Ordinate &a = all[i - 1], &b = all[i];

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "app/picture/anchor_picture.h"
@@ -13,6 +12,7 @@
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
+#include "solver/math/bits.h"
 
 namespace topple::app {
 namespace {
@@ -87,10 +87,10 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   mix(a.panel_contact, b.panel_contact, out.panel_contact);
   mix(a.energy, b.energy, out.energy);
   for (std::size_t i = 0; i < a.body.size(); ++i) {
-    const auto x = std::bit_cast<io::BodyArray>(a.body[i]), y = std::bit_cast<io::BodyArray>(b.body[i]);
+    const auto x = bits_as<io::BodyArray>(a.body[i]), y = bits_as<io::BodyArray>(b.body[i]);
     io::BodyArray between;
     mix(x, y, between);
-    out.body[i] = std::bit_cast<io::BodyNumbers>(between);
+    out.body[i] = bits_as<io::BodyNumbers>(between);
     const Quat q = a.body[i].rotation().slerp(u, b.body[i].rotation());
     out.body[i].qw = q.w(), out.body[i].qx = q.x(), out.body[i].qy = q.y(), out.body[i].qz = q.z();
   }

@@ -10,6 +10,7 @@
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 
@@ -79,7 +80,7 @@ std::string others_in_words(const Model& model, const Vec3& gravity, const io::F
   std::string counts;
   std::size_t standing = 0;
   for (const auto& [of, words] : k_stances) {
-    const auto count = static_cast<std::size_t>(std::ranges::count_if(
+    const auto count = static_cast<std::size_t>(ranges::count_if(
         others, [&, of = of](std::size_t body) { return stance(model, gravity, row, body) == of; }));
     if (of == Stance::standing) standing = count;
     if (count > 0) counts += (counts.empty() ? "" : say(k_comma)) + say(words, count);
@@ -121,9 +122,9 @@ std::vector<std::string> bodies_in_words(const Model& model, const Vec3& gravity
   std::iota(bodies.begin(), bodies.end(), 0);
   std::size_t told = bodies.size();
   if (bodies.size() > k_few_bodies) {
-    std::ranges::stable_sort(bodies, std::ranges::greater{},
-                             [&](std::size_t body) { return share_of_critical(row, body); });
-    const auto still = std::ranges::find_if(
+    ranges::stable_sort(bodies, std::greater{},
+                        [&](std::size_t body) { return share_of_critical(row, body); });
+    const auto still = ranges::find_if(
         bodies, [&](std::size_t body) { return stance(model, gravity, row, body) == Stance::standing; });
     told = std::min(k_few_bodies, static_cast<std::size_t>(still - bodies.begin()));
   }

@@ -8,6 +8,7 @@
 
 #include "app/support/language.h"
 #include "solver/body/model_level.h"
+#include "solver/math/ranges.h"
 
 namespace topple::app::model_words {
 
@@ -41,7 +42,7 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
 
 template <class Table, class Kind>
 Phrase phrase_of(std::string_view english, const Table& table, Kind kind) {
-  const auto* const row = std::ranges::find_if(table, [kind](const auto& of) { return of.kind == kind; });
+  const auto* const row = ranges::find_if(table, [kind](const auto& of) { return of.kind == kind; });
   return {english, row == std::end(table) ? english : row->words};
 }
 inline Phrase phrase_of(ModelLevel level) {
@@ -70,7 +71,7 @@ inline constexpr std::pair<std::string_view, std::string_view> k_choice_words[] 
     {"newmark", "Newmark 法"}};
 /// A word as scenes have it, to be said; one without a row says itself.
 inline Phrase phrase_of_choice(std::string_view word) {
-  const auto* const row = std::ranges::find(k_choice_words, word, [](const auto& of) { return of.first; });
+  const auto* const row = ranges::find(k_choice_words, word, [](const auto& of) { return of.first; });
   return {word, row == std::end(k_choice_words) ? word : row->second};
 }
 

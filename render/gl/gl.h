@@ -4,6 +4,8 @@
 
 #include <GL/glcorearb.h>
 
+#include <string_view>
+
 namespace topple::render {
 
 using Proc = void (*)();
@@ -70,7 +72,6 @@ using GetProc = Proc (*)(const char* name);
   X(PFNGLSCISSORPROC, Scissor)                                               \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
   X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
-  X(PFNGLTEXPARAMETERFVPROC, TexParameterfv)                                 \
   X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
   X(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
@@ -85,6 +86,8 @@ using GetProc = Proc (*)(const char* name);
 /// The functions, named as in the OpenGL reference without the prefix `gl`. Every pointer is valid
 /// while the context it was loaded for is current.
 struct Gl {
+  /// What shaders begin with.
+  std::string_view shader_head = "#version 330 core\n";
 #define TOPPLE_GL_MEMBER(type, name) type name = nullptr;
   TOPPLE_GL_FUNCTIONS(TOPPLE_GL_MEMBER)
 #undef TOPPLE_GL_MEMBER

@@ -7,12 +7,10 @@
 namespace topple::render {
 namespace {
 
-constexpr std::string_view k_version_line = "#version 330 core\n";
-
 GlObject compile(const Gl& gl, GLenum stage, const std::vector<std::string_view>& names) {
   GlObject shader(gl, gl.CreateShader(stage), [](const Gl& g, GLuint id) { g.DeleteShader(id); });
-  std::vector<const char*> texts{k_version_line.data()};
-  std::vector<GLint> lengths{static_cast<GLint>(k_version_line.size())};
+  std::vector<const char*> texts{gl.shader_head.data()};
+  std::vector<GLint> lengths{static_cast<GLint>(gl.shader_head.size())};
   std::string all_names;
   for (const std::string_view name : names) {
     const std::string_view source = shader_source(name);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -135,7 +136,8 @@ Camera look_at(const Vector3f& eye, const Vector3f& target, const Vector3f& up, 
 }
 
 Camera fit_camera(NamedView view, const SceneFrame& frame, float aspect) {
-  const auto [low, high] = drawable_bounds(frame);
+  const std::pair<Vector3f, Vector3f> bounds = drawable_bounds(frame);
+  const Vector3f &low = bounds.first, &high = bounds.second;
   // exactly along the axes from above, where rounding would turn the picture
   const Matrix3f rows = view == NamedView::top ? Matrix3f::Identity() : sight_axes(sight_of(view));
   Room room{-0.92f, 0.92f, -0.84f, 0.72f};
@@ -153,7 +155,8 @@ Camera fit_camera(NamedView view, const SceneFrame& frame, float aspect) {
     }
   };
   const auto covers = [&](float right, float sign, float edge) {
-    return std::ranges::any_of(corners(low, high), [&](const Vector3f& point) {
+    const std::array<Vector3f, 8> points = corners(low, high);
+    return std::any_of(points.begin(), points.end(), [&](const Vector3f& point) {
       const Eigen::Vector4f clip = whole.projection * (whole.view * point.homogeneous());
       return clip.x() < right * clip.w() && sign * clip.y() > sign * edge * clip.w();
     });

@@ -22,7 +22,7 @@ inline bool drawable(float x) {
 
 template <std::size_t N>
 bool drawable(const std::array<float, N>& v) {
-  return std::ranges::all_of(v, [](float x) { return drawable(x); });
+  return std::all_of(v.begin(), v.end(), [](float x) { return drawable(x); });
 }
 
 inline bool has_value_range(const Legend& legend) {

@@ -27,14 +27,18 @@ struct Section {
   std::vector<std::uint32_t> cap;  // triangles over `corners`
 };
 
+template <class Range, class Predicate>
+bool all_of(const Range& range, Predicate predicate) {
+  return std::all_of(std::begin(range), std::end(range), predicate);
+}
+
 float cross(const Vector2f& a, const Vector2f& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
 Section section_of(const Profile& profile) {
   Section section;
-  if (profile.outline.size() < 3 ||
-      !std::ranges::all_of(profile.outline, [](const auto& p) { return drawable(p); })) {
+  if (profile.outline.size() < 3 || !all_of(profile.outline, [](const auto& p) { return drawable(p); })) {
     return section;
   }
   float twice_area = 0;
@@ -44,7 +48,7 @@ Section section_of(const Profile& profile) {
     section.corners.emplace_back(p[0], p[1]);
     twice_area += p[0] * q[1] - p[1] * q[0];
   }
-  if (twice_area < 0) std::ranges::reverse(section.corners);
+  if (twice_area < 0) std::reverse(section.corners.begin(), section.corners.end());
   std::vector<std::array<float, 2>> outline;
   for (const Vector2f& c : section.corners) outline.push_back({c.x(), c.y()});
   section.cap = triangulated(outline);
@@ -291,7 +295,7 @@ void push_line(Mesh& mesh, const std::vector<Float3>& points, const Float4& colo
 }
 
 bool drawable(const std::vector<Float3>& points) {
-  return std::ranges::all_of(points, [](const Float3& p) { return render::drawable(p); });
+  return all_of(points, [](const Float3& p) { return render::drawable(p); });
 }
 
 }  // namespace
@@ -309,7 +313,7 @@ std::vector<std::uint32_t> triangulated(const std::vector<std::array<float, 2>>&
       const Vector2f b = point(left[i]);
       const Vector2f c = point(left[(i + 1) % left.size()]);
       if (cross(b - a, c - b) <= 0) continue;
-      const bool free = std::ranges::none_of(left, [&](std::uint32_t j) {
+      const bool free = std::none_of(left.begin(), left.end(), [&](std::uint32_t j) {
         const Vector2f p = point(j);
         return p != a && p != b && p != c && cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 &&
                cross(a - c, p - c) >= 0;
@@ -351,8 +355,7 @@ Mesh trail_mesh(const SceneFrame& frame, const Vector3f& eye, float thickness, L
   Mesh mesh;
   for (const Trail& trail : frame.trails) {
     if (trail.points.size() < 2 || trail.strength.size() != trail.points.size() || !drawable(trail.points) ||
-        !drawable(trail.colour) ||
-        !std::ranges::all_of(trail.strength, [](float s) { return std::isfinite(s); })) {
+        !drawable(trail.colour) || !all_of(trail.strength, [](float s) { return std::isfinite(s); })) {
       ++left_out.trails;
       continue;
     }
@@ -427,7 +430,7 @@ std::vector<PanelVertex> panel_mesh(const SceneFrame& frame, const Vector3f& eye
   };
   std::vector<Sorted> order;
   for (const Panel& panel : frame.panels) {
-    if (!std::ranges::all_of(panel.corners, [](const Float3& c) { return drawable(c); })) {
+    if (!all_of(panel.corners, [](const Float3& c) { return drawable(c); })) {
       ++left_out.panels;
       continue;
     }
@@ -435,7 +438,8 @@ std::vector<PanelVertex> panel_mesh(const SceneFrame& frame, const Vector3f& eye
     for (const Float3& corner : panel.corners) centre += Vector3f(corner.data()) / 4;
     order.push_back({(centre - eye).norm(), &panel});
   }
-  std::ranges::stable_sort(order, std::greater{}, &Sorted::distance);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Sorted& a, const Sorted& b) { return a.distance > b.distance; });
   std::vector<PanelVertex> vertices;
   for (const Sorted& entry : order) {
     std::array<Vector3f, 4> p;

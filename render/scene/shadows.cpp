@@ -72,10 +72,6 @@ Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& siz
   gl.BindTexture(GL_TEXTURE_2D, key_map_.id());
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  const float lit[] = {1, 1, 1, 1};
-  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
   contact_map_ =
       make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, size.contact, size.contact, nullptr);
 
@@ -104,7 +100,6 @@ void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& 
   draw_solids();
   gl_.BlendEquation(GL_FUNC_ADD);
   gl_.Disable(GL_BLEND);
-  gl_.Disable(GL_DEPTH_CLAMP);
   bind_to(gl_, k_contact_unit, contact_map_);
   gl_.GenerateMipmap(GL_TEXTURE_2D);
   constexpr float k_any = std::numeric_limits<float>::infinity();
@@ -147,7 +142,8 @@ void Shadows::set_up_key(const Vector3f& low, const Vector3f& high) {
   rows.row(2) = -k_to_key;  // depth grows away from the light
   rows.row(0) = Vector3f::UnitZ().cross(k_to_key).normalized();
   rows.row(1) = Vector3f(rows.row(0)).cross(Vector3f(rows.row(2)));
-  const Vector3f margin = Vector3f::Constant(0.02f);
+  // lit texels at the edges, which what lies beyond them gets
+  const Vector3f margin = Vector3f::Constant(std::max(0.02f, 2e-3f * (high - low).norm()));
   const auto [from, to] = turned_box(rows, low - margin, high + margin);
   key_matrix_ = box_matrix(rows, from, to);
 
@@ -179,11 +175,12 @@ void Shadows::set_up_contact(const Vector3f& low, const Vector3f& high, const Fl
   gl_.Clear(GL_COLOR_BUFFER_BIT);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.Disable(GL_CULL_FACE);  // the undersides, which nothing else shows, are the nearest
-  gl_.Enable(GL_DEPTH_CLAMP);
   gl_.Enable(GL_BLEND);
   gl_.BlendEquation(GL_MAX);  // the lowest point above each place counts
   contact_program_.use();
-  contact_program_.set("u_view_projection", contact_matrix_);
+  Matrix4f flat = contact_matrix_;
+  flat.row(2).setZero();  // so that nothing is cut off above or below
+  contact_program_.set("u_view_projection", flat);
   contact_program_.set("u_up", floor.normal);
   contact_program_.set("u_floor", floor.point);
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/math/disjoint_sets.h"
+#include "solver/math/ranges.h"
 #include "solver/reduced/bodies_at_rest.h"
 #include "solver/state/profile.h"
 #include "solver/state/step_limits.h"
@@ -137,8 +138,7 @@ void IslandPart::begin_again(State& next) const {
 }
 
 CoupledBodies& IslandPart::coupled(std::vector<int> which) {
-  const auto known =
-      std::ranges::find_if(coupled_, [&](const auto& bodies) { return bodies->which() == which; });
+  const auto known = ranges::find_if(coupled_, [&](const auto& bodies) { return bodies->which() == which; });
   if (known != coupled_.end()) return **known;
   if (coupled_.size() == k_sets) coupled_.erase(coupled_.begin());
   return *coupled_.emplace_back(std::make_unique<CoupledBodies>(bodies_, std::move(which), coupling_));
@@ -259,7 +259,7 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
   }
   coupling_.ties().each_force([&](int node, const Vec3& force) {
     const int body = model_.node_body[node];
-    std::ranges::find(bodies_, body, &ModelBody::index)->body->add_member_force(node, force);
+    ranges::find(bodies_, body, &ModelBody::index)->body->add_member_force(node, force);
   });
 }
 

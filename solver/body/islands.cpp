@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/math/disjoint_sets.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 
@@ -44,9 +45,9 @@ BodySystem* Islands::alone(int body) {
 
 BodySystem* Islands::system(const Island& island, const std::vector<int>& rigid) {
   if (island.is_alone()) return alone(island.bodies.front());
-  const auto same = std::ranges::find_if(joined_, [&](const auto& system) {
+  const auto same = ranges::find_if(joined_, [&](const auto& system) {
     return system->bodies == island.bodies && system->candidate_pairs == island.candidate_pairs &&
-           std::ranges::equal(system->rigid, rigid, {}, &RigidInSystem::body);
+           ranges::equal(system->rigid, rigid, {}, &RigidInSystem::body);
   });
   if (same != joined_.end()) return same->get();
   return joined_
@@ -55,8 +56,8 @@ BodySystem* Islands::system(const Island& island, const std::vector<int>& rigid)
 }
 
 void Islands::keep(const std::vector<BodySystem*>& systems) {
-  std::erase_if(
-      joined_, [&](const auto& system) { return std::ranges::find(systems, system.get()) == systems.end(); });
+  std::erase_if(joined_,
+                [&](const auto& system) { return ranges::find(systems, system.get()) == systems.end(); });
 }
 
 }  // namespace topple

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/body/body_pose.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
 #include "solver/reduced/tipping.h"
@@ -110,7 +111,7 @@ const char* name(LevelReason reason) {
 }
 
 const LevelTraits& level_called(std::string_view word) {
-  return *std::ranges::find(k_model_levels, word, &LevelTraits::word);
+  return *ranges::find(k_model_levels, word, &LevelTraits::word);
 }
 
 std::span<const BodyModelTraits> body_models() {

@@ -7,6 +7,7 @@
 #include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
 #include "solver/frame/integrator.h"
+#include "solver/math/ranges.h"
 #include "solver/reduced/tipping.h"
 
 namespace topple {
@@ -106,8 +107,7 @@ void ModelSwitch::find_near(const std::vector<Island>& islands) {
     if (!island.is_alone())
       for (const int b : island.bodies) {
         near_[b] = true;
-        near_yield_[b] =
-            std::ranges::any_of(island.bodies, [this](int other) { return watched_[other] != 0; });
+        near_yield_[b] = ranges::any_of(island.bodies, [this](int other) { return watched_[other] != 0; });
       }
 }
 
@@ -286,7 +286,7 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   const int count = static_cast<int>(model.bodies.size());
   for (int b = 0; b < count; ++b) choice_.push_back(choose(on, b));
   choose_islands(parts.islands(state), parameters, state);
-  const bool any = !std::ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
+  const bool any = !ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
   if (any) {
     // as the newest step left it: parts may be arranged otherwise by now, with pairs that came near
     const EnergyLedger& held = state.energy;
@@ -308,7 +308,7 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   parts.arrange(state);
   if (any) {
     parts.balance(parameters, now, changed_, state);
-    std::ranges::fill(changed_, false);
+    ranges::fill(changed_, false);
     state.energy.model_switch += parts.energy(now, state).sum();
   }
   return other_frames;

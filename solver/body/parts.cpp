@@ -10,6 +10,7 @@
 #include "solver/body/step_control.h"
 #include "solver/element/damping.h"
 #include "solver/frame/central_difference.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 namespace {
@@ -22,7 +23,7 @@ void Forces::add(const MemberContacts& found, std::span<const MemberPair> pairs)
   const std::size_t first = members.size();
   for (const MemberTouch& touch : found.touches) members.push_back(member_force(touch, pairs[touch.pair]));
   for (const MemberBlend& blend : found.blends) {
-    const auto touch = std::ranges::find(found.touches, blend.pair, &MemberTouch::pair);
+    const auto touch = ranges::find(found.touches, blend.pair, &MemberTouch::pair);
     if (touch == found.touches.end()) continue;
     members[first + (touch - found.touches.begin())].force -=
         blend.slope * blend.surplus * (blend.by_sine[0] + blend.by_sine[1]);  // of the nodes of a
@@ -52,13 +53,12 @@ const std::vector<Island>& Parts::islands(const State& state) {
 std::vector<Island> Parts::without_mixed(const Island& island) const {
   const auto is_elastic = [&](int body) { return !traits(levels_[body]).joins_frames; };
   const auto is_frame = [&](int body) { return traits(levels_[body]).moves_nodes; };
-  if (std::ranges::none_of(island.bodies, is_frame) || std::ranges::none_of(island.bodies, is_elastic))
-    return {island};
+  if (ranges::none_of(island.bodies, is_frame) || ranges::none_of(island.bodies, is_elastic)) return {island};
   std::vector<ElementPair> kept;
   for (const ElementPair& pair : island.candidate_pairs) {
     std::vector<int> free;
     for (const int part : {pair.a, pair.b})
-      if (const int body = body_of(model_, part); std::ranges::binary_search(island.bodies, body))
+      if (const int body = body_of(model_, part); ranges::binary_search(island.bodies, body))
         free.push_back(body);
     if (is_elastic(free.front()) == is_elastic(free.back())) kept.push_back(pair);
   }
@@ -66,15 +66,14 @@ std::vector<Island> Parts::without_mixed(const Island& island) const {
   for (const TiedBodies& two : tied_)
     if (is_elastic(two[0]) == is_elastic(two[1])) tied.push_back(two);
   std::vector<Island> parts = islands_.divide(kept, tied);
-  std::erase_if(parts, [&](const Island& part) {
-    return !std::ranges::binary_search(island.bodies, part.bodies.front());
-  });
+  std::erase_if(
+      parts, [&](const Island& part) { return !ranges::binary_search(island.bodies, part.bodies.front()); });
   return parts;
 }
 
 void Parts::arrange(const State& state) {
   const std::vector<Island>& islands = this->islands(state);
-  if (std::ranges::equal(state.bodies, levels_, {}, &BodyState::level)) return;
+  if (ranges::equal(state.bodies, levels_, {}, &BodyState::level)) return;
   levels_.clear();
   for (const BodyState& s : state.bodies) levels_.push_back(s.level);
   parts_.clear();
@@ -89,7 +88,7 @@ void Parts::arrange(const State& state) {
   const auto couple = [&](const Island& island) {
     std::vector<ModelLevel> own;
     for (const int b : island.bodies) own.push_back(levels_[b]);
-    const auto same = std::ranges::find_if(
+    const auto same = ranges::find_if(
         coupled_, [&](const Coupled& known) { return known.island == island && known.levels == own; });
     if (same != coupled_.end()) return *same;
     std::vector<ModelBody> bodies;
@@ -102,7 +101,7 @@ void Parts::arrange(const State& state) {
   for (const Island& island : islands)
     for (const Island& part : without_mixed(island)) {
       const int b = part.bodies.front();
-      if (std::ranges::any_of(part.bodies, [&](int own) { return traits(levels_[own]).moves_nodes; })) {
+      if (ranges::any_of(part.bodies, [&](int own) { return traits(levels_[own]).moves_nodes; })) {
         std::vector<int> rigid;
         for (const int own : part.bodies) {
           with_frames_[own] = true;

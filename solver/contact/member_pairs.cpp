@@ -4,6 +4,8 @@
 #include <array>
 #include <map>
 
+#include "solver/math/ranges.h"
+
 namespace topple {
 namespace {
 
@@ -51,9 +53,9 @@ std::vector<MemberPair> member_pairs(const Model& model, std::span<const Element
       pair.tip[end] = pair.panel != nullptr && is_tip(model, elements.a + last, end);
     }
     if (pair.panel != nullptr)
-      std::ranges::transform(pair.panel->node, pair.node.begin() + 2, rules.number);
+      ranges::transform(pair.panel->node, pair.node.begin() + 2, rules.number);
     else
-      std::ranges::transform(both[1].node, pair.node.begin() + 2, rules.number);
+      ranges::transform(both[1].node, pair.node.begin() + 2, rules.number);
     pair.mass =
         1 / (rules.inverse_mass(body_of(model, elements.a)) + rules.inverse_mass(body_of(model, elements.b)));
     pair.start.fill(Vec3::Zero());

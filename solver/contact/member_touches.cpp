@@ -6,6 +6,7 @@
 #include "solver/contact/member_contact.h"
 #include "solver/contact/nearest_places.h"
 #include "solver/contact/penalty.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 namespace {
@@ -275,7 +276,7 @@ class TouchFinder {
     for (MemberBlend& blend : found_.blends) {
       const MemberPair& pair = pairs_[blend.pair];
       const auto at = [&](int k) { return position_[pair.node[k]]; };
-      std::ranges::copy(sine2_by_end({at(0), at(1), at(2), at(3)}), blend.by_sine.begin());
+      ranges::copy(sine2_by_end({at(0), at(1), at(2), at(3)}), blend.by_sine.begin());
       while (touch != found_.touches.end() && touch->pair < blend.pair) ++touch;
       for (; touch != found_.touches.end() && touch->pair == blend.pair; ++touch) {
         const double part = touch->place == 0 ? 1 : -0.25;

@@ -4,6 +4,7 @@
 #include <array>
 #include <compare>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -74,7 +75,10 @@ class NearSearch {
   struct Placed {
     std::array<int, 3> cell;
     int body;
-    friend auto operator<=>(const Placed&, const Placed&) = default;
+    friend bool operator==(const Placed&, const Placed&) = default;
+    friend bool operator<(const Placed& a, const Placed& b) {
+      return std::tie(a.cell, a.body) < std::tie(b.cell, b.body);
+    }
   };
   void find_bodies();
   void find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,

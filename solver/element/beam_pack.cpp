@@ -126,7 +126,7 @@ bool BeamPacks::respond_to(std::span<const ElementState> elements, std::size_t n
   const auto& [normal, twist, bending_y, bending_z] = pack.inverse_square;
   const PackVector<Four>&g = section.normal, &m = section.moment;
   const Four straight = normal * g.x * g.x + twist * m.x * m.x;
-  const auto beyond = [&](Four arm) {
+  const auto beyond = [&, &bending_y = bending_y, &bending_z = bending_z](Four arm) {
     const Four my = m.y + arm * g.z, mz = m.z - arm * g.y;
     return any_above(straight + bending_y * my * my + bending_z * mz * mz, 1 + k_on_surface);
   };

@@ -9,6 +9,7 @@
 #include "solver/contact/contact_law.h"
 #include "solver/element/beam.h"
 #include "solver/element/damping.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -326,7 +327,7 @@ void BodySystem::load_memory(const State& state, const BodyMotion& motion) {
     return state.elements[own.element].hinge == Hinge::broken;
   };
   // what tears takes energy: before, there is nothing to look for
-  const bool torn = !yields && state.energy.plastic != 0 && std::ranges::any_of(own_elements, is_torn);
+  const bool torn = !yields && state.energy.plastic != 0 && ranges::any_of(own_elements, is_torn);
   const bool remembered = std::exchange(remembers, yields || torn);
   for (std::size_t k = 0; (remembers || remembered) && k < own_elements.size(); ++k)
     elements[k] = state.elements[own_elements[k].element];

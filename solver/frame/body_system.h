@@ -12,6 +12,7 @@
 #include "solver/frame/step_span.h"
 #include "solver/math/block_lu.h"
 #include "solver/math/copy_values.h"
+#include "solver/math/ranges.h"
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/state/energy.h"
@@ -132,9 +133,7 @@ class BodySystem {
   void place_carried(BodyMotion& motion) const;
   /// Whether node i is one of a frame or of a held body.
   bool is_of_frame(int i) const { return node_mass[i] > 0 && i < count - std::ssize(rigid); }
-  bool is_rigid(int body) const {
-    return std::ranges::find(rigid, body, &RigidInSystem::body) != rigid.end();
-  }
+  bool is_rigid(int body) const { return ranges::find(rigid, body, &RigidInSystem::body) != rigid.end(); }
   /// Copies hinges, offsets, anchors and sticks between members, which start at `motion`: evaluations read
   /// them. Steps begin with it.
   void load_memory(const State& state, const BodyMotion& motion);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "solver/frame/body_system.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 
@@ -113,7 +114,7 @@ void BodySystem::add_elements() {
 }
 
 void BodySystem::add_member_pairs() {
-  const auto is_own = [this](int body) { return std::ranges::find(bodies, body) != bodies.end(); };
+  const auto is_own = [this](int body) { return ranges::find(bodies, body) != bodies.end(); };
   const auto is_frame = [&](int body) { return is_own(body) && !is_rigid(body); };
   member_pairs_ = topple::member_pairs(
       model, candidate_pairs,
@@ -121,7 +122,7 @@ void BodySystem::add_member_pairs() {
        .number = [this](int global) { return local(global); },
        .inverse_mass =
            [&](int body) {
-             const auto own = std::ranges::find(bodies, body);
+             const auto own = ranges::find(bodies, body);
              return own == bodies.end() ? 0 : 1 / contact_mass_[own - bodies.begin()];
            }});
 }
@@ -180,7 +181,7 @@ void BodySystem::add_point_packs() {
 
 void BodySystem::add_what_bears_on_nodes() {
   for (const Load& load : model.loads)
-    if (std::ranges::find(bodies, model.node_body[load.node]) != bodies.end())
+    if (ranges::find(bodies, model.node_body[load.node]) != bodies.end())
       loads.push_back({&load, local(load.node)});
 }
 
@@ -195,7 +196,7 @@ void BodySystem::add_own_anchors() {
 }
 
 BodySystem::EndOfAnchor BodySystem::end_of_anchor(const AnchorEnd& end) const {
-  if (std::ranges::find(bodies, end.body) == bodies.end()) return {};
+  if (ranges::find(bodies, end.body) == bodies.end()) return {};
   const int node_of = local(end.node), own = moves_with_[node_of];
   if (own == node_of) return {own, end.arm};
   return {own, end.arm + model.node_position[end.node] - model.bodies[end.body].centre_of_gravity};

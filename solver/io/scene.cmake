@@ -52,6 +52,7 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_planar.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/common/digits.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/common/nearest_name.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/document/toml_precheck.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_room.cpp

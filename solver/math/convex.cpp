@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 
+#include "solver/math/ranges.h"
+
 namespace topple {
 namespace {
 
@@ -52,8 +54,8 @@ std::optional<Vec2> common_point(const Convex& a, const Convex& b) {
 }  // namespace
 
 Convex convex_hull(std::vector<Vec2> points) {
-  std::ranges::sort(
-      points, [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  ranges::sort(points,
+               [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   Convex hull;
@@ -67,7 +69,7 @@ Convex convex_hull(std::vector<Vec2> points) {
     hull.pop_back();  // begins the other chain
   };
   add_chain(points);
-  std::ranges::reverse(points);
+  ranges::reverse(points);
   add_chain(points);
   return hull;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 
@@ -280,7 +281,7 @@ double quiet(const ShakenPlane& plane, double t, double until, std::span<const F
       up += sampled[c].up * sampled[c].samples[i];
     }
     along *= shake.scale, up *= shake.scale;
-    return std::ranges::all_of(
+    return ranges::all_of(
         signs, [&](const FloorSign& sign) { return sign.along * along + sign.up * up + sign.offset > 0; });
   };
   const auto time_of_sample = [&](std::size_t i) { return shake.start + static_cast<double>(i) * interval; };

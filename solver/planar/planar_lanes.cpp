@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/math/ranges.h"
+
 namespace topple::planar {
 namespace {
 
@@ -43,7 +45,7 @@ struct Queues {
     std::size_t n = 0;
     while (n < to.size() && size() > 0) {
       std::vector<Moving>& from =
-          *std::ranges::max_element(of, {}, [](const std::vector<Moving>& queue) { return queue.size(); });
+          *ranges::max_element(of, {}, [](const std::vector<Moving>& queue) { return queue.size(); });
       const std::size_t here = std::min(from.size(), to.size() - n);
       const auto last = from.begin() + static_cast<std::ptrdiff_t>(here);
       std::move(from.begin(), last, to.begin() + static_cast<std::ptrdiff_t>(n));
@@ -62,12 +64,12 @@ class Lanes {
   }
 
   bool over() const {
-    return std::ranges::all_of(by_mode_, [](const Queues& of) { return of.size() == 0; });
+    return ranges::all_of(by_mode_, [](const Queues& of) { return of.size() == 0; });
   }
 
   /// A step of those in the most frequent mode.
   void step() {
-    Queues& from = *std::ranges::max_element(by_mode_, {}, [](const Queues& of) { return of.size(); });
+    Queues& from = *ranges::max_element(by_mode_, {}, [](const Queues& of) { return of.size(); });
     std::array<Moving, k_lanes<Four>> taken;
     const std::size_t n = from.take(taken);
     use_.busy += static_cast<long>(n), use_.lanes += k_lanes<Four>;

@@ -1,9 +1,10 @@
 #include "solver/planar/power_series.h"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "solver/math/bits.h"
 
 namespace topple::planar {
 namespace {
@@ -168,7 +169,7 @@ P falls(const Polynomial<P>& p, MaskOf<P> open) {
 
 /// 2^n, -1022 <= n <= 1023
 double power_of_2(int n) {
-  return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+  return bits_as<double>(static_cast<std::uint64_t>(n + 1023) << 52);
 }
 
 /// x^(1/n) within a hundredth, x > 0.

@@ -7,6 +7,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/frame/find_rest.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -76,7 +77,7 @@ class RestOfBodies {
 
   double unbalance() {
     parts_.clear();
-    std::ranges::fill(load_, 0.);
+    ranges::fill(load_, 0.);
     place();
     const std::vector<BodyVelocity>* loads = nullptr;
     if (coupling_) {

@@ -88,7 +88,7 @@ BodyContacts::BodyContacts(const Model& model, int body)
   }
   box_centre_ = box.center();
   box_half_ = box.sizes() / 2;
-  now_.all = std::make_unique_for_overwrite<Touch[]>(sides_.size());
+  now_.all.reset(new Touch[sides_.size()]);
   shapes_.resize(sides_.size() * modes);
 }
 

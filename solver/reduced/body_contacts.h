@@ -90,7 +90,7 @@ class BodyContacts {
     static std::unique_ptr<Touch[]>& buffer_for(std::size_t pairs, std::vector<TouchBuffer>& buffers) {
       for (TouchBuffer& buffer : buffers)
         if (buffer.pairs == pairs) return buffer.touches;
-      buffers.push_back({pairs, std::make_unique_for_overwrite<Touch[]>(pairs / 4)});
+      buffers.push_back({pairs, std::unique_ptr<Touch[]>(new Touch[pairs / 4])});
       return buffers.back().touches;
     }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
 #include "solver/state/step_limits.h"
@@ -16,7 +17,7 @@ BodyTies::BodyTies(const Model& model, const std::vector<int>& bodies) : model_(
     Tie tie{k, {}, {}};
     int found = 0;
     for (const AnchorEnd& of : {anchor.own(), anchor.other}) {
-      const auto own = std::ranges::find(bodies, of.body);
+      const auto own = ranges::find(bodies, of.body);
       if (of.body < 0 || own == bodies.end()) break;
       const Body& body = model.bodies[of.body];
       End& end = tie.end[found++];

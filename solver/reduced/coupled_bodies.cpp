@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -46,7 +47,7 @@ void CoupledBodies::shape_matrices() {
   coupling_.ties().each_in_place([&](int a, int b) {
     if (place_[a] >= 0 && place_[b] >= 0) couple(place_[a], place_[b]);
   });
-  std::ranges::sort(coupled);
+  ranges::sort(coupled);
   coupled.erase(std::unique(coupled.begin(), coupled.end()), coupled.end());
   side_.assign(6 * row.back(), 0);
   if (row == row_ && coupled == coupled_) return;

@@ -9,6 +9,7 @@
 
 #include "solver/contact/member_pairs.h"
 #include "solver/contact/nearest_places.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/reduced/elastic_basis.h"
 #include "solver/reduced/rigid_pair_slopes.h"
@@ -31,7 +32,7 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
       modes_(bodies_.size(), 0),
       loads_(bodies_.size()),
       acceleration_(bodies_.size()) {
-  const auto is_own = [this](int body) { return std::ranges::find(bodies_, body) != bodies_.end(); };
+  const auto is_own = [this](int body) { return ranges::find(bodies_, body) != bodies_.end(); };
   pairs_ = member_pairs(model, candidate_pairs,
                         {.by_elements = [&](int body, int) { return traits(states[body].level).has_modes; },
                          .number = [this](int node) { return number_of(node); },
@@ -45,10 +46,10 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
 }
 
 int MemberCoupling::number_of(int node) {
-  const auto known = std::ranges::find(nodes_, node, &Node::node);
+  const auto known = ranges::find(nodes_, node, &Node::node);
   if (known != nodes_.end()) return static_cast<int>(known - nodes_.begin());
   const int index = model_.node_body[node];
-  const auto own = std::ranges::find(bodies_, index);
+  const auto own = ranges::find(bodies_, index);
   const int number = static_cast<int>(nodes_.size());
   if (own == bodies_.end()) {
     nodes_.push_back({-1, node, Vec3::Zero()});
@@ -193,7 +194,7 @@ double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double with
     const NearestShares near = nearest_shares(pair, gather(pair, position_));
     for (int k = 0; k < near.count; ++k) {
       const auto& [share, between, gap] = near.at[k];
-      const auto closing = [&](const auto& of) {
+      const auto closing = [&, &share = share, &between = between](const auto& of) {
         Vec3 relative = Vec3::Zero();
         for (int i = 0; i < pair.nodes(); ++i) relative += share[i] * of(pair.node[i]);
         return -between.dot(relative) / between.norm();
@@ -298,7 +299,7 @@ void MemberCoupling::each_block(const ContactLaw& law, const MemberContacts& con
                                 std::span<const MemberPair> pairs, double velocity_factor,
                                 const AddBlock& add) const {
   const auto are_rigid = [&](const std::array<int, 2>& bodies) {
-    return std::ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; });
+    return ranges::all_of(bodies, [&](int body) { return body < 0 || modes_[body] == 0; });
   };
   RigidPairSlopes rigid(law, position_, arm_, velocity_factor);
   std::array<int, 2> of_rigid{-1, -1};

@@ -10,6 +10,7 @@
 #include "solver/contact/contact_law.h"
 #include "solver/element/damping.h"
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/state/step_limits.h"
 
@@ -476,8 +477,8 @@ bool ReducedBody::lands_on_what_gives(double alpha) const {
   const std::vector<int>& base = model_.bodies[body_].base_points;
   bool any = false;
   contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
-    any = any || (alpha * touch.give[k] > contacts_.length(touch, k) &&
-                  std::ranges::find(base, point) == base.end());
+    any = any ||
+          (alpha * touch.give[k] > contacts_.length(touch, k) && ranges::find(base, point) == base.end());
   });
   return any;
 }

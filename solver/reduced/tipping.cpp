@@ -6,6 +6,7 @@
 
 #include "solver/contact/contact_law.h"
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 #include "solver/model/excitation.h"
 #include "solver/reduced/elastic_basis.h"
 
@@ -37,8 +38,8 @@ std::vector<int> base_nodes(const Model& model, const Body& body) {
   std::vector<int> nodes;
   for (const int point : body.base_points)
     nodes.push_back(model.contact_points[point].node - body.first_node);
-  std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "solver/math/ranges.h"
 #include "solver/run/footprint.h"
 
 namespace topple {
@@ -36,7 +37,7 @@ void observe_hits(const Room& room, const Model& model, std::span<const Vec3> po
       const Vec2& at = room.places[p].at;
       std::vector<PlaceOutcome::Hit>& hits = places[p].hits;
       if (is_far(position, model.bodies[b], at, far)) continue;
-      if (std::ranges::find(hits, b, &PlaceOutcome::Hit::body) != hits.end()) continue;
+      if (ranges::find(hits, b, &PlaceOutcome::Hit::body) != hits.end()) continue;
       if (!print) print = footprint(model, position, b, k_person_height);
       if (!print) break;
       if (print->distance(at) < radius) hits.push_back({b, time});

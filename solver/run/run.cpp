@@ -5,6 +5,7 @@
 
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
 #include "solver/state/sections.h"
@@ -139,7 +140,7 @@ void Run::look_within(double time) const {
 void Run::observe_stresses_since(double start) {
   const double rate = setup_->run.output_rate, end = now_.state.time;
   const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
-  if (std::ranges::none_of(now_.state.bodies, has_stresses)) return;
+  if (ranges::none_of(now_.state.bodies, has_stresses)) return;
   const InPhase phase(&workspace_.profile(), Phase::observe);
   if (within_.bodies.empty()) look_within(end);  // takes its memory with the first step
   for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 namespace {
@@ -110,7 +111,7 @@ class Graph {
     ShortestWay way{length, {}};
     for (; at != 0; at = before[at]) way.line.push_back(corners_[at].at);
     way.line.push_back(corners_[0].at);
-    std::ranges::reverse(way.line);
+    ranges::reverse(way.line);
     return way;
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/math/ranges.h"
+
 namespace topple {
 namespace {
 
@@ -10,9 +12,9 @@ constexpr double k_touch = 1e-9;  // m, by which what touches may seem to overla
 
 /// Nobody walks behind a wall.
 bool is_behind_a_wall(const Room& room, const Footprint& print) {
-  return std::ranges::any_of(room.walls, [&](const Room::Wall& wall) {
-    return std::ranges::all_of(
-        print.core, [&](const Vec2& corner) { return Room::before(wall, corner) < -print.radius; });
+  return ranges::any_of(room.walls, [&](const Room::Wall& wall) {
+    return ranges::all_of(print.core,
+                          [&](const Vec2& corner) { return Room::before(wall, corner) < -print.radius; });
   });
 }
 

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <span>
 
+#include "solver/math/ranges.h"
+
 namespace topple {
 namespace {
 
@@ -60,7 +62,7 @@ std::vector<Link> links_of(const Line& line, const std::vector<Convex>& faces,
       links.push_back({std::max(near.distance - a.radius, 0.), i, walls, odd});
     }
   }
-  std::ranges::stable_sort(links, {}, &Link::gap);
+  ranges::stable_sort(links, {}, &Link::gap);
   return links;
 }
 
@@ -116,9 +118,9 @@ std::vector<int> chain_of(std::span<const Link> links, int count) {
   std::vector<int> chain;
   for (int k = index(last.a, true); k >= 0; k = seen[static_cast<std::size_t>(k)].before) {
     const int obstacle = k / 2;
-    if (obstacle < count - 1 && std::ranges::find(chain, obstacle) == chain.end()) chain.push_back(obstacle);
+    if (obstacle < count - 1 && ranges::find(chain, obstacle) == chain.end()) chain.push_back(obstacle);
   }
-  std::ranges::sort(chain);
+  ranges::sort(chain);
   return chain;
 }
 
@@ -129,7 +131,7 @@ std::vector<Convex> faces(const Room& room, std::size_t wall) {
   std::vector<const Room::Door*> doors;
   for (const Room::Door& door : room.doors)
     if (door.wall == static_cast<int>(wall)) doors.push_back(&door);
-  std::ranges::sort(doors, {}, [](const Room::Door* door) { return door->at; });
+  ranges::sort(doors, {}, [](const Room::Door* door) { return door->at; });
   std::vector<Convex> all;
   Vec2 begin = of.at - k_far * of.along();
   for (const Room::Door* door : doors) {

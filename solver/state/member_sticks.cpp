@@ -4,6 +4,8 @@
 #include <iterator>
 #include <tuple>
 
+#include "solver/math/ranges.h"
+
 namespace topple {
 namespace {
 
@@ -11,11 +13,11 @@ namespace {
 void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& sticks,
              std::vector<MemberStick>& all) {
   const auto own = [&](const MemberStick& stick) {
-    return std::ranges::binary_search(pairs, stick.elements, {}, &MemberPair::elements);
+    return ranges::binary_search(pairs, stick.elements, {}, &MemberPair::elements);
   };
   std::erase_if(all, own);
-  std::ranges::copy_if(sticks, std::back_inserter(all), own);
-  std::ranges::sort(all, {}, [](const MemberStick& stick) { return std::tie(stick.elements, stick.place); });
+  ranges::copy_if(sticks, std::back_inserter(all), own);
+  ranges::sort(all, {}, [](const MemberStick& stick) { return std::tie(stick.elements, stick.place); });
 }
 
 }  // namespace

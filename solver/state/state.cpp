@@ -1,13 +1,13 @@
 #include "solver/state/state.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
 #include "solver/contact/contact_law.h"
+#include "solver/math/bits.h"
 #include "solver/math/copy_values.h"
 #include "solver/math/overflow.h"
 #include "solver/math/pack.h"
@@ -50,7 +50,7 @@ double as_number(const Stored<Choice>& row) {
   return static_cast<double>(row.number);
 }
 double as_number(const Stored<Hinge>& row) {
-  return std::bit_cast<double>(row.number);
+  return bits_as<double>(row.number);
 }
 double as_number(const ContactLawTraits& law) {
   return static_cast<double>(law.kind);
@@ -63,7 +63,7 @@ void each_choice(const Table& table, Choice& choice, F& f) {
   f(number);
   if constexpr (!std::is_const_v<Choice>) {
     for (const auto& row : table)
-      if (std::bit_cast<std::uint64_t>(as_number(row)) == std::bit_cast<std::uint64_t>(number)) {
+      if (bits_as<std::uint64_t>(as_number(row)) == bits_as<std::uint64_t>(number)) {
         choice = row.kind;
         return;
       }
@@ -143,28 +143,28 @@ void each_block_number(AnyBlock& b, F f) {
 
 // Pairs of elements as numbers of eight bytes, as in a checkpoint.
 double as_number(const ElementPair& pair) {
-  return std::bit_cast<double>(std::int64_t{pair.a} << 32 | pair.b);
+  return bits_as<double>(std::int64_t{pair.a} << 32 | pair.b);
 }
 
 ElementPair as_pair(double number) {
-  const auto bits = std::bit_cast<std::int64_t>(number);
+  const auto bits = bits_as<std::int64_t>(number);
   return {static_cast<int>(bits >> 32), static_cast<int>(bits & 0xffffffff)};
 }
 
 // Calls f on the counts and entries of what touches, which differ from state to state, and on the blocks.
 template <class F>
 void each_touching(const State& s, F f) {
-  f(std::bit_cast<double>(static_cast<std::int64_t>(s.candidate_pairs.size())));
+  f(bits_as<double>(static_cast<std::int64_t>(s.candidate_pairs.size())));
   for (const ElementPair& pair : s.candidate_pairs) f(as_number(pair));
-  f(std::bit_cast<double>(static_cast<std::int64_t>(s.member_sticks.size())));
+  f(bits_as<double>(static_cast<std::int64_t>(s.member_sticks.size())));
   for (const MemberStick& stick : s.member_sticks) {
     f(as_number(stick.elements));
-    f(std::bit_cast<double>(static_cast<std::int64_t>(stick.place)));
+    f(bits_as<double>(static_cast<std::int64_t>(stick.place)));
     for (int k = 0; k < 3; ++k) f(stick.stick[k]);
   }
   for (std::size_t b = 0; b < s.bodies.size(); ++b)
     if (traits(s.bodies[b].level).has_block) {
-      f(std::bit_cast<double>(static_cast<std::int64_t>(b)));
+      f(bits_as<double>(static_cast<std::int64_t>(b)));
       each_block_number(s.blocks[b], f);
     }
 }
@@ -174,7 +174,7 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
   std::size_t next = 0;
   const auto read = [&] { return next < numbers.size() ? numbers[next++] : (next = numbers.size() + 1, 0.); };
   const auto read_count = [&](std::size_t width) {
-    const auto count = std::bit_cast<std::int64_t>(read());
+    const auto count = bits_as<std::int64_t>(read());
     const bool fits = count >= 0 && next <= numbers.size() &&
                       static_cast<std::size_t>(count) <= (numbers.size() - next) / width;
     if (!fits) next = numbers.size() + 1;
@@ -193,13 +193,13 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
   s.member_sticks.resize(read_count(5));
   for (MemberStick& stick : s.member_sticks) {
     stick.elements = as_pair(read());
-    const auto place = std::bit_cast<std::int64_t>(read());
+    const auto place = bits_as<std::int64_t>(read());
     if (!is_pair(stick.elements) || place < 0 || place > 4) return false;
     stick.place = static_cast<int>(place);
     for (int k = 0; k < 3; ++k) stick.stick[k] = read();
   }
   while (next < numbers.size()) {
-    const auto body = std::bit_cast<std::int64_t>(read());
+    const auto body = bits_as<std::int64_t>(read());
     if (body < 0 || body >= static_cast<std::int64_t>(s.blocks.size())) return false;
     each_block_number(s.blocks[static_cast<std::size_t>(body)], [&](double& x) { x = read(); });
   }
@@ -252,7 +252,7 @@ std::vector<double> pack(const State& state) {
   numbers.reserve(25 * state.position.size() + 3 * state.stick.size() + 7 * state.elements.size() +
                   (23 + 3 * k_modes) * state.bodies.size() + state.candidate_pairs.size() +
                   5 * state.member_sticks.size() + 2 * state.anchors.size() + 26);
-  numbers.push_back(std::bit_cast<double>(state.step));
+  numbers.push_back(bits_as<double>(state.step));
   each_number(state, [&](double x) { numbers.push_back(x); });
   each_touching(state, [&](double x) { numbers.push_back(x); });
   return numbers;
@@ -265,7 +265,7 @@ State unpack(const Model& model, std::span<const double> numbers) {
   each_number(state, [&](double&) { ++count; });
   if (count > numbers.size() || !read_touching(numbers.subspan(count), model, state))
     throw std::invalid_argument("a checkpoint of another model");
-  state.step = std::bit_cast<std::int64_t>(numbers[0]);
+  state.step = bits_as<std::int64_t>(numbers[0]);
   std::size_t next = 1;
   each_number(state, [&](double& x) { x = numbers[next++]; });
   for (BlockState& block : state.blocks) block.motion.time = state.time;
@@ -278,7 +278,7 @@ namespace {
 class Hash {
  public:
   void mix(double number) {
-    const auto bits = std::bit_cast<std::uint64_t>(number);
+    const auto bits = bits_as<std::uint64_t>(number);
     for (int shift = 0; shift < 64; shift += 8) {
       sum_ ^= bits >> shift & 0xff;
       sum_ *= 1099511628211ull;
@@ -322,7 +322,7 @@ void EnergyLedger::close(const StepEnergy& exchanged, const BodyEnergy& held) {
 
 std::uint64_t hash(const State& state) {
   Hash hash;
-  hash.mix(std::bit_cast<double>(state.step));
+  hash.mix(bits_as<double>(state.step));
   each_number(state, [&](double x) { hash.mix(x); });
   each_touching(state, [&](double x) { hash.mix(x); });
   return hash.sum();

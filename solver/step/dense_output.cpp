@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/body/model_level.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/step/workspace_impl.h"
 
@@ -72,7 +73,7 @@ void state_between(const Model& model, const State& start, const State& end, dou
   at = end;
   State placed;
   const State* from = &start;
-  if (!std::ranges::equal(start.bodies, end.bodies, {}, &BodyState::level, &BodyState::level)) {
+  if (!ranges::equal(start.bodies, end.bodies, {}, &BodyState::level, &BodyState::level)) {
     placed = start;
     place_nodes(model, placed);
     from = &placed;

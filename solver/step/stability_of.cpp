@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "solver/frame/start_vector.h"
+#include "solver/math/ranges.h"
 
 namespace topple {
 namespace {
@@ -57,7 +58,7 @@ void add_softest_mode(BodySystem& s, const std::vector<double>& growth, Stabilit
     out.direction = shift / greatest;
   }
   const bool hinged =
-      std::ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
+      ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
   out.loss = hinged                                                     ? Stability::Loss::mechanism
              : std::abs(share) > k_beside * std::sqrt(loads) * greatest ? Stability::Loss::limit_point
                                                                         : Stability::Loss::buckling;

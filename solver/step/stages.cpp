@@ -9,6 +9,7 @@
 #include "solver/body/candidates.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/integrator.h"
+#include "solver/math/ranges.h"
 #include "solver/model/excitation.h"
 
 namespace topple {
@@ -74,7 +75,7 @@ void apply_events(StepInProgress& s) {
     if (switch_anchors(s.model, s.parameters, next, s.w.changed)) {
       // what ties bodies to each other decides which are stepped together
       const auto ties = [](const Anchor& anchor) { return anchor.other.body >= 0; };
-      if (std::ranges::any_of(s.model.anchors, ties)) switch_models(s);
+      if (ranges::any_of(s.model.anchors, ties)) switch_models(s);
       balance_changed(s);
     }
   }

@@ -1,10 +1,10 @@
 #include "solver/io/accelerogram/accelerogram_text.h"
 
 #include <cctype>
-#include <charconv>
 #include <cstdio>
 #include <limits>
 
+#include "solver/io/common/digits.h"
 #include "solver/io/common/units.h"
 #include "solver/math/types.h"
 
@@ -55,7 +55,7 @@ std::string count_text(double count) {
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = read_digits(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
@@ -64,7 +64,7 @@ std::optional<double> number_in(std::string_view text) {
 std::optional<double> take_number(std::string_view& text) {
   text = trimmed(text);
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = read_digits(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   return value;

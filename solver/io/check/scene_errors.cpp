@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solver/io/scene/scene_check.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -72,8 +73,8 @@ class Collector {
         found_.push_back({{}, error.what()});
         break;
       }
-    std::ranges::stable_sort(found_, {},
-                             [](const Found& one) { return std::tuple(one.place.line, one.place.column); });
+    ranges::stable_sort(found_, {},
+                        [](const Found& one) { return std::tuple(one.place.line, one.place.column); });
     for (Found& one : found_) result.errors.push_back(std::move(one.line));
     return result;
   }
@@ -140,7 +141,7 @@ class Collector {
     const auto moves_others = [](const std::string& path) {
       return path.starts_with("furniture.") || path.starts_with("wall.");
     };
-    if (message.ends_with(k_overlap) && (!names_.empty() || std::ranges::any_of(keys_, moves_others)))
+    if (message.ends_with(k_overlap) && (!names_.empty() || ranges::any_of(keys_, moves_others)))
       return true;  // what stands where it should not
     for (const std::string& path : keys_) {
       if (path == error_path || path.starts_with(error_path + ".")) return true;  // an entry without its key
@@ -153,11 +154,10 @@ class Collector {
     const auto is_kind = [](const std::string& path) {
       return path.starts_with("furniture.") && path.ends_with(".kind");
     };
-    if (message.starts_with(std::string(k_there_is_no) + "[[furniture]]") &&
-        std::ranges::any_of(keys_, is_kind))
+    if (message.starts_with(std::string(k_there_is_no) + "[[furniture]]") && ranges::any_of(keys_, is_kind))
       return true;  // it may be the piece that is called after its kind
     // copies of an entry are called after it
-    return std::ranges::any_of(names_, [&](const std::string& name) {
+    return ranges::any_of(names_, [&](const std::string& name) {
       return message.find('"' + name + '"') != std::string::npos ||
              message.find('"' + name + '-') != std::string::npos;
     });

@@ -1,10 +1,10 @@
 #include "solver/io/common/units.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "solver/io/common/digits.h"
 #include "solver/math/types.h"
 
 namespace topple::io {
@@ -162,7 +162,7 @@ Quantity parse_quantity(std::string_view text, Dimension expected) {
   std::string_view rest = trimmed(text);
   if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
   double number = 0;
-  const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  const auto [end, status] = read_digits(rest.data(), rest.data() + rest.size(), number);
   if (status == std::errc::invalid_argument)
     return {{}, "is not a number with a unit, " + expectation(expected)};
   if (status != std::errc() || !std::isfinite(number)) return {{}, "is not a finite number"};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +18,7 @@ static constexpr void toml_assert(bool holds) {
 #define TOML_ASSERT(condition) toml_assert(static_cast<bool>(condition))
 #include <toml++/toml.h>
 
+#include "solver/io/common/digits.h"
 #include "solver/io/common/errors.h"
 #include "solver/io/document/toml_precheck.h"
 
@@ -90,9 +90,7 @@ std::string written_key(const std::string& key) {
 }
 
 std::string written_real(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  std::string result(text, end);
+  std::string result = shortest_digits(value);
   // TOML tells a real from an integer by these
   if (result.find_first_of(".en") == std::string::npos) result += ".0";
   return result;
@@ -346,10 +344,7 @@ std::string shown(const Node& node) {
   if (node.kind == Node::Kind::table || node.kind == Node::Kind::list || node.kind == Node::Kind::date) {
     return std::string(kind_name(node.kind));
   }
-  if (node.kind == Node::Kind::real) {
-    char text[40];
-    return std::string(text, std::to_chars(text, text + sizeof text, node.real).ptr);
-  }
+  if (node.kind == Node::Kind::real) return shortest_digits(node.real);
   if (node.kind != Node::Kind::text || node.text.size() <= k_longest) {
     return node.kind == Node::Kind::text ? '"' + node.text + '"' : written(node);
   }

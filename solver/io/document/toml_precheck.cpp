@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "solver/math/ranges.h"
+
 namespace topple::io {
 namespace {
 
@@ -136,7 +138,7 @@ class Scanner {
   TomlFault fault(std::string message) const {
     TomlFault result{at_, 1, 1, std::move(message)};
     const std::string_view before = text_.substr(begin_, at_ - begin_);
-    result.line += static_cast<int>(std::ranges::count(before, '\n'));
+    result.line += static_cast<int>(ranges::count(before, '\n'));
     const std::string line = utf8::replace_invalid(before.substr(before.rfind('\n') + 1));
     result.column += static_cast<int>(utf8::distance(line.begin(), line.end()));
     return result;

@@ -6,7 +6,9 @@
 
 #include "solver/body/model_level.h"
 #include "solver/frame/integrator.h"
+#include "solver/io/common/digits.h"
 #include "solver/io/common/errors.h"
+#include "solver/math/ranges.h"
 #include "solver/model/excitation.h"
 
 namespace topple::io {
@@ -19,8 +21,7 @@ int least_count(const Key& key) {
 }
 
 std::string every_digit(double x) {
-  char digits[40];
-  std::string text(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  std::string text = shortest_digits(x);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
@@ -47,7 +48,7 @@ std::string list_text(const std::vector<std::string>& items) {
 /// Refuses the key of a choice that was not made.
 void expect_choice(const Edit& edit, const Parameters& parameters) {
   const Key& key = key_of(edit.key);
-  const auto choice = std::ranges::find_if(
+  const auto choice = ranges::find_if(
       edits(), [&](const EditTraits& row) { return row.of == traits(edit.key).of && row.word == key.of; });
   if (choice == edits().end()) return;
   const std::string_view made = *choice_of(key_of(choice->kind), choice->get(parameters, edit.index).x());
@@ -94,7 +95,7 @@ void check_model(const Edit& edit, const Parameters&, const Model& model) {
 void check_integrator(const Edit& edit, const Parameters&, const Model& model) {
   if (edit.value.x() == k_automatic_integrator) return;
   const IntegratorTraits& asked = traits(static_cast<Integrator>(static_cast<int>(edit.value.x())));
-  const auto block = std::ranges::find_if(model.bodies, &Body::solid);
+  const auto block = ranges::find_if(model.bodies, &Body::solid);
   if (asked.is_explicit && block != model.bodies.end())
     fail(edit, "\"" + block->name + "\" is a block, which is rigid: \"" + asked.word +
                    "\" makes a frame of each body that is near another");

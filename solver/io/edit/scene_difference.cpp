@@ -3,8 +3,8 @@
 #include <utf8.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "solver/io/common/digits.h"
 #include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_keys.h"
 
@@ -13,18 +13,13 @@ namespace {
 
 constexpr std::size_t k_longest = 60;  // letters of a value that is shown
 
-std::string every_digit(double x) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, x).ptr};
-}
-
 /// A value as it is compared and as it is shown.
 struct Value {
   std::string exact, shown;
 };
 
 Value quantity(const Key* key, double si) {
-  return {every_digit(si), key ? value_text(*key, si) : short_number(si)};
+  return {shortest_digits(si), key ? value_text(*key, si) : short_number(si)};
 }
 
 bool has_quantities(const Key* key) {
@@ -69,7 +64,7 @@ std::optional<Value> fallback(const Key* key) {
     }
     case KeyType::numbers: {
       Value out{"[", default_text(*key)};
-      for (const double x : key->fallback) out.exact += every_digit(x) + ", ";
+      for (const double x : key->fallback) out.exact += shortest_digits(x) + ", ";
       return Value{out.exact + "]", out.shown};
     }
     default:

@@ -10,6 +10,7 @@
 #include "solver/io/edit/scene_rewrite.h"
 #include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_file.h"
+#include "solver/math/ranges.h"
 #include "solver/model/excitation.h"
 
 namespace topple::io {
@@ -59,7 +60,7 @@ class Rewriting {
       if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
       if (key == Edit::Key::integrator && !frames_only()) continue;
       const auto& analyses = key_of(key).analyses;
-      if (!analyses.empty() && std::ranges::find(analyses, analysis_) == analyses.end()) continue;
+      if (!analyses.empty() && ranges::find(analyses, analysis_) == analyses.end()) continue;
       keys.emplace_back(key, index);
     }
     return keys;
@@ -79,7 +80,7 @@ class Rewriting {
     if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
     const Edit::Of of = traits(edit.key).of;
     if (of == Edit::Of::body) {
-      const BodyEntry& entry = *std::ranges::find_if(entries_, [&](const BodyEntry& one) {
+      const BodyEntry& entry = *ranges::find_if(entries_, [&](const BodyEntry& one) {
         return static_cast<std::size_t>(edit.index) < one.first_body + one.bodies;
       });
       for (std::size_t b = entry.first_body; b < entry.first_body + entry.bodies; ++b)
@@ -114,7 +115,7 @@ class Rewriting {
             std::string_view choice, std::string_view made) {
     for (const Item& item : table.items) {
       const Key* const key = find_key(name, item.key);
-      if (!key || key->of != choice || std::ranges::find(key->when, made) != key->when.end()) continue;
+      if (!key || key->of != choice || ranges::find(key->when, made) != key->when.end()) continue;
       std::vector<std::string> all = path;
       all.push_back(item.key);
       changes_.push_back({std::move(all), std::nullopt});
@@ -150,7 +151,7 @@ class Rewriting {
 
   /// A scene that names an integrator has no rigid, elastic or automatic bodies.
   bool frames_only() const {
-    return std::ranges::all_of(now_.models, [](BodyModel m) { return m == BodyModel::frame; });
+    return ranges::all_of(now_.models, [](BodyModel m) { return m == BodyModel::frame; });
   }
 
   void add(std::vector<std::string> path, const std::string& value) {

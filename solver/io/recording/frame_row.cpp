@@ -1,8 +1,10 @@
 #include "solver/io/recording/frame_row.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "solver/math/bits.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 
@@ -47,7 +49,7 @@ bool all_finite(const Numbers& numbers) {
 
 template <typename Array, typename Row>
 bool all_finite(const std::vector<Row>& rows) {
-  return std::ranges::all_of(rows, [](const Row& row) { return all_finite(std::bit_cast<Array>(row)); });
+  return ranges::all_of(rows, [](const Row& row) { return all_finite(bits_as<Array>(row)); });
 }
 
 }  // namespace

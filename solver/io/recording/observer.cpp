@@ -6,6 +6,7 @@
 #include "solver/body/anchors.h"
 #include "solver/body/body_pose.h"
 #include "solver/element/plasticity.h"
+#include "solver/math/ranges.h"
 #include "solver/model/excitation.h"
 
 namespace topple::io {
@@ -196,7 +197,7 @@ FrameRow row_of(const Run& run, const Snapshot& at) {
 
 bool is_finite(const Checkpoint& checkpoint) {
   return std::isfinite(checkpoint.time) &&
-         std::ranges::all_of(checkpoint.state, [](double x) { return std::isfinite(x); });
+         ranges::all_of(checkpoint.state, [](double x) { return std::isfinite(x); });
 }
 
 double kinetic_energy(const Model& model, const Vec3& gravity, const FrameRow& row, int index) {

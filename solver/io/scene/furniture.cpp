@@ -8,6 +8,7 @@
 #include "solver/io/scene/furniture_piece.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -16,8 +17,8 @@ constexpr const char* k_furniture = "furniture";
 
 /// Keys of [[furniture]] itself; all others are of the body.
 bool is_own(std::string_view key) {
-  return std::ranges::any_of(scene_keys(),
-                             [&](const Key& row) { return row.table == k_furniture && row.name == key; });
+  return ranges::any_of(scene_keys(),
+                        [&](const Key& row) { return row.table == k_furniture && row.name == key; });
 }
 
 void override_body(Piece& piece) {

@@ -8,6 +8,7 @@
 #include "solver/io/scene/scene_read.h"
 #include "solver/io/scene/scene_words.h"
 #include "solver/io/scene/stock.h"
+#include "solver/math/ranges.h"
 #include "solver/model/block.h"
 #include "solver/model/body_builder.h"
 #include "solver/model/cabinet.h"
@@ -315,7 +316,7 @@ constexpr BodyFit k_fits[] = {{"cabinet", outer_cabinet, lines_of_box, fit_cabin
                               {"block", outer_block, lines_of_box, fit_block, put_box}};
 
 const BodyFit& fit_of(std::string_view table) {
-  return *std::ranges::find(k_fits, table, &BodyFit::table);
+  return *ranges::find(k_fits, table, &BodyFit::table);
 }
 
 }  // namespace

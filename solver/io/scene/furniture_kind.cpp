@@ -11,6 +11,7 @@
 #include "solver/io/scene/scene_keys.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/io/scene/stock.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -29,7 +30,7 @@ void set_file(Node& node, const std::shared_ptr<const std::string>& file) {
 std::string body_table(const Node& root, const std::string& origin) {
   std::string table;
   for (const Item& item : root.items) {
-    const bool body = std::ranges::find(k_furniture_bodies, item.key) != std::end(k_furniture_bodies);
+    const bool body = ranges::find(k_furniture_bodies, item.key) != std::end(k_furniture_bodies);
     const bool stays = item.key == "topple" || item.key == "title" || item.key == "kind" ||
                        item.key == "material" || item.key == "section";
     if (!body && !stays)
@@ -133,7 +134,7 @@ FurnitureKind furniture_kind(const std::string& name, const std::string& origin,
     try {
       return read_kind(bytes_of(name, read, files), kind_stem(name), file);
     } catch (const InputError& error) {
-      if (std::ranges::find(files, name, &SceneFile::name) != files.end()) throw;
+      if (ranges::find(files, name, &SceneFile::name) != files.end()) throw;
       fail(origin, place, path, error.what());  // it could not be read
     }
   }

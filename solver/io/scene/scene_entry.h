@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/io/document/scene_document.h"
+#include "solver/math/ranges.h"
 #include "solver/math/types.h"
 
 namespace topple::io {
@@ -31,8 +32,7 @@ class Entry {
   /// What it stands for in `table` (model/table.h), the words of which are the key's choices.
   template <class Table>
   auto chosen(std::string_view key, const Table& table) const {
-    return std::ranges::find(table, word(key), [](const auto& row) { return std::string_view(row.word); })
-        ->kind;
+    return ranges::find(table, word(key), [](const auto& row) { return std::string_view(row.word); })->kind;
   }
   /// True when the key holds a word of its choices (or its default is one) instead of numbers.
   bool is_word(std::string_view key) const;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "solver/io/scene/builtin.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -74,7 +75,7 @@ ReadSceneFile kept_files(const Scene& scene) {
 
 const std::string& bytes_of(const std::string& name, const ReadSceneFile& read,
                             std::vector<SceneFile>& files) {
-  auto file = std::ranges::find(files, name, &SceneFile::name);
+  auto file = ranges::find(files, name, &SceneFile::name);
   if (file == files.end()) file = files.insert(files.end(), {name, read(name)});
   return file->bytes;
 }

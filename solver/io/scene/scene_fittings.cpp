@@ -5,6 +5,7 @@
 
 #include "solver/contact/proximity.h"
 #include "solver/io/common/units.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -22,7 +23,7 @@ bool lies_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& point, dou
 
 /// A sheet carries what is screwed to it.
 bool lies_on_panel(const Model& model, int body, const State& start, const Vec3& point, double margin) {
-  return std::ranges::any_of(model.panels, [&](const Panel& panel) {
+  return ranges::any_of(model.panels, [&](const Panel& panel) {
     if (panel.body != body) return false;
     const auto x = [&](int k) -> const Vec3& { return start.position[panel.node[k]]; };
     return lies_on(x(0), x(1), x(2), point, margin) || lies_on(x(0), x(2), x(3), point, margin);

@@ -8,6 +8,7 @@
 #include "solver/io/scene/fixing_kinds.h"
 #include "solver/io/scene/scene_fittings.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -116,7 +117,7 @@ class Fixing {
   // The nodes for which `far` is least, of equally good ones that for which `then` is.
   template <class Far, class Then>
   int best(const std::vector<int>& of, Far far, Then then) const {
-    return *std::ranges::min_element(of, [&](int a, int b) {
+    return *ranges::min_element(of, [&](int a, int b) {
       const double fa = far(a), fb = far(b);
       if (std::abs(fa - fb) > k_same) return fa < fb;
       const double ta = then(a), tb = then(b);
@@ -146,7 +147,7 @@ class Fixing {
         const auto far = [&](int other) { return (model().node_position[other] - corner).norm(); };
         if (nearest < 0 || far(node) < far(nearest)) nearest = node;
       }
-      if (std::ranges::find(nodes, nearest) == nodes.end()) nodes.push_back(nearest);
+      if (ranges::find(nodes, nearest) == nodes.end()) nodes.push_back(nearest);
     }
     return nodes;
   }
@@ -199,11 +200,12 @@ class Fixing {
   std::vector<int> upper_corners() const {
     std::vector<int> nodes = nodes_of_body(body_, true);
     const auto far = [&](int node) { return target_.distance(x(node)); };
-    const double least = far(*std::ranges::min_element(nodes, {}, far));
+    const double least = far(*ranges::min_element(nodes, {}, far));
     std::erase_if(nodes, [&](int node) { return far(node) > least + k_same; });
     const Vec3 along = Vec3::UnitZ().cross(target_.normal);
     const auto place = [&](int node) { return along.dot(x(node)); };
-    const auto [first, last] = std::ranges::minmax(nodes, {}, place);
+    const auto [least_at, most_at] = ranges::minmax_element(nodes, {}, place);
+    const int first = *least_at, last = *most_at;
     if (place(last) - place(first) < k_same) return {first};
     return {first, last};
   }

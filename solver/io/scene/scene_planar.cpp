@@ -8,13 +8,14 @@
 #include "solver/contact/proximity.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
 
 /// Whether it becomes a rigid body as soon as it begins.
 bool is_near_another(const Model& model, const State& start, int body) {
-  return std::ranges::any_of(start.candidate_pairs, [&](const ElementPair& pair) {
+  return ranges::any_of(start.candidate_pairs, [&](const ElementPair& pair) {
     return body_of(model, pair.a) == body || body_of(model, pair.b) == body;
   });
 }

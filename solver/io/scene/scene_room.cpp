@@ -5,6 +5,7 @@
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_key_rows.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/math/ranges.h"
 #include "solver/run/ways.h"
 
 namespace topple::io {
@@ -28,7 +29,7 @@ void read_walls(const Entry& root, Room& room) {
 
 int find_wall(const Entry& entry, const Room& room) {
   const std::string name = entry.text("wall");
-  const auto wall = std::ranges::find(room.walls, name, &Room::Wall::name);
+  const auto wall = ranges::find(room.walls, name, &Room::Wall::name);
   if (wall != room.walls.end()) return static_cast<int>(wall - room.walls.begin());
   std::string known;
   for (const Room::Wall& one : room.walls) known += (known.empty() ? "" : ", ") + one.name;

@@ -1,9 +1,10 @@
 #include "solver/io/scene/stock.h"
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 
+#include "solver/io/common/digits.h"
+#include "solver/math/ranges.h"
 #include "solver/model/section.h"
 
 namespace topple::io {
@@ -73,7 +74,7 @@ Sizes sizes_of(std::string_view text) {
   const char *at = text.data(), *const end = at + text.size();
   while (at != end) {
     double value = 0;
-    const auto [behind, error] = std::from_chars(at, end, value, std::chars_format::fixed);
+    const auto [behind, error] = read_digits(at, end, value, true);
     const bool more = behind != end;
     if (error != std::errc() || !(value > 0) || value > k_largest || (more && *behind != 'x')) return {};
     sizes.push_back(value * k_millimetre);
@@ -100,7 +101,7 @@ std::vector<std::string> names_in(const Node& root, std::string_view kind) {
 }  // namespace
 
 std::optional<Node> stock_material(std::string_view name, const Place& place) {
-  const auto* const row = std::ranges::find(k_materials, name, &StockMaterial::name);
+  const auto* const row = ranges::find(k_materials, name, &StockMaterial::name);
   if (row == std::end(k_materials)) return std::nullopt;
   Node table = named_table(name, place);
   set_key(table, "young", number_node(row->young, place));
@@ -112,7 +113,7 @@ std::optional<Node> stock_material(std::string_view name, const Place& place) {
 
 std::optional<Node> stock_section(std::string_view name, const Place& place) {
   const std::size_t space = std::min(name.find(' '), name.size());
-  const auto* const row = std::ranges::find(k_shapes, name.substr(0, space), &StockShape::word);
+  const auto* const row = ranges::find(k_shapes, name.substr(0, space), &StockShape::word);
   if (row == std::end(k_shapes) || space == name.size()) return std::nullopt;
   const Sizes sizes = sizes_of(name.substr(space + 1));
   if (sizes.size() < row->least || sizes.size() > row->most) return std::nullopt;
@@ -151,7 +152,7 @@ void add_stock(Node& root) {
   std::vector<std::pair<std::string, Node>> wanted;
   const auto want = [&](std::string_view kind, const Node& name, const std::string& path) {
     const std::vector<std::string> names = names_in(root, kind);
-    if (std::ranges::find(names, name.text) != names.end()) return;
+    if (ranges::find(names, name.text) != names.end()) return;
     for (const auto& [of, table] : wanted)
       if (of == kind && table.find("name")->text == name.text) return;
     std::optional<Node> table =
