@@ -2,8 +2,10 @@
 
 #include <filesystem>
 
+#include "app/batch/recorded_run.h"
 #include "app/cli/command.h"
 #include "app/gltf/export_gltf.h"
+#include "app/page/export_page.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
 #include "app/support/foreign_recording.h"
@@ -20,14 +22,54 @@ namespace {
 
 struct ExportOptions {
   std::string recording;
-  std::string csv;     ///< folder; or
-  std::string xdmf;    ///< file; or
-  std::string vtk;     ///< folder; or
-  std::string gltf;    ///< file
+  std::string csv;                        ///< folder; or
+  std::string xdmf;                       ///< file; or
+  std::string vtk;                        ///< folder; or
+  std::string gltf;                       ///< file; or
+  std::string page;                       ///< file
+  Language language = Language::english;  ///< of the page
+  bool quiet = false;
   bool force = false;  ///< in place of files of any kind
 };
 
+bool is_scene(const std::string& source) {
+  return !io::is_recording(source);
+}
+
+int write_page(const ExportOptions& options, const io::Scene& scene, const std::string& recording) {
+  const std::string page =
+      page_of(scene, io::Recording(recording), options.language, [] { return !interrupted(); });
+  if (page.empty()) {
+    log_message("interrupted; " + options.page + " is not written");
+    return k_interrupted;
+  }
+  write_whole_file({options.page, options.force}, host::FileKind::html, page);
+  return k_done;
+}
+
+/// A scene is run for it.
+int export_page(const ExportOptions& options) {
+  require_pages("--page");
+  if (!is_scene(options.recording)) {
+    require_writable_file("--page", {options.page, options.force}, host::FileKind::html, options.recording);
+    const io::Recording recording = open_foreign_recording(options.recording);
+    defer_interrupts();
+    return write_page(options, recorded_scene(recording), options.recording);
+  }
+  const io::Scene scene = io::load_scene(options.recording);
+  require_no_record("--page", options.page, options.recording, scene);
+  require_writable_file("--page", {options.page, options.force}, host::FileKind::html, options.recording);
+  defer_interrupts();
+  const TemporaryFile file;
+  const RecordedRun run = record(scene, file.path(), {.quiet = options.quiet, .jobs = 1});
+  if (!run.trouble.empty()) log_message(run.trouble);
+  if (run.exit_code == k_interrupted || !run.recorded) return run.exit_code;
+  const int written = write_page(options, scene, file.path());
+  return written == k_done ? run.exit_code : written;
+}
+
 int export_command(const ExportOptions& options) {
+  if (!options.page.empty()) return export_page(options);
   if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
     for (const io::BuiltinScene& scene : io::builtin_scenes())
       if (scene.name == options.recording)
@@ -67,9 +109,9 @@ void add_export(Commands& commands) {
   const auto [command, data] =
       commands.add("export", "data of a recording for spreadsheets, ParaView and 3D viewers",
                    "export paper-a.h5 --csv paper-a-data\n  topple export paper-a.h5 --xdmf paper-a.xdmf\n  "
-                   "topple export paper-a.h5 --gltf paper-a.glb",
+                   "topple export paper-a.h5 --gltf paper-a.glb\n  topple export paper-a --page paper-a.html",
                    export_command);
-  add_path(command, "RECORDING", data.recording, "", "recording").required();
+  add_path(command, "RECORDING", data.recording, "", "recording; for --page a scene as well").required();
   CLI::Option_group& what = *command.add_option_group("output", "what to write");
   add_path(
       what, "--csv", data.csv, "DIR",
@@ -80,7 +122,11 @@ void add_export(Commands& commands) {
            "folder for frames.pvd and a .vtp file a frame, for what reads VTK's own format");
   add_path(what, "--gltf", data.gltf, "FILE.glb",
            "for 3D viewers and Blender: an animated model, coloured by stress");
+  add_path(what, "--page", data.page, "FILE.html",
+           "a page for any browser that replays the run, and computes it anew when a slider moves");
   what.require_option(1);
+  add_language(command, data.language, "en (default) or ja, of the page");
+  add_quiet(command, data.quiet);
   add_force(command, data.force);
 }
 

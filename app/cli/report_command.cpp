@@ -6,6 +6,7 @@
 
 #include "app/batch/recorded_run.h"
 #include "app/cli/command.h"
+#include "app/page/export_page.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
 #include "app/report/report.h"
@@ -30,6 +31,7 @@ struct ReportOptions {
   std::string file;                    ///< HTML; empty: NAME-report.html in the working folder
   Language language = Language::english;
   std::optional<int> jobs;  ///< runs at a time; absent: one per core
+  bool with_page = false;
   bool quiet = false;
   bool force = false;  ///< in place of files of any kind
 };
@@ -185,6 +187,13 @@ int interrupted_report(const std::string& file) {
   return k_interrupted;
 }
 
+/// "paper-a-page.html" of "paper-a.html".
+std::string page_beside(const std::string& report) {
+  std::filesystem::path path(report);
+  path.replace_filename(path.stem().string() + "-page.html");
+  return path.string();
+}
+
 int report_command(const ReportOptions& options) {
   const io::Scene scene = io::load_scene(options.scene, options.overrides);
   if (scene.setup.run.analysis != Analysis::dynamic)
@@ -196,6 +205,12 @@ int report_command(const ReportOptions& options) {
                                : std::filesystem::path(scene.name).filename().string() + "-report.html";
   require_no_record("--output", file, options.scene, scene);
   require_writable_text("--output", {file, options.force}, host::FileKind::html, options.scene);
+  const std::string page = options.with_page ? page_beside(file) : "";
+  if (options.with_page) {
+    require_pages("--with-page");
+    require_no_record("--with-page", page, options.scene, scene);
+    require_writable_file("--with-page", {page, options.force}, host::FileKind::html, options.scene);
+  }
   defer_interrupts();
 
   const TemporaryFile temporary;
@@ -240,9 +255,15 @@ int report_command(const ReportOptions& options) {
     RecordedRun without = record(*bare, "", {.quiet = options.quiet});
     report.without_anchors = std::move(without.summary);
   }
+  if (!page.empty()) {
+    const std::string html = page_of(scene, recording, options.language, [] { return !interrupted(); });
+    if (!html.empty()) write_whole_file({page, options.force}, host::FileKind::html, html);
+    report.page = std::filesystem::path(page).filename().string();
+  }
   if (interrupted()) return interrupted_report(file);
   write_whole_file({file, options.force}, host::FileKind::html, report_page(report, options.language));
   fmt::print("report: {}\n", file);
+  if (!page.empty()) fmt::print("live page: {}\n", page);
   return k_done;
 }
 
@@ -255,6 +276,8 @@ void add_report(Commands& commands) {
   add_scene(command, report.scene);
   add_path(command, "-o,--output", report.file, "FILE.html", "page to write, default SCENE-report.html");
   add_language(command, report.language, "en (default) or ja");
+  command.add_flag("--with-page", report.with_page,
+                   "a live page beside it, NAME-page.html, which it links to");
   add_set(command, report.overrides);
   add_force(command, report.force);
   add_jobs(command, report.jobs, "runs at a time, default one per core");

@@ -55,9 +55,11 @@ struct Report {
   study::FragilityResults fragility = {};
   int anchors = 0;
   std::optional<nlohmann::ordered_json> without_anchors;  ///< summary of the run; absent: there are none
+  std::string page = {};                                  ///< live page beside the report; empty: none
 };
 
-/// The page as one HTML file that refers to nothing outside of it. The same report gives the same text.
+/// The page as one HTML file that refers to nothing outside of it but its live page. The same report gives
+/// the same text.
 std::string report_page(const Report& report, Language language);
 
 }  // namespace topple::app

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "app/report/report_parts.h"
+#include "app/support/base64.h"
 #include "app/support/terms.h"
 #include "solver/run/overturn.h"
 
@@ -17,19 +18,6 @@ constexpr std::size_t k_names = 3;    // bodies; more have the numbers of the ch
 constexpr std::size_t k_curves = 8;   // more cannot be told apart
 constexpr double k_far_below = 0.15;  // of the critical angle: tilts below it would be flat beside it
 constexpr double k_same_angle = 0.5;  // degrees
-
-std::string base64(const std::string& bytes) {
-  static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : k_digits[bits >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
 
 std::string verdict(const ReportPage& page, const ordered_json& body) {
   const Phrase& said = body["overturned"].get<bool>()              ? words::k_overturns

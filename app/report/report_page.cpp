@@ -72,6 +72,18 @@ bool sensitive(const ReportPage& page) {
   return false;
 }
 
+/// As part of an address: what has a meaning there is written as bytes.
+std::string address_of(const std::string& file) {
+  std::string out = "./";
+  for (const char c : file)
+    if (const auto byte = static_cast<unsigned char>(c);
+        byte <= ' ' || byte == 0x7f || std::string_view("%#?\\").find(c) != std::string_view::npos)
+      out += fmt::format("%{:02X}", byte);
+    else
+      out += c;
+  return out;
+}
+
 bool verdict_is_open(const ReportPage& page) {
   const ordered_json& e = page.report().summary["error_estimate"];
   return e.contains("disagreements") && !e["disagreements"].empty();
@@ -81,6 +93,9 @@ std::string result(const ReportPage& page) {
   const Report& report = page.report();
   const std::vector<std::size_t> falls = fallen(page);
   std::string out = page.paragraph(verdict(page), "verdict");
+  if (!report.page.empty())
+    out += page.paragraph("<a href=\"" + escaped(address_of(report.page)) + "\">" +
+                          page.say(words::k_live_page) + "</a>");
   std::string broken;
   for (const ordered_json& a : report.summary["anchors"])
     if (a["broke"].get<bool>())

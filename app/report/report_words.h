@@ -28,6 +28,8 @@ inline constexpr Phrase k_nothing_stays_over{
     "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（単独での転倒限界角 {2}°を超えて戻る）。"};
 inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts most, by {1}°.",
                                             "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°。"};
+inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
+                                    "条件を変えて計算できるページ"};
 inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};
 inline constexpr Phrase k_sensitive{
     "The outcome turns on small differences in the shaking: read the probabilities in section {0}, not the "

@@ -81,6 +81,8 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/batch", {"support"}},
       {"app/gltf", {"picture", "support"}},
       {"app/report", {"support"}},
+      {"app/page", {"report", "batch", "picture", "support"}},
+      {"app/page/web", {"page", "picture", "support"}},
       {"app/live", {"batch", "picture", "support"}},
       {"app/study", {"batch", "support"}},
       {"app/validate", {"report", "study", "support"}},
@@ -89,7 +91,8 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/furnish", {"panels", "chart", "picture", "support"}},
       {"app/window", {"furnish", "panels", "chart", "live", "study", "picture", "support"}},
       {"app/cli",
-       {"window", "validate", "panels", "report", "live", "study", "batch", "gltf", "picture", "support"}},
+       {"window", "validate", "panels", "report", "live", "study", "batch", "gltf", "page", "picture",
+        "support"}},
       {"app/python", {"panels", "batch", "picture", "support"}},
       {"app", {"cli"}}}},  // main.cpp
 };

@@ -1,0 +1,222 @@
+#include "app/page/export_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/batch/summary.h"
+#include "app/page/page_rows.h"
+#include "app/page/page_template.h"
+#include "app/page/page_words.h"
+#include "app/page/verdict.h"
+#include "app/report/svg_chart.h"
+#include "app/support/base64.h"
+#include "app/support/errors.h"
+#include "app/support/terms.h"
+#include "render/gl/off_screen.h"
+#include "render/output/picture.h"
+
+namespace topple::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int k_still_width = 640, k_still_height = 400;  // px
+
+const Phrase& phrase_named(std::string_view name) {
+  return std::ranges::find(page_words::k_all, name, &page_words::Named::name)->phrase;
+}
+
+struct PageRows {
+  std::vector<io::FrameRow> kept;
+  std::size_t stride = 1;
+  std::vector<BodyEnd> ends;  ///< as far as rows tell
+  double most_tilted = 0;     ///< s
+};
+
+/// What rows tell of a body: the tilt has been beyond the critical angle since.
+void observe(const io::FrameRow& row, PageRows& rows, double& greatest) {
+  for (std::size_t b = 0; b < rows.ends.size(); ++b) {
+    const io::BodyNumbers& body = row.body[b];
+    BodyEnd& end = rows.ends[b];
+    const bool has_angle = body.critical_angle > 0;
+    if (const double tilt = body.tilt * k_degrees; tilt >= end.peak_tilt) {
+      end.peak_tilt = tilt;
+      end.critical = has_angle ? std::optional(body.critical_angle * k_degrees) : std::nullopt;
+    }
+    if (!has_angle || body.tilt <= body.critical_angle)
+      end.overturned.reset();
+    else if (!end.overturned)
+      end.overturned = row.time;
+    if (const double share = has_angle ? body.tilt / body.critical_angle : 0; share > greatest)
+      greatest = share, rows.most_tilted = row.time;
+  }
+}
+
+std::optional<PageRows> rows_of(const io::Scene& scene, const Replay& replay,
+                                const std::function<bool()>& proceed) {
+  PageRows rows;
+  const Model& model = scene.setup.model;
+  for (int b = 0; b < model.furniture_total(); ++b)
+    rows.ends.push_back({model.bodies[static_cast<std::size_t>(b)].name, {}, 0, {}});
+  const auto count = static_cast<std::size_t>(replay.frame_count());
+  rows.stride = page_stride(model, count);
+  double greatest = 0;
+  RunExtent same_model;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (proceed && !proceed()) return std::nullopt;
+    io::FrameRow row = replay.frame(static_cast<std::int64_t>(i));
+    if (i == 0) same_model.add(model, scene.setup.parameters, row);
+    if (!is_finite(row)) continue;
+    observe(row, rows, greatest);
+    if (i % rows.stride == 0 || i + 1 == count) rows.kept.push_back(std::move(row));
+  }
+  if (rows.kept.empty()) throw io::InputError("holds no instant that can be shown");
+  return rows;
+}
+
+/// From the summary where there is one: its times are those of steps.
+std::vector<BodyEnd> ends_of(const Json& summary, std::vector<BodyEnd> rows) {
+  if (!summary.contains("bodies")) return rows;
+  for (BodyEnd& end : rows)
+    for (const Json& body : summary["bodies"])
+      if (body["name"] == end.name) {
+        const auto number = [&](const char* key) {
+          return body[key].is_number() ? std::optional(body[key].get<double>()) : std::nullopt;
+        };
+        end = {end.name, number("overturn_time_s"), number("peak_tilt_deg").value_or(end.peak_tilt),
+               number("critical_tilt_deg")};
+      }
+  return rows;
+}
+
+Json json_of(const std::vector<BodyEnd>& ends) {
+  const auto number = [](const std::optional<double>& x) {
+    return x && std::isfinite(*x) ? Json(*x) : Json(nullptr);
+  };
+  Json list = Json::array();
+  for (const BodyEnd& end : ends)
+    list.push_back({{"name", end.name},
+                    {"overturn_time_s", number(end.overturned)},
+                    {"peak_tilt_deg", number(end.peak_tilt)},
+                    {"critical_tilt_deg", number(end.critical)}});
+  return list;
+}
+
+/// <img> and caption of the beginning, the greatest tilt and the end. Empty where nothing can draw.
+std::string stills(const io::Scene& scene, const Replay& replay, double most_tilted) try {
+  const RunExtent extent = extent_of(replay, scene);
+  const Bridge bridge(scene, extent);
+  const std::unique_ptr<render::Context> context = render::make_off_screen_context(render::Renderer::any);
+  render::Picture picture(context->get_proc(), k_still_width, k_still_height);
+  std::string html;
+  for (const double time : {replay.first(), most_tilted, replay.last()}) {
+    const io::FrameRow row = replay.at(time);
+    const render::SceneFrame frame = bridge.frame(row, replay.parameters(scene, row));
+    const render::Camera camera = render::fit_camera(render::NamedView::iso, frame, picture.aspect());
+    const std::vector<std::uint8_t> png =
+        render::encode_png(picture.draw(frame, camera, {.map = {}, .overlay = false}));
+    const std::string caption = escaped(fmt::format("{:.2f} s", time));
+    html += fmt::format("<img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><p>{0}</p>\n", caption,
+                        base64({reinterpret_cast<const char*>(png.data()), png.size()}));
+  }
+  return html;
+} catch (const std::runtime_error&) {
+  return "";
+}
+
+/// JSON that no text within can lead out of <script>.
+std::string script_json(const Json& value) {
+  std::string out;
+  for (const char c : json_text(value)) {
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// `values` in place of the names; what is put in is not looked through again.
+std::string filled(std::string_view text,
+                   const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t first = text.size(), length = 0;
+    const std::string* value = nullptr;
+    for (const auto& [name, content] : values)
+      if (const std::size_t at = text.find(name); at < first)
+        first = at, length = name.size(), value = &content;
+    out += text.substr(0, first);
+    if (value == nullptr) break;
+    out += *value;
+    text.remove_prefix(first + length);
+  }
+  return out;
+}
+
+Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<BodyEnd>& ends,
+               const ReplayOnly& only, Language language) {
+  Json files = Json::array();
+  for (const io::SceneFile& file : scene.files)
+    files.push_back({{"name", file.name}, {"base64", base64(file.bytes)}});
+  return {{"name", scene.name},
+          {"text", scene.text},
+          {"files", files},
+          {"rows", base64(pack_rows(rows.kept))},
+          {"stride", rows.stride},
+          {"bodies", json_of(ends)},
+          {"live", only.word.empty()},
+          {"reason", only.word},
+          {"estimate_s", fmt::format("{:.0f}", std::ceil(only.seconds))},
+          {"language", language == Language::japanese ? "ja" : "en"},
+          {"no_engine", say_in(language, phrase_named("no_engine"))}};
+}
+
+}  // namespace
+
+ReplayOnly why_replay_only(const io::Scene& scene, const io::Recording& recording,
+                           std::optional<double> wall) {
+  if (is_static(scene.setup)) return {"replay_static"};
+  if (!recording.history().edits_on_way_to(recording.newest_branch()).empty()) return {"replay_edits"};
+  const double seconds = wall.value_or(0) * k_browser_factor;
+  if (seconds > k_most_live) return {"replay_only", seconds};
+  return {};
+}
+
+bool can_make_pages() {
+  return !page_template().empty();
+}
+
+void require_pages(const std::string& option) {
+  if (!can_make_pages())
+    throw BadInput(option +
+                   ": this program was built without emscripten (Debian package emscripten), which live "
+                   "pages need");
+}
+
+std::string page_of(const io::Scene& scene, const io::Recording& recording, Language language,
+                    const std::function<bool()>& proceed) {
+  const Replay replay(recording);
+  const std::optional<PageRows> rows = rows_of(scene, replay, proceed);
+  if (!rows) return "";
+  const Json summary =
+      recording.summary_json().empty() ? Json::object() : Json::parse(recording.summary_json());
+  std::optional<double> wall;
+  if (summary.contains("wall_s") && summary["wall_s"].is_number()) wall = summary["wall_s"].get<double>();
+  const std::vector<BodyEnd> ends = ends_of(summary, rows->ends);
+  const std::string title = escaped(scene.title.empty() ? scene.name : scene.title);
+  return filled(page_template(),
+                {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
+                 {"@TITLE@", title},
+                 {"@STILLS@", stills(scene, replay, rows->most_tilted)},
+                 {"@VERDICT@", escaped(verdict_in_words(ends, language))},
+                 {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
+                 {"@VERSION@", TOPPLE_VERSION},
+                 {"@DATA@", script_json(page_data(scene, *rows, ends, why_replay_only(scene, recording, wall),
+                                                  language))}});
+}
+
+}  // namespace topple::app

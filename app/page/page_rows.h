@@ -1,0 +1,30 @@
+// Rows of a run as bytes, for the live page: what it shows of them, no more.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "solver/io/recording/frame_row.h"
+#include "solver/model/model.h"
+
+namespace topple::app {
+
+/// Of all rows of a page. A run of more has every second row in it, or third, and so on, and the last.
+inline constexpr std::size_t k_most_page_bytes = std::size_t{4} << 20;
+
+/// Bytes of a row of this model.
+std::size_t packed_size(const Model& model);
+
+/// Every how many of `rows` rows of this model go into a page.
+std::size_t page_stride(const Model& model, std::size_t rows);
+
+/// Little-endian numbers without padding, row after row: of the time, floor and bodies double, of nodes,
+/// section forces and anchors single precision. Contact forces and energies are left out.
+std::string pack_rows(const std::vector<io::FrameRow>& rows);
+
+/// The inverse; what was left out is zero. Throws io::InputError where the bytes are no rows of this model.
+std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes);
+
+}  // namespace topple::app

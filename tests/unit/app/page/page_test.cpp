@@ -1,0 +1,129 @@
+// Live pages: what goes into them, without a browser (tests/page/ has those).
+#include <gtest/gtest.h>
+
+#include "app/page/export_page.h"
+#include "app/page/page_controls.h"
+#include "app/page/page_rows.h"
+#include "app/page/verdict.h"
+#include "unit/app/program.h"
+
+namespace topple::app {
+namespace {
+
+std::vector<io::FrameRow> rows_of_a_run(const io::Scene& scene, int steps) {
+  Run run(scene.setup);
+  std::vector<io::FrameRow> rows{io::frame_row(run)};
+  for (int i = 0; i < steps; ++i) run.advance(), rows.push_back(io::frame_row(run));
+  return rows;
+}
+
+TEST(PageRows, rows_come_back_as_they_were_packed) {
+  const io::Scene scene = io::load_scene("anchored");
+  const std::vector<io::FrameRow> rows = rows_of_a_run(scene, 5);
+  const std::string bytes = pack_rows(rows);
+  EXPECT_EQ(bytes.size(), rows.size() * packed_size(scene.setup.model));
+  const std::vector<io::FrameRow> back = unpack_rows(scene.setup.model, bytes);
+  ASSERT_EQ(back.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(back[i].time, rows[i].time);
+    EXPECT_EQ(back[i].position, rows[i].position);
+    EXPECT_EQ(back[i].rotation, rows[i].rotation);
+    EXPECT_EQ(back[i].section_force, rows[i].section_force);
+    EXPECT_EQ(back[i].hinge, rows[i].hinge);
+    EXPECT_EQ(back[i].body, rows[i].body);
+    EXPECT_EQ(back[i].anchor, rows[i].anchor);
+    EXPECT_EQ(back[i].level, rows[i].level);
+  }
+  EXPECT_THROW(unpack_rows(scene.setup.model, bytes.substr(1)), io::InputError);
+}
+
+TEST(PageRows, what_is_not_finite_is_left_out) {
+  const io::Scene scene = io::load_scene("cabinet");
+  std::vector<io::FrameRow> rows = rows_of_a_run(scene, 2);
+  rows[1].position[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(unpack_rows(scene.setup.model, pack_rows(rows)).size(), 2u);
+}
+
+TEST(PageRows, many_rows_are_thinned_to_four_mebibytes) {
+  const Model model = io::load_scene("cabinet").setup.model;
+  const std::size_t most = k_most_page_bytes / packed_size(model);
+  EXPECT_EQ(page_stride(model, 1), 1u);
+  EXPECT_EQ(page_stride(model, most), 1u);
+  for (const std::size_t rows : {most + 1, std::size_t{10000}, std::size_t{1000000}}) {
+    const std::size_t stride = page_stride(model, rows);
+    const std::size_t kept = (rows - 1) / stride + 1 + ((rows - 1) % stride != 0);
+    EXPECT_LE(kept, most) << rows;
+    EXPECT_GE(2 * kept, most) << rows;
+  }
+}
+
+TEST(PageControls, each_changes_the_scene_as_it_says) {
+  for (const char* name : {"paper-a", "anchored", "cabinet", "near-fault", "desk"}) {
+    const io::Scene scene = io::load_scene(name);
+    const std::vector<PageControl> controls = page_controls(scene);
+    std::vector<double> values;
+    for (const PageControl& control : controls) values.push_back(control.value);
+    EXPECT_FALSE(controls.empty()) << name;
+    EXPECT_TRUE(changes(controls, values).empty()) << name;
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      const PageControl& one = controls[i];
+      EXPECT_LE(one.least, one.value) << name << " " << one.key;
+      EXPECT_GE(one.most, one.value) << name << " " << one.key;
+      std::vector<double> other = values;
+      other[i] = one.kind == PageControl::Kind::toggle ? 1 - one.value
+                 : one.value < one.most                ? one.value + 0.05 * (one.most - one.value)
+                                                       : one.value - 0.05 * (one.value - one.least);
+      const std::vector<std::string> sets = changes(controls, other);
+      ASSERT_EQ(sets.size(), 1u) << name << " " << one.key;
+      EXPECT_EQ(sets[0].rfind(one.key + "=", 0), 0u) << sets[0];
+      const auto changed = page_controls(io::load_scene(name, sets));
+      ASSERT_EQ(changed.size(), controls.size()) << sets[0];
+      EXPECT_NEAR(changed[i].value, other[i], 1e-6 * std::max(1., std::abs(other[i]))) << sets[0];
+    }
+  }
+}
+
+TEST(PageControls, what_is_no_number_changes_nothing) {
+  const std::vector<PageControl> controls = page_controls(io::load_scene("paper-a"));
+  const std::vector<double> values(controls.size(), std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(changes(controls, values).empty());
+}
+
+TEST(Verdict, says_who_falls_first_and_who_stays) {
+  const std::vector<BodyEnd> bodies = {{"a", 3.2, 90, 10.}, {"b", 1.5, 90, 10.}, {"c", {}, 2, 10.}};
+  EXPECT_EQ(
+      verdict_in_words(bodies, Language::english),
+      "“b” overturns 1.50 s after the start of the run. “a” overturns 3.20 s after the start of the run. "
+      "1 of 3 bodies stay standing.");
+  EXPECT_EQ(verdict_in_words({{"c", {}, 2, 10.}}, Language::english),
+            "Nothing overturns. “c” tilts most, by 2.00° of the 10.00° at which it would.");
+  EXPECT_EQ(verdict_in_words({}, Language::english), "");
+}
+
+class ExportPageTest : public ProgramTest {};
+
+TEST_F(ExportPageTest, texts_of_a_scene_do_not_become_parts_of_the_page) {
+  if (!can_make_pages()) GTEST_SKIP() << "built without emscripten";
+  write_bytes("bad.toml",
+              "topple = 1\ntitle = \"</script><script>alert(1)</script> @DATA@\"\nfloor = {}\n"
+              "[run]\nduration = 0.1\nwant = [\"motion\"]\n[[block]]\nname = \"<b>\"\n"
+              "size = [0.3, 0.6, 1.5]\nmass = 60\n");
+  ASSERT_EQ(topple({"export", "bad.toml", "--page", "page.html"}).code, 0);
+  const std::string page = bytes_of("page.html");
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
+  EXPECT_EQ(page.find("<b>"), std::string::npos);
+  EXPECT_NE(page.find("&lt;/script&gt;&lt;script&gt;alert(1)"), std::string::npos);
+  EXPECT_NE(page.find("<script id=\"data\" type=\"application/json\">{\"name\":\"bad\""), std::string::npos);
+}
+
+TEST_F(ExportPageTest, what_cannot_be_made_is_refused_in_one_line) {
+  write_bytes("lost.toml", "topple = 1\n[[shake]]\ntype = \"record\"\nfiles = [\"lost.csv\"]\n");
+  const Ended lost = topple({"export", "lost.toml", "--page", "page.html"});
+  EXPECT_EQ(lost.code, 2);
+  EXPECT_EQ(std::ranges::count(lost.err, '\n'), 1) << lost.err;
+  EXPECT_NE(lost.err.find(can_make_pages() ? "lost.csv" : "emscripten"), std::string::npos) << lost.err;
+  EXPECT_FALSE(std::filesystem::exists("page.html"));
+}
+
+}  // namespace
+}  // namespace topple::app
