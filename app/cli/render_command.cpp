@@ -21,6 +21,7 @@
 #include "app/picture/picture_settings.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
+#include "app/picture/solid_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
@@ -133,6 +134,7 @@ class Drawing {
         replay_(replay),
         ghost_(ghost),
         picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {
+    if (o.picture.solid) solid_.emplace(scene);
     if (followed_) start_ = centre_of(replay.frame(0), *followed_);
   }
 
@@ -142,6 +144,10 @@ class Drawing {
     if (inspected_ && inspected_->kind == Subject::Kind::member)
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
+    if (solid_ && is_finite(row)) {
+      solid_->dress(row, frame);
+      frame.legend = {};
+    }
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
     if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), settings, frame);
     return picture_.draw(frame, camera(frame, row), {.map = options_.picture.map});
@@ -166,6 +172,7 @@ class Drawing {
   const RunExtent extent_;
   const io::Scene& scene_;
   const Bridge bridge_;
+  std::optional<SolidBodies> solid_;
   const Replay& replay_;
   const Replay* const ghost_;
   render::Picture picture_;
@@ -402,6 +409,8 @@ void add_picture(CLI::App& command, RenderOptions& options) {
            "deformation drawn so many times as large, 1 to 200");
   command.add_flag("--forces", picture.contact_forces,
                    "arrows of what floors, walls and other bodies do to bodies");
+  command.add_flag_callback(
+      "--solid", [&picture] { picture.solid = true; }, "furniture as it looks in a room, without stresses");
   command.add_flag_callback(
       "--no-panels", [&picture] { picture.panels = false; }, "without the sheets of cabinets");
   command.add_flag_callback(

@@ -129,8 +129,7 @@ void choose_branch(Player& player) {
   ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
     for (const Branch& branch : branches)
-      if (list_entry(name(branch.id), branch.id == player.shown_branch()))
-        player.show_branch(branch.id);
+      if (list_entry(name(branch.id), branch.id == player.shown_branch())) player.show_branch(branch.id);
     ImGui::EndCombo();
   }
   tooltip(k_branch_about);

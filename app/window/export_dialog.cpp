@@ -50,6 +50,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
       fmt::format("{}", s.exaggeration)};
   if (s.contact_forces) words.push_back("--forces");
   if (!s.panels) words.push_back("--no-panels");
+  if (s.solid) words.push_back("--solid");
   if (!s.words) words.push_back("--no-words");
   if (s.trails != Trails::none) {
     words.push_back("--trails");

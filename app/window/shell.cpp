@@ -129,7 +129,8 @@ bool Shell::finish_opening() {
   try {
     LiveSource source = done.take();
     std::optional<EarlierRun> before;
-    if (shaking_ && session_) before = EarlierRun(session_->scene_ptr(), session_->player().way());
+    if (shaking_ && session_ && session_->scene().text != room_->room().text())
+      before = EarlierRun(session_->scene_ptr(), session_->player().way());
     show(std::move(source), opening_path_);
     if (shaking_) {
       session_->viewer().look(room_->orbit());
@@ -289,12 +290,16 @@ void Shell::build_over() {
   } else if (save_.is_open() && furnishing_) {
     const std::string saved = save_.draw(*to_save_, to_save_->setup.parameters, window, fonts());
     if (!saved.empty()) {
+      remember_recent(save_.path);
       room_->show_message(saved);
       kept_room_ = room_->room().text();
     }
   } else if (save_.is_open()) {
     const std::string saved = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
-    if (!saved.empty()) session_->viewer().show_message(saved);
+    if (!saved.empty()) {
+      remember_recent(save_.path);
+      session_->viewer().show_message(saved);
+    }
   } else if (export_.is_open()) {
     export_.draw(session_->player(), session_->viewer(), session_->recording(), window, fonts());
   }

@@ -232,6 +232,7 @@ TEST_F(RenderTest, every_option_of_the_picture_changes_it) {
                                                       {"--exaggerate", "200"},
                                                       {"--forces"},
                                                       {"--no-panels"},
+                                                      {"--solid"},
                                                       {"--no-words"},
                                                       {"--trails", "run"},
                                                       {"--inspect", "free"},

@@ -195,6 +195,32 @@ class Shortcut : public ShellTest {
     tap('P');
     EXPECT_NE(viewer().settings().panels, before);
   }
+  void solid() {
+    const bool before = viewer().settings().solid;
+    tap('S');
+    EXPECT_NE(viewer().settings().solid, before);
+  }
+  void hide() {
+    const float before = viewer().scene_box().width;
+    tap('H');
+    frame();
+    EXPECT_GT(viewer().scene_box().width, before + 100);
+    tap('H');
+    frame();
+    EXPECT_EQ(viewer().scene_box().width, before);
+  }
+  void full_screen() {
+    EXPECT_FALSE(shell_->take_full_screen());
+    tap(GLFW_KEY_F11);
+    EXPECT_TRUE(shell_->take_full_screen());
+    EXPECT_FALSE(shell_->take_full_screen());
+  }
+  void furnish() {
+    tap(GLFW_KEY_F2);
+    EXPECT_TRUE(shell_->furnishing());
+    tap(GLFW_KEY_F2);
+    EXPECT_FALSE(shell_->furnishing());
+  }
   void turn_and_move() {
     const auto before = sight();
     const Eigen::Vector3f target = viewer().orbit().target;
@@ -370,6 +396,10 @@ class Shortcut : public ShellTest {
         {"Q", [](T& t) { t.colour(); }},
         {"A", [](T& t) { t.forces(); }},
         {"P", [](T& t) { t.panels(); }},
+        {"S", [](T& t) { t.solid(); }},
+        {"H", [](T& t) { t.hide(); }},
+        {"F11", [](T& t) { t.full_screen(); }},
+        {"F2", [](T& t) { t.furnish(); }},
         {"drag", [](T& t) { t.turn_and_move(); }},
         {"wheel", [](T& t) { t.nearer(); }},
         {"click", [](T& t) { t.inspect_and_let_go(); }},
