@@ -104,7 +104,7 @@ TEST_F(UsageTest, what_is_missing_is_named) {
   expect_one_line({"render", "s.toml", "--still", "a.png"}, 2, "--still requires --at");
   expect_one_line({"render", "s.toml", "--at", "0"}, 2, "--at requires --still");
   expect_one_line({"render", "s.toml", "--png", "p", "--mp4", "a.mp4"}, 2, "2 were given");
-  expect_one_line({"export", "a.h5"}, 2, "[--csv,--xdmf,--vtk,--gltf] is required");
+  expect_one_line({"export", "a.h5"}, 2, "[--csv,--xdmf,--vtk,--gltf,--page] is required");
   expect_one_line({"export", "a.h5", "--csv", "d", "--xdmf", "x"}, 2, "2 were given");
   expect_one_line({"check"}, 2, "SCENES is required");
   expect_one_line({"info"}, 2, "FILE is required");
