@@ -81,16 +81,16 @@ supports = [{ node = 0, fix = "xyzXYZ" }]
 loads = [{ node = 1, force = [0, 0, "-100 N"] }]
 )";
 
-/// Shelves full of books, which bend more than 1 % of their critical angle, before a floor of 300 gal.
+/// Shelves full of books, which bend more than 1 % of their critical angle, on a floor of 600 gal.
 inline std::string shelves_of_books(int count) {
   std::string text =
       "topple = 1\n[run]\nduration = 0.02\nwant = [\"motion\"]\n[floor]\n[[shake]]\ntype = "
       "\"sine\"\nfrequency = 1\n"
-      "amplitude = \"300 gal\"\n";
+      "amplitude = \"600 gal\"\n";
   for (int k = 0; k < count; ++k)
     text +=
         "[[furniture]]\nname = \"shelf-" + std::to_string(k) +
-        "\"\nkind = \"bookshelf\"\nsize = [0.35, 0.9, 2.1]\nmass = 40\ncontents = { mass = 175 }\nat = [0, " +
+        "\"\nkind = \"bookshelf\"\nsize = [0.35, 0.9, 2.1]\nmass = 40\ncontents = { mass = 400 }\nat = [0, " +
         std::to_string(2 * k) + "]\n";
   return text;
 }

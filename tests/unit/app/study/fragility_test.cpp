@@ -156,7 +156,7 @@ TEST_F(FragilityTest, bodies_that_a_run_of_the_scene_makes_finer_are_told) {
   write_bytes("s.toml", shelves_of_books(1));
   const auto said = [](const std::vector<std::string>& more) {
     std::vector<std::string> words{"study",      "fragility", "s.toml", "--x", "pga=280 gal..300 gal:2lin",
-                                   "--ensemble", "1",         "-o",     "out", "--force"};
+                                   "--ensemble", "2",         "-o",     "out", "--force"};
     words.insert(words.end(), more.begin(), more.end());
     const Ended ended = topple(words);
     EXPECT_EQ(ended.code, 0) << ended.err;
