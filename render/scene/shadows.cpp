@@ -26,7 +26,7 @@ constexpr GLuint k_contact_unit = 2;
 constexpr GLuint k_near_unit = 3;
 constexpr GLuint k_caster_unit = 4;
 
-constexpr int k_shade_side = 256;  // of the map of contact shade, texels
+constexpr int k_shade_side = 256;   // of the map of contact shade, texels
 constexpr int k_coarse_side = 256;  // of the maps of what is near the floor, or between it and light, texels
 constexpr float k_shadow_reach =
     8.0f / 2048;                         // of the key map, that light.glsl looks aside, with a texel's slack
