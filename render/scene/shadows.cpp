@@ -28,8 +28,8 @@ constexpr GLuint k_caster_unit = 4;
 
 constexpr int k_shade_side = 256;   // of the map of contact shade, texels
 constexpr int k_coarse_side = 256;  // of the maps of what is near the floor, or between it and light, texels
-constexpr float k_shadow_reach =
-    8.0f / 2048;                         // of the key map, that light.glsl looks aside, with a texel's slack
+/// Of the key map, that light.glsl looks aside, with a texel's slack.
+constexpr float k_shadow_reach = 8.0f / 2048;
 constexpr float k_contact_high = 0.38f;  // m, above which contact.frag has nothing that eight bits hold
 
 /// Orthographic matrix with the rows x, y, z as axes; the box low..high in these becomes -1..1.
