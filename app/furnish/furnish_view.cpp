@@ -160,6 +160,8 @@ void FurnishView::compose() {
 
 void FurnishView::fit_view(render::NamedView view) {
   view_ = view;
+  fitted_ = scene_.height > 0;
+  if (!fitted_) return;  // it is once it is laid out
   render::SceneFrame frame = base_;
   for (int k = 0; k < 2; ++k) {
     frame.bounds_min[static_cast<std::size_t>(k)] -= k_room_to_furnish;
@@ -170,10 +172,7 @@ void FurnishView::fit_view(render::NamedView view) {
 }
 
 void FurnishView::draw_scene() {
-  if (!fitted_) {
-    fit_view(view_);
-    fitted_ = true;
-  }
+  if (!fitted_) fit_view(view_);
   const bool changed = frame_changed_ || camera_changed_;
   if (!changed && (drawn_still_ || quiet_ <= k_quiet_room)) return;
   if (frame_changed_) compose();

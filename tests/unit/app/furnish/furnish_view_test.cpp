@@ -76,6 +76,14 @@ TEST_F(FurnishTest, a_click_in_the_palette_and_one_in_the_room_place_a_piece) {
   EXPECT_LT((room().pieces().back().spot.at - Vec2(0.5, -0.5)).norm(), 0.02);
 }
 
+TEST_F(FurnishTest, a_view_that_is_asked_for_before_the_room_is_laid_out_is_taken_then) {
+  shell_->furnish_new_room();
+  view().press({'3'});
+  frames(3);
+  EXPECT_TRUE(view().orbit().target.allFinite());
+  EXPECT_NEAR(view().orbit().sight.elevation, k_pi / 2, 0.01);  // from above
+}
+
 TEST_F(FurnishTest, the_ghost_is_red_where_the_reader_refuses_the_piece) {
   view().arm_kind("refrigerator");
   move_to(pixel(Vec2(-1.75, 0.0)));  // in the bookshelf
