@@ -119,6 +119,26 @@ void FurnishView::copy_selected() {
   room_.refuse(say(fw::k_no_room_for_copy, piece.name) + "; " + why);
 }
 
+bool FurnishView::press_with_control(const render::KeyPress& press) {
+  switch (press.key) {
+    case 'Z':
+      let_go();
+      press.shift ? room_.redo() : room_.undo();
+      room_changed_ = true;
+      return true;
+    case 'Y':
+      let_go();
+      room_.redo();
+      room_changed_ = true;
+      return true;
+    case 'D':
+      copy_selected();
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool FurnishView::press(const render::KeyPress& press) {
   const ImGuiIO& io = ImGui::GetIO();
   namespace key = render::key;
@@ -128,25 +148,7 @@ bool FurnishView::press(const render::KeyPress& press) {
     return true;
   room_.forget_refusal();
   message_.clear();
-  if (press.control) {
-    switch (press.key) {
-      case 'Z':
-        let_go();
-        press.shift ? room_.redo() : room_.undo();
-        room_changed_ = true;
-        return true;
-      case 'Y':
-        let_go();
-        room_.redo();
-        room_changed_ = true;
-        return true;
-      case 'D':
-        copy_selected();
-        return true;
-      default:
-        return false;
-    }
-  }
+  if (press.control) return press_with_control(press);
   switch (press.key) {
     case key::left:
       nudge(-1, 0, press.shift);

@@ -121,6 +121,7 @@ class FurnishView {
   Sightline sight_at(float x, float y) const;
   std::optional<Vec2> place_at(float x, float y) const;
 
+  bool press_with_control(const render::KeyPress& press);
   void let_go();
   void nudge(int right, int away, bool far);
   void turn(int direction, bool fine);

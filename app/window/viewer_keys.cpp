@@ -12,6 +12,7 @@ namespace topple::app {
 namespace {
 
 using namespace window_words;
+namespace fw = furnish_words;
 
 bool character(char c) {
   for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters)
@@ -49,24 +50,19 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {{"Q", "Q"}, k_key_quantity, 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
       {{"A", "A"}, k_key_forces, 'A', false, false, [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
       {{"P", "P"}, k_key_panels, 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
-      {{"S", "S"},
-       furnish_words::k_key_solid,
-       'S',
-       false,
-       false,
-       [](Viewer& v) { v.turn(v.settings_.solid); }},
+      {{"S", "S"}, fw::k_key_solid, 'S', false, false, [](Viewer& v) { v.turn(v.settings_.solid); }},
       {k_drag, k_key_turn},
       {k_wheel, k_key_wheel},
       {k_click, k_key_click},
       {{"Esc", "Esc"}, k_key_let_go, render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
       {{"H", "H"},
-       furnish_words::k_key_hide,
+       fw::k_key_hide,
        'H',
        false,
        false,
        [](Viewer& v) { v.panels_hidden_ = !v.panels_hidden_; }},
-      {{"F11", "F11"}, furnish_words::k_key_full_screen},
-      {{"F2", "F2"}, furnish_words::k_key_furnish},
+      {{"F11", "F11"}, fw::k_key_full_screen},
+      {{"F2", "F2"}, fw::k_key_furnish},
       {{"Ctrl+O", "Ctrl+O"}, k_key_scenes},
       {{"Ctrl+S", "Ctrl+S"}, k_key_save},
       {{"Ctrl+E", "Ctrl+E"}, k_key_export},
