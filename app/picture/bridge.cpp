@@ -13,6 +13,7 @@
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "solver/math/bits.h"
+#include "solver/math/ranges.h"
 
 namespace topple::app {
 namespace {
@@ -406,7 +407,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
     out.caption.lines.push_back(
         say(window_words::k_now, shake_in_words(parameters), whole(a), whole(1e3 * d)));
-    const bool along_one = std::ranges::all_of(parameters.shakes, [&](const Shake& other) {
+    const bool along_one = ranges::all_of(parameters.shakes, [&](const Shake& other) {
       return other.direction.cross(shake.direction).norm() < 1e-6;
     });
     out.trace = {.label = say(along_one ? window_words::k_floor_trace : window_words::k_first_shake_trace),

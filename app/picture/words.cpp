@@ -203,7 +203,7 @@ std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
 std::string shake_in_words(const Parameters& parameters) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
-  const auto* const words = std::ranges::find(k_shake_words, shake.kind, &ShakeWords::kind);
+  const auto* const words = ranges::find(k_shake_words, shake.kind, &ShakeWords::kind);
   const std::string one =
       (words == std::end(k_shake_words) ? traits(shake.kind).word : words->say_it(shake)) +
       building_in_words(shake);
