@@ -61,7 +61,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
     words.push_back(std::to_string(*ghost));
   }
   if (viewer.appearance().language == Language::japanese) {
-    words.push_back("--language");
+    words.push_back("--lang");
     words.push_back("ja");
   }
   const auto& picked = viewer.inspection().picked;
