@@ -65,7 +65,6 @@ void SaveDialog::open(const io::Scene& scene) {
   std::error_code ignored;
   fs::path free;
   int number = 1;
-  if (saved_ == scene.name) return;  // once more where it went
   do free = fs::current_path(ignored) / (scene.name + "-" + std::to_string(number++) + ".toml");
   while (fs::exists(free, ignored));
   const std::string text = free.string();
@@ -111,7 +110,6 @@ std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, cons
   try {
     const std::vector<std::string> given_up = save_scene(scene, now, path, ask);
     open_ = false;
-    saved_ = scene.name;
     const std::string full = fs::absolute(path, ignored).string();
     if (given_up.empty()) return say(ww::k_written, full);
     std::string keys;

@@ -36,7 +36,6 @@ class SaveDialog {
 
  private:
   bool open_ = false, appeared_ = false, enter_ = false;
-  std::string saved_;    ///< the scene that went to the path
   std::string exists_;   ///< the path that is there already, about which it asks
   std::string refused_;  ///< why it is not written
 };
