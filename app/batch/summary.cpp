@@ -110,8 +110,7 @@ ordered_json anchors(const Run& run) {
     one["peak_force_N"] = number(std::min(o.peak_force, model.anchors[k].strength));
     one["final_force_N"] = number(o.tension);
     one["in_place"] = o.hold == AnchorHold::in_place;
-    const bool both_ways = model.anchors[k].type == Anchor::Type::bracket;
-    one["slack"] = o.hold == AnchorHold::in_place && o.tension == 0 && !both_ways;
+    one["slack"] = o.hold == AnchorHold::in_place && o.tension == 0 && can_slacken(model.anchors[k]);
     one["broke"] = o.broke.has_value();
     one["break_time_s"] = number(o.broke);
     out.push_back(one);

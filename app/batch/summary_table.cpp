@@ -81,12 +81,13 @@ std::string integrators(const ordered_json& s) {
   return words.empty() ? "central differences" : words;
 }
 
+constexpr int k_many_impacts = 10;  // each enlarges what differs before it
+
 std::string allowed_error(const ordered_json& body, const ordered_json& change) {
   const ordered_json& estimate = change["error_estimate"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
-  if (estimate == 0) return "";       // a block, or nothing pushed it
-  constexpr int k_many_impacts = 10;  // which carry on what differs before each
+  if (estimate == 0) return "";  // a block, or nothing pushed it
   const int impacts = body["impacts"].get<int>();
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
@@ -180,7 +181,6 @@ std::string lately_line(const ordered_json& b, const ordered_json& end) {
 
 // Of a body that a slight change may topple, or keep from it.
 std::string chance_line(const ordered_json& b) {
-  constexpr int k_many_impacts = 10;
   constexpr double k_near = 0.8;  // of the critical angle
   if (b["peak_tilt_deg"].is_null() || b["critical_tilt_deg"].is_null()) return "";
   const double share = b["peak_tilt_deg"].get<double>() / b["critical_tilt_deg"].get<double>();

@@ -35,7 +35,7 @@ if(TOPPLE_PAGE AND TOPPLE_EMCC AND TOPPLE_EMSCRIPTEN_TOOLCHAIN)
             ${page_folder}/web/page.js ${page_folder}/assemble.cmake
     VERBATIM)
   set(page_files ${page_html})
-else()
+elseif(TOPPLE_PAGE)
   message(STATUS "Live pages are left out: emscripten is not found (Debian package emscripten)")
 endif()
 topple_embed(TEMPLATE ${page_folder}/page_template.cpp.in

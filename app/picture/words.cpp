@@ -149,10 +149,8 @@ std::string anchor_type_in_words(const Anchor& anchor) {
 
 namespace {
 
-/// A bracket without force holds: it would pull and push.
 float state_of(const Anchor& anchor, const io::AnchorNumbers& now) {
-  const bool slack = now.state == io::k_anchor_slack && anchor.type != Anchor::Type::bracket;
-  return now.state == io::k_anchor_slack && !slack ? io::k_anchor_holds : now.state;
+  return now.state == io::k_anchor_slack && !can_slacken(anchor) ? io::k_anchor_holds : now.state;
 }
 
 const Phrase& anchor_state(float state) {

@@ -9,11 +9,11 @@ if [ -z "${TOPPLE_UI_DISPLAY:-}" ]; then
   exec xvfb-run -a -s "-screen 0 1280x720x24 -noreset" "$script" "$program" "$folder"
 fi
 cd "$folder"
-rm -rf ./*.png ./*.h5 ./*.toml ./*.mp4 state cache
+rm -rf ./*.png ./*.h5 ./*.toml ./*.mp4 state cache config
 
 fail() { echo "$(basename "$0"): $*" >&2; exit 1; }
 open_window() {  # arguments of topple view
-  XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$folder/cache "$program" view "$@" > said.txt 2>&1 &
+  XDG_STATE_HOME=$folder/state XDG_CACHE_HOME=$folder/cache XDG_CONFIG_HOME=$folder/config "$program" view "$@" > said.txt 2>&1 &
   process=$!
   for _ in $(seq 100); do
     window=$(xdotool search --name '^topple' 2>/dev/null | head -1) && [ -n "$window" ] && break
