@@ -44,6 +44,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/picture/rigid_fit_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/thinning_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/touching_bodies_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/picture/words_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report/report_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study/fragility_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/study/overturn_test.cpp

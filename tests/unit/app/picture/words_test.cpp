@@ -1,0 +1,49 @@
+// What captions say: the instant, the shakes, what holds a body.
+#include "app/picture/words.h"
+
+#include <gtest/gtest.h>
+
+#include "solver/io/recording/observer.h"
+#include "solver/io/scene/scene.h"
+#include "solver/io/scene/scene_file.h"
+#include "unit/app/scenes.h"
+
+namespace topple::app {
+namespace {
+
+TEST(Words, a_second_shake_is_not_left_out) {
+  const io::Scene one = io::parse_scene(k_shaken, "s.toml");
+  EXPECT_EQ(shake_in_words(one.setup.parameters), "floor: 2 Hz, 400 gal");
+  const std::string shake =
+      "[[shake]]\nname = \"other\"\nfrequency = 1\namplitude = 1\ndirection = [0, 1, 0]\n";
+  const io::Scene two = io::parse_scene(k_shaken + shake, "s.toml");
+  EXPECT_EQ(shake_in_words(two.setup.parameters), "floor: 2 Hz, 400 gal, and 1 more");
+}
+
+TEST(Words, an_instant_has_the_digits_of_its_rows) {
+  io::FrameRow row;
+  row.time = 1.245;
+  io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  scene.setup.run.output_rate = 200;
+  EXPECT_EQ(instant_in_words(scene.setup, row), "t = 1.245 s");
+  scene.setup.run.output_rate = 50;
+  row.time = 1.24;
+  EXPECT_EQ(instant_in_words(scene.setup, row), "t = 1.24 s");
+}
+
+TEST(Words, a_bracket_without_force_holds_and_a_strap_is_slack) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  Model model = scene.setup.model;
+  const topple::Run run(scene.setup);
+  io::FrameRow row = io::frame_row(run);
+  row.anchor[1] = {.tension = 0, .energy = 0, .natural_length = 0.4f, .state = io::k_anchor_slack};
+  EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: slack");
+  model.anchors[1].type = Anchor::Type::bracket;
+  EXPECT_EQ(anchor_in_words(model, row, 1), "bracket strong: holding");
+  row.anchor[1].tension = -12;
+  row.anchor[1].state = io::k_anchor_holds;
+  EXPECT_EQ(anchor_in_words(model, row, 1), "bracket strong: pushes 12 N");
+}
+
+}  // namespace
+}  // namespace topple::app
