@@ -28,7 +28,7 @@ inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;
 }
 
-/// "83 %" of `whole`, "0.9 %"; below the whole never that: ">99 %".
+/// A share in words: "83 %", "0.9 %"; ">99 %" of what is less than the whole but would be rounded to it.
 inline std::string percent_of(double part, double whole) {
   const double percent = 100 * part / whole;
   if (percent > 99 && percent < 100) return ">99 %";

@@ -44,7 +44,7 @@ class Shadows {
  private:
   void set_up_key(const Eigen::Vector3f& low, const Eigen::Vector3f& high);
   void set_up_contact(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor);
-  /// A map of 64 x 64 texels that holds where something lies, widely.
+  /// A coarse map of where something lies, and the texture unit that it is bound to.
   struct Coarse {
     GLuint unit;
     const GlObject& map;

@@ -82,7 +82,7 @@ void complete_pipe(Section& section, double n) {
   section.zt = k_pi / 2 * section.zy;
 }
 
-constexpr SectionTraits k_shapes[] = {
+constexpr SectionTraits k_section_shapes[] = {
     {Section::Shape::box, "box", false, true, complete_box},
     {Section::Shape::solid, "solid", false, false, complete_solid},
     {Section::Shape::pipe, "pipe", true, true, complete_pipe},
@@ -92,7 +92,7 @@ constexpr SectionTraits k_shapes[] = {
 }  // namespace
 
 std::span<const SectionTraits> section_shapes() {
-  return k_shapes;
+  return k_section_shapes;
 }
 
 void complete_section(Section& section, double poisson) {

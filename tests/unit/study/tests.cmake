@@ -29,7 +29,7 @@ target_link_libraries(study_test PRIVATE topple_study ZLIB::ZLIB GTest::gtest_ma
 target_include_directories(study_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/../..)
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/stability_test.cpp PROPERTIES
   COMPILE_DEFINITIONS TOPPLE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-gtest_discover_tests(study_test TEST_FILTER -Penalty*:ElementsStudy*)
-foreach(study Penalty ElementsStudy)  # their tests share the runs of a study
+gtest_discover_tests(study_test TEST_FILTER -Penalty*:ElementsStudy*:GraniteFit*)
+foreach(study Penalty ElementsStudy GraniteFit)  # their tests share the runs of a study
   add_test(NAME ${study} COMMAND study_test --gtest_filter=${study}*)
 endforeach()

@@ -318,23 +318,6 @@ TEST_F(BridgeTest, captions_have_no_minus_before_a_zero) {
   EXPECT_EQ(caption.lines[1], "floor: 2 Hz, 400 gal;  now +0 gal, +0 mm");
 }
 
-TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
-  const io::Scene scene = io::load_scene("classroom");
-  const Model& model = scene.setup.model;
-  const topple::Run run(scene.setup);
-  io::FrameRow row = io::frame_row(run);
-  const Vec3& gravity = scene.setup.parameters.gravity;
-  const int all = model.furniture_total();
-  ASSERT_GT(all, 5);
-  EXPECT_EQ(bodies_in_words(model, gravity, row), std::vector{fmt::format("all {} stand", all)});
-  row.body[0].tilt = 80 / k_degrees;
-  const std::vector<std::string> lines = bodies_in_words(model, gravity, row);
-  ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0], model.bodies[0].name + ": fallen, tilt 80°");
-  EXPECT_EQ(lines[1], fmt::format("{} others stand", all - 1));
-  EXPECT_EQ(most_lines_of_bodies(model), 6);
-}
-
 TEST_F(BridgeTest, a_row_of_another_model_is_refused) {
   io::FrameRow foreign = end_;
   foreign.position.resize(foreign.position.size() - 3);

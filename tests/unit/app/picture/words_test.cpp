@@ -1,8 +1,10 @@
 // What captions say: the instant, the shakes, what holds a body.
 #include "app/picture/words.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "app/support/terms.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_file.h"
@@ -18,6 +20,23 @@ TEST(Words, a_second_shake_is_not_left_out) {
       "[[shake]]\nname = \"other\"\nfrequency = 1\namplitude = 1\ndirection = [0, 1, 0]\n";
   const io::Scene two = io::parse_scene(k_shaken + shake, "s.toml");
   EXPECT_EQ(shake_in_words(two.setup.parameters), "floor: 2 Hz, 400 gal, and 1 more");
+}
+
+TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
+  const io::Scene scene = io::load_scene("classroom");
+  const Model& model = scene.setup.model;
+  const topple::Run run(scene.setup);
+  io::FrameRow row = io::frame_row(run);
+  const Vec3& gravity = scene.setup.parameters.gravity;
+  const int all = model.furniture_total();
+  ASSERT_GT(all, 5);
+  EXPECT_EQ(bodies_in_words(model, gravity, row), std::vector{fmt::format("all {} stand", all)});
+  row.body[0].tilt = 80 / k_degrees;
+  const std::vector<std::string> lines = bodies_in_words(model, gravity, row);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], model.bodies[0].name + ": fallen, tilt 80°");
+  EXPECT_EQ(lines[1], fmt::format("{} others stand", all - 1));
+  EXPECT_EQ(most_lines_of_bodies(model), 6);
 }
 
 TEST(Words, an_instant_has_the_digits_of_its_rows) {
