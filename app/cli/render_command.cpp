@@ -134,7 +134,7 @@ class Drawing {
         replay_(replay),
         ghost_(ghost),
         picture_(context.get_proc(), o.width, o.height, window_letters(&scene)) {
-    if (o.picture.solid) solid_.emplace(scene);
+    if (traits(o.picture.bodies).boards) solid_.emplace(scene, o.picture.bodies);
     if (followed_) start_ = centre_of(replay.frame(0), *followed_);
   }
 
@@ -144,10 +144,7 @@ class Drawing {
     if (inspected_ && inspected_->kind == Subject::Kind::member)
       settings.diagram = Diagram{inspected_->index, std::nullopt};
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
-    if (solid_ && is_finite(row)) {
-      solid_->dress(row, frame);
-      frame.legend = {};
-    }
+    if (solid_ && is_finite(row)) solid_->dress(row, frame);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
     if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), settings, frame);
     return picture_.draw(frame, camera(frame, row), {.map = options_.picture.map});
@@ -409,8 +406,10 @@ void add_picture(CLI::App& command, RenderOptions& options) {
            "deformation drawn so many times as large, 1 to 200");
   command.add_flag("--forces", picture.contact_forces,
                    "arrows of what floors, walls and other bodies do to bodies");
-  command.add_flag_callback(
-      "--solid", [&picture] { picture.solid = true; }, "furniture as it looks in a room, without stresses");
+  std::vector<std::pair<std::string, Bodies>> bodies;
+  for (const BodiesTraits& row : k_bodies_traits) bodies.emplace_back(row.word, row.kind);
+  add_choice(command, "--bodies", "HOW", picture.bodies, bodies,
+             "beams (default), solid: furniture as it looks in a room, without stresses, or both");
   command.add_flag_callback(
       "--no-panels", [&picture] { picture.panels = false; }, "without the sheets of cabinets");
   command.add_flag_callback(

@@ -101,7 +101,7 @@ render::SceneFrame start_frame(const io::Scene& scene) {
   settings.words = false;
   render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters, settings);
   lengthen_walls(scene.setup.model, extent, frame);
-  SolidBodies(scene).dress(row, frame);
+  SolidBodies(scene, Bodies::solid).dress(row, frame);
   return frame;
 }
 

@@ -106,6 +106,9 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
     changed = true;
   }
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_deformation_about).c_str());
+  label(furnish_words::k_draw_bodies);
+  changed |= choose("##bodies", furnish_words::k_draw_bodies_as, settings.bodies);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_draw_bodies_about).c_str());
   label(k_trails);
   static constexpr Phrase k_spans[] = {k_none, k_last_second, k_since_start};
   changed |= choose("##trails", k_spans, settings.trails);
@@ -114,8 +117,6 @@ bool draw_picture_settings(PictureSettings& settings, double maximum) {
   changed |= ImGui::Checkbox(say(k_panels).c_str(), &settings.panels);
   changed |= ImGui::Checkbox(say(k_words).c_str(), &settings.words);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_words_about).c_str());
-  changed |= ImGui::Checkbox(say(furnish_words::k_solid).c_str(), &settings.solid);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_solid_about).c_str());
   return changed;
 }
 

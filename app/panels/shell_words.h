@@ -25,6 +25,7 @@ inline constexpr Phrase k_no_recent{"Scenes and recordings that you open stand h
                                     "開いたシーンと記録がここに並びます。"};
 inline constexpr Phrase k_missing{"is not there any more", "見つかりません"};
 inline constexpr Phrase k_built_in{"Built-in scenes", "組み込みのシーン"};
+inline constexpr Phrase k_begin_here{"· begin here", "・最初はこれ"};
 inline constexpr Phrase k_nothing_found{"Nothing is called \"{0}\".",
                                         "「{0}」に当てはまるものはありません。"};
 inline constexpr Phrase k_choose_keys{"arrows: choose   Enter: open   Esc: back",
@@ -64,6 +65,13 @@ inline constexpr Phrase k_save_scene_about{
     "The scene with all parameters as they are at this instant. It starts from the beginning.",
     "この時点のパラメータをすべて含むシーンです。最初から始まります。"};
 inline constexpr Phrase k_file{"File", "ファイル"};
+inline constexpr Phrase k_browse{"Browse…", "参照…"};
+inline constexpr Phrase k_browse_about{"A scene or recording from a folder",
+                                       "フォルダからシーンや記録を選びます"};
+inline constexpr Phrase k_open_file{"Open a scene or a recording", "シーンか記録を開く"};
+inline constexpr Phrase k_folder_above{"Up", "上へ"};
+inline constexpr Phrase k_choose_file{"Choose", "選択"};
+inline constexpr Phrase k_no_such_file{"{0} is not there.", "{0} はありません。"};
 inline constexpr Phrase k_exists{"{0} exists already.", "{0} はすでにあります。"};
 inline constexpr Phrase k_replace{"Replace it", "置き換える"};
 inline constexpr Phrase k_save_now{"Save", "保存"};
@@ -100,6 +108,10 @@ inline constexpr Phrase k_export_too_early{"There is no instant yet that could b
 inline constexpr Phrase k_export_newest{"Only the newest branch is exported; another one is shown.",
                                         "書き出せるのは最新の枝だけです。別の枝が表示されています。"};
 inline constexpr Phrase k_exporting{"Exporting {0}", "{0} を書き出しています"};
+inline constexpr Phrase k_exports{"exports at work: {0}, {1:.0f} %   ", "書き出し中: {0}件、{1:.0f} %   "};
+inline constexpr Phrase k_show_folder{"Open folder", "フォルダを開く"};
+inline constexpr Phrase k_no_folder_program{"No program that shows folders is installed: {0}",
+                                            "フォルダを表示するプログラムがありません: {0}"};
 inline constexpr Phrase k_already_there{"{0} exists already; choose another name",
                                         "{0} はすでにあります。別の名前にしてください"};
 

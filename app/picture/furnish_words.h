@@ -105,10 +105,18 @@ inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
 inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};
 
 // the picture of a run
-inline constexpr Phrase k_solid{"solid furniture", "家具の外観を表示"};
-inline constexpr Phrase k_solid_about{"As it looks in a room, without stresses (S)",
-                                      "応力を示さず、部屋で見える姿で表示（S）"};
-inline constexpr Phrase k_key_solid{"solid furniture or its beams", "家具の外観／骨組"};
+inline constexpr Phrase k_draw_bodies{"bodies", "物体"};
+inline constexpr Phrase k_draw_bodies_as[] = {{"beams", "骨組"}, {"solid", "外観"}, {"both", "両方"}};
+inline constexpr Phrase k_draw_bodies_about{
+    "beams: as computed, coloured; solid: as it looks in a room, without stresses (S)",
+    "骨組: 計算どおりに色付きで表示。外観: 応力を示さず、部屋で見える姿で表示（S）"};
+inline constexpr Phrase k_key_solid{"beams, solid furniture, or both", "骨組／家具の外観／両方"};
+
+inline constexpr Phrase k_keep{"keep what falls in the picture", "倒れた物も画面に収める"};
+inline constexpr Phrase k_keep_about{"The camera goes back and aside when a body would leave the picture (K)",
+                                     "物体が画面から出そうになると、カメラが下がり、横へ動きます（K）"};
+inline constexpr Phrase k_key_keep{"keep what falls in the picture, or not",
+                                   "倒れた物を画面に収める／収めない"};
 
 inline constexpr Phrase k_key_hide{"the scene alone, for a projector",
                                    "シーンだけを表示（プロジェクター用）"};

@@ -16,6 +16,20 @@ enum class RangePolicy { instant, run, fixed };
 /// Paths behind bodies. second: of the last second; run: since the start.
 enum class Trails { none, second, run };
 
+/// How bodies are drawn.
+enum class Bodies { beams, solid, both };
+struct BodiesTraits {
+  Bodies kind;
+  const char* word;    ///< of `topple render --bodies`
+  bool beams, boards;  ///< as computed, with their colours; as it looks in a room (solid_bodies.h)
+};
+inline constexpr BodiesTraits k_bodies_traits[] = {{Bodies::beams, "beams", true, false},
+                                                   {Bodies::solid, "solid", false, true},
+                                                   {Bodies::both, "both", true, true}};
+constexpr const BodiesTraits& traits(Bodies bodies) {
+  return k_bodies_traits[static_cast<int>(bodies)];
+}
+
 /// A section force drawn along a member.
 struct Diagram {
   std::size_t member;
@@ -35,8 +49,8 @@ struct PictureSettings {
   bool contact_forces = false;
   bool alone = false;  ///< one picture of the run: an impact's arrows get a scale of their own
   bool panels = true;
-  bool solid = false;  ///< furniture as it looks, in place of its beams (solid_bodies.h); in the window
-  bool words = true;   ///< title, captions, labels, legend and the floor's curve
+  Bodies bodies = Bodies::beams;
+  bool words = true;  ///< title, captions, labels, legend and the floor's curve
   Trails trails = Trails::none;
   std::optional<Diagram> diagram = {};
 };

@@ -23,6 +23,7 @@ constexpr Float4 k_oak = {0.66f, 0.49f, 0.32f, 1}, k_walnut = {0.45f, 0.31f, 0.2
 constexpr Float4 k_books[] = {{0.62f, 0.24f, 0.22f, 1}, {0.22f, 0.38f, 0.55f, 1}, {0.80f, 0.70f, 0.45f, 1},
                               {0.28f, 0.45f, 0.34f, 1}, {0.52f, 0.48f, 0.56f, 1}, {0.85f, 0.83f, 0.78f, 1}};
 
+constexpr double k_inset = 0.015;  // m, of boards between beams: half of a usual section
 constexpr double k_board = 0.020, k_seam = 0.006, k_relief = 0.003;  // m
 
 /// What is seen of a kind.
@@ -195,15 +196,30 @@ render::Profile outline_of(const Vec3& half, bool round) {
   return profile;
 }
 
+/// Null: a piece of no kind that looks like something.
+const KindLook* look_of(const RoomPiece& piece) {
+  if (piece.kind.empty() || !piece.upright) return nullptr;
+  const auto* const look = std::ranges::find(k_kind_looks, io::kind_stem(piece.kind), &KindLook::kind);
+  return look == std::end(k_kind_looks) ? nullptr : look;
+}
+
 }  // namespace
 
-SolidBodies::SolidBodies(const io::Scene& scene) : model_(scene.setup.model), parts_(model_.bodies.size()) {
+Bodies usual_bodies(const io::Scene& scene) {
+  if (scene.setup.parameters.want_stress) return Bodies::beams;
+  return std::ranges::any_of(pieces_of(scene), look_of) ? Bodies::solid : Bodies::beams;
+}
+
+SolidBodies::SolidBodies(const io::Scene& scene, Bodies bodies)
+    : model_(scene.setup.model), bodies_(bodies), parts_(model_.bodies.size()) {
+  const double inset = traits(bodies).beams ? k_inset : 0;
   for (const RoomPiece& piece : pieces_of(scene)) {
-    const auto* const look = std::ranges::find(k_kind_looks, io::kind_stem(piece.kind), &KindLook::kind);
-    if (piece.kind.empty() || look == std::end(k_kind_looks) || !piece.upright) continue;
+    const KindLook* const look = look_of(piece);
+    if (!look) continue;
     const Quat turn(Eigen::AngleAxisd(piece.spot.yaw, Vec3::UnitZ()));
-    const Vec3 at(piece.spot.at.x(), piece.spot.at.y(), piece.floor);
-    for (const Joinery::Piece& one : Joinery(*look, piece.size).pieces)
+    const Vec3 at(piece.spot.at.x(), piece.spot.at.y(), piece.floor + inset);
+    const Vec3 size = piece.size - 2 * Vec3::Constant(inset);
+    for (const Joinery::Piece& one : Joinery(*look, size).pieces)
       parts_[piece.body].push_back({at + turn * one.centre, one.half, turn, one.colour, one.round});
   }
   for (const Member& member : model_.members) {
@@ -238,6 +254,18 @@ void SolidBodies::add(const Part& part, int body, const io::FrameRow& row, rende
   frame.tubes.push_back(tube);
 }
 
+void SolidBodies::take_beams_away(const std::vector<bool>& solid, render::SceneFrame& frame) const {
+  std::erase_if(frame.tubes, [&](const render::Tube& tube) {
+    return tube.member < model_.members.size() &&
+           solid[static_cast<std::size_t>(model_.members[tube.member].body)];
+  });
+  for (render::Tube& tube : frame.tubes)
+    if (tube.member < model_.members.size() && of_material_[tube.member][3] > 0 &&
+        !model_.bodies[static_cast<std::size_t>(model_.members[tube.member].body)].ground)
+      tube.colour = of_material_[tube.member];
+  frame.legend = {};
+}
+
 void SolidBodies::dress(const io::FrameRow& row, render::SceneFrame& frame) const {
   std::vector<bool> solid(parts_.size());
   for (std::size_t b = 0; b < parts_.size(); ++b) {
@@ -245,15 +273,8 @@ void SolidBodies::dress(const io::FrameRow& row, render::SceneFrame& frame) cons
     solid[b] = !parts_[b].empty() && std::find(codes, codes + model_.bodies[b].element_count, k_broken) ==
                                          codes + model_.bodies[b].element_count;
   }
-  std::erase_if(frame.tubes, [&](const render::Tube& tube) {
-    return tube.member < model_.members.size() &&
-           solid[static_cast<std::size_t>(model_.members[tube.member].body)];
-  });
+  if (!traits(bodies_).beams) take_beams_away(solid, frame);
   std::erase_if(frame.panels, [&](const render::Panel& panel) { return solid[panel.body]; });
-  for (render::Tube& tube : frame.tubes)
-    if (tube.member < model_.members.size() && of_material_[tube.member][3] > 0 &&
-        !model_.bodies[static_cast<std::size_t>(model_.members[tube.member].body)].ground)
-      tube.colour = of_material_[tube.member];
   for (std::size_t b = 0; b < parts_.size(); ++b)
     if (solid[b])
       for (const Part& part : parts_[b]) add(part, static_cast<int>(b), row, frame);

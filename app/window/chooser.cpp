@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/panels/demo.h"
 #include "app/panels/shell_words.h"
 #include "app/picture/furnish_words.h"
 #include "app/window/opening.h"
@@ -54,6 +55,8 @@ void add_line(ImDrawList& list, ImFont* font, ImVec2 at, float width, ImU32 colo
 Chooser::Chooser(render::Stage& stage, std::function<void()> wake) : thumbnails_(stage, std::move(wake)) {
   for (const io::BuiltinScene& scene : io::builtin_scenes())
     scenes_.push_back({std::string(scene.name), title_of(scene)});
+  if (const auto first = std::ranges::find(scenes_, k_demo_scene, &Entry::source); first != scenes_.end())
+    std::rotate(scenes_.begin(), first, first + 1);
   filter();
 }
 
@@ -188,9 +191,13 @@ void Chooser::draw(const Box& box, const render::OverlayFonts& fonts) {
   ImGui::EndChild();
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", say(ww::k_choose_keys).c_str());
-  const std::string new_room = say(furnish_words::k_new_room) + "…";
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(new_room.c_str()).x -
-                  2 * ImGui::GetStyle().FramePadding.x);
+  const std::string new_room = say(furnish_words::k_new_room) + "…", browse = say(ww::k_browse);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize((new_room + browse).c_str()).x -
+                  4 * style.FramePadding.x - style.ItemSpacing.x);
+  if (ImGui::Button(browse.c_str())) browse_ = true;
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(ww::k_browse_about).c_str());
+  ImGui::SameLine();
   if (ImGui::Button(new_room.c_str())) new_room_ = true;
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_new_room_about).c_str());
   ImGui::End();
@@ -265,16 +272,17 @@ void Chooser::draw_card(const Entry& entry, bool selected, float width, const re
                          ImDrawFlags_RoundCornersTop);
   else
     list.AddRectFilled(at, corner, ImGui::GetColorU32(ImGuiCol_Button), round, ImDrawFlags_RoundCornersTop);
+  const bool first = entry.source == k_demo_scene;
   add_line(list, fonts.small, {at.x + pad, corner.y + 0.45f * line}, width - 2 * pad,
-           ImGui::GetColorU32(ImGuiCol_Text), entry.source);
+           ImGui::GetColorU32(ImGuiCol_Text), entry.source + (first ? "  " + say(ww::k_begin_here) : ""));
   const char* const title = entry.title.c_str();
   const char* rest =
       fonts.small->CalcWordWrapPositionA(1, title, title + entry.title.size(), width - 2 * pad);
   const ImU32 quiet = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-  const float first = corner.y + 1.75f * line;
-  list.AddText(fonts.small, line, {at.x + pad, first}, quiet, title, rest);
+  const float about = corner.y + 1.75f * line;
+  list.AddText(fonts.small, line, {at.x + pad, about}, quiet, title, rest);
   while (*rest == ' ') ++rest;
-  add_line(list, fonts.small, {at.x + pad, first + 1.2f * line}, width - 2 * pad, quiet, rest);
+  add_line(list, fonts.small, {at.x + pad, about + 1.2f * line}, width - 2 * pad, quiet, rest);
   const ImU32 edge = selected ? IM_COL32(28, 112, 190, 255) : ImGui::GetColorU32(ImGuiCol_Border);
   const float inset = selected ? 1 : 0;
   list.AddRect({at.x + inset, at.y + inset}, {end.x - inset, end.y - inset}, edge, round, 0,

@@ -34,6 +34,9 @@ class Chooser {
   /// A new room was asked for since the last call.
   bool take_new_room() { return std::exchange(new_room_, false); }
 
+  /// A file from elsewhere was asked for since the last call.
+  bool take_browse() { return std::exchange(browse_, false); }
+
   /// Names that the filter lets through: files first, then built-in scenes.
   std::vector<std::string> shown() const;
   /// The one that Enter opens; empty: none.
@@ -59,7 +62,7 @@ class Chooser {
   bool in_recent_ = false;  ///< where the selection is
   int selected_ = 0, columns_ = 1;
   std::optional<std::string> choice_;
-  bool new_room_ = false;
+  bool new_room_ = false, browse_ = false;
 };
 
 }  // namespace topple::app

@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 namespace ww = window_words;
 
 constexpr int k_most_rate = 240;
-constexpr std::chrono::milliseconds k_recorded{200};  // more than a recording lags behind its run
 
 /// The options of `topple render` that draw as the viewer does.
 std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
@@ -50,7 +49,10 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
       fmt::format("{}", s.exaggeration)};
   if (s.contact_forces) words.push_back("--forces");
   if (!s.panels) words.push_back("--no-panels");
-  if (s.solid) words.push_back("--solid");
+  if (s.bodies != Bodies::beams) {
+    words.push_back("--bodies");
+    words.push_back(traits(s.bodies).word);
+  }
   if (!s.words) words.push_back("--no-words");
   if (s.trails != Trails::none) {
     words.push_back("--trails");
@@ -87,11 +89,16 @@ void label(const Phrase& phrase) {
 }  // namespace
 
 void ExportDialog::open(const Player& player) {
+  close();
   open_ = true;
-  refused_.clear();
   from = player.way().empty() ? 0 : player.way().front()->time;
   to = player.way().empty() ? 0 : player.way().back()->time;
   suggest_path(player);
+}
+
+void ExportDialog::close() {
+  open_ = false;
+  refused_.clear();
 }
 
 void ExportDialog::suggest_path(const Player& player) {
@@ -115,13 +122,13 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
     if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
     std::error_code ignored;
-    if (fs::exists(result, ignored)) throw std::runtime_error(say(ww::k_already_there, result));
+    if (fs::exists(result, ignored) || exports_.makes(result))
+      throw std::runtime_error(say(ww::k_already_there, result));
     require_writable_file("export", result, host::FileKind::any, recording);
-    const auto due = std::chrono::steady_clock::now() + k_recorded;
     std::vector<std::string> words;
     if (what == What::tables) {
-      request_ = {{"export", recording, "--csv"}, result, ExportJob::Makes::folder, due};
-      return;
+      exports_.add({"export", recording, "--csv"}, result, ExportJob::Makes::folder);
+      return close();
     }
     const bool video = what == What::video;
     words = {"render", recording, video ? "--mp4" : "--still",
@@ -133,56 +140,25 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
     else
       add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
     for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
-    request_ = {words, result, ExportJob::Makes::file, due};
+    exports_.add(words, result, ExportJob::Makes::file);
+    close();
   } catch (const std::runtime_error& error) {
     refused_ = error.what();
   }
-}
-
-void ExportDialog::begin_job() {
-  const Request request = *std::exchange(request_, std::nullopt);
-  try {
-    job_.emplace(program_, request.words, request.result, request.makes);
-  } catch (const std::runtime_error& error) {
-    refused_ = error.what();
-  }
-}
-
-bool ExportDialog::update() {
-  if (request_ && std::chrono::steady_clock::now() >= request_->due) begin_job();
-  if (!job_ || !job_->update()) return false;
-  if (job_->done()) {
-    if (job_->failure().empty()) {
-      news_ = say(ww::k_written, job_->result());
-      open_ = false;
-    } else if (!job_->cancelled()) {
-      refused_ = job_->failure();
-      if (!open_) news_ = say(ww::k_not_written, refused_);
-    }
-    job_.reset();
-  }
-  return true;
-}
-
-std::string ExportDialog::take_news() {
-  return std::exchange(news_, {});
 }
 
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
                         const Box& window, const render::OverlayFonts& fonts) {
   begin_panel_over("export", window, 660, 0.46f, say(ww::k_export_title), fonts);
-  ImGui::BeginDisabled(busy());
   draw_choices(player);
-  ImGui::EndDisabled();
-  if (job_) draw_job();
   if (!refused_.empty()) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(say(ww::k_not_written, refused_).c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::Dummy({0, 4});
-  if (button_at_right(say(ww::k_export_now), 1, !busy())) start(player, viewer, recording);
-  if (button_at_right(say(job_ ? ww::k_cancel : ww::k_close), 0)) job_ ? job_->cancel() : close();
+  if (button_at_right(say(ww::k_export_now), 1)) start(player, viewer, recording);
+  if (button_at_right(say(ww::k_close), 0)) close();
   end_panel_over();
 }
 
@@ -203,9 +179,7 @@ void ExportDialog::draw_choices(const Player& player) {
       what == What::picture && last < player.time())
     quiet_text(say(ww::k_picture_of_row, last));
   ImGui::Dummy({0, 2});
-  label(what == What::tables ? ww::k_folder : ww::k_file);
-  ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputText("##path", path, sizeof path)) refused_.clear();
+  draw_path();
   const float number = 7 * ImGui::GetFontSize();
   if (what != What::tables) {
     label(ww::k_size);
@@ -241,26 +215,9 @@ void ExportDialog::draw_choices(const Player& player) {
   speed = std::clamp(std::isfinite(speed) ? speed : 1, k_least_speed, k_most_speed);
 }
 
-void ExportDialog::draw_job() {
-  ImGui::Dummy({0, 2});
-  // Tables are not counted while they are written.
-  const float part = what == What::tables && job_->progress().empty() ? 0 : static_cast<float>(job_->part());
-  ImGui::ProgressBar(part, {-1, 0}, job_->progress().empty() ? "…" : job_->progress().c_str());
-}
-
-void ExportDialog::draw_progress(const Box& scene, const render::OverlayFonts& fonts) {
-  if (!job_ || open_) return;
-  const float unit = fonts.small->FontSize / 14;
-  ImGui::SetNextWindowPos({scene.left + 14 * unit, scene.top + scene.height - 14 * unit}, ImGuiCond_Always,
-                          {0, 1});
-  ImGui::SetNextWindowSize({330 * unit, 0});
-  ImGui::Begin("exporting", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::TextUnformatted(say(ww::k_exporting, fs::path(job_->result()).filename().string()).c_str());
-  draw_job();
-  if (ImGui::SmallButton(say(ww::k_cancel).c_str())) job_->cancel();
-  ImGui::End();
+void ExportDialog::draw_path() {
+  label(what == What::tables ? ww::k_folder : ww::k_file);
+  if (draw_path_field(path, files_, {true, say(ww::k_export_title), path, {}})) refused_.clear();
 }
 
 }  // namespace topple::app

@@ -1,6 +1,7 @@
 #include "app/window/export_job.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +18,8 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_polls = 200;  // times 10 ms, with a process that was asked to end
+constexpr int k_niceness = 10;  // the window goes first
+constexpr int k_polls = 200;    // times 10 ms, with a process that was asked to end
 
 /// What it said last, without the program's name; empty: nothing.
 std::string last_words(const std::string& errors) {
@@ -43,6 +45,7 @@ ExportJob::ExportJob(const std::string& program, std::vector<std::string> argume
   fcntl(reports_.get(), F_SETFL, O_NONBLOCK);
   process_.emplace(program, arguments, host::Streams{.errors = errors_.descriptor(), .extra = writer.get()},
                    std::vector{k_progress_variable + ("=" + std::to_string(host::k_extra_stream))});
+  setpriority(PRIO_PROCESS, static_cast<id_t>(process_->number()), k_niceness);
 }
 
 ExportJob::~ExportJob() {

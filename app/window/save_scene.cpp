@@ -82,12 +82,12 @@ std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, cons
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", say(ww::k_save_scene_about).c_str());
   ImGui::PopTextWrapPos();
-  ImGui::SetNextItemWidth(-1);
   if (std::exchange(appeared_, false)) ImGui::SetKeyboardFocusHere();
-  if (ImGui::InputText("##path", path, sizeof path)) {
+  if (draw_path_field(path, files_, {true, say(ww::k_save_scene), path, {".toml"}})) {
     exists_.clear();
     refused_.clear();
   }
+  if (exists_ != path) exists_.clear();
   if (!exists_.empty() || !refused_.empty()) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/panels/panels.h"
+#include "app/window/file_dialog.h"
 #include "render/gl/key_press.h"
 #include "solver/io/scene/scene.h"
 
@@ -20,6 +21,8 @@ std::vector<std::string> save_scene(const io::Scene& scene, const Parameters& no
 /// Asks where to.
 class SaveDialog {
  public:
+  explicit SaveDialog(FileDialog& files) : files_(files) {}
+
   void open(const io::Scene& scene);
   void close() { open_ = false; }
   bool is_open() const { return open_; }
@@ -35,6 +38,7 @@ class SaveDialog {
   const std::string& refused() const { return refused_; }
 
  private:
+  FileDialog& files_;
   bool open_ = false, appeared_ = false, enter_ = false;
   std::string exists_;   ///< the path that is there already, about which it asks
   std::string refused_;  ///< why it is not written

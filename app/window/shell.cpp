@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/panels/shell_words.h"
+#include "app/picture/solid_bodies.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::app {
@@ -36,7 +37,7 @@ Shell::Shell(render::Stage& stage, float scale, std::function<void()> wake, std:
       keep_(std::move(keep)),
       own_fonts_(set_up_interface(stage, scale, appearance, nullptr)),
       chooser_(stage, wake_),
-      export_(program_) {}
+      exports_(program_) {}
 
 Shell::~Shell() {
   close("interrupted");
@@ -60,6 +61,7 @@ std::vector<LiveStatus> Shell::close(const std::string& status) {
 void Shell::show(LiveSource source, const std::string& path) {
   const bool unrecorded = source.output.empty();
   PictureSettings settings;
+  settings.bodies = usual_bodies(*source.scene);
   bool loop = false;
   if (session_) {
     if (source.scene && source.scene->name == session_->scene().name)
@@ -135,7 +137,7 @@ bool Shell::finish_opening() {
     if (shaking_) {
       session_->viewer().look(room_->orbit());
       PictureSettings settings = session_->viewer().settings();
-      settings.solid = true;  // as the room was seen
+      settings.bodies = Bodies::solid;  // as the room was seen
       session_->viewer().choose_settings(settings);
       if (before) session_->viewer().show_beside(*std::move(before));
       session_->player().play();
@@ -158,9 +160,11 @@ bool Shell::update(double wall_s) {
     news = true;
   }
   if (chooser_.is_open()) news = chooser_.update() || news;
-  news = export_.update() || news;
-  if (const std::string words = export_.take_news(); !words.empty() && session_)
+  news = files_.update() || news;
+  news = exports_.update() || news;
+  if (const std::string words = exports_.take_news(); !words.empty() && session_)
     session_->viewer().show_message(words);
+  if (session_) session_->viewer().show_work(exports_.in_words());
   std::erase_if(closing_, [&](std::future<LiveStatus>& one) {
     if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
     if (const LiveStatus status = one.get(); !status.record_failure.empty())
@@ -207,7 +211,8 @@ void Shell::watch_trouble() {
 }
 
 bool Shell::covered() const {
-  return message_ || save_.is_open() || export_.is_open() || chooser_.is_open() || opening_;
+  return message_ || files_.is_open() || save_.is_open() || export_.is_open() || chooser_.is_open() ||
+         opening_;
 }
 
 void Shell::ask(ShellRequest request) {
@@ -234,6 +239,8 @@ void Shell::press(const render::KeyPress& press) {
     full_screen_ = true;
   } else if (message_) {
     if (press.key == render::key::escape || press.key == render::key::enter) message_.reset();
+  } else if (files_.is_open()) {
+    files_.press(press);
   } else if (save_.is_open()) {
     press.key == render::key::escape ? save_.close() : save_.press(press);
   } else if (export_.is_open()) {
@@ -269,7 +276,7 @@ void Shell::build() {
     ImGui::Render();
     return;
   }
-  if (covered() || export_.busy())
+  if (covered() || !exports_.empty())
     session_->viewer().build([this] { build_over(); });
   else
     session_->viewer().build();
@@ -282,11 +289,15 @@ void Shell::build() {
 
 void Shell::build_over() {
   const Box window = whole_window();
-  if (session_) export_.draw_progress(session_->viewer().scene_box(), fonts());
-  if (chooser_.is_open()) {
+  if (!covered() && (furnishing_ || session_))
+    exports_.draw(furnishing_ ? room_->scene_box() : session_->viewer().scene_box(), fonts());
+  if (files_.is_open()) {
+    files_.draw(window, fonts());
+  } else if (chooser_.is_open()) {
     chooser_.draw(window, fonts());
     if (const auto choice = chooser_.take_choice()) open(*choice);
     if (chooser_.take_new_room()) furnish_new_room();
+    if (chooser_.take_browse()) browse();
   } else if (save_.is_open() && furnishing_) {
     const std::string saved = save_.draw(*to_save_, to_save_->setup.parameters, window, fonts());
     if (!saved.empty()) {
@@ -305,6 +316,14 @@ void Shell::build_over() {
   }
   if (message_) answer_message();
   if (opening_) draw_opening(window);
+}
+
+void Shell::browse() {
+  std::error_code ignored;
+  const std::vector<std::string> recent = recent_files();
+  const std::string start = recent.empty() ? fs::current_path(ignored).string() + '/' : recent.front();
+  files_.ask({false, say(ww::k_open_file), start, {".toml", ".h5", ".hdf5"}},
+             [this](const std::string& path) { open(path); });
 }
 
 void Shell::answer_message() {

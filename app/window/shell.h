@@ -13,6 +13,8 @@
 #include "app/furnish/furnish_view.h"
 #include "app/window/chooser.h"
 #include "app/window/export_dialog.h"
+#include "app/window/exports.h"
+#include "app/window/file_dialog.h"
 #include "app/window/message.h"
 #include "app/window/opening.h"
 #include "app/window/save_scene.h"
@@ -66,6 +68,8 @@ class Shell {
   Chooser& chooser() { return chooser_; }
   SaveDialog& save_dialog() { return save_; }
   ExportDialog& export_dialog() { return export_; }
+  Exports& exports() { return exports_; }
+  FileDialog& file_dialog() { return files_; }
   const std::optional<Message>& message() const { return message_; }
   bool opening() const { return opening_.has_value(); }
   bool furnishing() const { return furnishing_; }
@@ -87,6 +91,7 @@ class Shell {
   void keep_room();
   void draw_opening(const Box& window);
   void answer_message();
+  void browse();
   void start_demo();
 
   render::Stage& stage_;
@@ -98,8 +103,10 @@ class Shell {
   const Viewer::Keep keep_;
   render::OverlayFonts own_fonts_;  ///< of a window without a session
   Chooser chooser_;
-  SaveDialog save_;
-  ExportDialog export_;
+  FileDialog files_;
+  Exports exports_;
+  SaveDialog save_{files_};
+  ExportDialog export_{exports_, files_};
   std::optional<Message> message_;
   std::optional<Opening> opening_;
   std::string opening_path_;

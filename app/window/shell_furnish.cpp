@@ -113,7 +113,7 @@ void Shell::press_in_room(const render::KeyPress& press) {
 }
 
 void Shell::build_room() {
-  if (covered())
+  if (covered() || !exports_.empty())
     room_->build(fonts(), interface_scale(), [this] { build_over(); });
   else
     room_->build(fonts(), interface_scale());

@@ -28,6 +28,7 @@ constexpr float k_side_panel = 320;       // px at 720 lines
 constexpr float k_most_side = 0.45f;      // of the width
 constexpr float k_path_lines = 22;        // lines of text, the load path
 constexpr float k_most_path = 0.5f;       // of the height of the side panel
+constexpr int k_keeping_steps = 20;       // of a camera that keeps bodies in the picture
 constexpr float k_least_letters = 12;     // px
 
 /// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
@@ -246,10 +247,9 @@ void Viewer::draw_scene() {
       settings_.diagram = Diagram{picked->index, inspection_.component};
     frame_ = bridge_.frame(*row_, player_.parameters_so_far(), settings_);
     frame_.dark = appearance_.dark;
-    if (settings_.solid && is_finite(*row_)) {
-      if (!solid_) solid_.emplace(player_.scene());
+    if (traits(settings_.bodies).boards && is_finite(*row_)) {
+      if (!solid_ || solid_->bodies() != settings_.bodies) solid_.emplace(player_.scene(), settings_.bodies);
       solid_->dress(*row_, frame_);
-      frame_.legend = {};
     }
     if (picked)
       highlight(player_.scene().setup.model, *picked, frame_);
@@ -262,6 +262,7 @@ void Viewer::draw_scene() {
       earlier_->add(row_->time, settings_, frame_);
   }
   if (follows_ && scene_changed_) move_with_followed();
+  if (keeps_in_picture_ && scene_changed_ && fitted_) keep_in_picture();
   if (!fitted_) {
     fit_view(view_);
     flight_ = 1;
@@ -297,6 +298,18 @@ void Viewer::move_with_followed() {
   const Eigen::Vector3f centre = centre_of(*row_, follows_->body), moved = centre - follows_->centre;
   for (render::Orbit* const orbit : {&orbit_, &from_, &to_}) orbit->target += moved;
   follows_->centre = centre;
+}
+
+// Smoothly while it plays; at once where a person goes to an instant.
+void Viewer::keep_in_picture() {
+  std::vector<Eigen::Vector3f> ends;
+  for (const render::Tube& tube : frame_.tubes)
+    if (tube.body < static_cast<std::uint32_t>(player_.scene().setup.model.furniture_total()))
+      for (const std::uint32_t end : {tube.first_station, tube.first_station + tube.station_count - 1})
+        ends.emplace_back(frame_.stations[end].position.data());
+  const bool plays = player_.playing();
+  for (int i = 0; i < (plays ? 1 : k_keeping_steps); ++i) orbit_.keep(ends, aspect(), plays ? 0.15f : 1);
+  flight_ = 1;
 }
 
 // What may still fall needs room beside it; words lie above, below and at the right. Where they leave little
@@ -377,7 +390,7 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
   } else if (found->member >= members) {
     inspect(Subject{Subject::Kind::anchor, found->member - members});
   } else {
-    if (settings_.solid) return inspect(Subject{Subject::Kind::body, found->body});
+    if (!traits(settings_.bodies).beams) return inspect(Subject{Subject::Kind::body, found->body});
     const Subject member{Subject::Kind::member, found->member};
     inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
   }

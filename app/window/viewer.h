@@ -112,6 +112,7 @@ class Viewer {
     settings_ = settings;
     scene_changed_ = true;
   }
+  bool keeps_in_picture() const { return keeps_in_picture_; }
   bool ghost_shown() const { return ghost_shown_; }
   void show_ghost(bool on) {
     ghost_shown_ = on;
@@ -119,6 +120,9 @@ class Viewer {
   }
   /// In the status line until the next click.
   void show_message(const std::string& words) { message_ = words; }
+  const std::string& message() const { return message_; }
+  /// At the right end of the status line; empty: nothing is at work beside the window.
+  void show_work(const std::string& words) { work_ = words; }
   /// How long a frame took, ms, for the status line.
   void report_frame_time(double ms);
 
@@ -130,9 +134,11 @@ class Viewer {
   void let_go();
   void focus_next_panel();
   void next_colour();
+  void next_bodies();
   void turn(bool& on);
   void toggle_following();
   void move_with_followed();
+  void keep_in_picture();
   void lay_out();
   void handle_characters();
   void handle_mouse();
@@ -195,8 +201,9 @@ class Viewer {
   std::vector<std::string> status_lines_;
   bool to_next_panel_ = false;
   ShellRequest asked_ = ShellRequest::none;
-  bool keys_shown_ = false, ghost_shown_ = true, panels_hidden_ = false;
+  bool keys_shown_ = false, ghost_shown_ = true, panels_hidden_ = false, keeps_in_picture_ = false;
   std::string refused_;
+  std::string work_;
   std::string message_;  // what was written, or why it was not
   double frame_ms_ = 0;
 };

@@ -46,11 +46,12 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {{"3", "3"}, k_key_top, '3', false, false, [](Viewer& v) { v.fit_view(render::NamedView::top); }},
       {{"4", "4"}, k_key_corner, '4', false, false, [](Viewer& v) { v.fit_view(render::NamedView::iso); }},
       {{"F", "F"}, k_key_fit, 'F', false, false, [](Viewer& v) { v.fit_view(v.view_); }},
+      {{"K", "K"}, fw::k_key_keep, 'K', false, false, [](Viewer& v) { v.turn(v.keeps_in_picture_); }},
       {{"T", "T"}, k_key_follow, 'T', false, false, [](Viewer& v) { v.toggle_following(); }},
       {{"Q", "Q"}, k_key_quantity, 'Q', false, false, [](Viewer& v) { v.next_colour(); }},
       {{"A", "A"}, k_key_forces, 'A', false, false, [](Viewer& v) { v.turn(v.settings_.contact_forces); }},
       {{"P", "P"}, k_key_panels, 'P', false, false, [](Viewer& v) { v.turn(v.settings_.panels); }},
-      {{"S", "S"}, fw::k_key_solid, 'S', false, false, [](Viewer& v) { v.turn(v.settings_.solid); }},
+      {{"S", "S"}, fw::k_key_solid, 'S', false, false, [](Viewer& v) { v.next_bodies(); }},
       {k_drag, k_key_turn},
       {k_wheel, k_key_wheel},
       {k_click, k_key_click},
@@ -132,6 +133,12 @@ void Viewer::toggle_following() {
 void Viewer::next_colour() {
   const std::size_t next = (place_of(settings_.colour) + 1) % beam_quantities().size();
   choose_colour(settings_, beam_quantities()[next].kind);
+  scene_changed_ = true;
+}
+
+void Viewer::next_bodies() {
+  settings_.bodies =
+      static_cast<Bodies>((static_cast<std::size_t>(settings_.bodies) + 1) % std::size(k_bodies_traits));
   scene_changed_ = true;
 }
 

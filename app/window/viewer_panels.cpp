@@ -60,7 +60,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
     add(fonts_.small, words);
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
-  if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && !settings_.solid)
+  if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && traits(settings_.bodies).beams)
     add(fonts_.small, say(k_all_rigid));
   if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
     add(fonts_.small, say(k_ghost_is, *ghost));
@@ -142,6 +142,8 @@ void Viewer::draw_side_panel(const std::optional<io::FrameRow>& row) {
       scene_changed_ = true;
     if ((earlier_ || !player_.ghost_way().empty()) && ImGui::Checkbox(say(k_ghost).c_str(), &ghost_shown_))
       scene_changed_ = true;
+    if (ImGui::Checkbox(say(furnish_words::k_keep).c_str(), &keeps_in_picture_)) scene_changed_ = true;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(furnish_words::k_keep_about).c_str());
     ImGui::Separator();
     static constexpr std::pair<Phrase, render::NamedView> views[] = {{k_front, render::NamedView::front},
                                                                      {k_side, render::NamedView::side},
@@ -234,7 +236,7 @@ void Viewer::write_status() {
 }
 
 std::string Viewer::pace() const {
-  return (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
+  return work_ + (frame_ms_ > 0 ? say(k_frame_time, frame_ms_) : "") + say(k_f1);
 }
 
 void Viewer::draw_status() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "render/scene/drawable.h"
@@ -90,6 +91,29 @@ void Orbit::zoom(float factor, float x, float y, float width, float height) {
   if (!to.target.allFinite() || !std::isfinite(to.distance)) return;
   limit(to);
   *this = to;
+}
+
+void Orbit::keep(std::span<const Vector3f> points, float aspect, float share) {
+  if (points.empty()) return;
+  const Matrix3f axes = sight_axes(sight);
+  const Eigen::Array2f half = std::tan(k_vertical_fov / 2) * Eigen::Array2f(aspect, 1);
+  Eigen::Array2f low = Eigen::Array2f::Constant(std::numeric_limits<float>::max()), high = -low;
+  for (const Vector3f& point : points) {
+    if (!point.allFinite()) return;
+    const Vector3f off = axes * (point - target);  // right, up, towards the eye
+    const float depth = std::max(distance - off.z(), 0.05f * distance);
+    const Eigen::Array2f at = off.head<2>().array() / (depth * half);
+    low = low.min(at);
+    high = high.max(at);
+  }
+  const float wide = ((high - low) / (2 * k_room.right)).maxCoeff();
+  Eigen::Array2f aside = (high + low) / 2;  // of what fits: no farther than its edge asks for
+  if (wide <= 1) aside = (high - k_room.right).max(0) + (low + k_room.right).min(0);
+  if (wide <= 1 && (aside == 0).all()) return;
+  const Vector3f by(aside.x() * half.x(), aside.y() * half.y(), 0);
+  target += share * distance * axes.transpose() * by;
+  distance *= 1 + share * (std::max(wide, 1.0f) - 1);
+  limit(*this);
 }
 
 Camera Orbit::camera(float aspect) const {

@@ -1,6 +1,8 @@
 // The camera moved by hand: orbit about a point, zoom and pan.
 #pragma once
 
+#include <span>
+
 #include <Eigen/Core>
 
 #include "render/scene/camera.h"
@@ -36,6 +38,11 @@ struct Orbit {
   /// Goes nearer by `factor` (> 1) or away (< 1); the point at the target's depth that is seen at x, y
   /// px stays where it is.
   void zoom(float factor, float x, float y, float width, float height);
+
+  /// Moves aside and goes back by `share` (0..1) of what is missing for all points to be seen, with a margin;
+  /// called again and again it gets there. Nothing moves while all are seen, or where one is not finite.
+  /// aspect: as of camera().
+  void keep(std::span<const Eigen::Vector3f> points, float aspect, float share);
 
   /// aspect: width / height of the region, > 0.
   Camera camera(float aspect) const;

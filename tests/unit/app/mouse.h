@@ -46,7 +46,8 @@ bool click_button(const std::string& name, const std::string& panel, Frame frame
         for (float x = window->Pos.x + 5; x < window->Pos.x + window->Size.x; x += 20) {
           ImGui::GetIO().MousePos = {x, y};
           frame();
-          if (ImGui::GetHoveredID() != id) continue;
+          // GetHoveredID() may be that of the frame before
+          if (ImGui::GetCurrentContext()->HoveredId != id) continue;
           click_at({x, y}, frame);
           return true;
         }

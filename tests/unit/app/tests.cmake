@@ -56,6 +56,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/support/files_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/foreign_recording_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/support/progress_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/window/export_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/seen_and_exported_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/shell_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/window/shortcuts_test.cpp

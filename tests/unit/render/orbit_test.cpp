@@ -136,6 +136,27 @@ TEST(Orbit, between_starts_and_ends_exactly_and_goes_the_shorter_way) {
   }
 }
 
+TEST(Orbit, keeps_what_moves_in_the_picture_and_else_stands_still) {
+  for (const NamedView view : k_views) {
+    Orbit orbit = Orbit::fit(view, room(), k_aspect);
+    const Orbit before = orbit;
+    const Vector3f stands[] = {{0.1f, 0, 0.2f}, {0, -0.3f, 1.5f}};
+    orbit.keep(stands, k_aspect, 0.2f);
+    EXPECT_EQ(orbit.target, before.target);
+    EXPECT_EQ(orbit.distance, before.distance);
+    const Vector3f scattered[] = {{0.1f, 0, 0.2f}, {4, -3, 0}, {-2, 5, 1}};
+    for (int i = 0; i < 60; ++i) orbit.keep(scattered, k_aspect, 0.2f);
+    for (const Vector3f& point : scattered) {
+      const Vector2f at = seen(orbit, point);
+      EXPECT_TRUE(at.x() > 0 && at.x() < k_width && at.y() > 0 && at.y() < k_height) << at.transpose();
+    }
+    EXPECT_EQ(orbit.sight.azimuth, before.sight.azimuth);
+    const Vector3f lost[] = {{std::numeric_limits<float>::quiet_NaN(), 0, 0}};
+    orbit.keep(lost, k_aspect, 0.2f);
+    EXPECT_TRUE(orbit.target.allFinite());
+  }
+}
+
 TEST(Orbit, no_movement_makes_it_infinite) {
   const float infinity = std::numeric_limits<float>::infinity();
   const std::vector<float> wild = {0, -1, 1e-30f, 1e30f, -1e30f, 3e38f, infinity, -infinity, std::nanf("")};

@@ -1,5 +1,6 @@
 // Pictures and videos: the same every time, from a scene as from its recording.
 #include <cstdlib>
+#include <set>
 
 #include "render/output/image.h"
 #include "unit/app/program.h"
@@ -232,7 +233,7 @@ TEST_F(RenderTest, every_option_of_the_picture_changes_it) {
                                                       {"--exaggerate", "200"},
                                                       {"--forces"},
                                                       {"--no-panels"},
-                                                      {"--solid"},
+                                                      {"--bodies", "solid"},
                                                       {"--no-words"},
                                                       {"--trails", "run"},
                                                       {"--inspect", "free"},
@@ -245,6 +246,18 @@ TEST_F(RenderTest, every_option_of_the_picture_changes_it) {
     EXPECT_EQ(std::count(pictures.begin(), pictures.end(), pictures.back()), 1)
         << (option.empty() ? "" : option.front() + " " + option.back());
   }
+}
+
+TEST_F(RenderTest, furniture_is_drawn_as_beams_as_it_looks_or_as_both) {
+  write_bytes("f.toml",
+              "topple = 1\nfloor = {}\n[[furniture]]\nkind = \"bookshelf\"\n"
+              "[[shake]]\nfrequency = 1\namplitude = 1\n");
+  std::set<std::string> pictures;
+  for (const char* bodies : {"beams", "solid", "both"}) {
+    draw({"f.toml", "--still", "f.png", "--at", "0", "--bodies", bodies, "--no-words"});
+    pictures.insert(bytes_of("f.png"));
+  }
+  EXPECT_EQ(pictures.size(), 3u);
 }
 
 TEST_F(RenderTest, options_of_the_picture_that_mean_nothing_are_refused) {

@@ -14,8 +14,8 @@ class SeenTest : public ShellTest {
     path.copy(dialog.path, path.size());
     dialog.path[path.size()] = '\0';
     dialog.start(player(), shell_->session()->viewer(), shell_->session()->recording());
-    EXPECT_TRUE(until([&] { return !dialog.busy(); }));
     EXPECT_EQ(dialog.refused(), "");
+    EXPECT_TRUE(until([&] { return !shell_->exports().busy(); }));
     return read(path);
   }
 };

@@ -165,6 +165,27 @@ class Shortcut : public ShellTest {
     sight();
     EXPECT_NEAR(viewer().orbit().distance, first.distance, 1e-3 * first.distance);
   }
+  void keep() {
+    sight();
+    const auto nearer = [&] {
+      ImGui::GetIO().MousePos = middle();
+      frame();
+      ImGui::GetIO().MouseWheel = 12;
+      frame();
+      frame();
+      return viewer().orbit().distance;
+    };
+    const float whole = viewer().orbit().distance, near = nearer();
+    ASSERT_LT(near, 0.3f * whole);
+    tap('K');  // the body is not all there
+    EXPECT_GT(viewer().orbit().distance, 2 * near);
+    EXPECT_LT(viewer().orbit().distance, 1.5f * whole);
+    tap('K');
+    EXPECT_FALSE(viewer().keeps_in_picture());
+    const float left = nearer();
+    frame();
+    EXPECT_EQ(viewer().orbit().distance, left);
+  }
   void follow() {
     sight();
     const auto seen_from = [&] { return viewer().orbit().target; };
@@ -196,9 +217,10 @@ class Shortcut : public ShellTest {
     EXPECT_NE(viewer().settings().panels, before);
   }
   void solid() {
-    const bool before = viewer().settings().solid;
-    tap('S');
-    EXPECT_NE(viewer().settings().solid, before);
+    for (const Bodies next : {Bodies::solid, Bodies::both, Bodies::beams}) {
+      tap('S');
+      EXPECT_EQ(viewer().settings().bodies, next);
+    }
   }
   void hide() {
     const float before = viewer().scene_box().width;
@@ -392,6 +414,7 @@ class Shortcut : public ShellTest {
         {"3", [](T& t) { t.expect_named_view('3', render::NamedView::top); }},
         {"4", [](T& t) { t.expect_named_view('4', render::NamedView::iso); }},
         {"F", [](T& t) { t.fit(); }},
+        {"K", [](T& t) { t.keep(); }},
         {"T", [](T& t) { t.follow(); }},
         {"Q", [](T& t) { t.colour(); }},
         {"A", [](T& t) { t.forces(); }},
