@@ -38,7 +38,11 @@ constexpr Usual k_of_size[] = {{"size", page_words::k_depth, "mm", 0.5, 2, true}
                                {"size", page_words::k_width, "mm", 0.5, 2, true},
                                {"size", page_words::k_height, "mm", 0.5, 2, true}};
 constexpr Usual k_mass{"mass", page_words::k_mass, "kg", 0.25, 4, true, true};
+constexpr Usual k_loads{"masses", page_words::k_loads, "kg", 0.25, 4, true, true};
 constexpr Usual k_cg_height{"cg_height", page_words::k_cg_height, "mm", 0.4, 1.6, true};
+constexpr Usual k_tilt{"tilt", page_words::k_start_tilt, "deg", -30, 30};
+constexpr std::string_view k_contact_friction = "contact.friction";
+constexpr double k_least_members = 1.01;  ///< mass of a frame over that of its loads
 
 /// A number of the scene in SI; none: it is not written as one.
 std::optional<double> number_of(const Node* node, io::Dimension dimension) {
@@ -46,6 +50,28 @@ std::optional<double> number_of(const Node* node, io::Dimension dimension) {
   if (node->is_number()) return node->real;
   if (node->kind != Node::Kind::text) return std::nullopt;
   return io::parse_quantity(node->text, dimension).si;
+}
+
+/// The list with all masses and inertias in SI, times `factor`.
+Node scaled(Node list, double factor) {
+  for (io::Item& entry : list.items)
+    for (io::Item& item : entry.value.items) {
+      const auto scale = [&](Node& node, io::Dimension dimension) {
+        const double si = number_of(&node, dimension).value_or(0);
+        node = io::number_node(si * factor, node.place);
+      };
+      if (item.key == "mass") scale(item.value, io::Dimension::mass);
+      if (item.key == "inertia")
+        for (io::Item& component : item.value.items) scale(component.value, io::Dimension::inertia);
+    }
+  return list;
+}
+
+double mass_of(const Node& list) {
+  double sum = 0;
+  for (const io::Item& entry : list.items)
+    sum += number_of(entry.value.find("mass"), io::Dimension::mass).value_or(0);
+  return sum;
 }
 
 class Controls {
@@ -64,7 +90,7 @@ class Controls {
                                          std::pair(&k_of_contact[2], now.contact.alpha)})
         if (coulomb || usual->name != "restitution")
           add(*usual, "contact", "contact", "", window_words::k_contact, value);
-    for (const char* table : {"cabinet", "block", "furniture"})
+    for (const char* table : {"cabinet", "frame", "block", "furniture"})
       each(table, [&](const Node& entry, const std::string& path, const std::string& label) {
         piece(table, entry, path, label);
       });
@@ -86,10 +112,11 @@ class Controls {
     }
   }
 
-  void add(const Usual& usual, const std::string& path, std::string_view table, const std::string& group,
-           const Phrase& heading, double si, int component = -1) {
+  /// Null: it is left out.
+  PageControl* add(const Usual& usual, const std::string& path, std::string_view table,
+                   const std::string& group, const Phrase& heading, double si, int component = -1) {
     const io::Key* const key = io::find_key(table, usual.name);
-    if (key == nullptr || !std::isfinite(si)) return;
+    if (key == nullptr || !std::isfinite(si)) return nullptr;
     const double unit = usual.unit.empty() ? 1 : io::unit_value(usual.unit, key->dimension);
     const double value = std::stod(fmt::format("{:.12g}", si / unit)), scale = usual.relative ? value : 1;
     PageControl one{.key = path + "." + std::string(usual.name),
@@ -102,8 +129,8 @@ class Controls {
                     .component = component};
     one.least = std::max(key->least / unit, std::min(value, usual.least * scale));
     one.most = std::min(key->most / unit, std::max(value, usual.most * scale));
-    if (one.logarithmic && !(one.least > 0)) return;
-    if (one.least < one.most) found_.push_back(one);
+    if (!(one.least < one.most) || (one.logarithmic && !(one.least > 0))) return nullptr;
+    return &found_.emplace_back(one);
   }
 
   void toggle(const Node& entry, const std::string& path, const std::string& label, const Phrase& name,
@@ -147,17 +174,55 @@ class Controls {
     const auto body = ranges::find_if(bodies, [&](const Body& of) {
       return of.name == label || of.name == table + "-" + label || of.name == label + "-1";
     });
+    const std::size_t first = found_.size();
+    const auto add_here = [&](const Usual& usual, double si, int component = -1) {
+      return add(usual, path, table, label, window_words::k_bodies, si, component);
+    };
     const Node* const size = entry.find("size");
     for (int k = 0; size != nullptr && size->items.size() == 3 && k < 3; ++k)
       if (const auto metres = number_of(&size->items[k].value, io::Dimension::length))
-        add(k_of_size[k], path, table, label, window_words::k_bodies, *metres, k);
+        add_here(k_of_size[k], *metres, k);
+    const Node* const masses = entry.find("masses");
     std::optional<double> mass = number_of(entry.find("mass"), io::Dimension::mass);
-    if (!mass && body != bodies.end() && table != "furniture") mass = body->mass;
-    if (mass) add(k_mass, path, table, label, window_words::k_bodies, *mass);
+    if (!mass && masses != nullptr)
+      loads(*masses, path, label);
+    else if (!mass && body != bodies.end() && table != "furniture")
+      mass = body->mass;
+    if (PageControl* const own = mass ? add_here(k_mass, *mass) : nullptr; own && masses != nullptr)
+      own->least = std::clamp(k_least_members * mass_of(*masses), own->least, own->value);
     std::optional<double> height = number_of(entry.find("cg_height"), io::Dimension::length);
     if (!height && table == "cabinet" && body != bodies.end() && entry.find("pose") == nullptr)
       height = body->centre_of_gravity.z() - body->base_centre.z();
-    if (height) add(k_cg_height, path, table, label, window_words::k_bodies, *height);
+    if (height) add_here(k_cg_height, *height);
+    if (const auto tilt = number_of(entry.find("tilt"), io::Dimension::angle)) add_here(k_tilt, *tilt);
+    friction(table, entry, path, label);
+    for (std::size_t i = first; i < found_.size() && body != bodies.end(); ++i)
+      found_[i].body = static_cast<int>(body - bodies.begin());
+  }
+
+  void loads(const Node& masses, const std::string& path, const std::string& label) {
+    const double sum = mass_of(masses);
+    if (!(sum > 0)) return;
+    found_.push_back({.key = path + ".masses",
+                      .group = label,
+                      .heading = window_words::k_bodies,
+                      .label = k_loads.label,
+                      .unit = k_loads.unit,
+                      .least = sum * k_loads.least,
+                      .most = sum * k_loads.most,
+                      .value = sum,
+                      .logarithmic = k_loads.logarithmic,
+                      .list = std::make_shared<const Node>(scaled(masses, 1))});
+  }
+
+  /// Of pieces that name theirs, and of frames.
+  void friction(const std::string& table, const Node& entry, const std::string& path,
+                const std::string& label) {
+    const std::optional<double> own = number_of(entry.find("friction"), io::Dimension::none);
+    if (scene_.setup.model.planes.empty() || (!own && table != "frame")) return;
+    const double value = own.value_or(scene_.setup.parameters.contact.friction);
+    PageControl* const found = add(k_of_contact[0], path, table, label, window_words::k_bodies, value);
+    if (found && !own) found->follows = k_contact_friction;
   }
 
   const io::Scene& scene_;
@@ -168,11 +233,22 @@ class Controls {
 
 std::string written(const PageControl& control, double value) {
   const std::string digits = io::shortest_digits(value);
+  if (control.list) return io::written_value(scaled(*control.list, value / control.value));
   if (control.kind == Kind::toggle) return value != 0 ? "true" : "false";
   if (control.kind == Kind::angle)
     return fmt::format("[{}, {}, 0]", io::shortest_digits(std::cos(value / k_degrees)),
                        io::shortest_digits(std::sin(value / k_degrees)));
   return control.unit.empty() ? digits : fmt::format("\"{} {}\"", digits, control.unit);
+}
+
+/// The value that it has unless it is set.
+double unset(const std::vector<PageControl>& controls, const std::vector<double>& values,
+             const PageControl& control) {
+  const auto followed =
+      static_cast<std::size_t>(ranges::find(controls, control.follows, &PageControl::key) - controls.begin());
+  return followed < std::min(controls.size(), values.size()) && std::isfinite(values[followed])
+             ? values[followed]
+             : control.value;
 }
 
 }  // namespace
@@ -191,7 +267,7 @@ std::vector<std::string> changes(const std::vector<PageControl>& controls,
     bool changed = false;
     std::string list;
     for (std::size_t k = i; k < end && k < values.size(); ++k) {
-      changed = changed || (std::isfinite(values[k]) && values[k] != controls[k].value);
+      changed = changed || (std::isfinite(values[k]) && values[k] != unset(controls, values, controls[k]));
       const double value = std::isfinite(values[k]) ? values[k] : controls[k].value;
       list +=
           (k > i ? ", " : "") + written(controls[k], std::clamp(value, controls[k].least, controls[k].most));

@@ -14,6 +14,8 @@ inline constexpr Phrase k_depth{"depth", "奥行"};
 inline constexpr Phrase k_width{"width", "幅"};
 inline constexpr Phrase k_height{"height", "高さ"};
 inline constexpr Phrase k_mass{"mass", "質量"};
+inline constexpr Phrase k_loads{"mass of its loads", "積載質量"};
+inline constexpr Phrase k_start_tilt{"tilt at the start", "初期傾斜"};
 inline constexpr Phrase k_cg_height{"height of the centre of gravity", "重心の高さ"};
 inline constexpr Phrase k_in_place{"in place", "取り付け"};
 

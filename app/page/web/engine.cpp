@@ -84,7 +84,9 @@ Json controls_json() {
                     {"least", number(one.least)},
                     {"most", number(one.most)},
                     {"value", number(one.value)},
-                    {"logarithmic", one.logarithmic}});
+                    {"logarithmic", one.logarithmic},
+                    {"follows", one.follows},
+                    {"body", one.body}});
   }
   return list;
 }

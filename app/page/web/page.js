@@ -8,7 +8,7 @@ const page = {
   engine: null, worker: null, words: {}, controls: [], values: [], bodies: data.bodies, curves: null,
   time: 0, playing: false, last: 0, colour: 0, japanese: data.language === 'ja', request: 0, changed: false,
   drawable: true, dirty: true, fine: true, slow: false, moving: false, moved: 0, mapped: null, names: [],
-  trouble: '', legend: '',
+  trouble: '', legend: '', updates: [],
 };
 
 const say = (word, ...of) => of.reduce((text, value, i) => text.split(`{${i}}`).join(value), page.words[word]);
@@ -53,6 +53,7 @@ function fromSlider(control, u) {
 function buildControls() {
   const form = byId('controls');
   form.replaceChildren();
+  page.updates = [];
   form.hidden = !data.live;
   let group = null, box = null;
   page.controls.forEach((control, i) => {
@@ -66,6 +67,17 @@ function buildControls() {
       form.append(box);
     }
     box.append(controlRow(control, i));
+  });
+}
+
+// Controls that follow this one change with it as long as they have its value.
+function setControl(i, value) {
+  const before = page.values[i];
+  page.values[i] = value;
+  page.controls.forEach((control, j) => {
+    if (j !== i && !(control.follows === page.controls[i].key && page.values[j] === before)) return;
+    page.values[j] = value;
+    page.updates[j](j === i);
   });
 }
 
@@ -95,10 +107,13 @@ function controlRow(control, i) {
     input.value = toSlider(control, page.values[i]);
   }
   input.addEventListener('input', () => {
-    page.values[i] = control.kind === 'toggle' ? Number(input.checked) : fromSlider(control, Number(input.value));
-    update();
+    setControl(i, control.kind === 'toggle' ? Number(input.checked) : fromSlider(control, Number(input.value)));
     compute();
   });
+  page.updates[i] = (held) => {
+    if (!held) input.value = toSlider(control, page.values[i]);
+    update();
+  };
   update();
   row.append(label, output, input);
   return row;

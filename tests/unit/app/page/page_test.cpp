@@ -1,5 +1,9 @@
 // Live pages: what goes into them, without a browser (tests/page/ has those).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
 
 #include "app/page/export_page.h"
 #include "app/page/page_controls.h"
@@ -58,7 +62,8 @@ TEST(PageRows, many_rows_are_thinned_to_four_mebibytes) {
 }
 
 TEST(PageControls, each_changes_the_scene_as_it_says) {
-  for (const char* name : {"paper-a", "anchored", "cabinet", "near-fault", "desk"}) {
+  for (const char* name :
+       {"paper-a", "anchored", "cabinet", "near-fault", "desk", "folding-leg", "weak-storey"}) {
     const io::Scene scene = io::load_scene(name);
     const std::vector<PageControl> controls = page_controls(scene);
     std::vector<double> values;
@@ -73,6 +78,8 @@ TEST(PageControls, each_changes_the_scene_as_it_says) {
       other[i] = one.kind == PageControl::Kind::toggle ? 1 - one.value
                  : one.value < one.most                ? one.value + 0.05 * (one.most - one.value)
                                                        : one.value - 0.05 * (one.value - one.least);
+      for (std::size_t k = 0; k < controls.size(); ++k)
+        if (controls[k].follows == one.key) other[k] = other[i];
       const std::vector<std::string> sets = changes(controls, other);
       ASSERT_EQ(sets.size(), 1u) << name << " " << one.key;
       EXPECT_EQ(sets[0].rfind(one.key + "=", 0), 0u) << sets[0];
@@ -81,6 +88,86 @@ TEST(PageControls, each_changes_the_scene_as_it_says) {
       EXPECT_NEAR(changed[i].value, other[i], 1e-6 * std::max(1., std::abs(other[i]))) << sets[0];
     }
   }
+}
+
+std::optional<PageControl> control(const std::vector<PageControl>& controls, const std::string& key) {
+  const auto found = std::ranges::find(controls, key, &PageControl::key);
+  return found == controls.end() ? std::nullopt : std::optional(*found);
+}
+
+/// The scene with one control at `value`.
+io::Scene changed(const std::string& name, const std::string& key, double value) {
+  const std::vector<PageControl> controls = page_controls(io::load_scene(name));
+  std::vector<double> values;
+  for (const PageControl& one : controls) values.push_back(one.key == key ? value : one.value);
+  return io::load_scene(name, changes(controls, values));
+}
+
+const Body& body(const io::Scene& scene, const std::string& name) {
+  return *std::ranges::find(scene.setup.model.bodies, name, &Body::name);
+}
+
+TEST(PageControls, a_frame_can_be_made_heavier) {
+  const io::Scene scene = io::load_scene("folding-leg");
+  const auto mass = control(page_controls(scene), "frame.table.mass");
+  ASSERT_TRUE(mass);
+  EXPECT_NEAR(mass->value, body(scene, "table").mass, 1e-9);
+  for (const double kg : {mass->least, mass->most})
+    EXPECT_NEAR(body(changed("folding-leg", mass->key, kg), "table").mass, kg, 1e-9);
+}
+
+TEST(PageControls, what_is_loaded_on_a_frame_changes_in_proportion) {
+  const io::Scene scene = io::load_scene("weak-storey");
+  const std::vector<PageControl> controls = page_controls(scene);
+  EXPECT_FALSE(control(controls, "frame.rack.mass"));
+  const auto loads = control(controls, "frame.rack.masses");
+  ASSERT_TRUE(loads);
+  EXPECT_NEAR(loads->value, 12 * 60, 1e-9);
+  const io::Scene other = changed("weak-storey", loads->key, 900);
+  EXPECT_NEAR(body(other, "rack").mass - body(scene, "rack").mass, 900 - 12 * 60, 1e-9);
+  for (int node = 4; node < 16; ++node)
+    EXPECT_NEAR(other.setup.model.node_mass[node] - scene.setup.model.node_mass[node], 75 - 60, 1e-9) << node;
+}
+
+TEST(PageControls, a_frame_of_given_mass_stays_heavier_than_its_loads) {
+  const io::Scene scene = io::load_scene("weak-storey", {"frame.rack.mass=760"});
+  const auto mass = control(page_controls(scene), "frame.rack.mass");
+  ASSERT_TRUE(mass);
+  EXPECT_GT(mass->least, 12 * 60);
+  EXPECT_NO_THROW(io::load_scene("weak-storey", {fmt::format("frame.rack.mass={}", mass->least)}));
+}
+
+TEST(PageControls, friction_of_a_frame_is_that_of_all_contacts_until_it_is_set) {
+  const std::vector<PageControl> controls = page_controls(io::load_scene("folding-leg"));
+  std::vector<double> values;
+  std::size_t of_all = 0, own = 0;
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    values.push_back(controls[i].value);
+    if (controls[i].key == "contact.friction") of_all = i;
+    if (controls[i].key == "frame.table.friction") own = i;
+  }
+  ASSERT_EQ(controls[own].follows, controls[of_all].key);
+  values[of_all] = values[own] = 0;
+  EXPECT_EQ(changes(controls, values), std::vector<std::string>{"contact.friction=0"});
+  values[of_all] = 0.4;
+  values[own] = 0.3;
+  const io::Scene scene = io::load_scene("folding-leg", changes(controls, values));
+  EXPECT_EQ(scene.setup.parameters.contact.friction, 0.4);
+  EXPECT_NEAR(0.4 * body(scene, "table").grip, 0.3, 1e-12);
+  EXPECT_EQ(body(scene, "cabinet").grip, 1);
+}
+
+TEST(PageControls, a_piece_that_starts_tilted_can_start_otherwise) {
+  const io::Scene scene = io::load_scene("folding-leg");
+  const auto tilt = control(page_controls(scene), "cabinet.cabinet.tilt");
+  ASSERT_TRUE(tilt);
+  EXPECT_EQ(tilt->value, 13);
+  const auto start = [](const io::Scene& of) {
+    return of.setup.starts[static_cast<std::size_t>(&body(of, "cabinet") - of.setup.model.bodies.data())];
+  };
+  for (const double degrees : {0., 5., -13.})
+    EXPECT_NEAR(start(changed("folding-leg", tilt->key, degrees)).rotation.norm(),
+                std::abs(degrees) * k_pi / 180, 1e-12);
 }
 
 TEST(PageControls, what_is_no_number_changes_nothing) {
