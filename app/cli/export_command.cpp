@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "app/batch/recorded_run.h"
 #include "app/cli/command.h"
@@ -27,6 +29,7 @@ struct ExportOptions {
   std::string vtk;                        ///< folder; or
   std::string gltf;                       ///< file; or
   std::string page;                       ///< file
+  std::vector<std::string> overrides;     ///< of the scene of a page, KEY=VALUE
   Language language = Language::english;  ///< of the page
   bool quiet = false;
   bool force = false;  ///< in place of files of any kind
@@ -51,12 +54,14 @@ int write_page(const ExportOptions& options, const io::Scene& scene, const std::
 int export_page(const ExportOptions& options) {
   require_pages("--page");
   if (!is_scene(options.recording)) {
+    if (!options.overrides.empty())
+      throw BadInput("--set: " + options.recording + " is a recording; only a scene can be changed");
     require_writable_file("--page", {options.page, options.force}, host::FileKind::html, options.recording);
     const io::Recording recording = open_foreign_recording(options.recording);
     defer_interrupts();
     return write_page(options, recorded_scene(recording), options.recording);
   }
-  const io::Scene scene = io::load_scene(options.recording);
+  const io::Scene scene = io::load_scene(options.recording, options.overrides);
   require_no_record("--page", options.page, options.recording, scene);
   require_writable_file("--page", {options.page, options.force}, host::FileKind::html, options.recording);
   defer_interrupts();
@@ -70,6 +75,7 @@ int export_page(const ExportOptions& options) {
 
 int export_command(const ExportOptions& options) {
   if (!options.page.empty()) return export_page(options);
+  if (!options.overrides.empty()) throw BadInput("--set: only a scene for --page can be changed");
   if (!io::is_recording(options.recording) && !std::filesystem::exists(options.recording))
     for (const io::BuiltinScene& scene : io::builtin_scenes())
       if (scene.name == options.recording)
@@ -125,6 +131,7 @@ void add_export(Commands& commands) {
   add_path(what, "--page", data.page, "FILE.html",
            "a page for any browser that replays the run, and computes it anew when a slider moves");
   what.require_option(1);
+  add_set(command, data.overrides);
   add_language(command, data.language, "en (default) or ja, of the page");
   add_quiet(command, data.quiet);
   add_force(command, data.force);

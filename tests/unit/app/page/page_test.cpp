@@ -9,6 +9,7 @@
 #include "app/page/page_controls.h"
 #include "app/page/page_rows.h"
 #include "app/page/verdict.h"
+#include "solver/io/recording/recording.h"
 #include "unit/app/program.h"
 
 namespace topple::app {
@@ -187,10 +188,67 @@ TEST(Verdict, says_who_falls_first_and_who_stays) {
   EXPECT_EQ(verdict_in_words({}, Language::english), "");
 }
 
-class ExportPageTest : public ProgramTest {};
+std::string from_base64(const std::string& text) {
+  static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<unsigned>(digits.find(c));
+    count += 6;
+    if (count >= 8) out += static_cast<char>(bits >> (count -= 8) & 0xff);
+  }
+  return out;
+}
+
+class ExportPageTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    if (!can_make_pages()) GTEST_SKIP() << "built without emscripten";
+  }
+
+  /// The page's own account of the run.
+  static nlohmann::ordered_json data_of(const std::string& page) {
+    const std::string begin = "<script id=\"data\" type=\"application/json\">";
+    const std::size_t at = page.find(begin) + begin.size();
+    return json_of(page.substr(at, page.find("</script>", at) - at));
+  }
+};
+
+TEST_F(ExportPageTest, a_scene_is_changed_as_by_run) {
+  const std::vector<std::string> sets = {"--set", "run.duration=0.2", "--set", "cabinet.free.mass=99 kg"};
+  const auto with_sets = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), sets.begin(), sets.end());
+    return arguments;
+  };
+  ASSERT_EQ(topple(with_sets({"run", "paper-a", "-o", "run.h5", "--quiet"})).code, 0);
+  ASSERT_EQ(topple(with_sets({"export", "paper-a", "--page", "page.html", "--quiet"})).code, 0);
+  const nlohmann::ordered_json data = data_of(bytes_of("page.html"));
+  ASSERT_EQ(data["stride"], 1);
+  const io::Recording recording("run.h5");
+  EXPECT_EQ(data["text"], recording.scene_text());
+  const io::Scene scene = io::parse_scene(data["text"].get<std::string>(), "page.toml");
+  EXPECT_EQ(scene.setup.model.bodies[0].name, "free");
+  EXPECT_NEAR(scene.setup.model.bodies[0].mass, 99, 1e-9);
+  const std::vector<io::FrameRow> rows = unpack_rows(scene.setup.model, from_base64(data["rows"]));
+  ASSERT_EQ(rows.size(), static_cast<std::size_t>(recording.frame_count()));
+  EXPECT_EQ(rows.back().position, recording.frame(recording.frame_count() - 1).position);
+  expect_one_line({"export", "paper-a", "--page", "other.html", "--set", "cabinet.fre.mass=99"}, 2,
+                  "cabinet.fre");
+  expect_one_line({"export", "run.h5", "--page", "other.html", "--set", "run.duration=1"}, 2,
+                  "--set: run.h5 is a recording");
+  EXPECT_FALSE(std::filesystem::exists("other.html"));
+}
+
+TEST_F(ProgramTest, only_a_scene_for_a_page_can_be_changed) {
+  write_bytes("one.h5", k_older_recording);
+  expect_one_line({"export", "one.h5", "--csv", "folder", "--set", "run.duration=1"}, 2,
+                  "--set: only a scene");
+}
 
 TEST_F(ExportPageTest, texts_of_a_scene_do_not_become_parts_of_the_page) {
-  if (!can_make_pages()) GTEST_SKIP() << "built without emscripten";
   write_bytes("bad.toml",
               "topple = 1\ntitle = \"</script><script>alert(1)</script> @DATA@\"\nfloor = {}\n"
               "[run]\nduration = 0.1\nwant = [\"motion\"]\n[[block]]\nname = \"<b>\"\n"
@@ -203,7 +261,7 @@ TEST_F(ExportPageTest, texts_of_a_scene_do_not_become_parts_of_the_page) {
   EXPECT_NE(page.find("<script id=\"data\" type=\"application/json\">{\"name\":\"bad\""), std::string::npos);
 }
 
-TEST_F(ExportPageTest, what_cannot_be_made_is_refused_in_one_line) {
+TEST_F(ProgramTest, a_page_that_cannot_be_made_is_refused_in_one_line) {
   write_bytes("lost.toml", "topple = 1\n[[shake]]\ntype = \"record\"\nfiles = [\"lost.csv\"]\n");
   const Ended lost = topple({"export", "lost.toml", "--page", "page.html"});
   EXPECT_EQ(lost.code, 2);
