@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/page/page_words.h"
+
 namespace topple::app {
 namespace {
 
 constexpr double k_longest = 10;  // s
+constexpr double k_level = 1e-9;  // horizontal part of a unit vector that counts as none
+constexpr planar::Obstacle k_ignored[] = {planar::Obstacle::between};
 
 /// Value `k` of `count` from ends[0] to ends[1].
 double on_axis(const double (&ends)[2], int k, int count) {
@@ -15,27 +19,34 @@ double on_axis(const double (&ends)[2], int k, int count) {
 
 }  // namespace
 
-BlockMap::BlockMap(const Setup& setup) : setup_(setup) {
-  const std::vector<Shake>& shakes = setup.parameters.shakes;
-  if (shakes.size() != 1 || shakes.front().kind != Shake::Kind::sine) {
-    obstacle_ = "the floor moves in another way than one sine";
-    return;
-  }
-  if (setup.model.furniture_total() == 0) {
-    obstacle_ = "there is no furniture";
-    return;
-  }
+BlockMap::BlockMap(const Setup& setup, int body)
+    : body_(body), duration_(std::min(setup.run.duration, k_longest)), obstacle_(find_obstacle(setup)) {}
+
+std::optional<Phrase> BlockMap::find_obstacle(const Setup& setup) {
+  if (body_ < 0 || body_ >= setup.model.furniture_total()) return page_words::k_map_no_piece;
+  Parameters parameters = setup.parameters;
+  std::erase_if(parameters.shakes, [](const Shake& shake) { return !shake.on; });
+  if (parameters.shakes.size() != 1 || parameters.shakes[0].kind != Shake::Kind::sine)
+    return page_words::k_map_no_sine;
+  shake_ = parameters.shakes[0];
+  // of its floor's motion only the amplitude can be changed
+  if (shake_.building) return page_words::k_map_building;
+  const Vec3 along(shake_.direction.x(), shake_.direction.y(), 0);
+  if (along.norm() < k_level) return page_words::k_map_vertical;
+  parameters.anchors.assign(setup.model.anchors.size(), false);
   planar::Obstacle obstacle = planar::Obstacle::none;
-  block_ = planar::planar_case(setup.model, setup.parameters, setup.starts, 0, &obstacle);
-  if (!block_) obstacle_ = setup.model.bodies.front().name + ": " + traits(obstacle).phrase;
+  block_ =
+      planar::planar_case_along(setup.model, parameters, along.normalized(), body_, &obstacle, k_ignored);
+  if (block_) return std::nullopt;
+  return Phrase{traits(obstacle).phrase, row_of(page_words::k_obstacles, obstacle).japanese};
 }
 
 void BlockMap::add_point() {
   const int point = static_cast<int>(points_.size());
-  std::vector<Shake> shakes = setup_.parameters.shakes;
-  shakes[0].frequency = on_axis(k_frequency, point % k_columns, k_columns);
-  shakes[0].amplitude = on_axis(k_amplitude, point / k_columns, k_rows) * k_gal;
-  planar::PlanarRun run(*block_, shakes, std::min(setup_.run.duration, k_longest));
+  Shake shake = shake_;
+  shake.frequency = on_axis(k_frequency, point % k_columns, k_columns);
+  shake.amplitude = on_axis(k_amplitude, point / k_columns, k_rows) * k_gal;
+  planar::PlanarRun run(*block_, {shake}, duration_);
   while (!run.over()) run.advance();
   points_.push_back(run.beyond_since() ? Verdict::overturns
                     : run.lifted()     ? Verdict::rocks

@@ -6,6 +6,8 @@
 
 #include "app/picture/window_words.h"
 #include "app/report/report_words.h"
+#include "solver/model/table.h"
+#include "solver/planar/planar_case.h"
 
 namespace topple::app::page_words {
 
@@ -18,6 +20,33 @@ inline constexpr Phrase k_loads{"mass of its loads", "積載質量"};
 inline constexpr Phrase k_start_tilt{"tilt at the start", "初期傾斜"};
 inline constexpr Phrase k_cg_height{"height of the centre of gravity", "重心の高さ"};
 inline constexpr Phrase k_in_place{"in place", "取り付け"};
+
+// why there is no map
+inline constexpr Phrase k_map_no_piece{"there is no furniture", "家具がない"};
+inline constexpr Phrase k_map_no_sine{"the floor moves in another way than one sine",
+                                      "床の動きが単一の正弦波ではない"};
+inline constexpr Phrase k_map_vertical{"the floor moves up and down only", "床が鉛直方向にのみ動く"};
+inline constexpr Phrase k_map_building{"the floor is one of a building, which does not follow the sine",
+                                       "床が建物の階であり、正弦波どおりには動かない"};
+struct JapaneseObstacle {
+  planar::Obstacle kind;
+  std::string_view japanese;  ///< of ObstacleTraits::phrase
+};
+inline constexpr JapaneseObstacle k_obstacles[] = {
+    {planar::Obstacle::none, ""},
+    {planar::Obstacle::floor, "水平な床の上に立っていないか、重力が鉛直でない"},
+    {planar::Obstacle::held, "支持、荷重または固定具が作用している"},
+    {planar::Obstacle::base, "接触幅の一様な平らな底面がない"},
+    {planar::Obstacle::law, "接触則に剛な極限がない"},
+    {planar::Obstacle::direction, "一つの鉛直面から外れて動く"},
+    {planar::Obstacle::stands, "初めに床の上に立っていない"},
+    {planar::Obstacle::symmetry, "動く面について対称でない"},
+    {planar::Obstacle::edge, "底面の端が点である"},
+    {planar::Obstacle::between, "底面の両縁の間に接触点がある"},
+    {planar::Obstacle::early, "転倒する前に他の接触点が床に当たる"},
+    {planar::Obstacle::near, "倒れる範囲に壁または他の家具がある"},
+    {planar::Obstacle::jump, "床の上下方向の速度が不連続である"},
+};
 
 inline constexpr Phrase k_diverged{"The computation broke off at {0} s: {1}", "計算は{0}秒で中断した：{1}"};
 
@@ -49,11 +78,14 @@ inline constexpr Named k_all[] = {
     {"dark", window_words::k_dark},
     {"parameters", window_words::k_parameters},
     {"result", {"Who falls", "転倒する家具"}},
-    {"map", {"What overturns a rigid block of this shape", "同じ形の剛体ブロックの転倒"}},
+    {"map",
+     {"What overturns a rigid block of this shape, free on the floor",
+      "床に固定せずに置いた同じ形の剛体ブロックの転倒"}},
     {"map_falls", {"overturns", "転倒"}},
     {"map_rocks", {"rocks, stays", "ロッキング、転倒せず"}},
     {"map_stands", {"stands", "浮き上がらず"}},
     {"map_here", {"this shake", "この揺れ"}},
+    {"map_piece", {"Map of", "転倒図の対象"}},
     {"map_none", {"There is no map: {0}", "転倒図なし：{0}"}},
     {"hint",
      {"Drag turns, wheel or two fingers zoom, Shift + drag moves. Space plays.",

@@ -283,9 +283,14 @@ constexpr Row k_obstacles[] = {
     {{Obstacle::none, "none", ""}, nullptr},
 };
 
-std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle) {
-  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles),
-                                  [&](const Row& row) { return !row.is_there || row.is_there(candidate); });
+std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle,
+                                    std::span<const Obstacle> ignored = {}) {
+  const auto stops = [&](const Row& row) {
+    // what is ignored is asked as well: later ones rely on what it finds
+    return !row.is_there ||
+           (row.is_there(candidate) && std::find(ignored.begin(), ignored.end(), row.kind) == ignored.end());
+  };
+  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles), stops);
   if (obstacle) *obstacle = found->kind;
   return found->is_there ? std::nullopt : std::optional(candidate.found);
 }
@@ -322,10 +327,11 @@ std::optional<PlanarCase> planar_case(const Model& model, const Parameters& para
 }
 
 std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
-                                            const Vec3& along, int body, Obstacle* obstacle) {
+                                            const Vec3& along, int body, Obstacle* obstacle,
+                                            std::span<const Obstacle> ignored) {
   Candidate candidate{model, parameters, nullptr, {}, body, model.bodies[static_cast<std::size_t>(body)]};
   look_along(candidate, along);
-  return looked_at(candidate, obstacle);
+  return looked_at(candidate, obstacle, ignored);
 }
 
 PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body) {

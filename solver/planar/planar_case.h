@@ -77,9 +77,10 @@ std::optional<PlanarCase> planar_case(const Model& model, const Parameters& para
                                       const RigidMotion& motion, std::span<const Vec3> centres, int body,
                                       Obstacle* obstacle = nullptr);
 /// The same of one that moves along this horizontal unit vector already; its state is not looked at, nor are
-/// walls and other bodies.
+/// walls and other bodies. `ignored`: obstacles that do not count.
 std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
-                                            const Vec3& along, int body, Obstacle* obstacle = nullptr);
+                                            const Vec3& along, int body, Obstacle* obstacle = nullptr,
+                                            std::span<const Obstacle> ignored = {});
 /// Its block whatever stands in the way by now.
 PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body);
 

@@ -60,7 +60,7 @@ for (const [name, step, duration] of cases) {
   fs.writeFileSync(file, text);
   const own = run(name, text);
   const native = JSON.parse(execFileSync(topple, ['run', file, '--quiet', '--json', '-'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] })).bodies;
-  expect(own.trouble === '', `${name}: ${own.trouble}`);
+  expect(own.trouble === null, `${name}: ${own.trouble}`);
   expect(own.bodies.length === native.length, `${name}: has ${own.bodies.length} pieces, not ${native.length}`);
   own.bodies.forEach((body, b) => {
     const there = native[b].overturn_time_s;

@@ -86,7 +86,7 @@ function showMap(map) {
   page.mapped = map;
   byId('map').hidden = Boolean(map.obstacle);
   byId('nomap').hidden = !map.obstacle;
-  if (map.obstacle) return void (byId('nomap').textContent = say('map_none', map.obstacle));
+  if (map.obstacle) return void (byId('nomap').textContent = say('map_none', inWords(map.obstacle)));
   const style = getComputedStyle(document.documentElement);
   const fills = ['#cfd6dc', '#f2b84b', '#b3261e'], words = ['map_stands', 'map_rocks', 'map_falls'];
   const canvas = byId('chart'), brush = canvas.getContext('2d');
@@ -133,5 +133,5 @@ function showMap(map) {
     item.append(swatch, page.words[word]);
     return item;
   }), Object.assign(document.createElement('li'), { textContent: `○ ${page.words.map_here}` }));
-  canvas.setAttribute('aria-label', page.words.map);
+  canvas.setAttribute('aria-label', `${page.words.map}: ${page.names[page.piece]}`);
 }

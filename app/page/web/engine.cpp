@@ -142,13 +142,20 @@ std::string refusal() {
   return run.status().ok() ? "" : run.status().message(run.setup().model);
 }
 
+/// In English and Japanese: the reader may change the language later.
+template <class... Of>
+Json in_both(const Phrase& phrase, const Of&... of) {
+  return {say_in(Language::english, phrase, of...), say_in(Language::japanese, phrase, of...)};
+}
+
 Json outcome() {
   const Run& run = *engine().run;
   const std::string trouble = refusal();
   return {{"bodies", ends_json(ends_of(run))},
           {"hash", fmt::format("{:016x}", hash(run.state()))},
-          {"trouble",
-           trouble.empty() ? "" : say(page_words::k_diverged, fmt::format("{:.3g}", run.time()), trouble)}};
+          {"trouble", trouble.empty()
+                          ? Json(nullptr)
+                          : in_both(page_words::k_diverged, fmt::format("{:.3g}", run.time()), trouble)}};
 }
 
 /// Steps for about `ms` of wall time.
@@ -173,10 +180,10 @@ Json start() {
   return {{"time", 0}};
 }
 
-Json map_json(double ms) {
+Json map_json(int body, double ms) {
   Engine& e = engine();
-  if (!e.map) e.map = std::make_unique<BlockMap>(e.scene->setup);
-  if (!e.map->obstacle().empty()) return {{"obstacle", e.map->obstacle()}};
+  if (!e.map || e.map->body() != body) e.map = std::make_unique<BlockMap>(e.scene->setup, body);
+  if (e.map->obstacle()) return {{"obstacle", in_both(*e.map->obstacle())}};
   const double until = emscripten_get_now() + ms;
   while (!e.map->complete() && emscripten_get_now() < until) e.map->add_point();
   return {{"columns", BlockMap::k_columns},
@@ -185,9 +192,7 @@ Json map_json(double ms) {
           {"amplitude", BlockMap::k_amplitude},
           {"points", e.map->points()},
           {"complete", e.map->complete()},
-          {"here",
-           {e.scene->setup.parameters.shakes[0].frequency,
-            e.scene->setup.parameters.shakes[0].amplitude / k_gal}}};
+          {"here", {e.map->shake().frequency, e.map->shake().amplitude / k_gal}}};
 }
 
 /// Of each body its tilt as share of its critical angle; of the floor its acceleration, gal.
@@ -266,8 +271,9 @@ EMSCRIPTEN_KEEPALIVE int page_packed_size() {
   return static_cast<int>(engine().answer.size());
 }
 
-EMSCRIPTEN_KEEPALIVE const char* page_map(double ms) {
-  return answer_of([&] { return map_json(ms); });
+/// Of a piece of furniture of the scene that was loaded last; more of it for about `ms` of wall time.
+EMSCRIPTEN_KEEPALIVE const char* page_map(int body, double ms) {
+  return answer_of([&] { return map_json(body, ms); });
 }
 
 /// Who falls, from a list of bodies as in page_outcome().

@@ -66,7 +66,7 @@ function workerMain() {
   }
   async function map(request) {
     for (;;) {
-      const found = engine.parsed(engine.module._page_map(slice));
+      const found = engine.parsed(engine.module._page_map(request.piece, slice));
       if (found.obstacle || found.complete) return postMessage({ kind: 'map', id: request.id, map: found });
       await pause();
       if (request.id !== newest) return;

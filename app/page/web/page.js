@@ -8,10 +8,12 @@ const page = {
   engine: null, worker: null, words: {}, controls: [], values: [], bodies: data.bodies, curves: null,
   time: 0, playing: false, last: 0, colour: 0, japanese: data.language === 'ja', request: 0, changed: false,
   drawable: true, dirty: true, fine: true, slow: false, moving: false, moved: 0, mapped: null, names: [],
-  trouble: '', legend: '', updates: [],
+  trouble: '', legend: '', updates: [], piece: 0,
 };
 
 const say = (word, ...of) => of.reduce((text, value, i) => text.split(`{${i}}`).join(value), page.words[word]);
+// Of what the Worker says, in English and Japanese.
+const inWords = (texts) => texts[page.japanese ? 1 : 0];
 const end = () => page.curves.times[page.curves.times.length - 1];
 const start = () => page.curves.times[0];
 const dark = () => (document.documentElement.classList.contains('dark') ? 1 : 0);
@@ -108,6 +110,7 @@ function controlRow(control, i) {
   }
   input.addEventListener('input', () => {
     setControl(i, control.kind === 'toggle' ? Number(input.checked) : fromSlider(control, Number(input.value)));
+    if (control.body >= 0) choosePiece(control.body);
     compute();
   });
   page.updates[i] = (held) => {
@@ -126,7 +129,7 @@ function compute() {
   if (!page.worker) return;
   clearTimeout(waiting);
   waiting = setTimeout(() => {
-    page.worker.postMessage({ kind: 'run', id: ++page.request, values: page.values });
+    page.worker.postMessage({ kind: 'run', id: ++page.request, values: page.values, piece: page.piece });
     byId('progress').hidden = false;
     byId('progress').value = 0;
     byId('source').textContent = page.words.computing;
@@ -149,14 +152,15 @@ function fromWorker(event) {
   page.changed = page.controls.some((control, i) => control.value !== page.values[i]);
   page.bodies = message.outcome.bodies;
   page.hash = message.outcome.hash;
-  complain(message.outcome.trouble);
+  complain(message.outcome.trouble || '');
   show(message.rows);
 }
 
-function complain(text) {
-  page.trouble = text;
-  byId('trouble').hidden = !text;
-  byId('trouble').textContent = text;
+// trouble: a text, or one in each language.
+function complain(trouble) {
+  page.trouble = trouble;
+  byId('trouble').hidden = !trouble;
+  byId('trouble').textContent = Array.isArray(trouble) ? inWords(trouble) : trouble;
 }
 
 function show(rows) {
@@ -192,7 +196,18 @@ function backToRecorded() {
 }
 
 function askForMap() {
-  if (page.worker) page.worker.postMessage({ kind: 'map', id: ++page.request, values: page.values });
+  if (page.worker) page.worker.postMessage({ kind: 'map', id: ++page.request, values: page.values, piece: page.piece });
+}
+
+// The piece of which the map is.
+function choosePiece(number) {
+  page.piece = number;
+  byId('piece').value = number;
+}
+
+function buildPieces() {
+  byId('pieces').hidden = !data.live || page.names.length < 2;
+  byId('piece').replaceChildren(...page.names.map((name, i) => new Option(name, i, false, i === page.piece)));
 }
 
 // ---- the picture
@@ -387,6 +402,10 @@ function listen() {
     page.dirty = true;
   });
   byId('back').addEventListener('click', backToRecorded);
+  byId('piece').addEventListener('change', () => {
+    choosePiece(Number(byId('piece').value));
+    if (byId('progress').hidden) askForMap(); else compute();
+  });
   byId('controls').addEventListener('submit', (event) => event.preventDefault());
   byId('language').addEventListener('click', () => {
     page.japanese = !page.japanese;
@@ -411,6 +430,7 @@ function listen() {
 function relabel() {
   page.engine.show(page.shown);
   sayVerdict();
+  complain(page.trouble);
   if (page.mapped) showMap(page.mapped);
   page.dirty = true;
 }
@@ -442,6 +462,7 @@ async function begin() {
   page.values = page.controls.map((control) => control.value);
   buildControls();
   show(bytesOf(data.rows));
+  buildPieces();
   view(3);
   listen();
   if (data.live) {
