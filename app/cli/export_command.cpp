@@ -39,9 +39,10 @@ bool is_scene(const std::string& source) {
   return !io::is_recording(source);
 }
 
-int write_page(const ExportOptions& options, const io::Scene& scene, const std::string& recording) {
+int write_page(const ExportOptions& options, const io::Scene& scene, const std::string& file) {
+  const io::Recording recording(file);
   const std::string page =
-      page_of(scene, io::Recording(recording), options.language, [] { return !interrupted(); });
+      page_of(scene, page_run(scene, recording), options.language, [] { return !interrupted(); });
   if (page.empty()) {
     log_message("interrupted; " + options.page + " is not written");
     return k_interrupted;

@@ -256,7 +256,8 @@ int report_command(const ReportOptions& options) {
     report.without_anchors = std::move(without.summary);
   }
   if (!page.empty()) {
-    const std::string html = page_of(scene, recording, options.language, [] { return !interrupted(); });
+    const std::string html =
+        page_of(scene, page_run(scene, recording), options.language, [] { return !interrupted(); });
     if (!html.empty()) write_whole_file({page, options.force}, host::FileKind::html, html);
     report.page = std::filesystem::path(page).filename().string();
   }

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
 #include "app/page/page_rows.h"
 #include "app/page/page_template.h"
 #include "app/page/page_words.h"
 #include "app/page/verdict.h"
+#include "app/picture/replay.h"
 #include "app/report/svg_chart.h"
 #include "app/support/base64.h"
 #include "app/support/errors.h"
@@ -33,7 +35,8 @@ struct PageRows {
   std::vector<io::FrameRow> kept;
   std::size_t stride = 1;
   std::vector<BodyEnd> ends;  ///< as far as rows tell
-  double most_tilted = 0;     ///< s
+  io::FrameRow most_tilted;   ///< with the greatest tilt over critical angle
+  RunExtent extent;
 };
 
 /// What rows tell of a body: the tilt has been beyond the critical angle since.
@@ -51,30 +54,33 @@ void observe(const io::FrameRow& row, PageRows& rows, double& greatest) {
     else if (!end.overturned)
       end.overturned = row.time;
     if (const double share = has_angle ? body.tilt / body.critical_angle : 0; share > greatest)
-      greatest = share, rows.most_tilted = row.time;
+      greatest = share, rows.most_tilted = row;
   }
 }
 
-std::optional<PageRows> rows_of(const io::Scene& scene, const Replay& replay,
+std::optional<PageRows> rows_of(const io::Scene& scene, const PageRun& run,
                                 const std::function<bool()>& proceed) {
   PageRows rows;
   const Model& model = scene.setup.model;
   for (int b = 0; b < model.furniture_total(); ++b)
     rows.ends.push_back({model.bodies[static_cast<std::size_t>(b)].name, {}, 0, {}});
-  const auto count = static_cast<std::size_t>(replay.frame_count());
-  rows.stride = page_stride(model, count);
+  rows.stride = page_stride(model, run.rows);
   double greatest = 0;
-  RunExtent same_model;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < run.rows; ++i) {
     if (proceed && !proceed()) return std::nullopt;
-    io::FrameRow row = replay.frame(static_cast<std::int64_t>(i));
-    if (i == 0) same_model.add(model, scene.setup.parameters, row);
+    io::FrameRow row = run.row(i);
     if (!is_finite(row)) continue;
+    rows.extent.add(model, scene.setup.parameters, row);
+    if (rows.kept.empty()) rows.most_tilted = row;
     observe(row, rows, greatest);
-    if (i % rows.stride == 0 || i + 1 == count) rows.kept.push_back(std::move(row));
+    if (i % rows.stride == 0 || i + 1 == run.rows) rows.kept.push_back(std::move(row));
   }
   if (rows.kept.empty()) throw io::InputError("holds no instant that can be shown");
   return rows;
+}
+
+Json summary_of(const PageRun& run) {
+  return run.summary.empty() ? Json::object() : Json::parse(run.summary);
 }
 
 /// From the summary where there is one: its times are those of steps.
@@ -105,22 +111,21 @@ Json json_of(const std::vector<BodyEnd>& ends) {
   return list;
 }
 
-/// <img> and caption of the beginning, the greatest tilt and the end. Empty where nothing can draw.
-std::string stills(const io::Scene& scene, const Replay& replay, double most_tilted) try {
-  const RunExtent extent = extent_of(replay, scene);
-  const Bridge bridge(scene, extent);
+/// Pictures with captions of the beginning, the greatest tilt and the end. Empty where nothing can draw.
+std::string stills(const io::Scene& scene, const PageRun& run, const PageRows& rows) try {
+  const Bridge bridge(scene, rows.extent);
   const std::unique_ptr<render::Context> context = render::make_off_screen_context(render::Renderer::any);
   render::Picture picture(context->get_proc(), k_still_width, k_still_height);
   std::string html;
-  for (const double time : {replay.first(), most_tilted, replay.last()}) {
-    const io::FrameRow row = replay.at(time);
-    const render::SceneFrame frame = bridge.frame(row, replay.parameters(scene, row));
+  for (const io::FrameRow* const row : {&rows.kept.front(), &rows.most_tilted, &rows.kept.back()}) {
+    const render::SceneFrame frame = bridge.frame(*row, run.parameters(*row));
     const render::Camera camera = render::fit_camera(render::NamedView::iso, frame, picture.aspect());
     const std::vector<std::uint8_t> png =
         render::encode_png(picture.draw(frame, camera, {.map = {}, .overlay = false}));
-    const std::string caption = escaped(fmt::format("{:.2f} s", time));
-    html += fmt::format("<img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><p>{0}</p>\n", caption,
-                        base64({reinterpret_cast<const char*>(png.data()), png.size()}));
+    const std::string caption = escaped(fmt::format("{:.2f} s", row->time));
+    html += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        caption, base64({reinterpret_cast<const char*>(png.data()), png.size()}));
   }
   return html;
 } catch (const std::runtime_error&) {
@@ -157,6 +162,11 @@ std::string filled(std::string_view text,
   return out;
 }
 
+/// Whole seconds.
+std::string estimate_of(const ReplayOnly& only) {
+  return fmt::format("{:.0f}", std::ceil(only.seconds));
+}
+
 Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<BodyEnd>& ends,
                const ReplayOnly& only, Language language) {
   Json files = Json::array();
@@ -170,18 +180,28 @@ Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<B
           {"bodies", json_of(ends)},
           {"live", only.word.empty()},
           {"reason", only.word},
-          {"estimate_s", fmt::format("{:.0f}", std::ceil(only.seconds))},
+          {"estimate_s", estimate_of(only)},
           {"language", language == Language::japanese ? "ja" : "en"},
           {"no_engine", say_in(language, phrase_named("no_engine"))}};
 }
 
 }  // namespace
 
-ReplayOnly why_replay_only(const io::Scene& scene, const io::Recording& recording,
-                           std::optional<double> wall) {
+PageRun page_run(const io::Scene& scene, const io::Recording& recording) {
+  const auto replay = std::make_shared<const Replay>(recording);
+  return {.rows = static_cast<std::size_t>(replay->frame_count()),
+          .row = [replay](std::size_t i) { return replay->frame(static_cast<std::int64_t>(i)); },
+          .parameters = [replay, &scene](const io::FrameRow& row) { return replay->parameters(scene, row); },
+          .summary = recording.summary_json(),
+          .edited = !recording.history().edits_on_way_to(recording.newest_branch()).empty()};
+}
+
+ReplayOnly why_replay_only(const io::Scene& scene, const PageRun& run) {
   if (is_static(scene.setup)) return {"replay_static"};
-  if (!recording.history().edits_on_way_to(recording.newest_branch()).empty()) return {"replay_edits"};
-  const double seconds = wall.value_or(0) * k_browser_factor;
+  if (run.edited) return {"replay_edits"};
+  const Json summary = summary_of(run);
+  if (!summary.contains("wall_s") || !summary["wall_s"].is_number()) return {};
+  const double seconds = summary["wall_s"].get<double>() * k_browser_factor;
   if (seconds > k_most_live) return {"replay_only", seconds};
   return {};
 }
@@ -197,26 +217,20 @@ void require_pages(const std::string& option) {
                    "pages need");
 }
 
-std::string page_of(const io::Scene& scene, const io::Recording& recording, Language language,
+std::string page_of(const io::Scene& scene, const PageRun& run, Language language,
                     const std::function<bool()>& proceed) {
-  const Replay replay(recording);
-  const std::optional<PageRows> rows = rows_of(scene, replay, proceed);
+  const std::optional<PageRows> rows = rows_of(scene, run, proceed);
   if (!rows) return "";
-  const Json summary =
-      recording.summary_json().empty() ? Json::object() : Json::parse(recording.summary_json());
-  std::optional<double> wall;
-  if (summary.contains("wall_s") && summary["wall_s"].is_number()) wall = summary["wall_s"].get<double>();
-  const std::vector<BodyEnd> ends = ends_of(summary, rows->ends);
+  const std::vector<BodyEnd> ends = ends_of(summary_of(run), rows->ends);
+  const ReplayOnly only = why_replay_only(scene, run);
   const std::string title = escaped(scene.title.empty() ? scene.name : scene.title);
-  return filled(page_template(),
-                {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
-                 {"@TITLE@", title},
-                 {"@STILLS@", stills(scene, replay, rows->most_tilted)},
-                 {"@VERDICT@", escaped(verdict_in_words(ends, language))},
-                 {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
-                 {"@VERSION@", TOPPLE_VERSION},
-                 {"@DATA@", script_json(page_data(scene, *rows, ends, why_replay_only(scene, recording, wall),
-                                                  language))}});
+  return filled(page_template(), {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
+                                  {"@TITLE@", title},
+                                  {"@STILLS@", stills(scene, run, *rows)},
+                                  {"@VERDICT@", escaped(verdict_in_words(ends, language))},
+                                  {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
+                                  {"@VERSION@", TOPPLE_VERSION},
+                                  {"@DATA@", script_json(page_data(scene, *rows, ends, only, language))}});
 }
 
 }  // namespace topple::app

@@ -1,13 +1,13 @@
 // A run as a live page: one HTML file that shows it, and computes it anew in the browser.
 #pragma once
 
+#include <cstddef>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
-#include "app/picture/replay.h"
 #include "app/support/language.h"
+#include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 
 namespace topple::app {
@@ -17,14 +17,24 @@ inline constexpr double k_most_live = 3;
 /// How many times slower a browser is taken to be than this program on one thread.
 inline constexpr double k_browser_factor = 3;
 
+/// A run as a page takes it.
+struct PageRun {
+  std::size_t rows = 0;
+  std::function<io::FrameRow(std::size_t)> row = {};               ///< throws io::InputError
+  std::function<Parameters(const io::FrameRow&)> parameters = {};  ///< with which a row came about
+  std::string summary = {};                                        ///< JSON; empty: there is none
+  bool edited = false;                                             ///< parameters were changed while it ran
+};
+
+/// The newest branch of a recording. Both must outlive it.
+PageRun page_run(const io::Scene& scene, const io::Recording& recording);
+
 /// Why a page cannot be live; empty word: it can. `seconds`: of a run in a browser.
 struct ReplayOnly {
   std::string_view word;  ///< "replay_only", "replay_edits", "replay_static": of page_words.h
   double seconds = 0;
 };
-/// wall: of the run on this machine, s; absent: not known.
-ReplayOnly why_replay_only(const io::Scene& scene, const io::Recording& recording,
-                           std::optional<double> wall);
+ReplayOnly why_replay_only(const io::Scene& scene, const PageRun& run);
 
 /// False when this program was built without emscripten, which no page can do without.
 bool can_make_pages();
@@ -34,7 +44,7 @@ void require_pages(const std::string& option);
 /// The page. Scene, records and rows (page_stride()) are within; texts of the scene are escaped. Without
 /// OpenGL it has no still pictures. Empty when `proceed` gave it up. Throws io::InputError when no row can be
 /// shown.
-std::string page_of(const io::Scene& scene, const io::Recording& recording, Language language,
+std::string page_of(const io::Scene& scene, const PageRun& run, Language language,
                     const std::function<bool()>& proceed);
 
 }  // namespace topple::app

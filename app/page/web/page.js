@@ -229,14 +229,15 @@ function drawPicture() {
       page.engine.parsed(page.engine.module._page_draw(at, canvas.width, canvas.height, dark(), page.fine ? 1 : 0)));
   } catch (error) {
     page.drawable = false;
-    canvas.hidden = true;
-    byId('stills').hidden = false;
-    byId('views').hidden = true;
-    byId('legend').hidden = true;
-    const words = document.createElement('p');
-    words.textContent = page.words.no_picture;
-    byId('stills').prepend(words);
+    showStills();
+    byId('nopicture').hidden = false;
   }
+}
+
+function showStills() {
+  byId('stills').hidden = false;
+  byId('frame').classList.add('still');
+  for (const id of ['picture', 'views', 'legend', 'hint']) byId(id).hidden = true;
 }
 
 function showNow(now) {
@@ -445,9 +446,9 @@ function startWorker() {
 }
 
 function giveUp() {
-  byId('picture').hidden = true;
-  byId('stills').hidden = false;
-  for (const id of ['transport', 'timeline', 'views', 'controls']) byId(id).hidden = true;
+  showStills();
+  for (const id of ['transport', 'timeline', 'source', 'controls', 'map', 'pieces']) byId(id).hidden = true;
+  document.querySelector('nav').hidden = true;
   byId('only').hidden = false;
   byId('only').textContent = data.no_engine;
 }

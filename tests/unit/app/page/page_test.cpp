@@ -248,6 +248,29 @@ TEST_F(ProgramTest, only_a_scene_for_a_page_can_be_changed) {
                   "--set: only a scene");
 }
 
+TEST_F(ExportPageTest, still_pictures_are_the_start_the_greatest_tilt_and_the_end) {
+  ASSERT_EQ(topple({"export", "paper-a", "--page", "page.html", "--quiet", "--set", "run.duration=2"}).code,
+            0);
+  const std::string page = bytes_of("page.html");
+  const nlohmann::ordered_json data = data_of(page);
+  ASSERT_EQ(data["stride"], 1);
+  const Model model = io::load_scene("paper-a").setup.model;
+  const std::vector<io::FrameRow> rows = unpack_rows(model, from_base64(data["rows"]));
+  double greatest = 0, at = 0;
+  for (const io::FrameRow& row : rows)
+    for (const io::BodyNumbers& body : row.body)
+      if (body.critical_angle > 0 && body.tilt / body.critical_angle > greatest)
+        greatest = body.tilt / body.critical_angle, at = row.time;
+  std::size_t from = 0;
+  for (const double time : {rows.front().time, at, rows.back().time}) {
+    const std::string still = fmt::format("<img alt=\"{:.2f} s\" src=\"data:image/png;base64,", time);
+    from = page.find(still, from);
+    ASSERT_NE(from, std::string::npos) << still;
+    from += still.size();
+    EXPECT_EQ(from_base64(page.substr(from, 12)).substr(1, 3), "PNG");
+  }
+}
+
 TEST_F(ExportPageTest, texts_of_a_scene_do_not_become_parts_of_the_page) {
   write_bytes("bad.toml",
               "topple = 1\ntitle = \"</script><script>alert(1)</script> @DATA@\"\nfloor = {}\n"
