@@ -224,13 +224,17 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
   const std::vector<BodyEnd> ends = ends_of(summary_of(run), rows->ends);
   const ReplayOnly only = why_replay_only(scene, run);
   const std::string title = escaped(scene.title.empty() ? scene.name : scene.title);
-  return filled(page_template(), {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
-                                  {"@TITLE@", title},
-                                  {"@STILLS@", stills(scene, run, *rows)},
-                                  {"@VERDICT@", escaped(verdict_in_words(ends, language))},
-                                  {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
-                                  {"@VERSION@", TOPPLE_VERSION},
-                                  {"@DATA@", script_json(page_data(scene, *rows, ends, only, language))}});
+  return filled(
+      page_template(),
+      {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
+       {"@TITLE@", title},
+       {"@STILLS@", stills(scene, run, *rows)},
+       {"@VERDICT@", escaped(verdict_in_words(ends, language))},
+       {"@ONLY@",
+        only.word.empty() ? "" : escaped(say_in(language, phrase_named(only.word), estimate_of(only)))},
+       {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
+       {"@VERSION@", TOPPLE_VERSION},
+       {"@DATA@", script_json(page_data(scene, *rows, ends, only, language))}});
 }
 
 }  // namespace topple::app

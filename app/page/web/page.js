@@ -31,10 +31,7 @@ function setWords() {
   const select = byId('colour');
   const names = page.engine.parsed(page.engine.module._page_colours());
   select.replaceChildren(...names.map((name, i) => new Option(name, i, false, i === page.colour)));
-  if (!data.live) {
-    byId('only').hidden = false;
-    byId('only').textContent = say(data.reason, data.estimate_s);
-  }
+  if (!data.live) byId('only').textContent = say(data.reason, data.estimate_s);
   byId('thinned').hidden = data.stride < 2;
   byId('thinned').textContent = say('thinned', data.stride);
 }
@@ -449,7 +446,6 @@ function giveUp() {
   showStills();
   for (const id of ['transport', 'timeline', 'source', 'controls', 'map', 'pieces']) byId(id).hidden = true;
   document.querySelector('nav').hidden = true;
-  byId('only').hidden = false;
   byId('only').textContent = data.no_engine;
 }
 

@@ -188,6 +188,19 @@ TEST(Verdict, says_who_falls_first_and_who_stays) {
   EXPECT_EQ(verdict_in_words({}, Language::english), "");
 }
 
+TEST(ReplayOnly, three_times_the_wall_time_of_the_run_may_be_three_seconds) {
+  const io::Scene scene = io::load_scene("paper-a");
+  const auto word = [&](const std::string& summary, bool edited = false) {
+    return std::string(why_replay_only(scene, {.summary = summary, .edited = edited}).word);
+  };
+  EXPECT_EQ(word("{\"wall_s\": 0.999}"), "");
+  EXPECT_EQ(word("{\"wall_s\": 1.001}"), "replay_only");
+  EXPECT_DOUBLE_EQ(why_replay_only(scene, {.summary = "{\"wall_s\": 1.2}"}).seconds, 3.6);
+  EXPECT_EQ(word(""), "");
+  EXPECT_EQ(word("{\"wall_s\": 0.1}", true), "replay_edits");
+  EXPECT_EQ(why_replay_only(io::load_scene("portal-pushover"), {}).word, "replay_static");
+}
+
 std::string from_base64(const std::string& text) {
   static const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
@@ -215,7 +228,67 @@ class ExportPageTest : public ProgramTest {
     const std::size_t at = page.find(begin) + begin.size();
     return json_of(page.substr(at, page.find("</script>", at) - at));
   }
+
+  /// A recording of a block's run, with this wall time in its summary.
+  static void record_block(const std::string& file, double wall) {
+    const io::Scene scene = io::parse_scene(
+        "topple = 1\nfloor = {}\n[run]\nduration = 0.1\nwant = [\"motion\"]\n[[block]]\n"
+        "size = [0.3, 0.6, 1.5]\nmass = 60\n",
+        "block.toml");
+    topple::Run run(scene.setup);
+    io::Observer observer;
+    io::Recorder recorder({file, true}, scene.name, scene.text, scene.setup.model);
+    recorder.write(observer.observe(run));
+    while (!run.over()) run.advance(), recorder.write(observer.observe(run));
+    recorder.write(observer.last(run));
+    recorder.finish("completed", nlohmann::ordered_json({{"wall_s", wall}}).dump());
+  }
 };
+
+TEST_F(ExportPageTest, a_run_that_takes_long_is_replayed_only_and_the_page_says_so) {
+  for (const auto& [wall, live] : {std::pair(0.9, true), std::pair(1.3, false)}) {
+    record_block("block.h5", wall);
+    ASSERT_EQ(topple({"export", "block.h5", "--page", "page.html", "--force"}).code, 0);
+    const std::string page = bytes_of("page.html");
+    EXPECT_EQ(data_of(page)["live"], live);
+    EXPECT_EQ(data_of(page)["reason"], live ? "" : "replay_only");
+    EXPECT_EQ(
+        page.find(
+            "This page replays only: a run takes about 4 s here, more than the 3 s that a page may take.") ==
+            std::string::npos,
+        live);
+  }
+  ASSERT_EQ(topple({"export", "block.h5", "--page", "page.html", "--lang", "ja", "--force"}).code, 0);
+  EXPECT_NE(bytes_of("page.html").find("このページは再生のみ。1回の計算に約4秒かかり"), std::string::npos);
+}
+
+TEST_F(ExportPageTest, ten_thousand_rows_are_thinned_evenly_and_the_last_is_kept) {
+  write_bytes("long.toml",
+              "topple = 1\nfloor = {}\nshake = [{ type = \"sine\", frequency = 1, amplitude = 3 }]\n"
+              "[run]\nduration = 10\noutput_rate = 1000\nwant = [\"motion\"]\n"
+              "[[block]]\nsize = [0.3, 0.6, 1.5]\nmass = 60\n");
+  ASSERT_EQ(topple({"run", "long.toml", "-o", "long.h5", "--quiet"}).code, 0);
+  ASSERT_EQ(topple({"export", "long.h5", "--page", "page.html"}).code, 0);
+  const nlohmann::ordered_json data = data_of(bytes_of("page.html"));
+  const io::Recording recording("long.h5");
+  const auto& all = recording.index();
+  ASSERT_GT(all.size(), 10000u);
+  const auto stride = data["stride"].get<std::size_t>();
+  const std::string bytes = from_base64(data["rows"]);
+  EXPECT_LE(bytes.size(), k_most_page_bytes);
+  const Model model = recorded_scene(recording).setup.model;
+  const auto fits = [&](std::size_t every) {
+    return ((all.size() - 1 + every - 1) / every + 1) * packed_size(model) <= k_most_page_bytes;
+  };
+  EXPECT_TRUE(fits(stride));
+  EXPECT_FALSE(fits(stride - 1)) << "rows are left out that would fit";
+  std::vector<double> expected;
+  for (std::size_t i = 0; i < all.size(); i += stride) expected.push_back(all[i].time);
+  if ((all.size() - 1) % stride != 0) expected.push_back(all.back().time);
+  std::vector<double> times;
+  for (const io::FrameRow& row : unpack_rows(model, bytes)) times.push_back(row.time);
+  EXPECT_EQ(times, expected);
+}
 
 TEST_F(ExportPageTest, a_scene_is_changed_as_by_run) {
   const std::vector<std::string> sets = {"--set", "run.duration=0.2", "--set", "cabinet.free.mass=99 kg"};
