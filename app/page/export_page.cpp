@@ -237,4 +237,10 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
        {"@DATA@", script_json(page_data(scene, *rows, ends, only, language))}});
 }
 
+std::string in_frame(const std::string& page, const std::string& title, int height) {
+  return fmt::format(
+      "<iframe title=\"{}\" style=\"width: 100%; height: {}px; border: 0\" srcdoc=\"{}\"></iframe>",
+      escaped(title), height, escaped(page));
+}
+
 }  // namespace topple::app

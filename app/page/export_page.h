@@ -47,4 +47,7 @@ void require_pages(const std::string& option);
 std::string page_of(const io::Scene& scene, const PageRun& run, Language language,
                     const std::function<bool()>& proceed);
 
+/// The page within another document: HTML of a frame over its whole width. height: px.
+std::string in_frame(const std::string& page, const std::string& title, int height);
+
 }  // namespace topple::app

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <mutex>
-
 #include "app/panels/appearance.h"
 #include "app/picture/bridge.h"
 #include "app/picture/picture_settings.h"
@@ -14,14 +12,18 @@
 
 namespace topple::python {
 
+std::unique_lock<std::mutex> turn_at_drawing() {
+  static std::mutex mutex;
+  return std::unique_lock(mutex);
+}
+
 std::string draw_png(const io::Scene& scene, const app::RunExtent& extent, const io::FrameRow& row,
                      const Parameters& parameters, PictureSize size) {
   const auto [width, height] = size;
   if (std::min(width, height) < app::k_least_picture || std::max(width, height) > app::k_most_picture)
     throw app::BadInput(fmt::format("size: {}x{} is not WIDTHxHEIGHT with {}..{} each", width, height,
                                     app::k_least_picture, app::k_most_picture));
-  static std::mutex mutex;
-  const std::scoped_lock lock(mutex);
+  const std::unique_lock turn = turn_at_drawing();
   const auto context = render::make_off_screen_context(render::Renderer::any);
   render::Picture picture(context->get_proc(), width, height, app::window_letters(&scene));
   const app::PictureSettings settings{.alone = true};

@@ -12,6 +12,7 @@
 #include "app/picture/bridge.h"
 #include "app/python/arrays.h"
 #include "app/python/names.h"
+#include "app/python/page.h"
 #include "app/python/picture.h"
 #include "app/python/signals.h"
 #include "app/support/errors.h"
@@ -52,11 +53,6 @@ py::list states_of(const Result& self) {
   return states;
 }
 
-/// What a row shows is of the parameters before what was changed at its own instant.
-Parameters parameters_of(const Result& self, const io::FrameRow& row) {
-  return parameters_at(self.scene->setup, self.history, row.branch, std::max<std::int64_t>(row.step - 1, 0));
-}
-
 py::bytes render(const Result& self, std::optional<double> at, PictureSize size) {
   if (self.rows->size() == 0) throw app::BadInput(self.scene->name + ": there is nothing to draw");
   const auto& times = self.rows->time();
@@ -69,9 +65,18 @@ py::bytes render(const Result& self, std::optional<double> at, PictureSize size)
   {
     const py::gil_scoped_release released;
     const io::FrameRow row = self.at(time);
-    png = draw_png(*self.scene, self.extent(), row, parameters_of(self, row), size);
+    png = draw_png(*self.scene, self.extent(), row, self.parameters(row), size);
   }
   return py::bytes(png);
+}
+
+py::object page_of(const Result& self) {
+  return page_in_frame(*self.scene,
+                       {.rows = self.rows->size(),
+                        .row = [&](std::size_t k) { return self.rows->row(k); },
+                        .parameters = [&](const io::FrameRow& row) { return self.parameters(row); },
+                        .summary = self.summary,
+                        .edited = !self.history.edits_on_way_to(self.history.branches.back().id).empty()});
 }
 
 }  // namespace
@@ -90,6 +95,10 @@ io::FrameRow Result::at(double time) const {
   const std::size_t next = std::min(after, times.size() - 1), here = std::max<std::size_t>(next, 1) - 1;
   if (times[here] == time || here == next) return rows->row(here);
   return app::blend(rows->row(here), rows->row(next), time);
+}
+
+Parameters Result::parameters(const io::FrameRow& row) const {
+  return parameters_before(scene->setup, history, row.branch, row.step);
 }
 
 std::shared_ptr<Result> run(const ScenePtr& scene, const std::filesystem::path& record) {
@@ -188,7 +197,12 @@ Arrays share the memory of the run, are read-only and stay valid when the Result
 
 at: s, of static runs the part of the way, default the last instant; size: width and height, px, 64..8192.
 Raises InputError for an instant outside the run.)")
-      .def("_repr_png_", [](const Result& self) { return render(self, std::nullopt, k_picture_size); });
+      .def("_repr_png_", [](const Result& self) { return render(self, std::nullopt, k_picture_size); })
+      .def("_repr_html_", page_of,
+           R"(The page that `topple export --page` writes, in a frame, for notebooks.
+
+None where it has more than 10 MiB, there is nothing to show, or the module was built without emscripten: notebooks
+show the picture then.)");
   add_names(bound, [](const Result& self) -> const Model& { return self.scene->setup.model; });
   module.def("open", open, py::arg("path"),
              R"(A recording as a Result: all its rows, on the way to the newest branch.

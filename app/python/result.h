@@ -38,6 +38,8 @@ struct Result {
   const app::RunExtent& extent() const;
   /// Between two rows, or the first or last one.
   io::FrameRow at(double time) const;
+  /// With which a row came about: those before what was changed at its own instant.
+  Parameters parameters(const io::FrameRow& row) const;
 
  private:
   mutable std::once_flag looked_;

@@ -46,6 +46,14 @@ def test_the_teachers_notebook_answers_its_questions(source):
     assert len(of(notebook, "image/png")) == 4
 
 
+def test_a_result_shows_its_page_and_its_picture():
+    cell = nbformat.v4.new_code_cell('import topple\ntopple.Scene("free-rocking").run()')
+    notebook = executed(nbformat.v4.new_notebook(cells=[cell]))
+    assert len(of(notebook, "image/png")) == 1
+    pages = of(notebook, "text/html")
+    assert len(pages) <= 1 and all(page.startswith("<iframe ") for page in pages)  # none without emscripten
+
+
 def test_a_wrong_unit_is_told_in_the_notebook():
     cell = nbformat.v4.new_code_cell('import topple\ntopple.Scene("cabinet")["shake.1.amplitude"] = "150 mm"')
     with pytest.raises(CellExecutionError, match='"150 mm" is a length, expected an acceleration'):

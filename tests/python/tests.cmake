@@ -4,7 +4,7 @@ if(TOPPLE_PYTHON)
   if(no_pytest)
     message(STATUS "No tests of the Python module: they need the package python3-pytest")
   else()
-    set(subjects guide picture result scene simulation sweep types)
+    set(subjects guide page picture result scene simulation sweep types)
     execute_process(COMMAND ${Python3_EXECUTABLE} -c "import nbconvert, ipykernel, matplotlib"
       RESULT_VARIABLE no_notebooks OUTPUT_QUIET ERROR_QUIET)
     if(no_notebooks)

@@ -21,7 +21,7 @@ def test_the_stub_has_the_names_of_the_module():
     classes = {name: kind for name, kind in vars(topple).items() if isinstance(kind, type)}
     assert set(stub) - {""} == set(classes)
     assert stub[""] == {name for name, thing in vars(topple).items() if callable(thing) and name not in classes}
-    own = {"__getitem__", "__setitem__", "_repr_png_"}
+    own = {"__getitem__", "__setitem__", "_repr_png_", "_repr_html_"}
     for name, kind in classes.items():
         if not issubclass(kind, Exception):
             assert stub[name] - {"__init__"} == {entry for entry in vars(kind) if entry[0] != "_" or entry in own}, name

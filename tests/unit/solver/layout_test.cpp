@@ -93,7 +93,7 @@ const std::map<std::string, Rooms> k_parts = {
       {"app/cli",
        {"window", "validate", "panels", "report", "live", "study", "batch", "gltf", "page", "picture",
         "support"}},
-      {"app/python", {"panels", "batch", "picture", "support"}},
+      {"app/python", {"page", "panels", "batch", "picture", "support"}},
       {"app", {"cli"}}}},  // main.cpp
 };
 
