@@ -78,6 +78,16 @@ const act = `
       }
     }
     found.no_map = text('nomap');
+    const follower = page.controls.findIndex((control) => control.follows);
+    if (follower >= 0) {
+      const followed = page.controls.findIndex((control) => control.key === page.controls[follower].follows);
+      const shown = (i) => document.querySelector('output[for="control-' + i + '"]').textContent.trim();
+      const before = shown(followed);
+      move(document.getElementById('control-' + followed), 0.1);
+      found.follows = shown(followed) !== before && shown(follower) === shown(followed);
+      await until(() => page.changed, 'the run of another friction');
+      document.getElementById('back').click();
+    }
   }
   document.getElementById('language').click();
   await frame();
@@ -118,6 +128,7 @@ report(found, folder, browser, {
   'the way back says something else': live && found.back !== found.verdict,
   'the map does not follow the piece that is chosen': live && found.pieces > 1 && found.map_follows !== true,
   'a slider of a piece does not choose it': live && found.slider_chooses === false,
+  'a slider does not follow the one that it follows': found.follows === false,
   'why there is no map is not said in both languages':
     live && Boolean(found.no_map) && asian.test(found.no_map) === asian.test(found.other_no_map),
 });
