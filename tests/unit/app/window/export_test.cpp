@@ -19,6 +19,8 @@ class ExportDialogTest : public ShellTest {
     press('E', true);
     ASSERT_TRUE(dialog().is_open());
     dialog().what = what;
+    dialog().size[0] = 320;
+    dialog().size[1] = 180;
   }
   std::string export_failure() {
     if (!dialog().refused().empty()) return dialog().refused();

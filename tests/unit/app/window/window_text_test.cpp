@@ -404,9 +404,7 @@ TEST_P(WindowText, is_read_in_tooltips_of_the_chooser) {
 constexpr Language k_ja = Language::japanese, k_en = Language::english;
 INSTANTIATE_TEST_SUITE_P(Looks, WindowText,
                          ::testing::Values(Look{1280, 720, {1, false, k_en}, "light"},
-                                           Look{1280, 720, {1, true, k_en}, "dark"},
                                            Look{1280, 720, {2, false, k_en}, "large"},
-                                           Look{1280, 720, {0.75, false, k_en}, "small"},
                                            Look{1920, 1080, {3, false, k_en}, "huge"},
                                            Look{1280, 720, {3, true, k_en}, "too-large"},
                                            Look{1280, 720, {1, false, k_ja}, "japanese"},
