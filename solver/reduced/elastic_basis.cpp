@@ -16,6 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double k_rounding = 1e-9;  // relative: more than what one body in two places differs by
 constexpr double k_shift =
     1e-6;  // of the lowest w^2: makes K regular, and changes no residual more than that
 
@@ -90,12 +91,46 @@ BlockLu shifted_stiffness(const Model& model, const Body& body, double shift) {
   return lu;
 }
 
+template <class A, class B>
+bool near(const A& a, const B& b, double size) {
+  return (a - b).cwiseAbs().maxCoeff() <= k_rounding * size;
+}
+
+// Whether elements e and f of bodies a and b have the same place in them.
+bool same_element(const Element& e, const Body& a, const Element& f, const Body& b) {
+  return e.node[0] - a.first_node == f.node[0] - b.first_node &&
+         e.node[1] - a.first_node == f.node[1] - b.first_node && e.s == f.s && near(e.triad, f.triad, 1) &&
+         e.normal_stiffness == f.normal_stiffness && e.bending_stiffness == f.bending_stiffness &&
+         e.capacity == f.capacity && e.hinge_place[0] == f.hinge_place[0] &&
+         e.hinge_place[1] == f.hinge_place[1];
+}
+
+// Whether b is a in another place.
+bool same_body(const Model& model, const Body& a, const Body& b) {
+  if (a.node_count != b.node_count || a.element_count != b.element_count) return false;
+  for (int i = 0; i < a.node_count; ++i) {
+    const int g = a.first_node + i, h = b.first_node + i;
+    const Vec3 at = model.node_position[g] - model.node_position[a.first_node];
+    if (!near(at, model.node_position[h] - model.node_position[b.first_node], a.reach) ||
+        std::abs(model.node_mass[g] - model.node_mass[h]) > k_rounding * a.mass ||
+        !near(model.node_inertia[g], model.node_inertia[h], a.inertia.norm()))
+      return false;
+  }
+  for (int e = 0; e < a.element_count; ++e)
+    if (!same_element(model.elements[a.first_element + e], a, model.elements[b.first_element + e], b))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index) {
   const Body& body = model.bodies[index];
   for (const Support& support : model.supports)
     if (model.node_body[support.node] == index) return nullptr;
+  for (int other = index; other-- > 0;)
+    if (model.bodies[other].elastic && same_body(model, model.bodies[other], body))
+      return model.bodies[other].elastic;
   constexpr int k_rigid = 6;
   const std::vector<Mode> modes = natural_modes(model, index, k_rigid + k_modes);
   const auto rigid = std::count_if(modes.begin(), modes.end(), [](const Mode& mode) { return mode.rigid; });

@@ -22,7 +22,8 @@ struct ElasticBasis {
   Eigen::VectorXd mode_rotation;     ///< modes: greatest rotation of a node per amplitude, rad
 };
 
-/// None when the body has supports, or nodes without mass or inertia.
+/// None when the body has supports, or nodes without mass or inertia. It is that of an earlier body which is
+/// the same, but for rounding, in another place.
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int body);
 
 /// Displacement of an anchor's end in a mode of its body, reference axes, 1/sqrt(kg).

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int k_most_errors = 200;
 constexpr const char* k_there_is_no = "there is no ";
+constexpr const char* k_too_large = "brings the scene to ";  // all that follows would do so as well
 constexpr const char* k_overlap = " overlap at the start";
 
 bool same(const Place& a, const Place& b) {
@@ -96,6 +97,7 @@ class Collector {
     if (!follows(error.message, error_path))
       found_.push_back(
           {error.place, error_line(source_.origin, error.place, error_path, without_known(error.message))});
+    if (error.message.starts_with(k_too_large)) return false;
     if (!there || error.path.empty() || as_written.size() != trail.size()) return false;
     while (!is_entry(trail.back()) && trail.back().first->kind != Node::Kind::table) trail.pop_back();
     // one without a name would be another

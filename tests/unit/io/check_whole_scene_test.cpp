@@ -21,6 +21,16 @@ TEST(CheckWholeScene, an_overlap_that_follows_from_a_misspelt_place_is_not_told)
   EXPECT_NE(found.errors[0].find("furniture.b.besides: "), std::string::npos) << found.errors[0];
 }
 
+TEST(CheckWholeScene, ten_thousand_pieces_are_refused_in_one_line) {
+  std::string text = "topple = 1\n[floor]\n";
+  for (int k = 0; k < 10000; ++k)
+    text += "[[furniture]]\nkind = \"bookshelf\"\nat = [" + std::to_string(2 * (k % 100)) + ", " +
+            std::to_string(2 * (k / 100)) + "]\n";
+  const CheckedScene found = checked(text);
+  ASSERT_EQ(found.errors.size(), 1u);
+  EXPECT_NE(found.errors[0].find("elements, more than 100000"), std::string::npos) << found.errors[0];
+}
+
 TEST(CheckWholeScene, eight_errors_of_eight_kinds_are_told_in_the_order_of_the_file) {
   const std::string text =
       "topple = 1\n"

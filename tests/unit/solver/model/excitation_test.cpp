@@ -9,7 +9,7 @@
 namespace topple::test {
 namespace {
 
-Shake sine(double amplitude, double frequency) {
+Shake shake_of(double amplitude, double frequency) {
   Shake s;
   s.amplitude = amplitude;
   s.frequency = frequency;
@@ -26,7 +26,7 @@ double derivative(const Shake& s, double t) {
 }
 
 TEST(Excitation, sine_is_a_sin_of_2_pi_f_since_its_start) {
-  Shake s = sine(3, 0.7);
+  Shake s = shake_of(3, 0.7);
   s.start = 1.3;
   EXPECT_EQ(along(s, 1.2999), 0);
   EXPECT_EQ(along(s, 1.3), 0);
@@ -37,7 +37,7 @@ TEST(Excitation, sine_is_a_sin_of_2_pi_f_since_its_start) {
 }
 
 TEST(Excitation, cycles_end_the_sine_without_a_step) {
-  Shake s = sine(3, 2);
+  Shake s = shake_of(3, 2);
   s.cycles = 5;
   EXPECT_EQ(along(s, 2.5), 0);
   EXPECT_EQ(along(s, 7), 0);
@@ -46,7 +46,7 @@ TEST(Excitation, cycles_end_the_sine_without_a_step) {
 }
 
 TEST(Excitation, taper_rises_and_falls_smoothly) {
-  Shake s = sine(3, 2);
+  Shake s = shake_of(3, 2);
   s.cycles = 10;
   s.taper = 2;  // cycles: 1 s
   // full in the middle
@@ -90,7 +90,7 @@ TEST(Excitation, pulses_have_the_integrals_of_their_shapes) {
 }
 
 TEST(Excitation, shakes_add_up_along_their_directions) {
-  Shake a = sine(1, 1), b = sine(2, 3);
+  Shake a = shake_of(1, 1), b = shake_of(2, 3);
   b.direction = Vec3(0, 0.6, 0.8);
   const Vec3 sum = floor_acceleration({a, b}, 0.1);
   const Vec3 exact = std::sin(0.2 * k_pi) * Vec3::UnitX() + 2 * std::sin(0.6 * k_pi) * b.direction;
@@ -99,12 +99,12 @@ TEST(Excitation, shakes_add_up_along_their_directions) {
 }
 
 TEST(Excitation, the_greatest_acceleration_is_a_bound_that_one_shake_reaches) {
-  std::vector<Shake> shakes{sine(3, 2)};
+  std::vector<Shake> shakes{shake_of(3, 2)};
   shakes[0].direction = Vec3(0.6, 0.8, 0);
   EXPECT_EQ(greatest_acceleration(shakes), 3);
   EXPECT_NEAR(floor_acceleration(shakes, 0.125).norm(), 3, 1e-12);
   for (const PulseTraits& shape : pulse_shapes()) {
-    Shake pulse = sine(-2, 1);
+    Shake pulse = shake_of(-2, 1);
     pulse.kind = Shake::Kind::pulse;
     pulse.shape = shape.kind;
     pulse.duration = 0.5;
@@ -126,7 +126,7 @@ TEST(Excitation, jump_makes_the_floors_displacement_a_pure_sine) {
   for (const auto& [gal, f, speed, travel] :
        {std::tuple{190., 0.5, 0.605, 0.193}, std::tuple{700., 2., 0.557, 0.0443}}) {
     SCOPED_TRACE(f);
-    Shake s = sine(gal * k_gal, f);
+    Shake s = shake_of(gal * k_gal, f);
     s.initial_velocity = Shake::Start::jump;
     double v = floor_velocity_jump({s}, -1e-9, 1e-9).x(), x = 0, greatest = 0;
     EXPECT_NEAR(v, -speed, 5e-4);
@@ -150,7 +150,7 @@ TEST(Excitation, a_floating_body_stays_where_it_is_while_the_floor_jumps_into_a_
   for (double start : {0., 0.3, 0.1 * 3, 0.12345}) {
     SCOPED_TRACE(start);
     Parameters p = weightless();
-    Shake s = sine(1.9, 0.5);
+    Shake s = shake_of(1.9, 0.5);
     s.initial_velocity = Shake::Start::jump;
     s.direction = Vec3(0.6, 0.8, 0);
     s.start = start;
@@ -172,7 +172,7 @@ TEST(Excitation, a_floor_jumps_once_however_the_time_step_is_edited) {
   for (const double first : {1e-4, 1e-3}) {
     SCOPED_TRACE(first);
     Parameters p = weightless();
-    Shake s = sine(1.9, 0.5);
+    Shake s = shake_of(1.9, 0.5);
     s.initial_velocity = Shake::Start::jump;
     s.start = 0.01;
     p.shakes.push_back(s);
@@ -221,7 +221,7 @@ TEST(Excitation, floor_filter_forgets_a_constant_and_is_linear) {
 }
 
 Shake sweep(double first, double last, double duration) {
-  Shake s = sine(3, first);
+  Shake s = shake_of(3, first);
   s.kind = Shake::Kind::sweep;
   s.last_frequency = last;
   s.duration = duration;
