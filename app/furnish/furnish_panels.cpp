@@ -42,9 +42,7 @@ void field_label(const Phrase& words) {
 /// Takes a value away; true when it was pressed.
 bool small_x(const char* id, const Phrase& about) {
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 1.3f * ImGui::GetFrameHeight());
-  ImGui::PushID(id);
-  const bool pressed = ImGui::Button("x", {1.3f * ImGui::GetFrameHeight(), 0});
-  ImGui::PopID();
+  const bool pressed = ImGui::Button((std::string("x##") + id).c_str(), {1.3f * ImGui::GetFrameHeight(), 0});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(about).c_str());
   return pressed;
 }
@@ -216,7 +214,12 @@ void FurnishView::draw_walls() {
     ImGui::TextUnformatted(plane.name.c_str());
     if (small_x(plane.name.c_str(), fw::k_remove_about)) removed = plane.name;
   }
-  if (!removed.empty()) change([removed](const io::Scene& scene) { return without_wall(scene, removed); });
+  if (!removed.empty()) {
+    const auto held = [&] { return room_.scene().setup.model.anchors.size(); };
+    const std::size_t before = held();
+    if (change([removed](const io::Scene& scene) { return without_wall(scene, removed); }) && held() < before)
+      show_message(say(fw::k_fixings_went, removed));
+  }
   if (room_button(fw::k_add_wall, fw::k_add_wall, true, tool_.kind == Tool::Kind::wall)) arm_wall();
   ImGui::NewLine();
   const io::Node root = io::parse_toml(room_.text(), origin_);

@@ -102,17 +102,18 @@ render::Surface FurnishView::surface() const {
           .height = pixels(io.DisplaySize.y, io.DisplayFramebufferScale.y)};
 }
 
-void FurnishView::build(const render::OverlayFonts& fonts, float scale, const std::function<void()>& over) {
+void FurnishView::build(const render::OverlayFonts& fonts, float scale, const std::function<void()>& over,
+                        bool covered) {
   scale_ = scale;
   asked_ = ShellRequest::none;
   lay_out(fonts);
   ImGuiIO& io = ImGui::GetIO();
-  const bool keys = over == nullptr && panels_have_keys_;
+  const bool keys = !covered && panels_have_keys_;
   if (io.BackendPlatformName != nullptr)
     io.ConfigFlags = keys ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
                           : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
   if (room_changed_) take_room();
-  if (!over) handle_mouse();
+  if (!covered) handle_mouse();
   draw_over_scene(fonts);
   draw_side(fonts);
   draw_bar();

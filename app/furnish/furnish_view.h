@@ -32,13 +32,15 @@ class FurnishView {
   /// Does what the key is for. False: it is for nothing here.
   bool press(const render::KeyPress& press);
   /// Builds one Dear ImGui frame as Viewer does. `scale`: of letters and panels, 1 for 720 lines.
-  void build(const render::OverlayFonts& fonts, float scale, const std::function<void()>& over = {});
+  void build(const render::OverlayFonts& fonts, float scale, const std::function<void()>& over = {},
+             bool covered = false);
   render::Surface surface() const;
 
   /// Something else was drawn in its place.
   void redraw() { camera_changed_ = true; }
   /// In the status line until the next click or key.
   void show_message(const std::string& words) { message_ = words; }
+  const std::string& message() const { return message_; }
 
   /// What the last frame's buttons asked for.
   ShellRequest asked() const { return asked_; }

@@ -101,6 +101,9 @@ inline constexpr Phrase k_video_about{"The view as it is seen now, over a range 
 inline constexpr Phrase k_tables_about{
     "Bodies, nodes, elements, floor and energy over time, in a new folder.",
     "物体・節点・要素・床・エネルギーの時刻歴を新しいフォルダに書きます。"};
+inline constexpr Phrase k_export_without_before{
+    "Without the pale run of the room as it was before: that is another recording.",
+    "淡色で示した変更前の部屋の計算は別の記録なので含まれません。"};
 inline constexpr Phrase k_export_recorded{"Only what is recorded can be exported, and this run is not.",
                                           "書き出せるのは記録だけです。この計算は記録されていません。"};
 inline constexpr Phrase k_export_too_early{"There is no instant yet that could be exported.",

@@ -65,15 +65,19 @@ const std::vector<std::string>& WaysLines::of(const Player& player, const io::Fr
   time_ = row.time;
   follow_hits(player);
   lines_ = {say(k_ways, fmt::format("{:g}", room.person))};
+  harms_.clear();
   const RoomPlan plan = room_plan(room, setup.model, nodes_of(setup.model, row));
   const std::vector<Way> found = ways(room, plan);
   for (std::size_t p = 0; p < found.size(); ++p) {
     lines_.push_back(line_of(setup, plan, p, found[p]));
+    if (!found[p].open && found[p].door >= 0) harms_.push_back(lines_.back());
     for (const PlaceOutcome::Hit& hit : hits_[p].hits)
-      if (hit.time <= row.time)
+      if (hit.time <= row.time) {
         lines_.push_back(say(k_way_hit, room.places[p].name,
                              setup.model.bodies[static_cast<std::size_t>(hit.body)].name,
                              fmt::format("{:.2f}", hit.time)));
+        harms_.push_back(lines_.back());
+      }
   }
   return lines_;
 }

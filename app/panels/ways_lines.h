@@ -14,11 +14,16 @@ class WaysLines {
  public:
   /// None: the scene has no places.
   const std::vector<std::string>& of(const Player& player, const io::FrameRow& row);
+  /// Those of them that tell of harm: who is hit, who has no way out.
+  const std::vector<std::string>& harms(const Player& player, const io::FrameRow& row) {
+    of(player, row);
+    return harms_;
+  }
 
  private:
   void follow_hits(const Player& player);
 
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_, harms_;
   std::int32_t branch_ = -1;
   double time_ = -1;  // s, of the lines
   std::vector<PlaceOutcome> hits_;

@@ -12,6 +12,7 @@ inline constexpr Phrase k_way_blocked{"{0}: no way to {1}, {2} m left, blocked b
                                       "{0}：{1}まで通れない（残り {2} m、塞ぐ家具：{3}）"};
 inline constexpr Phrase k_way_narrow{"{0}: {1} is narrower than a person", "{0}：{1}は人の幅より狭い"};
 inline constexpr Phrase k_way_no_door{"{0}: there is no door", "{0}：扉がない"};
+inline constexpr Phrase k_more_harms{"and {0} more (Inspect)", "ほか {0}件（「調べる」に表示）"};
 inline constexpr Phrase k_way_hit{"{0}: hit by {1} at {2} s", "{0}：{2}秒に{1}が当たる"};
 
 }  // namespace topple::app::window_words

@@ -102,6 +102,8 @@ inline constexpr Phrase k_fixings{"Fixings", "固定具"};
 inline constexpr Phrase k_fixings_about{"Choose one, then click a piece and what it is held to.",
                                         "種類を選び、家具と取り付け先を順にクリックします。"};
 inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
+inline constexpr Phrase k_fixings_went{"What was fixed to {0} is not fixed any more; Ctrl+Z brings it back.",
+                                       "{0}に固定していた家具の固定も外れました。Ctrl+Z で元に戻ります。"};
 inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};
 
 // the picture of a run

@@ -58,7 +58,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
     words.push_back("--trails");
     words.push_back(s.trails == Trails::run ? "run" : "second");
   }
-  if (const auto ghost = player.ghost_branch(); ghost && viewer.ghost_shown()) {
+  if (const auto ghost = player.ghost_branch(); ghost && viewer.ghost_shown() && !viewer.shows_earlier()) {
     words.push_back("--ghost");
     words.push_back(std::to_string(*ghost));
   }
@@ -93,6 +93,7 @@ void ExportDialog::open(const Player& player) {
   open_ = true;
   from = player.way().empty() ? 0 : player.way().front()->time;
   to = player.way().empty() ? 0 : player.way().back()->time;
+  last_ = to;
   suggest_path(player);
 }
 
@@ -150,7 +151,7 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
                         const Box& window, const render::OverlayFonts& fonts) {
   begin_panel_over("export", window, 660, 0.46f, say(ww::k_export_title), fonts);
-  draw_choices(player);
+  draw_choices(player, viewer);
   if (!refused_.empty()) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(say(ww::k_not_written, refused_).c_str());
@@ -162,7 +163,7 @@ void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::s
   end_panel_over();
 }
 
-void ExportDialog::draw_choices(const Player& player) {
+void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
   const std::pair<const Phrase*, const Phrase*> kinds[] = {{&ww::k_picture, &ww::k_picture_about},
                                                            {&ww::k_video, &ww::k_video_about},
                                                            {&ww::k_tables, &ww::k_tables_about}};
@@ -174,6 +175,7 @@ void ExportDialog::draw_choices(const Player& player) {
     }
   }
   quiet_text(say(*kinds[static_cast<int>(what)].second));
+  if (what != What::tables && viewer.shows_earlier()) quiet_text(say(ww::k_export_without_before));
   // what follows a run is drawn at its newest step, of which rows may not tell yet
   if (const double last = player.way().empty() ? player.time() : player.way().back()->time;
       what == What::picture && last < player.time())
@@ -193,7 +195,10 @@ void ExportDialog::draw_choices(const Player& player) {
   }
   if (what != What::video) return;
   for (int& side : size) side += side % 2;  // as H.264 has it
-  const double first = player.way().empty() ? 0 : player.way().front()->time, last = player.end();
+  const double first = player.way().empty() ? 0 : player.way().front()->time;
+  // what was asked for to the end of a run that goes on follows it
+  const double last = player.way().empty() ? 0 : player.way().back()->time;
+  if (to >= std::exchange(last_, last)) to = last;
   const char* const unit = is_static(player.scene().setup) ? "" : "s";
   label(ww::k_from);
   ImGui::SetNextItemWidth(number);

@@ -34,12 +34,13 @@ class ExportDialog {
 
  private:
   void suggest_path(const Player& player);
-  void draw_choices(const Player& player);
+  void draw_choices(const Player& player, const Viewer& viewer);
   void draw_path();
 
   Exports& exports_;
   FileDialog& files_;
   bool open_ = false;
+  double last_ = 0;  ///< s, to which there was something to export
   std::string refused_;
 };
 

@@ -277,7 +277,7 @@ void Shell::build() {
     return;
   }
   if (covered() || !exports_.empty())
-    session_->viewer().build([this] { build_over(); });
+    session_->viewer().build([this] { build_over(); }, covered());
   else
     session_->viewer().build();
   if (covered()) return;

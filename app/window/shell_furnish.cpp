@@ -114,7 +114,8 @@ void Shell::press_in_room(const render::KeyPress& press) {
 
 void Shell::build_room() {
   if (covered() || !exports_.empty())
-    room_->build(fonts(), interface_scale(), [this] { build_over(); });
+    room_->build(
+        fonts(), interface_scale(), [this] { build_over(); }, covered());
   else
     room_->build(fonts(), interface_scale());
   if (!covered()) ask(room_->asked());

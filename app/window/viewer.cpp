@@ -195,7 +195,7 @@ void Viewer::report_frame_time(double ms) {
   frame_ms_ = frame_ms_ == 0 ? ms : 0.9 * frame_ms_ + 0.1 * ms;
 }
 
-void Viewer::build(const std::function<void()>& over) {
+void Viewer::build(const std::function<void()>& over, bool covered) {
   const Box before = scene_;
   write_status();
   lay_out();
@@ -203,8 +203,8 @@ void Viewer::build(const std::function<void()>& over) {
     camera_changed_ = true;
     fitted_ = fitted_ && moved_;
   }
-  if (!over) handle_characters();
-  set_keyboard_navigation(!over);
+  if (!covered) handle_characters();
+  set_keyboard_navigation(!covered);
   if (std::exchange(to_next_panel_, false)) focus_next_panel();
   for (int button = 0; button < 3; ++button)
     if (ImGui::IsMouseClicked(button)) {
@@ -256,10 +256,10 @@ void Viewer::draw_scene() {
     else if (failed_element_ >= 0)
       frame_.highlighted_member =
           player_.scene().setup.model.elements[static_cast<std::size_t>(failed_element_)].member;
-    if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
-      bridge_.add_ghost(*ghost, settings_, frame_);
-    else if (ghost_shown_ && earlier_ && player_.ghost_way().empty())
+    if (shows_earlier())
       earlier_->add(row_->time, settings_, frame_);
+    else if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
+      bridge_.add_ghost(*ghost, settings_, frame_);
   }
   if (follows_ && scene_changed_) move_with_followed();
   if (keeps_in_picture_ && scene_changed_ && fitted_) keep_in_picture();

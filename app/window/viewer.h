@@ -73,8 +73,9 @@ class Viewer {
   /// Does what the key is for.
   void press(const render::KeyPress& press);
   /// Builds one Dear ImGui frame, from NewFrame (which the caller has called) to Render, and draws the scene
-  /// when it changed. `over` builds what lies over it all and takes the keyboard.
-  void build(const std::function<void()>& over = {});
+  /// when it changed. `over` builds what lies over it all; `covered`: that takes the
+  /// keyboard.
+  void build(const std::function<void()>& over = {}, bool covered = false);
   /// What is done with keyboard and mouse: the lines of F1's table. key 0: a line only; nothing shown:
   /// another key of the line above.
   struct KeyAction {
@@ -113,6 +114,8 @@ class Viewer {
     scene_changed_ = true;
   }
   bool keeps_in_picture() const { return keeps_in_picture_; }
+  /// The run of the room before it was changed is drawn pale, rather than a branch that was left.
+  bool shows_earlier() const { return earlier_ && ghost_shown_; }
   bool ghost_shown() const { return ghost_shown_; }
   void show_ghost(bool on) {
     ghost_shown_ = on;

@@ -8,6 +8,7 @@
 
 #include "app/chart/theme.h"
 #include "app/panels/shell_words.h"
+#include "app/panels/ways_words.h"
 #include "app/picture/furnish_words.h"
 #include "app/picture/image_files.h"
 #include "app/picture/words.h"
@@ -28,6 +29,7 @@ constexpr int k_most_status_lines = 3;
 constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
 constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
+constexpr std::size_t k_most_harms = 4;  // lines
 constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
 
 }  // namespace
@@ -59,13 +61,16 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const Model& model = player_.scene().setup.model;
   for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
     add(fonts_.small, words);
+  const std::vector<std::string>& harms = inspection_.ways.harms(player_, row);
+  for (std::size_t k = 0; k < std::min(harms.size(), k_most_harms); ++k) add(fonts_.small, harms[k]);
+  if (harms.size() > k_most_harms) add(fonts_.small, say(k_more_harms, harms.size() - k_most_harms));
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && traits(settings_.bodies).beams)
     add(fonts_.small, say(k_all_rigid));
-  if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
-    add(fonts_.small, say(k_ghost_is, *ghost));
-  else if (earlier_ && ghost_shown_)
+  if (shows_earlier())
     add(fonts_.small, say(furnish_words::k_ghost_before));
+  else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
+    add(fonts_.small, say(k_ghost_is, *ghost));
   float x = scene_.left + margin, y = scene_.top + margin;
   list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;

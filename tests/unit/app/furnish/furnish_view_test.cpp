@@ -207,5 +207,28 @@ TEST_F(FurnishTest, the_last_piece_and_a_bad_file_are_refused_in_the_words_of_th
   EXPECT_NE(room().refused().find("bad-shelf.toml:5:8"), std::string::npos) << room().refused();
 }
 
+TEST_F(FurnishTest, an_export_beside_it_takes_no_clicks) {
+  shell_->exports().add({"render", "nonsense"}, (scratch_ / "x.png").string(), ExportJob::Makes::file);
+  ASSERT_TRUE(until([&] { return !shell_->exports().busy(); }));
+  ASSERT_FALSE(shell_->exports().empty());  // it stands there with what became of it
+  place("chest", {0.5, 0});
+  EXPECT_EQ(view().selected(), "chest");
+}
+
+TEST_F(FurnishTest, a_wall_that_goes_with_its_fixings_says_so) {
+  ASSERT_TRUE(view().change([](const io::Scene& scene) {
+    return scene.text + "\n[[fixing]]\nkind = \"L-bracket\"\nbody = \"bookshelf\"\nto = \"back\"\n";
+  })) << room().refused();
+  frames(2);
+  const std::size_t held = room().scene().setup.model.anchors.size();
+  ASSERT_GT(held, 0u);
+  click("Walls, fixings", "side");
+  frames(2);
+  click("x##back", "side");
+  frames(2);
+  EXPECT_LT(room().scene().setup.model.anchors.size(), held);
+  EXPECT_TRUE(view().message().starts_with("What was fixed to back")) << view().message();
+}
+
 }  // namespace
 }  // namespace topple::app
