@@ -19,10 +19,12 @@ class FileDialog {
   void ask(FileQuestion question, std::function<void(const std::string&)> then);
   /// Takes in what was answered. True when anything changed.
   bool update();
+  /// A dialog of the desktop has not been answered yet.
   bool asks_desktop() const { return desktop_ != nullptr; }
   /// The own list is over the window.
   bool is_open() const { return open_; }
   void close() { open_ = false; }
+  /// Of the own list: Enter takes what is named, Escape nothing.
   void press(const render::KeyPress& press);
   void draw(const Box& window, const render::OverlayFonts& fonts);
 

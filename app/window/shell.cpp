@@ -162,8 +162,10 @@ bool Shell::update(double wall_s) {
   if (chooser_.is_open()) news = chooser_.update() || news;
   news = files_.update() || news;
   news = exports_.update() || news;
-  if (const std::string words = exports_.take_news(); !words.empty() && session_)
-    session_->viewer().show_message(words);
+  if (const std::string words = exports_.take_news(); !words.empty()) {
+    if (session_) session_->viewer().show_message(words);
+    if (furnishing_) room_->show_message(words);
+  }
   if (session_) session_->viewer().show_work(exports_.in_words());
   std::erase_if(closing_, [&](std::future<LiveStatus>& one) {
     if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
