@@ -30,28 +30,30 @@ float contact_shade(vec3 p) {
   return inside ? textureLod(u_contact, at, 0.0).r : 1.0;
 }
 
-// A colour in less light.
+// A colour in less light: coded_of(linear_of(coded) * shade), but for rounding, with one power instead of six.
 vec3 shaded(vec3 coded, float shade) {
-  // the second is the same with one power instead of six, but for rounding
-  return k_fine ? coded_of(linear_of(coded) * shade) : (coded + 0.055) * pow(shade, 1.0 / 2.4) - 0.055;
+  return (coded + 0.055) * pow(shade, 1.0 / 2.4) - 0.055;
 }
 
 void main() {
-  vec3 paint = u_dark == 1 ? vec3(0.285, 0.300, 0.320) : u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
-  float shade = mix(0.66, 1.0, key_visibility(v_position + 0.002 * u_normal, 5.0));
-  if (u_is_floor > 0.5) shade *= contact_shade(v_position);
-  vec3 colour = paint;
-  for (int i = 0; i < (shade < 1.0 ? 1 : 0); ++i) colour = shaded(paint, shade);
-
-  vec2 p = v_plane - u_grid_origin;
-  float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));
-  colour = mix(colour, u_dark == 1 ? vec3(0.74, 0.79, 0.84) : vec3(0.30, 0.36, 0.43), lines);
-
   vec2 edge = v_plane / u_half;
+  float above = v_plane.y + u_half.y;
   if (u_is_floor < 0.5) edge.y = max(edge.y, 0.0);   // a wall stands on the floor: no fading below
   vec2 inside = 1.0 - smoothstep(0.60, 1.0, abs(edge));
   float fade = inside.x * inside.y;
-  if (u_is_floor > 0.5) fade *= smoothstep(-0.25, 0.0, dot(u_wall.xyz, v_position) - u_wall.w);
+  fade *= u_is_floor > 0.5 ? smoothstep(-0.25, 0.0, dot(u_wall.xyz, v_position) - u_wall.w)
+                           : clamp(above / fwidth(above), 0.0, 1.0);
   fade *= 1.0 - smoothstep(0.45, 1.0, distance(v_position, u_focus) / u_fade_radius);
+
+  vec2 p = v_plane - u_grid_origin;
+  float lines = max(0.075 * grid(p, 0.1, u_line_width), 0.24 * grid(p, 1.0, 1.5 * u_line_width));
+  vec3 paint = u_dark == 1 ? vec3(0.285, 0.300, 0.320) : u_is_floor > 0.5 ? vec3(0.925, 0.925, 0.92) : vec3(0.915, 0.925, 0.935);
+  vec3 colour = paint;
+  if (k_shaded) {
+    float shade = mix(0.66, 1.0, wide_key_visibility(v_position + 0.002 * u_normal, 5.0));
+    if (u_is_floor > 0.5) shade *= contact_shade(v_position);
+    if (shade < 1.0) colour = shaded(paint, shade);
+  }
+  colour = mix(colour, u_dark == 1 ? vec3(0.74, 0.79, 0.84) : vec3(0.30, 0.36, 0.43), lines);
   o_colour = vec4(colour, fade * u_strength);
 }

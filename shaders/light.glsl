@@ -3,7 +3,6 @@ uniform vec3 u_eye;
 uniform vec3 u_to_key;
 uniform mat4 u_shadow_matrix;
 uniform sampler2DShadow u_shadow;
-uniform sampler2D u_caster;    // 0 where nothing in the map above is near
 
 const vec3 k_key_colour = vec3(1.0, 0.985, 0.96);
 
@@ -22,28 +21,42 @@ vec3 sky_light(vec3 normal) {
 
 const int k_half_taps = k_shadow_taps * k_shadow_taps / 2;
 
+float lit(vec3 at, vec2 texels) {  // of a map of 2048
+  return texture(u_shadow, vec3(at.xy + texels / 2048.0, at.z));
+}
+
+// In the map; everything outside of it is lit.
+vec3 on_shadow_map(vec3 p) {
+  vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
+  at.z = min(at.z, 1.0);  // what maps of fixed point do by themselves
+  return at;
+}
+
+// Share of the key light that reaches p on a narrow thing: four places, each between four texels.
+float narrow_key_visibility(vec3 p) {
+  if (!k_shaded) return 1.0;
+  vec3 at = on_shadow_map(p);
+  return 0.25 * (lit(at, vec2(-1.0, -1.0)) + lit(at, vec2(1.0, -1.0)) + lit(at, vec2(-1.0, 1.0)) + lit(at, vec2(1.0, 1.0)));
+}
+
 // Shade from the first `taps` of every second place of a square as on a chessboard, black or white, `reach`
-// texels of a map of 2048 from the middle to the outermost.
+// texels from the middle to the outermost.
 float half_shade(vec3 at, float reach, int white, int taps) {
   const float middle = 0.5 * float(k_shadow_taps - 1);
   float shade = 0.0;
   for (int i = 0; i < taps; ++i) {
     int row = 2 * i / k_shadow_taps, column = 2 * i % k_shadow_taps + (row + white) % 2;
-    vec2 offset = (vec2(column, row) - middle) / middle * reach / 2048.0;
-    shade += 1.0 - texture(u_shadow, vec3(at.xy + offset, at.z));
+    shade += 1.0 - lit(at, (vec2(column, row) - middle) / middle * reach);
   }
   return shade;
 }
 
-// Share of the key light that reaches p. Everything outside the map and away from what casts shadows is lit,
-// and where the black places agree there is no edge of a shadow: there loops end at once, which spares a
-// software rasteriser most of the floor.
-float key_visibility(vec3 p, float reach) {
-  vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
-  at.z = min(at.z, 1.0);  // what maps of fixed point do by themselves
-  bool inside = all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
-  bool near = inside && textureLod(u_caster, at.xy, 0.0).r > 0.0;
-  float black = half_shade(at, reach, 0, near ? k_half_taps : 0);
+// The same on a floor or wall, with an edge as soft as `reach`. Where the black places agree there is no edge
+// of a shadow: there the loop ends at once, which spares a software rasteriser half of it.
+float wide_key_visibility(vec3 p, float reach) {
+  if (!k_shaded) return 1.0;
+  vec3 at = on_shadow_map(p);
+  float black = half_shade(at, reach, 0, k_half_taps);
   bool edge = black > 0.0 && black < float(k_half_taps);
   float white = half_shade(at, reach, 1, edge ? k_half_taps : 0);
   return 1.0 - (edge ? 0.5 * (black + white) : black) / float(k_half_taps);

@@ -11,11 +11,11 @@ void main() {
   vec3 coded = v_colour.a > 0.0 ? v_colour.rgb : texture(u_colour_map, vec2(at, 0.5)).rgb;
   vec3 normal = normalize(v_normal);
   vec3 to_eye = normalize(u_eye - v_position);
-  float shade = key_visibility(v_position + 0.004 * normal, 2.0);
-  float key = max(dot(normal, u_to_key), 0.0) * shade;
+  float shade = narrow_key_visibility(v_position + 0.004 * normal);
+  float key = k_shaded ? max(dot(normal, u_to_key), 0.0) * shade : 0.0;
   vec3 light = sky_light(normal) + 0.66 * key * k_key_colour;
   float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.5 + 0.5 * normal.z);
-  float gloss = pow(max(dot(normal, normalize(to_eye + u_to_key)), 0.0), 40.0) * shade;
+  float gloss = k_shaded ? pow(max(dot(normal, normalize(to_eye + u_to_key)), 0.0), 40.0) * shade : 0.0;
   vec3 colour = linear_of(coded) * light + vec3(0.10 * rim + 0.06 * gloss);
   o_colour = vec4(coded_of(colour), 1.0);
 }

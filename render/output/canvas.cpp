@@ -12,39 +12,35 @@ Canvas::Canvas(const Gl& gl, int width, int height, int samples)
       samples_(samples),
       picture_(make_framebuffer(gl)),
       picture_colour_(make_renderbuffer(gl, GL_RGBA8, width, height, 0)),
-      depth_(make_renderbuffer(gl, GL_DEPTH_COMPONENT24, width, height, samples)),
+      depth_(make_renderbuffer(gl, GL_DEPTH_COMPONENT32F, width, height, 0)),
       target_{picture_.id(), width, height} {
   const auto attach = [&](GLenum point, const GlObject& buffer) {
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, point, GL_RENDERBUFFER, buffer.id());
   };
   gl.BindFramebuffer(GL_FRAMEBUFFER, picture_.id());
   attach(GL_COLOR_ATTACHMENT0, picture_colour_);
-  if (samples > 0) {
-    check_framebuffer(gl, "picture");
-    sampled_ = make_framebuffer(gl);
-    sampled_colour_ = make_renderbuffer(gl, GL_RGBA8, width, height, samples);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_.id());
-    attach(GL_COLOR_ATTACHMENT0, sampled_colour_);
-  }
   attach(GL_DEPTH_ATTACHMENT, depth_);
-  check_framebuffer(gl, samples > 0 ? "picture's samples" : "picture");
+  check_framebuffer(gl, "picture");
+  if (samples == 0) return;
+  sampled_ = make_framebuffer(gl);
+  sampled_colour_ = make_renderbuffer(gl, GL_RGBA8, width, height, samples);
+  sampled_depth_ = make_renderbuffer(gl, GL_DEPTH_COMPONENT32F, width, height, samples);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, sampled_.id());
+  attach(GL_COLOR_ATTACHMENT0, sampled_colour_);
+  attach(GL_DEPTH_ATTACHMENT, sampled_depth_);
+  check_framebuffer(gl, "picture's samples");
+  target_.samples = sampled_.id();
 }
 
 void Canvas::draw(ScenePainter& painter, const SceneFrame& frame, const Camera& camera, ColourMap map,
                   Quality quality, LeftOut& left_out) {
-  const auto [picture, width, height] = target_;
-  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  const float aspect = static_cast<float>(target_.width) / static_cast<float>(target_.height);
   const Camera& usable = finite(camera) ? camera : fit_camera(NamedView::iso, frame, aspect);
-  const Target drawn{samples_ > 0 ? sampled_.id() : picture, width, height};
-  painter.draw(frame, usable, colour_map_for(frame.legend, map, frame.dark), quality, drawn, left_out);
-  if (samples_ == 0) return;
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
-  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
-  gl_.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  painter.draw(frame, usable, colour_map_for(frame.legend, map, frame.dark), quality, target_, left_out);
 }
 
 Image Canvas::read() const {
-  const auto [picture, width, height] = target_;
+  const auto [picture, width, height, samples] = target_;
   const auto rows = static_cast<std::size_t>(height);
   const std::size_t stride = 4 * static_cast<std::size_t>(width);
   std::vector<std::uint8_t> upward(stride * rows);

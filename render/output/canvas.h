@@ -32,7 +32,7 @@ class Canvas {
  private:
   const Gl& gl_;
   int samples_;
-  GlObject picture_, picture_colour_, sampled_, sampled_colour_, depth_;
+  GlObject picture_, picture_colour_, depth_, sampled_, sampled_colour_, sampled_depth_;
   Target target_;
 };
 

@@ -15,7 +15,7 @@ namespace topple::render {
 namespace {
 
 /// Of libdeflate, 1 to 12: higher levels take longer and make these pictures little smaller.
-constexpr int k_deflate_level = 3;
+constexpr int k_deflate_level = 2;
 
 void append_number(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
   for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(number >> shift));

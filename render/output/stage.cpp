@@ -111,7 +111,7 @@ void Stage::present(const Surface& surface, const ImDrawData& interface_lists, G
   gl_.ClearColor(red, green, blue, 1);
   gl_.Clear(GL_COLOR_BUFFER_BIT);
   if (canvas_) {
-    const auto [picture, width, height] = canvas_->target();
+    const auto [picture, width, height, samples] = canvas_->target();
     const int left = surface.scene_left;
     const int top = surface.height - surface.scene_top;  // upwards, as OpenGL counts
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture);

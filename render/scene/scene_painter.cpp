@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -15,7 +16,6 @@
 namespace topple::render {
 namespace {
 
-using Eigen::Matrix4f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
@@ -44,52 +44,6 @@ IndexRange append(Mesh& mesh, const Mesh& part) {
   return range;
 }
 
-struct PlaneAxes {
-  Vector3f along, across, normal;
-};
-
-/// False when the ground has no plane or no area.
-bool plane_axes(const Ground& ground, PlaneAxes& axes) {
-  if (!drawable(ground.centre) || !drawable(ground.normal) || !drawable(ground.along) ||
-      !drawable(ground.half_length) || !drawable(ground.half_width) || ground.half_length <= 0 ||
-      ground.half_width <= 0) {
-    return false;
-  }
-  const Vector3f normal(ground.normal.data());
-  const Vector3f along(ground.along.data());
-  const Vector3f across = normal.cross(along);
-  if (across.norm() < 1e-6f) return false;
-  axes.normal = normal.normalized();
-  axes.across = across.normalized();
-  axes.along = axes.across.cross(axes.normal);
-  return true;
-}
-
-/// The first floor that has a plane; a level one at `height` when there is none.
-FloorPlane floor_plane(const SceneFrame& frame, float height) {
-  for (const Ground& ground : frame.grounds) {
-    PlaneAxes axes;
-    if (ground.is_floor && plane_axes(ground, axes)) {
-      return {Vector3f(ground.centre.data()), axes.along, axes.across, axes.normal};
-    }
-  }
-  FloorPlane level;
-  level.point.z() = height;
-  return level;
-}
-
-/// Plane (normal, offset) of the first wall that is seen from its face; one that is never reached
-/// when there is none. The room ends there, so the floor does not go on behind it.
-Eigen::Vector4f wall_before_which_the_floor_lies(const SceneFrame& frame, const Vector3f& eye) {
-  for (const Ground& ground : frame.grounds) {
-    PlaneAxes axes;
-    if (ground.is_floor || !plane_axes(ground, axes)) continue;
-    const float offset_m = axes.normal.dot(Vector3f(ground.centre.data()));
-    if (axes.normal.dot(eye) > offset_m) return {axes.normal.x(), axes.normal.y(), axes.normal.z(), offset_m};
-  }
-  return {0, 0, 0, -1};
-}
-
 }  // namespace
 
 ScenePainter::ScenePainter(const Gl& gl)
@@ -103,6 +57,8 @@ ScenePainter::ScenePainter(const Gl& gl)
       mesh_indices_(make_buffer(gl)),
       panel_array_(make_vertex_array(gl)),
       panel_vertices_(make_buffer(gl)),
+      ground_array_(make_vertex_array(gl)),
+      ground_corners_(make_buffer(gl)),
       empty_array_(make_vertex_array(gl)) {
   for (std::size_t i = 0; i < colour_maps_.size(); ++i) {
     const ColourTable& table = colour_table(static_cast<ColourMap>(i));
@@ -126,6 +82,10 @@ ScenePainter::ScenePainter(const Gl& gl)
                          offset(offsetof(PanelVertex, normal)));
   gl.VertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof(PanelVertex), offset(offsetof(PanelVertex, uv)));
   for (GLuint i = 0; i < 3; ++i) gl.EnableVertexAttribArray(i);
+  gl.BindVertexArray(ground_array_.id());
+  gl.BindBuffer(GL_ARRAY_BUFFER, ground_corners_.id());
+  gl.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(Vector2f), offset(0));
+  gl.EnableVertexAttribArray(0);
 }
 
 void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap map, Quality quality,
@@ -137,31 +97,60 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   upload(frame, camera, target.height, left_out);
   Lighting& lighting = this->lighting(quality);
   lighting.shadows.draw(low_, high_, floor_plane(frame, low_.z()), solid_mesh_, [this] { draw(solids_); });
-
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-  gl_.Viewport(0, 0, target.width, target.height);
-  gl_.DepthMask(GL_TRUE);
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
-  gl_.Disable(GL_CULL_FACE);
-  gl_.Disable(GL_DEPTH_TEST);
-  gl_.Disable(GL_BLEND);
-  backdrop_.use();
-  backdrop_.set("u_dark", frame.dark ? 1 : 0);
-  gl_.BindVertexArray(empty_array_.id());
-  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-
   bind(k_colour_unit, colour_maps_[static_cast<std::size_t>(map)]);
   lighting.shadows.bind();
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.DepthFunc(GL_LEQUAL);
-  gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-  gl_.Enable(GL_BLEND);
-  draw_grounds(frame, camera, quality, target.height, left_out);
-  gl_.Disable(GL_BLEND);
+
+  const Grounds grounds =
+      grounds_of(frame, camera.eye, quality == Quality::interactive, lighting.shadows, left_out);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, ground_corners_.id());
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(grounds.corners.size() * sizeof(Vector2f)),
+                 grounds.corners.data(), GL_STREAM_DRAW);
+  for (const Program* program : {&lighting.ground, &lighting.shaded_ground}) {
+    use_lit(*program, lighting, camera);
+    program->set("u_focus", grounds.focus);
+    program->set("u_fade_radius", grounds.fade_radius);
+    program->set("u_wall", grounds.wall);
+    program->set("u_line_width", std::max(1.0f, static_cast<float>(target.height) / 720));
+    program->set("u_dark", frame.dark ? 1 : 0);
+  }
+  backdrop_.use();
+  backdrop_.set("u_dark", frame.dark ? 1 : 0);
+
+  gl_.Viewport(0, 0, target.width, target.height);
+  gl_.Enable(GL_SCISSOR_TEST);
+  PixelRect bodies{0, 0, target.width, target.height};
+  if (target.samples != 0) {
+    // The room has no edges but those that its shader draws smooth, so that it needs no samples.
+    bodies = seen(target);
+    const int top = bodies.bottom + bodies.height, right = bodies.left + bodies.width;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    for (const PixelRect& around :
+         {PixelRect{0, 0, target.width, bodies.bottom}, PixelRect{0, top, target.width, target.height - top},
+          PixelRect{0, bodies.bottom, bodies.left, bodies.height},
+          PixelRect{right, bodies.bottom, target.width - right, bodies.height}})
+      draw_room(around, lighting, grounds);
+  }
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target.samples != 0 ? target.samples : target.framebuffer);
+  draw_room(bodies, lighting, grounds);
+  draw_bodies(lighting, camera);
+  gl_.Disable(GL_SCISSOR_TEST);
+  if (target.samples == 0) return;
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target.samples);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+  const int top = bodies.bottom + bodies.height, right = bodies.left + bodies.width;
+  gl_.BlitFramebuffer(bodies.left, bodies.bottom, right, top, bodies.left, bodies.bottom, right, top,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void ScenePainter::draw_bodies(const Lighting& lighting, const Camera& camera) {
   gl_.Enable(GL_CULL_FACE);
-  use_lit(lighting.solid, lighting, camera);
-  lighting.solid.set("u_colour_map", static_cast<int>(k_colour_unit));
-  draw(solids_);
+  const auto draw_lit = [&](const Program& program, const IndexRange& part) {
+    use_lit(program, lighting, camera);
+    program.set("u_colour_map", static_cast<int>(k_colour_unit));
+    draw(part);
+  };
+  draw_lit(lighting.shaded_solid, towards_light_);
+  draw_lit(lighting.solid, away_from_light_);
   draw_flat(shells_);
   gl_.Enable(GL_BLEND);
   draw_ghosts(camera);
@@ -176,8 +165,7 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
   if (bands_.count > 0 && arrows_.count > 0) gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
-  use_lit(lighting.solid, lighting, camera);
-  draw(arrows_);
+  draw_lit(lighting.shaded_solid, arrows_);
   gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BindVertexArray(0);
@@ -185,98 +173,133 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
 
 void ScenePainter::upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out) {
   solid_mesh_ = solid_mesh(frame, left_out);
-  Mesh mesh = solid_mesh_;
-  solids_ = {0, static_cast<std::uint32_t>(mesh.indices.size())};
+  mesh_ = solid_mesh_;
+  solids_ = {0, static_cast<std::uint32_t>(mesh_.indices.size())};
+  sort_by_light();
   std::tie(low_, high_) = drawable_bounds(frame);
-  for (const Vertex& vertex : mesh.vertices) {
+  for (const Vertex& vertex : mesh_.vertices) {
     low_ = low_.cwiseMin(vertex.position);
     high_ = high_.cwiseMax(vertex.position);
   }
-  ghosts_ = append(mesh, ghost_mesh(frame, left_out));
+  ghosts_ = append(mesh_, ghost_mesh(frame, left_out));
   const float pixel = 2 / (camera.projection(1, 1) * static_cast<float>(height));  // m at a metre
   const float unit = std::max(1.0f, static_cast<float>(height) / 720);
   if (frame.highlighted_body >= 0) {
-    shells_ = append(mesh, shell_mesh(frame, camera.eye, k_body_outline * unit * pixel, k_outer_colour));
+    shells_ = append(mesh_, shell_mesh(frame, camera.eye, k_body_outline * unit * pixel, k_outer_colour));
   } else {
-    shells_ = append(mesh, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
+    shells_ = append(mesh_, shell_mesh(frame, camera.eye, k_inner_outline * unit * pixel, k_inner_colour));
     shells_.count +=
-        append(mesh, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
+        append(mesh_, shell_mesh(frame, camera.eye, k_outer_outline * unit * pixel, k_outer_colour)).count;
   }
-  trails_ = append(mesh, trail_mesh(frame, camera.eye, k_trail * unit * pixel, left_out));
-  bands_ = append(mesh, band_mesh(frame, camera.eye, k_band_outline * unit * pixel, left_out));
-  arrows_ = append(mesh, arrow_mesh(frame, left_out));
+  trails_ = append(mesh_, trail_mesh(frame, camera.eye, k_trail * unit * pixel, left_out));
+  bands_ = append(mesh_, band_mesh(frame, camera.eye, k_band_outline * unit * pixel, left_out));
+  arrows_ = append(mesh_, arrow_mesh(frame, left_out));
   gl_.BindVertexArray(mesh_array_.id());
   gl_.BindBuffer(GL_ARRAY_BUFFER, mesh_vertices_.id());
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
-                 mesh.vertices.data(), GL_STREAM_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh_.vertices.size() * sizeof(Vertex)),
+                 mesh_.vertices.data(), GL_STREAM_DRAW);
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)), mesh.indices.data(),
+                 static_cast<GLsizeiptr>(mesh_.indices.size() * sizeof(std::uint32_t)), mesh_.indices.data(),
                  GL_STREAM_DRAW);
-  const std::vector<PanelVertex> panels = panel_mesh(frame, camera.eye, left_out);
-  panel_vertex_count_ = static_cast<GLsizei>(panels.size());
+  panels_ = panel_mesh(frame, camera.eye, left_out);
   gl_.BindBuffer(GL_ARRAY_BUFFER, panel_vertices_.id());
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(panels.size() * sizeof(PanelVertex)), panels.data(),
-                 GL_STREAM_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(panels_.size() * sizeof(PanelVertex)),
+                 panels_.data(), GL_STREAM_DRAW);
+}
+
+// Triangles that look away from the light need no shadow.
+void ScenePainter::sort_by_light() {
+  std::vector<std::uint32_t> away;
+  std::vector<std::uint32_t>& indices = mesh_.indices;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const auto faces_it = [&](std::uint32_t vertex) {
+      return Shadows::to_key().dot(mesh_.vertices[vertex].normal) > 0;
+    };
+    if (faces_it(indices[i]) || faces_it(indices[i + 1]) || faces_it(indices[i + 2])) {
+      for (std::size_t k = i; k < i + 3; ++k) indices[kept++] = indices[k];
+    } else {
+      away.insert(away.end(), {indices[i], indices[i + 1], indices[i + 2]});
+    }
+  }
+  std::copy(away.begin(), away.end(), indices.begin() + static_cast<std::ptrdiff_t>(kept));
+  towards_light_ = {0, static_cast<std::uint32_t>(kept)};
+  away_from_light_ = {towards_light_.count, static_cast<std::uint32_t>(away.size())};
 }
 
 ScenePainter::Lighting::Lighting(const Gl& gl, std::string_view constants, const ShadowSize& size)
-    : ground(gl, "ground.vert", {constants, "light.glsl", "ground.frag"}),
-      solid(gl, "solid.vert", {constants, "light.glsl", "solid.frag"}),
+    : ground(gl, "ground.vert", {constants, "unshaded.glsl", "light.glsl", "ground.frag"}),
+      shaded_ground(gl, "ground.vert", {constants, "shaded.glsl", "light.glsl", "ground.frag"}),
+      solid(gl, "solid.vert", {constants, "unshaded.glsl", "light.glsl", "solid.frag"}),
+      shaded_solid(gl, "solid.vert", {constants, "shaded.glsl", "light.glsl", "solid.frag"}),
       shadows(gl, constants, size) {}
 
 ScenePainter::Lighting& ScenePainter::lighting(Quality quality) {
   std::unique_ptr<Lighting>& lighting = lightings_[static_cast<std::size_t>(quality)];
   if (lighting == nullptr) {
     lighting = quality == Quality::still
-                   ? std::make_unique<Lighting>(gl_, "look_still.glsl", ShadowSize{2048, 1024})
+                   ? std::make_unique<Lighting>(gl_, "look_still.glsl", ShadowSize{2048, 512})
                    : std::make_unique<Lighting>(gl_, "look_interactive.glsl", ShadowSize{1024, 256});
   }
   return *lighting;
 }
 
-void ScenePainter::draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
-                                LeftOut& left_out) {
-  const Lighting& lighting = this->lighting(quality);
-  const auto [low, high] = drawable_bounds(frame);
-  use_lit(lighting.ground, lighting, camera);
-  lighting.ground.set("u_focus", ((low + high) / 2).eval());
-  lighting.ground.set("u_wall", wall_before_which_the_floor_lies(frame, camera.eye));
-  lighting.ground.set("u_fade_radius", 2.2f * (high - low).norm());
-  lighting.ground.set("u_line_width", std::max(1.0f, static_cast<float>(height) / 720));
+ScenePainter::PixelRect ScenePainter::seen(const Target& target) const {
+  const Vector2f size(target.width, target.height);
+  Vector2f from = size, to = Vector2f::Zero();
+  const auto take = [&](const Vector3f& position) {
+    const Eigen::Vector4f clip = view_projection_ * position.homogeneous();
+    const bool before = clip.w() > 0;  // what begins behind the eye may be anywhere
+    const Vector2f at = ((clip.head<2>() / clip.w() + Vector2f::Ones()) / 2).cwiseProduct(size);
+    from = from.cwiseMin(before ? at : Vector2f::Zero());
+    to = to.cwiseMax(before ? at : size);
+  };
+  for (const Vertex& vertex : mesh_.vertices) take(vertex.position);
+  for (const PanelVertex& vertex : panels_) take(vertex.position);
+  from = (from.array().floor() - 1).max(0.0f).min(size.array());
+  to = (to.array().ceil() + 1).min(size.array()).max(from.array());
+  const Eigen::Vector2i low = from.cast<int>(), sides = to.cast<int>() - low;
+  return {low.x(), low.y(), sides.x(), sides.y()};
+}
+
+void ScenePainter::draw_room(const PixelRect& part, const Lighting& lighting, const Grounds& grounds) {
+  gl_.Scissor(part.left, part.bottom, part.width, part.height);
+  if (part.width == 0 || part.height == 0) return;
+  gl_.DepthMask(GL_TRUE);
+  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  gl_.Disable(GL_CULL_FACE);
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.Disable(GL_BLEND);
   gl_.BindVertexArray(empty_array_.id());
-  // Floors first: walls stand on them and fade out over them. A wall that hides the floor goes first
-  // when pixels that are not seen should not be shaded.
-  for (const bool first : {true, false}) {
-    for (const Ground& ground : frame.grounds) {
-      PlaneAxes axes;
-      if (!plane_axes(ground, axes)) {
-        left_out.grounds += first;
-        continue;
-      }
-      const bool seen_from_behind = axes.normal.dot(camera.eye - Vector3f(ground.centre.data())) < 0;
-      const bool early = quality == Quality::still ? ground.is_floor : !ground.is_floor && !seen_from_behind;
-      if (early != first) continue;
-      Vector2f half(ground.half_length, ground.half_width);
-      const bool upright = std::abs(axes.normal.z()) < 0.5f;
-      if (upright && std::abs(axes.along.z()) > std::abs(axes.across.z())) {
-        std::swap(axes.along, axes.across);
-        std::swap(half.x(), half.y());
-      }
-      if (upright && axes.across.z() < 0) axes.across = -axes.across;
-      lighting.ground.set("u_centre", Vector3f(ground.centre.data()));
-      lighting.ground.set("u_along", axes.along);
-      lighting.ground.set("u_across", axes.across);
-      lighting.ground.set("u_normal", axes.normal);
-      lighting.ground.set("u_half", half);
-      lighting.ground.set("u_grid_origin", Vector2f(0, upright ? -half.y() : 0));
-      lighting.ground.set("u_dark", frame.dark ? 1 : 0);
-      lighting.ground.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
-      lighting.ground.set("u_strength", seen_from_behind ? 0.3f : 1.0f);
-      gl_.DepthMask(seen_from_behind ? GL_FALSE : GL_TRUE);
-      gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    }
+  backdrop_.use();
+  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthFunc(GL_LEQUAL);
+  gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+  gl_.Enable(GL_BLEND);
+  gl_.BindVertexArray(ground_array_.id());
+  for (const DrawnGround& ground : grounds.grounds) {
+    gl_.DepthMask(ground.seen_from_behind ? GL_FALSE : GL_TRUE);
+    draw_tiles(lighting.ground, ground, ground.lit);
+    draw_tiles(lighting.shaded_ground, ground, ground.shaded);
   }
   gl_.DepthMask(GL_TRUE);
+  gl_.Disable(GL_BLEND);
+}
+
+void ScenePainter::draw_tiles(const Program& program, const DrawnGround& ground, const IndexRange& tiles) {
+  if (tiles.count == 0) return;
+  program.use();
+  program.set("u_centre", ground.centre);
+  program.set("u_along", ground.along);
+  program.set("u_across", ground.across);
+  program.set("u_normal", ground.normal);
+  program.set("u_half", ground.half);
+  program.set("u_grid_origin", ground.grid_origin);
+  program.set("u_is_floor", ground.is_floor ? 1.0f : 0.0f);
+  program.set("u_strength", ground.seen_from_behind ? 0.3f : 1.0f);
+  gl_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(tiles.first), static_cast<GLsizei>(tiles.count));
 }
 
 void ScenePainter::draw(const IndexRange& part) {
@@ -318,7 +341,7 @@ void ScenePainter::draw_panels(const Camera& camera) {
   panel_.set("u_eye", camera.eye);
   gl_.DepthMask(GL_FALSE);
   gl_.BindVertexArray(panel_array_.id());
-  gl_.DrawArrays(GL_TRIANGLES, 0, panel_vertex_count_);
+  gl_.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(panels_.size()));
   gl_.DepthMask(GL_TRUE);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -11,6 +12,7 @@
 #include "render/gl/gl_objects.h"
 #include "render/scene/camera.h"
 #include "render/scene/colour_map.h"
+#include "render/scene/grounds.h"
 #include "render/scene/mesh.h"
 #include "render/scene/scene_frame.h"
 #include "render/scene/shadows.h"
@@ -22,6 +24,7 @@ struct Target {
   GLuint framebuffer = 0;  ///< with a depth buffer; 0 is a window's own
   int width = 0;           ///< pixels
   int height = 0;
+  GLuint samples = 0;  ///< multisampled framebuffer of that size, with a depth buffer; 0: none
 };
 
 /// interactive: shadows from fewer and coarser samples, for a software rasteriser that has to keep up
@@ -34,7 +37,8 @@ class ScenePainter {
   /// `gl` must outlive the painter. Throws std::runtime_error when the context cannot do it.
   explicit ScenePainter(const Gl& gl);
 
-  /// Fills the whole target. Counts what cannot be drawn in `left_out`.
+  /// Fills the whole target; what is not floor, wall or backdrop is drawn by way of the samples where there
+  /// are any. Counts what cannot be drawn in `left_out`.
   void draw(const SceneFrame& frame, const Camera& camera, ColourMap map, Quality quality,
             const Target& target, LeftOut& left_out);
 
@@ -42,14 +46,23 @@ class ScenePainter {
   /// Lit programs and shadow maps of one quality.
   struct Lighting {
     Lighting(const Gl& gl, std::string_view constants, const ShadowSize& size);
-    Program ground, solid;
+    Program ground, shaded_ground, solid, shaded_solid;  // shaded: where shadows may fall
     Shadows shadows;
+  };
+
+  /// Of a picture, from its lower left corner.
+  struct PixelRect {
+    int left, bottom, width, height;
   };
 
   Lighting& lighting(Quality quality);
   void upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
-  void draw_grounds(const SceneFrame& frame, const Camera& camera, Quality quality, int height,
-                    LeftOut& left_out);
+  void sort_by_light();
+  /// Where all that was uploaded is seen.
+  PixelRect seen(const Target& target) const;
+  void draw_room(const PixelRect& part, const Lighting& lighting, const Grounds& grounds);
+  void draw_tiles(const Program& program, const DrawnGround& ground, const IndexRange& tiles);
+  void draw_bodies(const Lighting& lighting, const Camera& camera);
   void draw(const IndexRange& part);
   void draw_ghosts(const Camera& camera);
   void draw_panels(const Camera& camera);
@@ -60,11 +73,12 @@ class ScenePainter {
   const Gl& gl_;
   Program backdrop_, panel_, ghost_, outline_;
   std::array<std::unique_ptr<Lighting>, 2> lightings_;  // made when first drawn with
-  GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, empty_array_;
+  GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, ground_array_,
+      ground_corners_, empty_array_;
   std::array<GlObject, k_colour_map_count> colour_maps_;
-  Mesh solid_mesh_;
-  IndexRange solids_, ghosts_, shells_, trails_, bands_, arrows_;
-  GLsizei panel_vertex_count_ = 0;
+  Mesh solid_mesh_, mesh_;  // mesh_: those and all that follows
+  std::vector<PanelVertex> panels_;
+  IndexRange solids_, towards_light_, away_from_light_, ghosts_, shells_, trails_, bands_, arrows_;
   Eigen::Vector3f low_, high_;  // box around bounds and everything solid
   Eigen::Matrix4f view_projection_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -18,13 +19,9 @@ using Eigen::Vector3f;
 /// Margin of the contact map around the bodies, m: as far as their contact shade reaches.
 constexpr float k_contact_margin = 0.2f;
 
-// From the left of the named views and above, so that shadows fall away from the viewer.
-const Vector3f k_to_key = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
-
 constexpr GLuint k_key_unit = 1;
 constexpr GLuint k_contact_unit = 2;
 constexpr GLuint k_near_unit = 3;
-constexpr GLuint k_caster_unit = 4;
 
 constexpr int k_shade_side = 256;   // of the map of contact shade, texels
 constexpr int k_coarse_side = 256;  // of the maps of what is near the floor, or between it and light, texels
@@ -50,6 +47,12 @@ std::pair<Vector3f, Vector3f> turned_box(const Matrix3f& rows, const Vector3f& l
   return {middle - half, middle + half};
 }
 
+/// Texels from the corner of a coarse map.
+Eigen::Vector2f on_coarse_map(const Matrix4f& to_map, const Vector3f& place) {
+  return (to_map.topLeftCorner<2, 3>() * place + to_map.topRightCorner<2, 1>() + Eigen::Vector2f::Ones()) *
+         (k_coarse_side / 2.0f);
+}
+
 void bind_to(const Gl& gl, GLuint unit, const GlObject& texture) {
   gl.ActiveTexture(GL_TEXTURE0 + unit);
   gl.BindTexture(GL_TEXTURE_2D, texture.id());
@@ -57,14 +60,20 @@ void bind_to(const Gl& gl, GLuint unit, const GlObject& texture) {
 
 }  // namespace
 
+// From the left of the named views and above, so that shadows fall away from the viewer.
+const Vector3f& Shadows::to_key() {
+  static const Vector3f direction = Vector3f(-0.28f, -0.52f, 1.0f).normalized();
+  return direction;
+}
+
 Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& size)
     : gl_(gl),
       size_(size),
       key_program_(gl, "shadow.vert", {"shadow.frag"}),
       contact_program_(gl, "shadow.vert", {"contact.frag"}),
       shade_program_(gl, "whole.vert", {constants, "contact_shade.frag"}),
-      key_map_(make_texture(gl, {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT}, size.key,
-                            size.key, nullptr)),
+      key_map_(make_texture(gl, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, size.key, size.key,
+                            nullptr)),
       key_target_(make_framebuffer(gl)),
       contact_target_(make_framebuffer(gl)),
       shade_target_(make_framebuffer(gl)),
@@ -75,8 +84,7 @@ Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& siz
   contact_map_ =
       make_texture(gl, {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, true}, size.contact, size.contact, nullptr);
 
-  for (GlObject* map : {&near_map_, &caster_map_})
-    *map = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_coarse_side, k_coarse_side, nullptr);
+  near_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_coarse_side, k_coarse_side, nullptr);
 
   gl.BindFramebuffer(GL_FRAMEBUFFER, key_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, key_map_.id(), 0);
@@ -103,25 +111,25 @@ void Shadows::draw(const Vector3f& low, const Vector3f& high, const FloorPlane& 
   bind_to(gl_, k_contact_unit, contact_map_);
   gl_.GenerateMipmap(GL_TEXTURE_2D);
   constexpr float k_any = std::numeric_limits<float>::infinity();
-  mark({k_near_unit, near_map_}, contact_matrix_, k_contact_margin / contact_width_, {floor, k_contact_high},
-       solids);
-  mark({k_caster_unit, caster_map_}, key_matrix_, k_shadow_reach, {floor, k_any}, solids);
+  near_ = marked(contact_matrix_, k_contact_margin / contact_width_, {floor, k_contact_high}, solids);
+  casters_ = marked(key_matrix_, k_shadow_reach, {floor, k_any}, solids);
+  nearest_to_light_ = k_any;
+  for (const Vertex& vertex : solids.vertices)
+    nearest_to_light_ = std::min(nearest_to_light_, -to_key().dot(vertex.position));
   shade_contact();
 }
 
-void Shadows::mark(const Coarse& coarse, const Matrix4f& to_map, float margin, const Highest& highest,
-                   const Mesh& solids) {
+std::vector<std::uint8_t> Shadows::marked(const Matrix4f& to_map, float margin, const Highest& highest,
+                                          const Mesh& solids) {
   constexpr float side = k_coarse_side;
-  std::array<std::uint8_t, k_coarse_side * k_coarse_side> marked{};
+  std::vector<std::uint8_t> marked(std::size_t{k_coarse_side} * k_coarse_side);
   for (std::size_t i = 0; i + 2 < solids.indices.size(); i += 3) {
     Eigen::Vector2f from(side, side), to(0, 0);
     float height = highest.height;
     for (std::size_t k = i; k < i + 3; ++k) {
       const Vector3f& x = solids.vertices[solids.indices[k]].position;
       height = std::min(height, highest.floor.normal.dot(x - highest.floor.point));
-      const Eigen::Vector2f at =
-          side *
-          (to_map.topLeftCorner<2, 3>() * x + to_map.topRightCorner<2, 1>() + Eigen::Vector2f::Ones()) / 2;
+      const Eigen::Vector2f at = on_coarse_map(to_map, x);
       from = from.cwiseMin(at);
       to = to.cwiseMax(at);
     }
@@ -129,18 +137,44 @@ void Shadows::mark(const Coarse& coarse, const Matrix4f& to_map, float margin, c
     const auto texel = [](float at) { return std::clamp(static_cast<int>(at), 0, k_coarse_side - 1); };
     for (int y = texel(from.y() - side * margin); y <= texel(to.y() + side * margin); ++y)
       for (int x = texel(from.x() - side * margin); x <= texel(to.x() + side * margin); ++x)
-        marked[k_coarse_side * y + x] = 255;
+        marked[static_cast<std::size_t>(k_coarse_side * y + x)] = 255;
   }
-  bind_to(gl_, coarse.unit, coarse.map);
-  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_coarse_side, k_coarse_side, 0, GL_RED, GL_UNSIGNED_BYTE,
-                 marked.data());
+  return marked;
+}
+
+bool Shadows::may_fall_on(const std::array<Vector3f, 4>& places) const {
+  const bool behind = std::any_of(places.begin(), places.end(), [&](const Vector3f& place) {
+    return -to_key().dot(place) > nearest_to_light_;
+  });
+  return (behind && any_marked(casters_, key_matrix_, places)) || any_marked(near_, contact_matrix_, places);
+}
+
+bool Shadows::any_marked(const std::vector<std::uint8_t>& marked, const Matrix4f& to_map,
+                         const std::array<Vector3f, 4>& places) {
+  constexpr float side = k_coarse_side;
+  Eigen::Vector2f from(side, side), to(-1, -1);
+  for (const Vector3f& place : places) {
+    const Eigen::Vector2f at = on_coarse_map(to_map, place);
+    from = from.cwiseMin(at);
+    to = to.cwiseMax(at);
+  }
+  // a texel around, as far as linear filtering reaches
+  const auto first = [](float at) {
+    return static_cast<int>(std::clamp(at - 1, 0.0f, float{k_coarse_side}));
+  };
+  const auto last = [](float at) {
+    return static_cast<int>(std::clamp(at + 1, -1.0f, k_coarse_side - 1.0f));
+  };
+  for (int y = first(from.y()); y <= last(to.y()); ++y)
+    for (int x = first(from.x()); x <= last(to.x()); ++x)
+      if (marked[static_cast<std::size_t>(k_coarse_side * y + x)] != 0) return true;
+  return false;
 }
 
 void Shadows::set_up_key(const Vector3f& low, const Vector3f& high) {
   Matrix3f rows;
-  rows.row(2) = -k_to_key;  // depth grows away from the light
-  rows.row(0) = Vector3f::UnitZ().cross(k_to_key).normalized();
+  rows.row(2) = -to_key();  // depth grows away from the light
+  rows.row(0) = Vector3f::UnitZ().cross(to_key()).normalized();
   rows.row(1) = Vector3f(rows.row(0)).cross(Vector3f(rows.row(2)));
   // lit texels at the edges, which what lies beyond them gets
   const Vector3f margin = Vector3f::Constant(std::max(0.02f, 2e-3f * (high - low).norm()));
@@ -187,6 +221,10 @@ void Shadows::set_up_contact(const Vector3f& low, const Vector3f& high, const Fl
 
 // Once for each place on the floor, and not for each of the pixels that show it.
 void Shadows::shade_contact() {
+  bind_to(gl_, k_near_unit, near_map_);
+  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_coarse_side, k_coarse_side, 0, GL_RED, GL_UNSIGNED_BYTE,
+                 near_.data());
   gl_.BindFramebuffer(GL_FRAMEBUFFER, shade_target_.id());
   gl_.Viewport(0, 0, k_shade_side, k_shade_side);
   gl_.Disable(GL_DEPTH_TEST);
@@ -201,13 +239,11 @@ void Shadows::shade_contact() {
 void Shadows::bind() const {
   bind_to(gl_, k_key_unit, key_map_);
   bind_to(gl_, k_contact_unit, shade_map_);
-  bind_to(gl_, k_caster_unit, caster_map_);
 }
 
 void Shadows::set(const Program& program) const {
-  program.set("u_to_key", k_to_key);
+  program.set("u_to_key", to_key());
   program.set("u_shadow", static_cast<int>(k_key_unit));
-  program.set("u_caster", static_cast<int>(k_caster_unit));
   program.set("u_shadow_matrix", key_matrix_);
   program.set("u_contact", static_cast<int>(k_contact_unit));
   program.set("u_contact_matrix", contact_matrix_);

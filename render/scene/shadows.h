@@ -1,8 +1,11 @@
 // Shadow maps: of the key light, and of contact with the floor.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -36,6 +39,12 @@ class Shadows {
   void draw(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor,
             const Mesh& solids, const std::function<void()>& draw_solids);
 
+  /// False where light reaches all of the flat piece with these corners.
+  bool may_fall_on(const std::array<Eigen::Vector3f, 4>& places) const;
+
+  /// Unit vector towards the key light.
+  static const Eigen::Vector3f& to_key();
+
   /// Binds the maps to their texture units.
   void bind() const;
   /// Sets the uniforms of light.glsl and ground.frag that concern the maps; the program is in use.
@@ -44,26 +53,26 @@ class Shadows {
  private:
   void set_up_key(const Eigen::Vector3f& low, const Eigen::Vector3f& high);
   void set_up_contact(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const FloorPlane& floor);
-  /// A coarse map of where something lies, and the texture unit that it is bound to.
-  struct Coarse {
-    GLuint unit;
-    const GlObject& map;
-  };
   /// What lies higher over the floor does not count, m.
   struct Highest {
     const FloorPlane& floor;
     float height;
   };
-  /// Marks the boxes of triangles in the map that `to_map` makes -1..1 of; margin: around them, of its side.
-  void mark(const Coarse& coarse, const Eigen::Matrix4f& to_map, float margin, const Highest& highest,
-            const Mesh& solids);
+  /// 255 in the boxes of triangles on a coarse map, by rows from the corner; else 0. to_map makes -1..1 of
+  /// the map; margin: around them, of its side.
+  static std::vector<std::uint8_t> marked(const Eigen::Matrix4f& to_map, float margin, const Highest& highest,
+                                          const Mesh& solids);
+  static bool any_marked(const std::vector<std::uint8_t>& marked, const Eigen::Matrix4f& to_map,
+                         const std::array<Eigen::Vector3f, 4>& places);
   void shade_contact();
 
   const Gl& gl_;
   ShadowSize size_;
   Program key_program_, contact_program_, shade_program_;
-  GlObject key_map_, contact_map_, near_map_, caster_map_, shade_map_, key_target_, contact_target_,
-      shade_target_, empty_array_;
+  GlObject key_map_, contact_map_, near_map_, shade_map_, key_target_, contact_target_, shade_target_,
+      empty_array_;
+  std::vector<std::uint8_t> near_, casters_;  // marked: what is near the floor; what casts shadows
+  float nearest_to_light_ = 0;                // m along the light
   Eigen::Matrix4f key_matrix_ = Eigen::Matrix4f::Identity();
   Eigen::Matrix4f contact_matrix_ = Eigen::Matrix4f::Identity();
   float contact_width_ = 1;  // m, side of the square that is mapped

@@ -32,6 +32,7 @@ render::Gl web_gl() {
   gl.BlendEquation = glBlendEquation;
   gl.BlendFuncSeparate = glBlendFuncSeparate;
   gl.BufferData = glBufferData;
+  gl.BlitFramebuffer = glBlitFramebuffer;
   gl.CheckFramebufferStatus = glCheckFramebufferStatus;
   gl.Clear = glClear;
   gl.ClearColor = glClearColor;
@@ -67,6 +68,7 @@ render::Gl web_gl() {
   gl.LinkProgram = glLinkProgram;
   gl.PixelStorei = glPixelStorei;
   gl.PolygonOffset = glPolygonOffset;
+  gl.Scissor = glScissor;
   gl.ShaderSource = glShaderSource;
   gl.TexImage2D = glTexImage2D;
   gl.TexParameteri = glTexParameteri;

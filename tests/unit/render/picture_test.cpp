@@ -6,6 +6,9 @@
 #include <cstdlib>
 #include <limits>
 
+#include <Eigen/Geometry>
+
+#include "render/output/canvas.h"
 #include "tests/unit/render/off_screen.h"
 #include "tests/unit/render/scratch.h"
 #include "tests/unit/render/synthetic_cabinet.h"
@@ -35,6 +38,37 @@ TEST(Picture, same_frame_gives_same_bytes_from_the_same_and_from_another_picture
   picture.draw(other, camera, {ColourMap::cividis, false});
   EXPECT_TRUE(picture.draw(frame, camera) == first);
   EXPECT_TRUE(drawn(frame) == first);
+}
+
+// Within the bodies' rectangle they are smooth; around it floor and walls are what they are without samples,
+// with their shadows, and the line where a wall stands on the floor is smooth by itself.
+TEST(Picture, samples_are_taken_where_bodies_are_and_nowhere_else) {
+  const Gl gl = load_gl(off_screen());
+  ScenePainter painter(gl);
+  const SceneFrame frame = synthetic_cabinet(6);
+  Canvas plain(gl, k_width, k_height, 0), smooth(gl, k_width, k_height, 4);
+  const Camera camera = fit_camera(NamedView::iso, frame, float{k_width} / k_height);
+  LeftOut left_out;
+  for (Canvas* canvas : {&plain, &smooth})
+    canvas->draw(painter, frame, camera, ColourMap::viridis, Quality::still, left_out);
+  const Image a = plain.read(), b = smooth.read();
+  Eigen::AlignedBox2i differs, bodies;
+  for (int y = 0; y < k_height; ++y)
+    for (int x = 0; x < k_width; ++x)
+      if (colour_at(a, {x, y}) != colour_at(b, {x, y})) differs.extend(Eigen::Vector2i(x, y));
+  for (const Tube& tube : frame.tubes) {
+    for (std::uint32_t i = 0; i < tube.station_count; ++i) {
+      const Pixel p = seen_at(camera, Eigen::Vector3f(frame.stations[tube.first_station + i].position.data()),
+                              k_width, k_height);
+      bodies.extend(Eigen::Vector2i(p.x, p.y));
+    }
+  }
+  ASSERT_FALSE(differs.isEmpty());
+  constexpr int k_thickness = 12;  // px, of beams and their end caps
+  EXPECT_TRUE(Eigen::AlignedBox2i(bodies.min().array() - k_thickness, bodies.max().array() + k_thickness)
+                  .contains(differs))
+      << differs.min().transpose() << " to " << differs.max().transpose();
+  EXPECT_GT(differs.sizes().y(), bodies.sizes().y() / 2) << "edges of beams are smooth";
 }
 
 TEST(Picture, colour_of_a_beam_comes_from_its_value) {

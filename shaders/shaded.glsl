@@ -1,0 +1,2 @@
+// What shadows may fall on.
+const bool k_shaded = true;

@@ -1,0 +1,2 @@
+// What no shadow can fall on.
+const bool k_shaded = false;
