@@ -11,11 +11,35 @@
 
 namespace topple::app {
 
+std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, float tolerance) {
+  if (points.size() < 3) return {points.begin(), points.end()};
+  std::vector<ImVec2> kept{points.front()};
+  // slopes of the lines from the last point that was kept that pass all since then near enough
+  float flattest = -INFINITY, steepest = INFINITY;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    float along = points[i].x - kept.back().x;
+    const float slope = (points[i].y - kept.back().y) / along;
+    if (i > 1 && !(along > 0 && slope >= flattest && slope <= steepest)) {
+      kept.push_back(points[i - 1]);
+      flattest = -INFINITY;
+      steepest = INFINITY;
+      along = points[i].x - kept.back().x;
+    }
+    const float rise = points[i].y - kept.back().y;
+    flattest = std::max(flattest, along > 0 ? (rise - tolerance) / along : INFINITY);
+    steepest = std::min(steepest, along > 0 ? (rise + tolerance) / along : -INFINITY);
+  }
+  kept.push_back(points.back());
+  return kept;
+}
+
 void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
                ImU32 colour, float thickness) {
   std::vector<ImVec2> points;
   const auto draw = [&] {
-    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+    constexpr float k_unseen = 0.1f;  // px
+    const std::vector<ImVec2> fewer = without_straight_points(points, k_unseen);
+    list.AddPolyline(fewer.data(), static_cast<int>(fewer.size()), colour, 0, thickness);
     points.clear();
   };
   list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);

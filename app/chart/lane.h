@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct Lane {
     return bottom - static_cast<float>((value - low) / (high - low)) * (bottom - top);
   }
 };
+
+/// Of a line with x that does not fall, those points that it needs to pass all others at most `tolerance`
+/// above or below.
+std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, float tolerance);
 
 /// Value at the row of that index; not finite: none.
 using ValueAt = std::function<double(std::size_t)>;

@@ -179,7 +179,7 @@ void FurnishView::draw_scene() {
   if (frame_changed_) compose();
   orbit_.set_bounds(base_);
   drawn_still_ = !changed;
-  stage_.set_budget(std::nullopt);
+  stage_.set_budget(camera_changed_ ? std::optional(render::k_scene_budget) : std::nullopt);
   const render::Surface whole = surface();
   const ImVec2 pixel = ImGui::GetIO().DisplayFramebufferScale;
   stage_.draw_scene(frame_, orbit_.camera(scene_.width / scene_.height), render::ColourMap::viridis,

@@ -16,20 +16,19 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_flight = 0.25;         // s, of the camera
-constexpr double k_scene_budget = 0.022;  // s of a software context for the scene, of 33 ms for a frame
-constexpr double k_quiet = 0.4;           // s without change after which the scene is drawn at its best
-constexpr float k_least_free = 0.4f;      // of the scene, for bodies beside words
-constexpr float k_least_beside = 0.3f;    // the same of its width, where there is little height
-constexpr float k_click_travel = 4;       // px: a press that moves less is no drag
-constexpr float k_falling_room = 0.25f;   // of the height, beside bodies that may still fall
-constexpr float k_most_plots = 0.55f;     // of the height above the timeline
-constexpr float k_side_panel = 320;       // px at 720 lines
-constexpr float k_most_side = 0.45f;      // of the width
-constexpr float k_path_lines = 22;        // lines of text, the load path
-constexpr float k_most_path = 0.5f;       // of the height of the side panel
-constexpr int k_keeping_steps = 20;       // of a camera that keeps bodies in the picture
-constexpr float k_least_letters = 12;     // px
+constexpr double k_flight = 0.25;        // s, of the camera
+constexpr double k_quiet = 0.4;          // s without change after which the scene is drawn at its best
+constexpr float k_least_free = 0.4f;     // of the scene, for bodies beside words
+constexpr float k_least_beside = 0.3f;   // the same of its width, where there is little height
+constexpr float k_click_travel = 4;      // px: a press that moves less is no drag
+constexpr float k_falling_room = 0.25f;  // of the height, beside bodies that may still fall
+constexpr float k_most_plots = 0.55f;    // of the height above the timeline
+constexpr float k_side_panel = 320;      // px at 720 lines
+constexpr float k_most_side = 0.45f;     // of the width
+constexpr float k_path_lines = 22;       // lines of text, the load path
+constexpr float k_most_path = 0.5f;      // of the height of the side panel
+constexpr int k_keeping_steps = 20;      // of a camera that keeps bodies in the picture
+constexpr float k_least_letters = 12;    // px
 
 /// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
 void set_keyboard_navigation(bool on) {
@@ -271,7 +270,8 @@ void Viewer::draw_scene() {
   }
   orbit_.set_bounds(frame_);
   drawn_still_ = !changed;
-  stage_.set_budget(player_.playing() ? std::optional(k_scene_budget) : std::nullopt);
+  stage_.set_budget(player_.playing() || camera_changed_ ? std::optional(render::k_scene_budget)
+                                                         : std::nullopt);
   const render::Surface surface = this->surface();
   const ImVec2 pixel = ImGui::GetIO().DisplayFramebufferScale;
   stage_.draw_scene(frame_, orbit_.camera(aspect()), settings_.map,

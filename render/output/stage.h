@@ -27,6 +27,9 @@ struct Surface {
   Float3 background{0.93f, 0.94f, 0.95f};  ///< sRGB, 0..1: what neither scene nor interface covers
 };
 
+/// For a scene that moves, of the 33 ms of a frame, s (Stage::set_budget).
+inline constexpr double k_scene_budget = 0.022;
+
 /// Draws the scene when it changed, and the interface over the kept scene as often as need be. It is
 /// the same under a window and off screen. Every call needs the context current that it was made in.
 class Stage {

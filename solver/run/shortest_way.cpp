@@ -13,7 +13,8 @@ namespace {
 constexpr double k_step = k_pi / 18;  // rad, between the corners of an arc
 constexpr double k_cut = 0.99;        // of the disc's radius is kept clear
 constexpr double k_behind = 1e-9;     // m, rounding of a corner on a door's line
-constexpr int k_goals = 8;            // parts of a door's line
+constexpr double k_rounding = 1e-9;
+constexpr int k_goals = 8;  // parts of a door's line
 
 /// A corner of the graph, on the circle around a corner of an obstacle.
 struct Corner {
@@ -27,7 +28,13 @@ class Graph {
         const Vec2& from, const Room::Door& door, double width)
       : room_(room), obstacles_(obstacles), radius_(width / 2) {
     for (const Convex& face : faces) obstacles_.push_back({face, 0});
-    for (const Footprint& obstacle : obstacles_) grown_.push_back(obstacle.radius + k_cut * radius_);
+    for (const Footprint& obstacle : obstacles_) {
+      kept_away_.push_back(obstacle.radius + k_cut * radius_);
+      middles_.push_back(middle(obstacle.core));
+      double reach = 0;
+      for (const Vec2& corner : obstacle.core) reach = std::max(reach, (corner - middles_.back()).norm());
+      far_.push_back((1 + k_rounding) * (reach + kept_away_.back()));
+    }
     corners_.push_back({from, Vec2::Zero()});
     const Vec2 right = room.jamb(door, 0), along = (room.jamb(door, 1) - right) / door.width;
     for (int k = 0; k <= k_goals; ++k)
@@ -87,7 +94,8 @@ class Graph {
     for (const Room::Wall& wall : room_.walls)
       if (Room::before(wall, at) < -k_behind) return false;
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      if (distance(obstacles_[k].core, at) < grown_[k]) return false;
+      if ((at - middles_[k]).norm() < far_[k] && distance(obstacles_[k].core, at) < kept_away_[k])
+        return false;
     return true;
   }
 
@@ -103,7 +111,9 @@ class Graph {
     if (!touches(a, along, length) || !touches(b, along, length)) return false;
     const Convex line{a.at, b.at};
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      if (nearest_points(obstacles_[k].core, line).distance < grown_[k]) return false;
+      if (distance(line, middles_[k]) < far_[k] &&
+          nearest_points(obstacles_[k].core, line).distance < kept_away_[k])
+        return false;
     return true;
   }
 
@@ -118,7 +128,9 @@ class Graph {
   const Room& room_;
   std::vector<Footprint> obstacles_;  // the faces of the walls among them
   double radius_;
-  std::vector<double> grown_;  // m, that the disc's middle keeps from each core
+  std::vector<double> kept_away_;  // m, that the disc's middle keeps from each core
+  std::vector<Vec2> middles_;      // of the cores
+  std::vector<double> far_;        // m from there, where the core is farther than that for certain
   std::vector<Corner> corners_;
   std::size_t goals_ = 0;  // end of the corners on the door's line, which begin behind the first
 };

@@ -66,6 +66,7 @@ class Screen {
     shell_.show(open_source(options, program_), "");
   }
   Player& player() { return shell_.session()->player(); }
+  Viewer& viewer() { return shell_.session()->viewer(); }
 
  private:
   render::Stage stage_;
@@ -81,6 +82,21 @@ void measure_frames(const std::string& program, const char* scene) {
   std::vector<double> ms;
   for (int i = 0; i < 300; ++i) ms.push_back(screen.frame());
   print((std::string(scene) + " while it runs, a frame").c_str(), ms);
+}
+
+/// While a person turns it, at rest.
+void measure_turning(const std::string& program, const char* scene) {
+  Screen screen(program);
+  screen.show(scene);
+  while (!screen.player().can_edit()) screen.frame();
+  std::vector<double> ms;
+  for (int i = 0; i < 300; ++i) {
+    render::Orbit orbit = screen.viewer().orbit();
+    orbit.rotate(4, 0);
+    screen.viewer().look(orbit);
+    ms.push_back(screen.frame());
+  }
+  print((std::string(scene) + " turned, a frame").c_str(), ms);
 }
 
 /// A whole run, drawn 30 times a second as far as that is kept.
@@ -140,6 +156,7 @@ int bench(const std::string& program, Clock::time_point start) {
     std::printf("%-44s %6.1f ms\n", "paper-a, until its bodies are seen", ms_since(start));
   }
   for (const char* scene : {"paper-a", "classroom"}) measure_frames(program, scene);
+  measure_turning(program, "classroom");
   for (const char* scene : {"dominoes", "classroom", "office"}) measure_real_time(program, scene);
   const std::string recording = (folder / "paper-a.h5").string();
   fs::remove(recording);

@@ -37,6 +37,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/panels/criteria_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/demo_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/load_path_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/panels/lane_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/panels/subject_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/block_picture_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/picture/bridge_test.cpp
