@@ -93,6 +93,11 @@ inline constexpr Phrase k_no_instants{"The recording holds no instants.", "記�
 inline constexpr Phrase k_running_loads{"Running through the load steps.", "荷重ステップを計算中。"};
 inline constexpr Phrase k_running{"Running: {0:.2f} times real time asked, {1:.2f} reached.",
                                   "計算中：指定 {0:.2f} 倍速、実際 {1:.2f} 倍速。"};
+inline constexpr Phrase k_running_slow{
+    "Running: {0:.2f} times real time asked, {1:.2f} reached; about {2} to the end.",
+    "計算中：指定 {0:.2f} 倍速、実際 {1:.2f} 倍速。終了まで約 {2}。"};
+inline constexpr Phrase k_minutes{"{0} min", "{0} 分"};
+inline constexpr Phrase k_seconds{"{0} s", "{0} 秒"};
 inline constexpr Phrase k_paused{"Paused. Space goes on; parameters can be changed now and while it runs.",
                                  "一時停止中。Space で再開。パラメーターは計算中も変更できます。"};
 inline constexpr Phrase k_recording{"Recording", "記録を表示中"};

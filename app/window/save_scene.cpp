@@ -38,6 +38,16 @@ bool put_beside(const io::SceneFile& file, const std::string& path) {
   return true;
 }
 
+/// Of a scene in the working folder, where no file is yet.
+std::string free_path(const std::string& name) {
+  std::error_code ignored;
+  fs::path free;
+  int number = 1;
+  do free = fs::current_path(ignored) / (name + "-" + std::to_string(number++) + ".toml");
+  while (fs::exists(free, ignored));
+  return free.string();
+}
+
 }  // namespace
 
 std::vector<std::string> save_scene(const io::Scene& scene, const Parameters& now, const std::string& path,
@@ -62,12 +72,7 @@ void SaveDialog::open(const io::Scene& scene) {
   open_ = appeared_ = true;
   exists_.clear();
   refused_.clear();
-  std::error_code ignored;
-  fs::path free;
-  int number = 1;
-  do free = fs::current_path(ignored) / (scene.name + "-" + std::to_string(number++) + ".toml");
-  while (fs::exists(free, ignored));
-  const std::string text = free.string();
+  const std::string text = !saved_.empty() && saved_name_ == scene.name ? saved_ : free_path(scene.name);
   text.copy(path, sizeof path - 1);
   path[std::min(text.size(), sizeof path - 1)] = '\0';
 }
@@ -111,6 +116,8 @@ std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, cons
     const std::vector<std::string> given_up = save_scene(scene, now, path, ask);
     open_ = false;
     const std::string full = fs::absolute(path, ignored).string();
+    saved_ = full;
+    saved_name_ = scene.name;
     if (given_up.empty()) return say(ww::k_written, full);
     std::string keys;
     for (const std::string& key : given_up) keys += (keys.empty() ? "" : ", ") + key;

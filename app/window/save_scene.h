@@ -23,6 +23,7 @@ class SaveDialog {
  public:
   explicit SaveDialog(FileDialog& files) : files_(files) {}
 
+  /// Proposes the path under which the scene was saved last, else one that is free.
   void open(const io::Scene& scene);
   void close() { open_ = false; }
   bool is_open() const { return open_; }
@@ -40,8 +41,9 @@ class SaveDialog {
  private:
   FileDialog& files_;
   bool open_ = false, appeared_ = false, enter_ = false;
-  std::string exists_;   ///< the path that is there already, about which it asks
-  std::string refused_;  ///< why it is not written
+  std::string exists_;              ///< the path that is there already, about which it asks
+  std::string refused_;             ///< why it is not written
+  std::string saved_, saved_name_;  ///< where it saved last, and the name of that scene
 };
 
 }  // namespace topple::app

@@ -1,11 +1,28 @@
 #include "app/window/status_line.h"
 
+#include <cmath>
+
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 
 namespace topple::app {
 
 using namespace window_words;
+
+namespace {
+
+constexpr double k_kept_up = 0.8;       // of the speed that is asked for, from which nobody waits
+constexpr double k_least_known = 1e-3;  // times real time, below which no end can be told
+
+std::string running_in_words(const Player& player) {
+  const double asked = player.speed(), achieved = player.status().achieved;
+  if (achieved < k_least_known || achieved > k_kept_up * asked) return say(k_running, asked, achieved);
+  const double seconds = std::ceil((player.length() - player.time()) / achieved);
+  const std::string left = seconds < 120 ? say(k_seconds, seconds) : say(k_minutes, std::ceil(seconds / 60));
+  return say(k_running_slow, asked, achieved, left);
+}
+
+}  // namespace
 
 std::string status_in_words(const Player& player) {
   const LiveStatus& status = player.status();
@@ -31,9 +48,7 @@ std::string status_in_words(const Player& player) {
   }
   if (player.way().empty()) return status.message.empty() ? say(k_no_instants) : status.message;
   if (player.at_head())
-    return !player.playing() ? say(k_paused)
-           : loads           ? say(k_running_loads)
-                             : say(k_running, player.speed(), status.achieved);
+    return !player.playing() ? say(k_paused) : loads ? say(k_running_loads) : running_in_words(player);
   std::string words = say(player.replay() ? k_recording : k_looking_back);
   if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
   if (!status.message.empty()) return say(k_says, words, status.message);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/window/status_line.h"
 #include "solver/io/recording/recording.h"
 #include "unit/app/shell_fixture.h"
 #include "unit/app/small_disk.h"
@@ -277,6 +278,16 @@ TEST_F(ShellTest, where_a_step_failed_is_marked_in_the_picture) {
   EXPECT_NE(scene(), before);
 }
 
+TEST_F(ShellTest, a_run_that_cannot_keep_up_tells_when_it_ends) {
+  shell_->show({.scene = live_scene(k_rocking, {"run.time_step=1e-6", "run.integrator=central-difference",
+                                                "cabinet.1.model=frame"})},
+               "");
+  ASSERT_TRUE(until([&] { return ready(); }));
+  player().play();
+  EXPECT_TRUE(until([&] { return status_in_words(player()).find(" to the end.") != std::string::npos; }))
+      << status_in_words(player());
+}
+
 TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unasked) {
   open_rocking();
   run_to(0.1);
@@ -289,6 +300,9 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
   EXPECT_EQ(saved.title, "A rocking cabinet for tests");
+  shell_->save_dialog().open(shell_->session()->scene());
+  EXPECT_EQ(std::string(shell_->save_dialog().path), path) << "the same once more";
+  shell_->save_dialog().close();
 
   const std::string other = write("other.toml", "mine");
   save_as(other);
