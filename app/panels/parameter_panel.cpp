@@ -14,6 +14,7 @@
 #include "solver/body/model_level.h"
 #include "solver/io/edit/edit_text.h"
 #include "solver/io/scene/scene.h"
+#include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 
 namespace topple::app {
@@ -267,6 +268,20 @@ void write_below(const std::string& words) {
   ImGui::PopTextWrapPos();
 }
 
+/// How strong the record is then, which its factor does not tell.
+void draw_scale(const Parameter& of) {
+  draw_slider(of);
+  const Shake& shake = of.player.parameters().shakes[static_cast<std::size_t>(of.index)];
+  Vec3 along = Vec3::Zero();
+  for (const AccelerogramComponent& component : shake.record->components)
+    along += component.direction.cwiseAbs();
+  std::string axes;
+  for (int k = 0; k < 3; ++k)
+    if (along[k] > 0) axes += (axes.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
+  write_below(
+      say(shake.building ? k_ground_peak : k_record_peak, shake.scale * shake.record->peak / k_gal, axes));
+}
+
 void draw_model(const Parameter& of) {
   ImGui::TextUnformatted(of.model().bodies[static_cast<std::size_t>(of.index)].name.c_str());
   of.row().choice(say(k_model), k_model_about, [&](int number) {
@@ -304,6 +319,7 @@ constexpr Control k_controls[] = {
     {Edit::Key::on, [](const Parameter& of) { of.row().tick(say(k_on), say(k_on_about)); }},
     {Edit::Key::type, draw_type},
     {Edit::Key::frequency, draw_frequency},
+    {Edit::Key::scale, draw_scale},
     {Edit::Key::law,
      [](const Parameter& of) { of.row().choice(say(k_law), k_law_about, [](int) { return true; }); }},
     {Edit::Key::model, draw_model},

@@ -253,6 +253,9 @@ inline constexpr Phrase k_frequency_about{"{0}", "加振の周波数"};
 inline constexpr Phrase k_amplitude_about{"{0}", "床加速度の振幅"};
 inline constexpr Phrase k_duration_about{"{0}", "加振の継続時間"};
 inline constexpr Phrase k_scale_about{"{0}", "加速度記録に掛ける倍率"};
+inline constexpr Phrase k_record_peak{"at most {0:.0f} gal, along {1}", "最大 {0:.0f} gal、{1} 方向"};
+inline constexpr Phrase k_ground_peak{"the ground: at most {0:.0f} gal, along {1}",
+                                      "地盤：最大 {0:.0f} gal、{1} 方向"};
 inline constexpr Phrase k_alpha_about{"{0}", "接触のペナルティ剛性係数"};
 inline constexpr Phrase k_q_about{"{0}", "接触力の指数"};
 inline constexpr Phrase k_friction_about{"{0}", "動摩擦係数"};
