@@ -96,10 +96,7 @@ void FurnishView::lay_out(const render::OverlayFonts& fonts) {
 }
 
 render::Surface FurnishView::surface() const {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto pixels = [](float x, float scale) { return static_cast<int>(std::lround(x * scale)); };
-  return {.width = pixels(io.DisplaySize.x, io.DisplayFramebufferScale.x),
-          .height = pixels(io.DisplaySize.y, io.DisplayFramebufferScale.y)};
+  return surface_with_scene(scene_);
 }
 
 void FurnishView::build(const render::OverlayFonts& fonts, float scale, const std::function<void()>& over,

@@ -35,8 +35,12 @@ render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const A
 bool list_entry(const std::string& label, bool chosen);
 
 /// Begins a window that fills `box` and does nothing else; ImGui::End() ends it. Keys move among what is in
-/// it.
+/// it. What lies under it is seen through: the colour of surface_with_scene, which a software context
+/// clears faster than it fills a window.
 void begin_panel(const char* name, const Box& box);
+
+/// The whole window, in the colour of panels where the scene is not.
+render::Surface surface_with_scene(const Box& scene);
 
 /// What a person asks of the shell around the viewer (shell.h).
 enum class ShellRequest { none, scenes, save, export_view, furnish, new_room, shake };

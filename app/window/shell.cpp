@@ -351,9 +351,9 @@ void Shell::draw_opening(const Box& window) {
 render::Surface Shell::surface() const {
   if (furnishing_) return room_->surface();
   if (session_) return session_->viewer().surface();
-  const ImGuiIO& io = ImGui::GetIO();
-  return {.width = static_cast<int>(std::lround(io.DisplaySize.x * io.DisplayFramebufferScale.x)),
-          .height = static_cast<int>(std::lround(io.DisplaySize.y * io.DisplayFramebufferScale.y))};
+  render::Surface nothing_open = surface_with_scene({});
+  nothing_open.background = render::Surface{}.background;
+  return nothing_open;
 }
 
 void Shell::report_frame_time(double ms) {

@@ -93,7 +93,19 @@ void begin_panel(const char* name, const Box& box) {
   ImGui::SetNextWindowSize({box.width, box.height});
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus |
+                   ImGuiWindowFlags_NoBackground);
+}
+
+render::Surface surface_with_scene(const Box& scene) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec4 panel = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+  const auto pixels = [](float x, float scale) { return static_cast<int>(std::lround(x * scale)); };
+  return {.width = pixels(io.DisplaySize.x, io.DisplayFramebufferScale.x),
+          .height = pixels(io.DisplaySize.y, io.DisplayFramebufferScale.y),
+          .scene_left = pixels(scene.left, io.DisplayFramebufferScale.x),
+          .scene_top = pixels(scene.top, io.DisplayFramebufferScale.y),
+          .background = {panel.x, panel.y, panel.z}};
 }
 
 Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedView view,
@@ -182,12 +194,7 @@ void Viewer::lay_out() {
 }
 
 render::Surface Viewer::surface() const {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto pixels = [](float x, float scale) { return static_cast<int>(std::lround(x * scale)); };
-  return {.width = pixels(io.DisplaySize.x, io.DisplayFramebufferScale.x),
-          .height = pixels(io.DisplaySize.y, io.DisplayFramebufferScale.y),
-          .scene_left = pixels(scene_.left, io.DisplayFramebufferScale.x),
-          .scene_top = pixels(scene_.top, io.DisplayFramebufferScale.y)};
+  return surface_with_scene(scene_);
 }
 
 void Viewer::report_frame_time(double ms) {
