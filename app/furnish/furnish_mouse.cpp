@@ -148,6 +148,11 @@ std::optional<Vec2> FurnishView::place_at(float x, float y) const {
   return Vec2((sight.from + way * sight.direction).head<2>());
 }
 
+std::optional<Vec2> FurnishView::wall_place_at(float x, float y) const {
+  const auto at = on_level(sight_at(x, y), 0);
+  return at ? std::optional<Vec2>((*at / k_grid).array().round().matrix() * k_grid) : std::nullopt;
+}
+
 void FurnishView::move_ghost(float x, float y) {
   const bool fresh = ghost_->name.empty();
   const auto at = fresh ? place_at(x, y) : on_level(sight_at(x, y), grab_level_);
@@ -205,12 +210,12 @@ void FurnishView::click(float x, float y) {
       break;
     }
     case Tool::Kind::wall: {
-      if (!at) return;
-      const Vec2 place = (*at / k_grid).array().round().matrix() * k_grid;
+      const auto place = wall_place_at(x, y);
+      if (!place) return;
       if (!tool_.from) {
         tool_.from = place;
-      } else if (change([from = *tool_.from, place](const io::Scene& scene) {
-                   return with_wall(scene, from, place);
+      } else if (change([from = *tool_.from, to = *place](const io::Scene& scene) {
+                   return with_wall(scene, from, to);
                  })) {
         let_go();
       }

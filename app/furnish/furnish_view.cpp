@@ -229,6 +229,9 @@ void FurnishView::draw_over_scene(const render::OverlayFonts& fonts) {
                title.c_str());
   list.PopClipRect();
   if (ghost_ && ghost_->red) draw_words_at_mouse(ghost_->why, theme().positive, fonts);
+  if (tool_.kind == Tool::Kind::wall && tool_.from)
+    if (const auto to = wall_place_at(mouse.x, mouse.y))
+      draw_words_at_mouse(fmt::format("{:.2f} m", (*to - *tool_.from).norm()), theme().text, fonts);
 }
 
 }  // namespace topple::app

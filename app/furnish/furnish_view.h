@@ -122,6 +122,8 @@ class FurnishView {
   std::optional<std::size_t> body_at(float x, float y) const;
   Sightline sight_at(float x, float y) const;
   std::optional<Vec2> place_at(float x, float y) const;
+  /// On the floor, on the grid.
+  std::optional<Vec2> wall_place_at(float x, float y) const;
 
   bool press_with_control(const render::KeyPress& press);
   void let_go();
