@@ -79,7 +79,7 @@ class GapFinder {
  private:
   void find() {
     if (count_ == 0) return;
-    std::array<PackVector<Four>, 4> x;
+    std::array<PackVector<Four>, 4> x{};
     for (int k = 0; k < 4; ++k)
       for (int end = 0; end < 4; ++end) set_lane(x[end], k, pair_[k < count_ ? k : 0]->start[end]);
     const PackVector<Four> u = x[1] - x[0], v = x[3] - x[2], r = x[0] - x[2];
