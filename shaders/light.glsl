@@ -25,7 +25,7 @@ float lit(vec3 at, vec2 texels) {  // of a map of 2048
   return texture(u_shadow, vec3(at.xy + texels / 2048.0, at.z));
 }
 
-// In the map; everything outside of it is lit.
+// Where p is in the map; everything outside of it is lit.
 vec3 on_shadow_map(vec3 p) {
   vec3 at = 0.5 + 0.5 * (u_shadow_matrix * vec4(p, 1.0)).xyz;
   at.z = min(at.z, 1.0);  // what maps of fixed point do by themselves

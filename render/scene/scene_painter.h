@@ -57,8 +57,9 @@ class ScenePainter {
 
   Lighting& lighting(Quality quality);
   void upload(const SceneFrame& frame, const Camera& camera, int height, LeftOut& left_out);
+  /// Triangles of solids that face the light first.
   void sort_by_light();
-  /// Where all that was uploaded is seen.
+  /// The rectangle of the picture in which all that was uploaded is seen.
   PixelRect seen(const Target& target) const;
   void draw_room(const PixelRect& part, const Lighting& lighting, const Grounds& grounds);
   void draw_tiles(const Program& program, const DrawnGround& ground, const IndexRange& tiles);
@@ -76,7 +77,7 @@ class ScenePainter {
   GlObject mesh_array_, mesh_vertices_, mesh_indices_, panel_array_, panel_vertices_, ground_array_,
       ground_corners_, empty_array_;
   std::array<GlObject, k_colour_map_count> colour_maps_;
-  Mesh solid_mesh_, mesh_;  // mesh_: those and all that follows
+  Mesh solid_mesh_, mesh_;  // mesh_: the solids and all other triangles, as uploaded
   std::vector<PanelVertex> panels_;
   IndexRange solids_, towards_light_, away_from_light_, ghosts_, shells_, trails_, bands_, arrows_;
   Eigen::Vector3f low_, high_;  // box around bounds and everything solid

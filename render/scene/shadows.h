@@ -62,6 +62,7 @@ class Shadows {
   /// the map; margin: around them, of its side.
   static std::vector<std::uint8_t> marked(const Eigen::Matrix4f& to_map, float margin, const Highest& highest,
                                           const Mesh& solids);
+  /// Whether anything is marked in the box of `places`.
   static bool any_marked(const std::vector<std::uint8_t>& marked, const Eigen::Matrix4f& to_map,
                          const std::array<Eigen::Vector3f, 4>& places);
   void shade_contact();
@@ -72,7 +73,7 @@ class Shadows {
   GlObject key_map_, contact_map_, near_map_, shade_map_, key_target_, contact_target_, shade_target_,
       empty_array_;
   std::vector<std::uint8_t> near_, casters_;  // marked: what is near the floor; what casts shadows
-  float nearest_to_light_ = 0;                // m along the light
+  float nearest_to_light_ = 0;                // of what casts shadows, m along the light
   Eigen::Matrix4f key_matrix_ = Eigen::Matrix4f::Identity();
   Eigen::Matrix4f contact_matrix_ = Eigen::Matrix4f::Identity();
   float contact_width_ = 1;  // m, side of the square that is mapped
