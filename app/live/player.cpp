@@ -355,6 +355,12 @@ void Player::edit(const Edit& edit) {
   post(edit);
 }
 
+void Player::pull(const Edit& edit) {
+  if (!can_edit()) return;
+  io::check_edit(edit, parameters_, scene_->setup.model);
+  post(edit);
+}
+
 void Player::undo() {
   if (!can_undo()) return;
   new_undo_ = true;

@@ -72,6 +72,8 @@ class Player {
   void begin_edit() { new_undo_ = true; }
   /// Throws io::InputError for what a scene would be refused for.
   void edit(const Edit& edit);
+  /// The same of a pull, which is not undone.
+  void pull(const Edit& edit);
   /// The edits that turn the parameters of the first frame, which must exist, into the present ones.
   std::vector<Edit> edits_since_start() const;
   bool can_undo() const { return can_edit() && !undo_.empty(); }

@@ -35,7 +35,7 @@ struct JapaneseObstacle {
 inline constexpr JapaneseObstacle k_obstacles[] = {
     {planar::Obstacle::none, ""},
     {planar::Obstacle::floor, "水平な床の上に立っていないか、重力が鉛直でない"},
-    {planar::Obstacle::held, "支持、荷重または固定具が作用している"},
+    {planar::Obstacle::held, "支持、荷重、手または固定具が作用している"},
     {planar::Obstacle::base, "接触幅の一様な平らな底面がない"},
     {planar::Obstacle::law, "接触則に剛な極限がない"},
     {planar::Obstacle::direction, "一つの鉛直面から外れて動く"},

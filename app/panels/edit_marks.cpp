@@ -1,14 +1,23 @@
 #include "app/panels/edit_marks.h"
 
 namespace topple::app {
+namespace {
+
+// A pull goes on until it is let go of.
+bool holds_on(const Edit& edit) {
+  return edit.key == Edit::Key::pull && !edit.value.isZero(0);
+}
+
+}  // namespace
 
 std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits) {
   constexpr double k_of_one_drag = 0.5;  // s
   std::vector<EditMark> marks;
   for (const LoggedEdit& edit : edits) {
-    const bool same = !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
-                      marks.back().last.edit.index == edit.edit.index &&
-                      edit.time - marks.back().last.time < k_of_one_drag;
+    const bool same =
+        !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
+        marks.back().last.edit.index == edit.edit.index &&
+        (holds_on(marks.back().last.edit) || edit.time - marks.back().last.time < k_of_one_drag);
     if (same)
       marks.back().last = edit;
     else

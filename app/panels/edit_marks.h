@@ -13,7 +13,7 @@ struct EditMark {
 };
 
 /// `edits` in order of their steps. Two belong together when no other edit stands between them and less than
-/// 0.5 s of the run.
+/// 0.5 s of the run, or the earlier one is a pull that goes on.
 std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits);
 
 }  // namespace topple::app

@@ -177,9 +177,15 @@ std::string when(const Player& player, std::int64_t step, double time) {
                                   : instant_in_words(player.scene().setup, **at);
 }
 
-std::string edit_text(const Player& player, const LoggedEdit& edit) {
-  return say(k_edited, when(player, edit.step, edit.time), io::edit_key(edit.edit),
-             io::edit_value_text(edit.edit, io::EditSpelling::shown));
+std::string edit_text(const Player& player, const EditMark& mark) {
+  const auto instant = [&](const LoggedEdit& edit) { return when(player, edit.step, edit.time); };
+  const Edit& edit = mark.last.edit;
+  if (traits(edit.key).of != Edit::Of::node)
+    return say(k_edited, instant(mark.last), io::edit_key(edit),
+               io::edit_value_text(edit, io::EditSpelling::shown));
+  const Model& model = player.scene().setup.model;
+  return say(k_event, instant(mark.first), model.bodies[model.node_body[edit.index]].name,
+             say(k_pulled_until, instant(mark.last)));
 }
 
 std::string with_body(const Player& player, const io::RecordedEvent& event, const std::string& what) {
@@ -294,7 +300,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   }
   for (const EditMark& mark : edit_marks(player.edits()))
     add(
-        mark.last.time, lane.top, [&] { return edit_text(player, mark.last); },
+        mark.last.time, lane.top, [&] { return edit_text(player, mark); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))

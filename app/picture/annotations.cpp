@@ -19,6 +19,7 @@ constexpr double k_ring = 1.9;            // radius of a hinge's ring, of the se
 constexpr double k_least_section = 0.02;  // m, of a section without sides
 
 constexpr render::Float4 k_force_colour = {0.96f, 0.56f, 0.05f, 1};
+constexpr render::Float4 k_pull_colour = {0.85f, 0.1f, 0.55f, 1};
 constexpr double k_arrow = 1. / 3;       // of the height, an arrow of the usual top
 constexpr double k_least_arrow = 0.004;  // m: shorter ones are not seen
 
@@ -142,6 +143,22 @@ void add_contact_forces(const Model& model, const io::FrameRow& row, double newt
     const int part = static_cast<int>(model.elements.size() + k);
     each_share(model, part, on[3], on[4], [&](int node, double share) { at += share * position(row, node); });
     add(at, on);
+  }
+}
+
+double hand_strength(const Model& model, int node) {
+  return k_standard_gravity * model.bodies[model.node_body[node]].mass;
+}
+
+void add_pulls(const Model& model, const Parameters& parameters, const io::FrameRow& row,
+               render::SceneFrame& out) {
+  for (const Pull& pull : parameters.pulls) {
+    const Vec3 force = pull_force(pull, row.time);
+    const Vec3 arrow = k_hand_reach / hand_strength(model, pull.node) * force;
+    if (arrow.norm() < k_least_arrow) continue;
+    const Vec3 from = position(row, pull.node) + floor_shift(row), to = from + arrow;
+    out.arrows.push_back({to_float(from), to_float(to), k_pull_colour});
+    out.labels.push_back({to_float(to), say(window_words::k_newtons, force.norm())});
   }
 }
 

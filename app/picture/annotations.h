@@ -25,6 +25,15 @@ void add_doors(const Room& room, const Vec3& shift, render::SceneFrame& out);
 /// `newtons` for each 0.1 m. Between two bodies there is one on each.
 void add_contact_forces(const Model& model, const io::FrameRow& row, double newtons, render::SceneFrame& out);
 
+/// m: a hand that pulls a body is a spring that bears the body's weight when it is as long as that, and no
+/// more.
+inline constexpr double k_hand_reach = 0.3;
+/// N, that of the body of a node.
+double hand_strength(const Model& model, int node);
+/// Arrows from nodes that are pulled to where the hand's spring ends, and how strong it is.
+void add_pulls(const Model& model, const Parameters& parameters, const io::FrameRow& row,
+               render::SceneFrame& out);
+
 /// N for each 0.1 m of an arrow, a round number, so that most forces of the run are at most a third as long
 /// as what the run moves through is high. `force`: of a picture that stands alone, N; no longer than that
 /// height.

@@ -162,6 +162,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
     add_contact_forces(model, drawn, newtons, out);
     out.legend.notes.push_back(say(window_words::k_arrow_scale, newtons));
   }
+  add_pulls(model, parameters, drawn, out);
   if (settings.trails != Trails::none)
     add_trails(model, extent_, row, settings.trails == Trails::run || is_static(scene_.setup), out);
   if (settings.diagram) add_diagram(model, drawn, *settings.diagram, out);

@@ -174,6 +174,7 @@ inline constexpr Phrase k_step_auto_unknown{"auto", "自動"};
 inline constexpr Phrase k_step_auto_about{"adaptive: the step taken here; one that is set stays",
                                           "可変刻み：この時点での刻み。設定すると固定になる"};
 
+inline constexpr Phrase k_pulled_until{"pulled by hand until {0}", "{0} まで手で引く"};
 inline constexpr Phrase k_edited{"{0}: {1} = {2}", "{0}：{1} = {2}"};
 inline constexpr Phrase k_mark_lifts{"lifts off", "浮き上がり"};
 inline constexpr Phrase k_mark_strikes{"strikes", "衝突"};
@@ -327,6 +328,14 @@ inline constexpr Phrase k_cannot_yield{"nothing here can yield", "降伏する�
 inline constexpr Phrase k_deformed{"deformation ×{0:g}", "変形倍率 ×{0:g}"};
 inline constexpr Phrase k_not_finite{"not drawn: a number of this instant is not finite",
                                      "この時刻の数値が有限でないため表示できません"};
+inline constexpr Phrase k_newtons{"{0:.0f} N", "{0:.0f} N"};
+inline constexpr Phrase k_pulling{"Pulling {0}, at most with its weight, {1:.0f} N.",
+                                  "{0}を引いています。最大でその重さの {1:.0f} N です。"};
+inline constexpr Phrase k_pull_while_it_runs{
+    "A body is pulled while its run is computed: press End, then Space.",
+    "家具を引けるのは計算中だけです。End、続いて Space を押してください。"};
+inline constexpr Phrase k_no_pull_of_loads{"Nothing is pulled while loads grow: a pull is for a run in time.",
+                                           "荷重を増す計算では引けません。時間を追う計算で引けます。"};
 inline constexpr Phrase k_arrow_scale{"arrows: {0:g} N per 0.1 m", "矢印 0.1 m = {0:g} N"};
 inline constexpr Phrase k_note{"topple {0} · scene {1}{2} · deformation ×{3:g}",
                                "topple {0} · シーン {1}{2} · 変形倍率 ×{3:g}"};
@@ -414,6 +423,7 @@ inline constexpr Phrase k_key_turn{"turn the view; with Shift or the right butto
 inline constexpr Phrase k_key_wheel{"nearer, farther", "拡大、縮小"};
 inline constexpr Phrase k_key_click{"inspect a member; once more: its body",
                                     "部材を選択。もう一度で家具全体"};
+inline constexpr Phrase k_key_pull{"pull a body while it runs", "動いている家具を引く"};
 inline constexpr Phrase k_key_let_go{"let go of it", "選択を解除"};
 inline constexpr Phrase k_key_panel{"to the next panel", "次のパネルへ"};
 inline constexpr Phrase k_key_tab{"to the next value of the panel", "パネル内の次の値へ"};
@@ -431,6 +441,7 @@ inline constexpr Phrase k_drag{"drag", "ドラッグ"};
 inline constexpr Phrase k_wheel{"wheel", "ホイール"};
 inline constexpr Phrase k_click{"click", "クリック"};
 inline constexpr Phrase k_arrows{"arrows", "矢印キー"};
+inline constexpr Phrase k_ctrl_drag{"Ctrl+drag", "Ctrl+ドラッグ"};
 inline constexpr Phrase k_ctrl_click{"Ctrl+click on a slider", "スライダーを Ctrl+クリック"};
 
 }  // namespace window_words

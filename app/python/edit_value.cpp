@@ -47,10 +47,11 @@ Vec3 value_of(const std::string& name, const io::Key& key, const io::Node& node)
       return Vec3(last, 0, 0);
     }
     default: {
-      if (!list) return Vec3(quantity(name, key, node), 0, 0);
-      Vec3 value = Vec3::Zero();
       const auto most = static_cast<std::size_t>(key.type == io::KeyType::numbers ? key.count : 0);
-      if (node.items.empty() || node.items.size() > most)
+      const std::size_t least = key.least_count > 0 ? 1 : most;
+      if (!list && least <= 1) return Vec3(quantity(name, key, node), 0, 0);
+      Vec3 value = Vec3::Zero();
+      if (!list || node.items.size() < least || node.items.empty() || node.items.size() > most)
         refuse(name, node, most > 0 ? "is not a list of " + std::to_string(most) : "is not a number");
       for (std::size_t k = 0; k < node.items.size(); ++k)
         value[static_cast<Eigen::Index>(k)] = quantity(name, key, node.items[k].value);

@@ -35,7 +35,7 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::neighbour, "壁か他の家具が近い"},
     {LevelReason::fall, "別の部分が床か壁に当たる"},
     {LevelReason::plane, "運動が鉛直面内でなくなった"},
-    {LevelReason::held, "固定具が働く"},
+    {LevelReason::held, "固定具または手が働く"},
     {LevelReason::contact, "接触条件の変更"},
     {LevelReason::jammed, "すべりの停止が繰り返される"},
     {LevelReason::solid, "一つの塊である"}};

@@ -117,7 +117,8 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
       keep_(std::move(keep)),
       bridge_(player.scene(), player.extent()),
       settings_(settings),
-      view_(view) {
+      view_(view),
+      hand_(player) {
   apply_appearance();
 }
 
@@ -355,7 +356,10 @@ void Viewer::handle_mouse() {
   const ImGuiIO& io = ImGui::GetIO();
   const float x = io.MousePos.x - scene_.left, y = io.MousePos.y - scene_.top;
   const bool inside = scene_.contains(io.MousePos.x, io.MousePos.y) && !io.WantCaptureMouse;
-  if (inside && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2))) {
+  handle_hand(inside, x, y);
+  const bool takes_hold = io.KeyCtrl && ImGui::IsMouseClicked(0);
+  if (inside && !takes_hold &&
+      (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2))) {
     dragging_ = true;
     dragged_ = false;
   }
@@ -375,17 +379,31 @@ void Viewer::handle_mouse() {
       camera_changed_ = true;
     }
   }
-  if (dragging_ && !dragged_ && ImGui::IsMouseReleased(0)) {
-    const auto found = render::pick(frame_, orbit_.camera(aspect()), static_cast<int>(scene_.width),
-                                    static_cast<int>(scene_.height), x, y);
-    pick(found);
-  }
+  if (dragging_ && !dragged_ && ImGui::IsMouseReleased(0)) pick(picked_at(x, y));
   if (!ImGui::IsAnyMouseDown()) dragging_ = false;
   if (inside && io.MouseWheel != 0) {
     flight_ = 1;
     moved_ = true;
     orbit_.zoom(std::pow(1.15f, io.MouseWheel), x, y, scene_.width, scene_.height);
     camera_changed_ = true;
+  }
+}
+
+std::optional<render::Pick> Viewer::picked_at(float x, float y) const {
+  return render::pick(frame_, orbit_.camera(aspect()), static_cast<int>(scene_.width),
+                      static_cast<int>(scene_.height), x, y);
+}
+
+void Viewer::handle_hand(bool inside, float x, float y) {
+  const bool held = hand_.holds();
+  if (inside && ImGui::GetIO().KeyCtrl && ImGui::IsMouseClicked(0))
+    if (const auto found = picked_at(x, y)) message_ = hand_.grab(frame_, *found);
+  if (hand_.holds() && ImGui::IsMouseDown(0) && player_.can_edit()) {
+    hand_.pull(orbit_.camera(aspect()), scene_.width, scene_.height, x, y);
+    message_ = hand_.words();
+  } else {
+    hand_.let_go();
+    if (held) message_.clear();
   }
 }
 

@@ -16,6 +16,7 @@
 #include "app/panels/teaching_panel.h"
 #include "app/picture/bridge.h"
 #include "app/picture/solid_bodies.h"
+#include "app/window/hand.h"
 #include "render/gl/key_press.h"
 #include "render/output/stage.h"
 #include "render/scene/font.h"
@@ -145,7 +146,9 @@ class Viewer {
   void lay_out();
   void handle_characters();
   void handle_mouse();
+  std::optional<render::Pick> picked_at(float x, float y) const;
   void pick(const std::optional<render::Pick>& found);
+  void handle_hand(bool inside, float x, float y);
   void fit_view(render::NamedView view);
   void move_camera(double wall_s);
   void draw_scene();
@@ -193,6 +196,7 @@ class Viewer {
   TeachingState teaching_;
   PrecisionState precision_;
   std::optional<EarlierRun> earlier_;
+  Hand hand_;
   std::optional<SolidBodies> solid_;  ///< once they were wanted
   Tab tab_ = Tab::parameters;
   int failed_element_ = -1;  // marked; -1: none

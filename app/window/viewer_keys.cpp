@@ -55,6 +55,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {k_drag, k_key_turn},
       {k_wheel, k_key_wheel},
       {k_click, k_key_click},
+      {k_ctrl_drag, k_key_pull},
       {{"Esc", "Esc"}, k_key_let_go, render::key::escape, false, false, [](Viewer& v) { v.let_go(); }},
       {{"H", "H"},
        fw::k_key_hide,

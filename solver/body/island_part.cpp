@@ -114,6 +114,7 @@ void IslandPart::begin(const StepSpan& span, const State& next) {
   std::vector<double> travel;
   for (const auto& [index, body] : bodies_) {
     body->remember(next.anchors);
+    body->take(span.start.pulls);
     start_.bodies.push_back(next.bodies[index]);
     travel.push_back(k_likely * likely_travel(model_.bodies[index], next.bodies[index], span.h));
   }

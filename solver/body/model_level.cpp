@@ -99,7 +99,7 @@ const char* name(LevelReason reason) {
     case LevelReason::plane:
       return "it is moved out of its plane";
     case LevelReason::held:
-      return "an anchor holds it";
+      return "an anchor or a hand holds it";
     case LevelReason::contact:
       return "its contacts were edited";
     case LevelReason::jammed:

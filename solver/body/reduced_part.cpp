@@ -47,6 +47,7 @@ void ReducedPart::advance(const StepSpan& span, State& next, PartScratch& scratc
   for (const auto& [index, body] : bodies_) {
     BodyState& s = next.bodies[index];
     body->remember(next.anchors);
+    body->take(span.start.pulls);
     outcome.status.kind = body->advance(span.parameters, span.start, span.end, span.h, s, next.stick,
                                         outcome.exchanged, scratch.reduced);
     if (!outcome.status.ok()) {

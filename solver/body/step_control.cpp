@@ -13,6 +13,7 @@ namespace topple {
 namespace {
 
 constexpr double k_energy_part = 0.02;  // of the tolerance: energy that a step may leave unexplained
+constexpr double k_ramp_part = 0.05;    // of a pull's ramp, at most
 constexpr double k_at_rest = 1e-7;      // m/s, what rounding makes of a body at rest is below
 constexpr double k_small_fall = 1e-8;   // of the reach: what bodies gain by it counts as nothing
 constexpr double k_speed_floor = 0.1;   // of the speed that the largest energy amounts to
@@ -68,8 +69,11 @@ Motion of_rigid(const Body& body, const BodyState& before, const BodyState& afte
 }  // namespace
 
 double look_ahead(const Model& model, const Parameters& parameters, const State& state) {
-  return std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
-                   anchor_look_ahead(model, state)});
+  double limit = std::min({k_longest_step, sample_interval(parameters.shakes, state.time + k_least_step),
+                           anchor_look_ahead(model, state)});
+  for (const Pull& pull : parameters.pulls)
+    if (state.time < pull.ramp.since + pull.ramp.over) limit = std::min(limit, k_ramp_part * pull.ramp.over);
+  return limit;
 }
 
 double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
@@ -115,6 +119,7 @@ double next_kink(const Model& model, const Parameters& parameters, double t) {
     if (traits(shake.kind).has_shape)
       for (const double kink : traits(shake.shape).kinks) consider(shake.start + kink * shake.duration);
   }
+  for (const Pull& pull : parameters.pulls) consider(pull.ramp.since + pull.ramp.over);
   for (const Load& load : model.loads)
     for (const auto& [at, factor] : load.history) consider(at);
   return next;

@@ -214,6 +214,7 @@ ContactLaw law_at_rest(ContactLaw law) {
 
 Parameters at_rest(Parameters parameters) {
   parameters.shakes.clear();
+  parameters.pulls.clear();
   parameters.contact = law_at_rest(parameters.contact);
   return parameters;
 }

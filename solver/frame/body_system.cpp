@@ -68,6 +68,9 @@ void BodySystem::start_forces(const Parameters& parameters, const StepInputs& no
       node_force_[i].moment[k] += factor * load->moment[k];
     }
   }
+  for (const PulledNode& pull : now.pulls)
+    if (const int i = local(pull.node); i >= 0)
+      for (int k = 0; k < 3; ++k) node_force_[i].force[k] += pull.force[k];
   if (remembers) beams_.remember(elements);
   damp(parameters);
   ends_here = false;

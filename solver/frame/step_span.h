@@ -1,16 +1,25 @@
 // The ends of a step and what all bodies share there.
 #pragma once
 
+#include <vector>
+
 #include "solver/contact/contact_law.h"
 #include "solver/model/parameters.h"
 
 namespace topple {
 
+/// A node of the model on which a force acts, N.
+struct PulledNode {
+  int node;
+  Vec3 force;
+};
+
 /// What all bodies share at an instant of a step.
 struct StepInputs {
   double time;  ///< s
   PreparedLaw law;
-  Vec3 floor;  ///< m/s^2, acceleration
+  Vec3 floor;                     ///< m/s^2, acceleration
+  std::vector<PulledNode> pulls;  ///< one per Parameters::pulls
   StepInputs(const Parameters& parameters, double t);
   /// The same, for an instant after `before` with the same parameters: cheaper.
   StepInputs(const Parameters& parameters, double t, const StepInputs& before);

@@ -29,6 +29,11 @@ void book_work(const BodySystem& s, const StepSpan& span, const BodyMotion& star
     const Vec3 spin = start.rotation[i] * log_quaternion(start.rotation[i].conjugate() * end.rotation[i]);
     energy.input += factor * (load->force.dot(end.position[i] - start.position[i]) + load->moment.dot(spin));
   }
+  for (std::size_t k = 0; k < span.end.pulls.size(); ++k)
+    if (const int i = s.local(span.end.pulls[k].node); i >= 0)
+      energy.input +=
+          0.5 *
+          (span.start.pulls[k].force + span.end.pulls[k].force).dot(end.position[i] - start.position[i]);
   energy.damping += s.viscous_work(start, end);
   const auto book = [&](const Contacts& contacts, double sign) {
     for (const TouchingPair& pair : contacts.planes)

@@ -41,13 +41,18 @@ double sum_of(const Shake& shake) {
 
 }  // namespace
 
+Vec3 pull_force(const Pull& pull, double t) {
+  return pull.before + pull.ramp.share(t) * (pull.force - pull.before);
+}
+
 bool is_finite(const Parameters& parameters) {
-  const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, want_stress, accuracy,
-               gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
+  const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, pulls, want_stress,
+               accuracy, gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
                substep_refinement, resolves_contacts] = parameters;
   double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
                  sum(accuracy, spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
   for (const Shake& shake : shakes) total += sum_of(shake);
+  for (const Pull& pull : pulls) total += sum_of(pull.force) + sum_of(pull.before) + sum_of(pull.ramp);
   for (const double ratio : damping) total += sum(ratio);
   return std::isfinite(total);
 }

@@ -74,6 +74,18 @@ struct Shake {
   bool operator==(const Shake&) const = default;
 };
 
+/// A dead force on a node, as of a hand: it keeps its direction while the node moves.
+struct Pull {
+  int node;                    ///< of the model
+  Vec3 force;                  ///< N
+  Vec3 before = Vec3::Zero();  ///< N, at the start of the ramp
+  ParameterRamp ramp;          ///< from `before` to `force`
+  bool operator==(const Pull&) const = default;
+};
+
+/// N, at time t.
+Vec3 pull_force(const Pull& pull, double t);
+
 /// What a body is computed as (method: model_level.h). automatic: the cheapest level that answers what is
 /// asked for. Recorded edits hold these numbers.
 enum class BodyModel { automatic = 0, rigid = 1, elastic = 2, frame = 3, planar = 4 };
@@ -93,6 +105,7 @@ struct Parameters {
   std::vector<BodyModel> models;  ///< one per body; empty: all frame
   std::vector<double> damping;    ///< one per body: ratio to critical at its first elastic mode; empty: 0
   std::vector<bool> anchors;      ///< one per anchor: it is in place; empty: all are
+  std::vector<Pull> pulls;        ///< in the order of their nodes, one each
   bool want_stress = true;        ///< stresses are asked for; `automatic` depends on it
   double accuracy = 0.01;         ///< error that `automatic` allows, see model_level.h
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2

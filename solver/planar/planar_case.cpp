@@ -58,7 +58,8 @@ bool is_held(Candidate& c) {
   const auto on_body = [&](int node) { return c.model.node_body[static_cast<std::size_t>(node)] == c.index; };
   const auto any = [](const auto& all, const auto& is) { return std::any_of(all.begin(), all.end(), is); };
   if (any(c.model.supports, [&](const Support& one) { return on_body(one.node); }) ||
-      any(c.model.loads, [&](const Load& one) { return on_body(one.node); }))
+      any(c.model.loads, [&](const Load& one) { return on_body(one.node); }) ||
+      any(c.parameters.pulls, [&](const Pull& one) { return on_body(one.node); }))
     return true;
   for (std::size_t k = 0; k < c.model.anchors.size(); ++k)
     if ((c.model.anchors[k].body == c.index || c.model.anchors[k].other.body == c.index) &&
@@ -268,7 +269,7 @@ struct Row : ObstacleTraits {
 };
 constexpr Row k_obstacles[] = {
     {{Obstacle::floor, "floor", "it stands on no level plane under straight gravity"}, has_no_floor},
-    {{Obstacle::held, "held", "supports, loads or anchors act on it"}, is_held},
+    {{Obstacle::held, "held", "supports, loads, pulls or anchors act on it"}, is_held},
     {{Obstacle::base, "base", "it has no flat base of one contact width"}, has_no_base},
     {{Obstacle::law, "law", "its contact law has no rigid limit"}, has_other_law},
     {{Obstacle::direction, "direction", "it moves out of one vertical plane"}, leaves_a_plane},

@@ -18,7 +18,7 @@ namespace topple::planar {
 enum class Obstacle {
   none,
   floor,      ///< no level plane under it, or gravity not straight down
-  held,       ///< supports, loads or anchors
+  held,       ///< supports, loads, pulls or anchors
   base,       ///< no flat base of one contact width
   law,        ///< the contact law has no limit of stiff contacts in which friction holds and impacts end
   direction,  ///< it is shaken, moved or tilted out of one vertical plane

@@ -91,7 +91,8 @@ void ImplicitSubstep::reach(bool with_slope) {
   BodyContacts& contacts = body_.contacts_;
   contacts.find(s_, r_, stick_);
   contacts.follow(before_, r0_, s_, r_);
-  const PreparedLaw& law = now_ == &one_ ? span_.middle.law : span_.end.law;
+  const StepInputs& inputs = now_ == &one_ ? span_.middle : span_.end;
+  const PreparedLaw& law = inputs.law;
   const ContactLoads loads = with_slope ? contacts.evaluate_forces<true>(law, u, gamma_dt)
                                         : contacts.evaluate_forces<false>(law, u, gamma_dt);
   Acting& acting = now_->acting;
@@ -105,6 +106,7 @@ void ImplicitSubstep::reach(bool with_slope) {
   }
   BodyAnchors& anchors = body_.anchors_;
   if (!anchors.any()) return;
+  anchors.take(inputs.pulls);
   anchors.find(s_);
   acting.force = acting.force + packed(anchors.force());
   acting.moment = acting.moment + packed(anchors.moment());
@@ -272,7 +274,7 @@ void ImplicitSubstep::finish(StepEnergy& booked) {
   };
   BodyContacts& contacts = body_.contacts_;
   booked.gravity -= from_gravity;
-  booked.input += from_floor;
+  booked.input += from_floor + body_.anchors_.pull_work(span_.start.pulls, span_.end.pulls, before_, s_);
   booked.normal_damping +=
       span_.integral(start_.damping_power, one_.acting.damping_power, two_.acting.damping_power);
   booked.friction +=
@@ -314,7 +316,7 @@ double ReducedBody::first_substep(const ContactLaw& law) const {
   const double contact =
       std::sqrt(contacts_.share_of_mass() * contacts_.least_length() / (law.alpha * std::max(1., law.q)));
   return k_resolved_bounce *
-         (anchors_.any() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness())) : contact);
+         (anchors_.holds() ? std::min(contact, std::sqrt(mass_ / anchors_.greatest_stiffness())) : contact);
 }
 
 double ReducedBody::next_landing(const BodyState& s, double within) const {

@@ -101,7 +101,7 @@ double ReducedBody::stable_substep(const Parameters& parameters, const ContactLa
   const int m = modes(s);
   const double free_limit =
       m > 0 ? k_free_turn / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
-  if (!contacts_.any() && !anchors_.any()) return free_limit / parameters.substep_refinement;
+  if (!contacts_.any() && !anchors_.holds()) return free_limit / parameters.substep_refinement;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
@@ -132,7 +132,7 @@ double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& 
     j.leftCols<3>() = Mat3::Identity() / std::sqrt(mass_);
     j.middleCols<3>(3) = -skew(tie.place) * root;
     for (int k = 0; k < m; ++k) j.block<3, 1>(0, 6 + k) = tie.shape[k];
-    stiffness += model_.anchors[tie.index].stiffness * j.transpose() * j;
+    stiffness += tie.anchor->stiffness * j.transpose() * j;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
   return std::min(free_limit, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
@@ -191,12 +191,14 @@ void ReducedBody::find_contacts(const StepInputs& now, const BodyState& s, std::
     contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
     respond_at<ContactSums::none>(now.law, s);
   }
+  anchors_.take(now.pulls);
   anchors_.find(s);
 }
 
 BodyEnergy ReducedBody::balance(const Parameters& parameters, const StepInputs& now, BodyState& s,
                                 std::span<const Vec3> stick) {
   contacts_.find(s, rotation_matrix(packed(s.rotation)), stick);
+  anchors_.take(now.pulls);
   anchors_.find(s);
   const ContactLoads loads = respond_at<ContactSums::loads>(now.law, s);
   s.load.setZero();
@@ -300,6 +302,7 @@ struct ReducedBody::ExplicitSubstep {
   const Vec3& shift = substep.shift;
   booked.gravity -= mass_ * parameters.gravity.dot(shift);
   booked.input -= mass_ * 0.5 * (substep.start.floor + substep.end.floor).dot(shift);
+  booked.input += anchors_.pull_work(substep.start.pulls, substep.end.pulls, before, s);
   contacts_.book_travel(shift, s, substep.r, booked);
   const Vec3 faster = s.angular_velocity - before.angular_velocity;
   booked.numerical +=
@@ -342,6 +345,7 @@ ReducedBody::ExplicitOutcome ReducedBody::explicit_substep(const Parameters& par
     if (const double stable = stable_substep(parameters, start.law, s); stable < h)
       return give_up(SubstepEnd::too_long, stable);
   contacts_.follow(substep.before, substep.r0, s, substep.r);
+  anchors_.take(end.pulls);
   anchors_.find(s);
   if (push_at_end(parameters, substep, s, w) == Solution::none) return give_up(SubstepEnd::unsolved, h);
   book_explicit(parameters, substep, s, booked);
@@ -356,7 +360,7 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
                                       StepEnergy& booked, ReducedScratch& w) {
   const BodyContacts::ScratchLease lease(contacts_, w.buffers);
   const bool touches =
-      contacts_.any() || anchors_.any() || (s.level == ModelLevel::rigid && next_landing(s, h) < h);
+      contacts_.any() || anchors_.holds() || (s.level == ModelLevel::rigid && next_landing(s, h) < h);
   const auto equal_substeps = [](double way, double stable) {
     return stable < way ? way / std::ceil(way / stable - 1e-9) : way;
   };
@@ -394,7 +398,7 @@ double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const 
   if (s.level == ModelLevel::elastic) {
     limit = contacts_.look_ahead(law, s);
   } else {
-    if ((contacts_.any() || anchors_.any()) && s.substep > 0) limit = std::min(limit, s.substep);
+    if ((contacts_.any() || anchors_.holds()) && s.substep > 0) limit = std::min(limit, s.substep);
     if (const double landing = next_landing(s, limit); landing < limit)
       limit = std::max(landing, std::min(limit, first_substep(law)));
   }

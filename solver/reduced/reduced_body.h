@@ -60,6 +60,8 @@ class ReducedBody {
 
   /// State::anchors hold from here on.
   void remember(std::span<const AnchorState> anchors) { anchors_.remember(anchors); }
+  /// These pulls, of all bodies, act from here on.
+  void take(std::span<const PulledNode> pulls) { anchors_.take(pulls); }
   /// Contacts of `s` with the springs `stick` (State::stick).
   void find_contacts(const StepInputs& now, const BodyState& s, std::span<const Vec3> stick);
   /// Energies of the body with the contacts found last, J.

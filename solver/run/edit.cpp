@@ -131,6 +131,31 @@ void set_contact(const Edit& edit, const Model& model, double t, Parameters& p) 
   start_contact_ramp(law, model, t, p);
 }
 
+// A hand takes hold and lets go about as fast.
+constexpr double k_pull_ramp = 0.05;  // s
+
+auto find_pull(auto& pulls, int node) {
+  return std::lower_bound(pulls.begin(), pulls.end(), node,
+                          [](const Pull& pull, int n) { return pull.node < n; });
+}
+
+Vec3 pull_on(const Parameters& p, int node) {
+  const auto at = find_pull(p.pulls, node);
+  return at == p.pulls.end() || at->node != node ? Vec3(Vec3::Zero()) : at->force;
+}
+
+void set_pull(const Edit& edit, const Model&, double t, Parameters& p) {
+  std::erase_if(p.pulls, [&](const Pull& pull) { return pull.force.isZero(0) && pull.ramp.share(t) == 1; });
+  const auto at = find_pull(p.pulls, edit.index);
+  const bool held = at != p.pulls.end() && at->node == edit.index;
+  if (!held && edit.value.isZero(0)) return;
+  const Pull pull{edit.index, edit.value, held ? pull_force(*at, t) : Vec3(Vec3::Zero()), {t, k_pull_ramp}};
+  if (held)
+    *at = pull;
+  else
+    p.pulls.insert(at, pull);
+}
+
 using K = Edit::Key;
 using Of = Edit::Of;
 constexpr EditTableTraits k_tables[] = {
@@ -142,6 +167,8 @@ constexpr EditTableTraits k_tables[] = {
     {Of::anchor, "anchor", "anchor", true,
      [](const Model&, const Parameters& p) { return static_cast<int>(p.anchors.size()); }},
     {Of::run, "run", "run", false, one},
+    {Of::node, "node", "node", true,
+     [](const Model& model, const Parameters&) { return static_cast<int>(model.node_position.size()); }},
 };
 
 constexpr EditTraits k_edits[] = {
@@ -217,6 +244,8 @@ constexpr EditTraits k_edits[] = {
        p.adaptive = false;
      },
      true},
+    {K::pull, Of::node, "pull", true, [](const Model&, const Parameters&, int) { return false; }, pull_on,
+     set_pull},
 };
 
 }  // namespace

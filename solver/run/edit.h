@@ -12,8 +12,8 @@
 namespace topple {
 
 /// A new value of one parameter. SI, as in Parameters; a number is the first component, `direction` uses all
-/// three, the frequency of a sweep two (first, last). A choice is the number of its enumerator; want: 1
-/// motion and stress, 0 motion alone; on and anchor: 1 or 0.
+/// three, a pull too, the frequency of a sweep two (first, last). A choice is the number of its enumerator;
+/// want: 1 motion and stress, 0 motion alone; on and anchor: 1 or 0.
 struct Edit {
   enum class Key {
     on,
@@ -34,12 +34,13 @@ struct Edit {
     anchor,
     integrator,
     want,
-    time_step
+    time_step,
+    pull
   };
   /// Table of the scene that the key is in. There is one `contact` and one `run`.
-  enum class Of { shake, contact, body, anchor, run };
+  enum class Of { shake, contact, body, anchor, run, node };
   Key key;
-  int index = 0;  ///< of the shake, body or anchor; else 0
+  int index = 0;  ///< of the shake, body, anchor or node; else 0
   Vec3 value = Vec3::Zero();
 };
 
@@ -47,7 +48,7 @@ struct Edit {
 struct EditTableTraits {
   Edit::Of kind;
   const char* word;  ///< in names of edits; "body" is a cabinet, a frame or a copy of one
-  const char* keys;  ///< in the scene
+  const char* keys;  ///< in the scene; a pull is in none
   bool numbered;     ///< else there is one
   int (*count)(const Model&, const Parameters&);
 };
@@ -61,9 +62,10 @@ inline const EditTableTraits& traits(Edit::Of of) {
 struct EditTraits {
   Edit::Key kind;
   Edit::Of of;
-  const char* word;                                            ///< the key in the scene
-  bool dynamic;                                                ///< statics have no use for it
-  bool (*exists)(const Model&, const Parameters&, int index);  ///< whether it can be edited there
+  const char* word;  ///< the key in the scene
+  bool dynamic;      ///< statics have no use for it
+  /// Whether it is among what can be edited there; a pull never is: it is of a moment, not of a scene.
+  bool (*exists)(const Model&, const Parameters&, int index);
   Vec3 (*get)(const Parameters&, int index);
   void (*set)(const Edit&, const Model&, double t, Parameters&);  ///< from time t on, see apply()
   bool setting = false;                                           ///< how it is computed, not what
@@ -82,11 +84,11 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int index);
 
 /// Makes `edit` hold from time t on. Nothing jumps: a frequency keeps its phase; amplitude, direction, scale,
 /// on and off change over a quarter of a period, of a record over 0.25 s (at once before the shake starts),
-/// numbers of the contact law over two of contact_period. A type, and the frequencies of a sweep, begin the
-/// shake anew, with acceleration 0 but for a rectangle; a sine becomes a pulse of half its period, or a sweep
-/// to ten times its frequency in 10 s. The rest changes at once: body models and anchors with the next step,
-/// which also books what another contact law holds in its springs; time_step ends adaptive stepping. The
-/// result depends on nothing but the arguments, so that edits can be repeated.
+/// numbers of the contact law over two of contact_period, a pull in 0.05 s. A type, and the frequencies of a
+/// sweep, begin the shake anew, with acceleration 0 but for a rectangle; a sine becomes a pulse of half its
+/// period, or a sweep to ten times its frequency in 10 s. The rest changes at once: body models and anchors
+/// with the next step, which also books what another contact law holds in its springs; time_step ends
+/// adaptive stepping. The result depends on nothing but the arguments, so that edits can be repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 
 }  // namespace topple

@@ -72,6 +72,21 @@ def test_forks_part_where_one_is_edited():
     assert edited.tilt[0] < trunk.tilt[0]
 
 
+def test_what_is_pulled_tips_and_let_go_of_falls_back():
+    scene = topple.Scene("cabinet")
+    scene["shake.1.amplitude"] = "1 gal"
+    scene["run.time_step"] = 0.001
+    simulation = topple.Simulation(scene)
+    top = int(np.argmax(simulation.position[:, 2])) + 1
+    simulation.edit(f"node.{top}.pull", ["150 N", 0, 0])
+    while simulation.tilt[0] < 0.03:
+        simulation.step()
+    assert simulation.time < 1
+    simulation.edit(f"node.{top}.pull", [0, 0, 0])
+    simulation.run_until(6)
+    assert simulation.tilt[0] < 0.01
+
+
 def test_values_of_edits_are_those_of_scenes():
     one, other = (topple.Simulation(topple.Scene("paper-a")) for _ in range(2))
     for simulation, amplitude in ((one, "120 gal"), (other, 1.2)):
@@ -93,6 +108,9 @@ def test_values_of_edits_are_those_of_scenes():
         ("run.integrator", "euler", r'^run\.integrator: "euler" is not one of .*newmark'),
         ("shake.1.on", "maybe", r'^shake\.1\.on: "maybe" is not true or false$'),
         ("shake.1.direction", [1, 2, 3, 4], r"^shake\.1\.direction: .* is not a list of 3$"),
+        ("node.99.pull", [1, 0, 0], r"^node\.99\.pull: there is no such node; the scene has \d+$"),
+        ("node.3.pull", 5, r"^node\.3\.pull: 5 is not a list of 3$"),
+        ("node.3.pull", ["3 kg", 0, 0], r'^node\.3\.pull: "3 kg" is a mass, expected a force \('),
         ("cabinet.1.mass", 1, r"^cabinet\.1\.mass: cannot be changed while it runs; what can: .*shake\.1\.amplitude"),
     ],
 )

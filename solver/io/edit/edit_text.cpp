@@ -101,6 +101,11 @@ void check_integrator(const Edit& edit, const Parameters&, const Model& model) {
                    "\" makes a frame of each body that is near another");
 }
 
+void check_pull(const Edit& edit, const Parameters&, const Model& model) {
+  const Body& body = model.bodies[model.node_body[edit.index]];
+  if (body.ground) fail(edit, "\"" + body.name + "\" is a floor or a wall, which stays where it is");
+}
+
 void check_damping(const Edit& edit, const Parameters&, const Model& model) {
   const Body& body = model.bodies[edit.index];
   if (body.first_frequency == 0)
@@ -112,17 +117,30 @@ struct EditCheck {
   Edit::Key key;
   void (*check)(const Edit&, const Parameters&, const Model&);
 };
-constexpr EditCheck k_checks[] = {
-    {Edit::Key::type, check_ground},           {Edit::Key::frequency, check_ground},
-    {Edit::Key::duration, check_ground},       {Edit::Key::type, check_type},
-    {Edit::Key::frequency, check_frequency},   {Edit::Key::model, check_model},
-    {Edit::Key::integrator, check_integrator}, {Edit::Key::damping, check_damping}};
+constexpr EditCheck k_checks[] = {{Edit::Key::type, check_ground},
+                                  {Edit::Key::frequency, check_ground},
+                                  {Edit::Key::duration, check_ground},
+                                  {Edit::Key::type, check_type},
+                                  {Edit::Key::frequency, check_frequency},
+                                  {Edit::Key::model, check_model},
+                                  {Edit::Key::integrator, check_integrator},
+                                  {Edit::Key::damping, check_damping},
+                                  {Edit::Key::pull, check_pull}};
 
 }  // namespace
 
 const Key& key_of(Edit::Key key) {
+  static const Key pull{.table = "node",
+                        .name = "pull",
+                        .type = KeyType::numbers,
+                        .dimension = Dimension::force,
+                        .unit = "N",
+                        .least = -1e9,
+                        .most = 1e9,
+                        .count = 3,
+                        .about = "a force that a hand pulls with"};
   const EditTraits& row = traits(key);
-  return *find_key(traits(row.of).keys, row.word);
+  return key == Edit::Key::pull ? pull : *find_key(traits(row.of).keys, row.word);
 }
 
 std::string edit_key(const Edit& edit) {
@@ -191,7 +209,7 @@ void check_edit_value(const Edit& edit) {
   }
   if ((key.type == KeyType::boolean || key.type == KeyType::choices) && number != 0 && number != 1)
     fail(edit, short_number(number) + " is neither 0 nor 1");
-  if (least_count(key) == 3 && !(edit.value.stableNorm() > 0))  // of vectors, only directions are edited
+  if (edit.key == Edit::Key::direction && !(edit.value.stableNorm() > 0))
     fail(edit, "a zero vector has no direction");
 }
 

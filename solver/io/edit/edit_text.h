@@ -12,13 +12,13 @@ namespace topple::io {
 
 /// "shake.1.amplitude", "contact.alpha", "anchor.1.on", "run.time_step": the path in the scene; shakes and
 /// anchors count from 1. "body.1.model", "body.1.damping": of a cabinet, a frame or a copy of one, in the
-/// order of Model::bodies.
+/// order of Model::bodies. "node.12.pull": nodes count from 1 through all bodies.
 std::string edit_key(const Edit& edit);
 
 /// Inverse of edit_key, its value zero. Nothing when no edit is called so.
 std::optional<Edit> parse_edit_key(std::string_view text);
 
-/// The row of the table of keys: range, unit and default.
+/// The row of the table of keys, or of a pull, which no scene has: range, unit and default.
 const Key& key_of(Edit::Key key);
 
 /// The word of a choice by its number (Edit); null: it has none.

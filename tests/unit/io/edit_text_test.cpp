@@ -184,6 +184,30 @@ TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
             "body.3.damping: there is no such body; the scene has 2");
 }
 
+TEST(EditText, a_pull_is_of_a_node_of_what_moves) {
+  const std::optional<Edit> read = parse_edit_key("node.3.pull");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->key, Edit::Key::pull);
+  EXPECT_EQ(read->index, 2);
+  EXPECT_EQ(edit_key(*read), "node.3.pull");
+  EXPECT_FALSE(parse_edit_key("node.0.pull"));
+  EXPECT_FALSE(parse_edit_key("node.pull"));
+  Edit edit = *read;
+  edit.value = Vec3(12.5, 0, -3);
+  EXPECT_EQ(edit_value_text(edit, EditSpelling::shown), "[12.5 N, 0 N, -3 N]");
+  const Scene scene = load_scene("paper-a");
+  const Model& model = scene.setup.model;
+  EXPECT_NO_THROW(check_edit(edit, scene.setup.parameters, model));
+  edit.value = Vec3::Zero();  // let go of
+  EXPECT_NO_THROW(check_edit(edit, scene.setup.parameters, model));
+  edit.value.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(check_edit(edit, scene.setup.parameters, model), InputError);
+  edit.value.x() = 2e9;
+  EXPECT_THROW(check_edit(edit, scene.setup.parameters, model), InputError);
+  edit = {.key = Edit::Key::pull, .index = model.node_total(), .value = Vec3(1, 0, 0)};
+  EXPECT_THROW(check_edit(edit, scene.setup.parameters, model), InputError);
+}
+
 TEST(EditText, each_choice_that_can_be_edited_has_a_number_of_its_own) {
   for (const EditTraits& row : edits()) {
     const Key& key = key_of(row.kind);

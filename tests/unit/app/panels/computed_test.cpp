@@ -79,6 +79,10 @@ TEST(EditMarks, one_drag_is_one_mark) {
   EXPECT_EQ(marks[1].last.edit.key, friction);
   EXPECT_EQ(marks[2].last.edit.value.x(), 4);
   EXPECT_EQ(marks[3].first.time, 1.5);  // another drag, a second later
+  const std::vector<EditMark> pulls =
+      edit_marks({edit(1, pull, 5), edit(3, pull, 6), edit(3.1, pull, 0), edit(4, pull, 5)});
+  ASSERT_EQ(pulls.size(), 2u);  // a hand that keeps still pulls on
+  EXPECT_EQ(pulls[0].last.time, 3.1);
 }
 
 }  // namespace

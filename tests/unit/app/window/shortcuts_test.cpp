@@ -257,6 +257,67 @@ class Shortcut : public ShellTest {
       EXPECT_NE(viewer().orbit().target, there);
     }
   }
+  /// The mouse lies on a body that a click picks.
+  void point_at_a_body() {
+    sight();
+    const Box& box = viewer().scene_box();
+    ImGuiIO& io = ImGui::GetIO();
+    for (float x = 0.3f; x < 0.7f && !viewer().inspection().picked; x += 0.005f) {
+      io.MousePos = {box.left + x * box.width, box.top + 0.6f * box.height};
+      frame();
+      io.MouseDown[0] = true;
+      frame();
+      io.MouseDown[0] = false;
+      frame();
+    }
+    ASSERT_TRUE(viewer().inspection().picked.has_value());
+  }
+  const std::vector<Pull>& pulls() { return player().parameters().pulls; }
+  void pull() {
+    point_at_a_body();
+    ImGuiIO& io = ImGui::GetIO();
+    const auto take_hold = [&] {
+      io.KeyCtrl = io.MouseDown[0] = true;
+      frame();
+    };
+    const auto let_go = [&] {
+      io.KeyCtrl = io.MouseDown[0] = false;
+      frame();
+    };
+    halted();
+    take_hold();
+    EXPECT_NE(viewer().message(), "");  // nothing runs
+    EXPECT_TRUE(pulls().empty());
+    let_go();
+    const auto before = sight();
+    tap(' ');
+    take_hold();
+    const ImVec2 from = io.MousePos;
+    for (int i = 1; i <= 6; ++i) {
+      io.MousePos.x = from.x + 15 * static_cast<float>(i);
+      frame();
+    }
+    ASSERT_EQ(pulls().size(), 1u);
+    EXPECT_GT(pulls()[0].force.norm(), 1);
+    EXPECT_EQ(std::pair(before.first, before.second), sight());  // the view stays
+    EXPECT_LE(pulls()[0].force.norm(),
+              1.0001 * k_standard_gravity * player().scene().setup.model.bodies[0].mass);
+    let_go();
+    EXPECT_TRUE(pulls().empty() || pulls()[0].force.isZero(0));
+    EXPECT_FALSE(player().can_undo());
+  }
+  /// Back to an instant at which it was pulled: it is not any more.
+  void pull_is_not_taken_up() {
+    tap(' ');
+    ASSERT_TRUE(until([&] { return player().edits().size() > 2; }));
+    const double pulled = player().edits().front().time + 0.02;
+    run_to(pulled + 0.1);
+    player().scrub(pulled);
+    tap('C');
+    ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && ready(); }));
+    frame();
+    for (const Pull& one : pulls()) EXPECT_TRUE(one.force.isZero(0));
+  }
   void nearer() {
     sight();
     const auto distance = viewer().orbit().distance;
@@ -270,23 +331,12 @@ class Shortcut : public ShellTest {
     EXPECT_GT(viewer().orbit().distance, distance);
   }
   void inspect_and_let_go() {
-    sight();
-    const Box& box = viewer().scene_box();
-    ImGuiIO& io = ImGui::GetIO();
-    const auto click_there = [&] {
-      frame();
-      io.MouseDown[0] = true;
-      frame();
-      io.MouseDown[0] = false;
-      frame();
-    };
-    for (float x = 0.3f; x < 0.7f && !viewer().inspection().picked; x += 0.005f) {
-      io.MousePos = {box.left + x * box.width, box.top + 0.6f * box.height};
-      click_there();
-    }
-    ASSERT_TRUE(viewer().inspection().picked.has_value());
+    point_at_a_body();
     EXPECT_EQ(viewer().inspection().picked->kind, Subject::Kind::member);
-    click_there();
+    ImGui::GetIO().MouseDown[0] = true;
+    frame();
+    ImGui::GetIO().MouseDown[0] = false;
+    frame();
     EXPECT_EQ(viewer().inspection().picked->kind, Subject::Kind::body);
     tap(GLFW_KEY_ESCAPE);
     EXPECT_FALSE(viewer().inspection().picked.has_value());
@@ -426,6 +476,11 @@ class Shortcut : public ShellTest {
         {"drag", [](T& t) { t.turn_and_move(); }},
         {"wheel", [](T& t) { t.nearer(); }},
         {"click", [](T& t) { t.inspect_and_let_go(); }},
+        {"Ctrl+drag",
+         [](T& t) {
+           t.pull();
+           t.pull_is_not_taken_up();
+         }},
         {"Esc", [](T& t) { t.inspect_and_let_go(); }},
         {"Ctrl+O", [](T& t) { t.scenes(); }},
         {"Ctrl+S", [](T& t) { t.save(); }},

@@ -293,8 +293,22 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
     out[name + "ramp.over"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.over; };
   }
   [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
-                                want_stress, accuracy, gravity, integrator, spectral_radius, beta, gamma,
-                                time_step, adaptive, tolerance, substep_refinement, resolves_contacts] = all;
+                                pulls, want_stress, accuracy, gravity, integrator, spectral_radius, beta,
+                                gamma, time_step, adaptive, tolerance, substep_refinement,
+                                resolves_contacts] = all;
+  for (std::size_t i = 0; i < all.pulls.size(); ++i) {
+    const std::string name = "pull " + std::to_string(i) + " ";
+    for (int k = 0; k < 3; ++k) {
+      out[name + "force " + std::to_string(k)] = [i, k](Parameters& p) -> double& {
+        return p.pulls[i].force[k];
+      };
+      out[name + "before " + std::to_string(k)] = [i, k](Parameters& p) -> double& {
+        return p.pulls[i].before[k];
+      };
+    }
+    out[name + "ramp.since"] = [i](Parameters& p) -> double& { return p.pulls[i].ramp.since; };
+    out[name + "ramp.over"] = [i](Parameters& p) -> double& { return p.pulls[i].ramp.over; };
+  }
   out["contact_ramp.since"] = [](Parameters& p) -> double& { return p.contact_ramp.since; };
   out["contact_ramp.over"] = [](Parameters& p) -> double& { return p.contact_ramp.over; };
   for (std::size_t b = 0; b < all.damping.size(); ++b)
@@ -320,6 +334,7 @@ TEST(Containment, no_bad_number_in_the_parameters_is_stepped_with) {
     const State good = after_steps(setup);
     for (const bool passing : {false, true}) {
       Parameters parameters = setup.parameters;
+      parameters.pulls = {{.node = 0, .force = Vec3(0.1, 0, 0), .before = Vec3::Zero(), .ramp = {}}};
       if (passing) {
         parameters.contact_ramp = {good.time, 0.1};
         for (Shake& shake : parameters.shakes) shake.ramp = {good.time, 0.1};
