@@ -10,6 +10,7 @@
 #include "app/panels/computed.h"
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
+#include "app/picture/furnish_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
 #include "solver/io/edit/edit_text.h"
@@ -157,7 +158,7 @@ class Row {
           post_anew(Vec3(number, 0, 0));
       ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), say(tip, key_.about)).c_str());
+      ImGui::SetTooltip("%s", say(k_key_about, name(), say(tip, key_.about)).c_str());
     }
     end();
   }
@@ -167,8 +168,7 @@ class Row {
     ImGui::PushID(label.c_str());
     ImGui::PushID(io::edit_key(edit_).c_str());
     if (ImGui::Checkbox(label.c_str(), &on)) post_anew(Vec3(on ? 1 : 0, 0, 0));
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", say(k_key_about, io::edit_key(edit_), tooltip).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_key_about, name(), tooltip).c_str());
     end(ImGui::GetWindowContentRegionMax().x - 1.9f * ImGui::GetFrameHeight() +
         ImGui::GetStyle().ItemSpacing.x);
   }
@@ -188,6 +188,7 @@ class Row {
     ImGui::TextUnformatted(label.c_str());
     ImGui::SameLine(6.2f * ImGui::GetFontSize());
   }
+  std::string name() const { return io::scene_key(edit_, player_.scene().setup.model); }
   // What slider() covers: the usual within the legal, and the value itself.
   std::pair<float, float> range(const Slider& look, float number, double in_scene, double unit) const {
     const double scale = look.relative ? in_scene : 1;
@@ -199,9 +200,9 @@ class Row {
     return {std::min(static_cast<float>(low), number), std::max(static_cast<float>(high), number)};
   }
   std::string about(const Slider& look, double in_scene) const {
-    const std::string name = io::edit_key(edit_);
-    if (look.key == Edit::Key::direction) return say(k_key_about, name, say(look.about));
-    return say(k_slider_about, name, say(look.about, key_.about), io::range_text(key_), in_scene, look.unit);
+    if (look.key == Edit::Key::direction) return say(k_key_about, name(), say(look.about));
+    return say(k_slider_about, name(), say(look.about, key_.about), io::range_text(key_), in_scene,
+               look.unit);
   }
   void end(float at = 0) {
     ImGui::SameLine(at);
@@ -335,8 +336,10 @@ void draw_row(const Parameter& of) {
 }
 
 /// False: what stands below it is folded away.
-bool draw_heading(Edit::Of of, int index, const Parameters& parameters) {
+bool draw_heading(Edit::Of of, int index, const Parameters& parameters, const Model& model) {
   constexpr std::size_t k_few = 2;  // bodies, whose rows need no folding
+  const bool by_name =
+      std::ranges::all_of(model.anchors, [](const Anchor& one) { return one.fixing_number > 0; });
   switch (of) {
     case Edit::Of::shake:
       ImGui::TextDisabled(
@@ -347,8 +350,9 @@ bool draw_heading(Edit::Of of, int index, const Parameters& parameters) {
                                      parameters.models.size() <= k_few ? ImGuiTreeNodeFlags_DefaultOpen : 0);
     default:
       ImGui::TextDisabled("%s", say(of == Edit::Of::contact  ? k_contact
-                                    : of == Edit::Of::anchor ? k_anchors_heading
-                                                             : k_integration)
+                                    : of != Edit::Of::anchor ? k_integration
+                                    : by_name                ? furnish_words::k_fixings
+                                                             : k_anchors_heading)
                                     .c_str());
       return true;
   }
@@ -379,7 +383,7 @@ bool draw_parameters(Player& player, std::string& refused) {
     const Edit::Of of = traits(key).of;
     if (of == Edit::Of::contact && !can_touch(setup.model)) continue;
     const std::pair below{of, of == Edit::Of::shake ? index : 0};
-    if (heading != below) open = draw_heading(of, index, parameters);
+    if (heading != below) open = draw_heading(of, index, parameters, setup.model);
     heading = below;
     if (open) draw_row({player, key, index, refused});
     if (key == Edit::Key::time_step) precision = draw_precision_button();

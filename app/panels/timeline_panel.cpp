@@ -181,7 +181,7 @@ std::string edit_text(const Player& player, const EditMark& mark) {
   const auto instant = [&](const LoggedEdit& edit) { return when(player, edit.step, edit.time); };
   const Edit& edit = mark.last.edit;
   if (traits(edit.key).of != Edit::Of::node)
-    return say(k_edited, instant(mark.last), io::edit_key(edit),
+    return say(k_edited, instant(mark.last), io::scene_key(edit, player.scene().setup.model),
                io::edit_value_text(edit, io::EditSpelling::shown));
   const Model& model = player.scene().setup.model;
   return say(k_event, instant(mark.first), model.bodies[model.node_body[edit.index]].name,

@@ -150,6 +150,11 @@ std::string edit_key(const Edit& edit) {
          row.word;
 }
 
+std::string scene_key(const Edit& edit, const Model& model) {
+  const int fixing = edit.key == Edit::Key::anchor ? model.anchors[edit.index].fixing_number : 0;
+  return fixing > 0 ? "fixing." + std::to_string(fixing) + ".on" : edit_key(edit);
+}
+
 std::optional<Edit> parse_edit_key(std::string_view text) {
   const std::size_t dot = text.find('.');
   int number = 1;

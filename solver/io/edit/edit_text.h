@@ -15,6 +15,9 @@ namespace topple::io {
 /// order of Model::bodies. "node.12.pull": nodes count from 1 through all bodies.
 std::string edit_key(const Edit& edit);
 
+/// The same as a scene has it: "fixing.2.on" of an anchor that a [[fixing]] stands for.
+std::string scene_key(const Edit& edit, const Model& model);
+
 /// Inverse of edit_key, its value zero. Nothing when no edit is called so.
 std::optional<Edit> parse_edit_key(std::string_view text);
 

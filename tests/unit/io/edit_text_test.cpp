@@ -184,6 +184,15 @@ TEST(EditText, choices_are_numbers_of_those_that_the_run_has_a_place_for) {
             "body.3.damping: there is no such body; the scene has 2");
 }
 
+TEST(EditText, an_anchor_of_a_fixing_is_called_as_the_scene_calls_it) {
+  const Model fixed = load_scene("sixth-floor").setup.model, anchored = load_scene("anchored").setup.model;
+  const auto last = static_cast<int>(fixed.anchors.size()) - 1;
+  EXPECT_EQ(scene_key({.key = Edit::Key::anchor, .index = last}, fixed),
+            "fixing." + std::to_string(fixed.anchors.back().fixing_number) + ".on");
+  EXPECT_EQ(scene_key({.key = Edit::Key::anchor, .index = 1}, anchored), "anchor.2.on");
+  EXPECT_EQ(scene_key({.key = Edit::Key::amplitude}, fixed), "shake.1.amplitude");
+}
+
 TEST(EditText, a_pull_is_of_a_node_of_what_moves) {
   const std::optional<Edit> read = parse_edit_key("node.3.pull");
   ASSERT_TRUE(read);
