@@ -20,6 +20,7 @@ ordered_json way_json(const Room& room, const Model& model, const RoomPlan& plan
                    {"length_m", nullptr}};
   if (way.open)
     if (const auto line = shortest_way(room, plan, place, way.door)) out["length_m"] = line->length;
+  out["caught"] = way.caught;
   out["blocked_by"] = ordered_json::array();
   for (const int body : way.blocked_by)
     out["blocked_by"].push_back(model.bodies[static_cast<std::size_t>(body)].name);
@@ -82,6 +83,8 @@ std::string ways_in_words(const ordered_json& ways, double person) {
       out += fmt::format("way to {} open, {:.2f} m wide", way["door"].get<std::string>(),
                          way["widest_m"].get<double>());
       if (!way["length_m"].is_null()) out += fmt::format(", {:.1f} m long", way["length_m"].get<double>());
+    } else if (way["caught"].get<bool>()) {
+      out += "cannot leave, " + joined(way["blocked_by"]) + " lies there";
     } else {
       out += fmt::format("no way to {} for a person of {:g} m", way["door"].get<std::string>(), person);
       if (way["widest_m"].get<double>() > 0)

@@ -33,7 +33,7 @@ std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, floa
   return kept;
 }
 
-void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
+void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const ValueAt& value,
                ImU32 colour, float thickness) {
   std::vector<ImVec2> points;
   const auto draw = [&] {

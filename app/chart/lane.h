@@ -32,7 +32,7 @@ std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, floa
 using ValueAt = std::function<double(std::size_t)>;
 
 /// Draws at most the least and greatest value of each pixel column, with gaps where there is none.
-void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const ValueAt& value,
+void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const ValueAt& value,
                ImU32 colour, float thickness);
 
 void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text);

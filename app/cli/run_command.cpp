@@ -74,7 +74,8 @@ int run_command(const RunOptions& options) {
   if (json_to_output) {
     fmt::print("{}\n", json_text(result.summary, 2));
   } else {
-    fmt::print("{}", summary_table(result.summary));
+    const bool began = result.trouble.empty() || result.summary["simulated_s"].get<double>() > 0;
+    if (began) fmt::print("{}", summary_table(result.summary));
     if (options.profile) fmt::print("\n{}", profile_table(result.summary["profile"]));
     if (result.recorded) fmt::print("recording: {}\n", options.recording);
     if (!options.json.empty())

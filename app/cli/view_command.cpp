@@ -103,8 +103,13 @@ int view_command(const ViewOptions& options) {
     throw BadInput("SOURCE: --set and --output are for a scene that is named");
   const std::filesystem::path settings = settings_file();
   const Appearance appearance = window_appearance(settings, options.language);
-  const Viewer::Keep keep = [settings](const Appearance& chosen) {
-    if (!settings.empty()) keep_appearance(settings, chosen);
+  const Viewer::Keep keep = [settings, asked = options.language](const Appearance& chosen) {
+    if (settings.empty()) return;
+    Appearance kept = chosen;
+    std::string told;
+    if (asked == chosen.language)
+      kept.language = read_appearance(settings, told).language;  // for this window
+    keep_appearance(settings, kept);
   };
   defer_interrupts();
   const Interface interface;

@@ -95,7 +95,7 @@ bool is_of(const Model& model, const render::Tube& tube, std::size_t body) {
 render::SceneFrame start_frame(const io::Scene& scene) {
   const io::FrameRow row = start_row(scene.setup);
   RunExtent extent;
-  extent.add(scene.setup.model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   widen(scene.setup.model, extent);
   PictureSettings settings;
   settings.words = false;

@@ -42,7 +42,7 @@ std::optional<std::vector<std::int64_t>> survey(const io::Scene& scene, const Re
     const io::FrameRow row = replay.frame(i);
     const float time = static_cast<float>(row.time);
     if (!is_finite(row) || (!run.times.empty() && time <= run.times.back())) continue;
-    run.extent.add(model, scene.setup.parameters, row);
+    run.extent.add(scene.setup, scene.setup.parameters, row);
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
       run.deforms[b] = run.deforms[b] || io::has_stresses(row, static_cast<int>(b));
     for (std::size_t e = 0; e < model.elements.size(); ++e)

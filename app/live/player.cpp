@@ -156,7 +156,7 @@ void Player::rebuild_way() {
 
 void Player::extend_way(const RowPtr& row) {
   way_.push_back(row);
-  extent_.add(scene_->setup.model, scene_->setup.parameters, *row);
+  extent_.add(scene_->setup, scene_->setup.parameters, *row);
 }
 
 void Player::update_parameters() {

@@ -70,7 +70,7 @@ std::optional<PageRows> rows_of(const io::Scene& scene, const PageRun& run,
     if (proceed && !proceed()) return std::nullopt;
     io::FrameRow row = run.row(i);
     if (!is_finite(row)) continue;
-    rows.extent.add(model, scene.setup.parameters, row);
+    rows.extent.add(scene.setup, scene.setup.parameters, row);
     if (rows.kept.empty()) rows.most_tilted = row;
     observe(row, rows, greatest);
     if (i % rows.stride == 0 || i + 1 == run.rows) rows.kept.push_back(std::move(row));

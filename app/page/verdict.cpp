@@ -45,10 +45,14 @@ std::vector<BodyEnd> ends_of(const Run& run) {
 
 std::string verdict_in_words(const std::vector<BodyEnd>& bodies, Language language) {
   std::vector<BodyEnd> falls;
-  const BodyEnd* most = nullptr;
+  const BodyEnd* most = nullptr;  // by the share of its critical angle; of those that have none by the angle
+  const auto before = [](const BodyEnd& a, const BodyEnd& b) {
+    if (!a.critical || !b.critical) return !a.critical && (b.critical || a.peak_tilt < b.peak_tilt);
+    return a.peak_tilt / *a.critical < b.peak_tilt / *b.critical;
+  };
   for (const BodyEnd& body : bodies) {
     if (body.overturned) falls.push_back(body);
-    if (most == nullptr || body.peak_tilt > most->peak_tilt) most = &body;
+    if (most == nullptr || before(*most, body)) most = &body;
   }
   if (most == nullptr) return "";
   std::stable_sort(falls.begin(), falls.end(),

@@ -13,8 +13,6 @@ namespace topple::app {
 
 using namespace window_words;
 
-constexpr double k_beside = 0.05;  // m, between the bases of bodies that stand side by side
-
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
   if (at.amplitude < limits.west) return k_stays;
   return at.amplitude < 2 * k_pi * at.frequency * limits.ishiyama ? k_rocks : k_may_overturn;
@@ -54,11 +52,8 @@ std::string held_in_words(const Player& player, int body) {
   for (std::size_t k = 0; row && k < model.anchors.size(); ++k) {
     const Anchor& anchor = model.anchors[k];
     const float state = row->anchor[k].state;
-    const bool holds = state == io::k_anchor_holds || state == io::k_anchor_slack;
-    // what stands on it and is fixed to it does not hold it
-    const auto base = [&](int b) { return model.bodies[static_cast<std::size_t>(b)].base_centre.z(); };
-    const bool beside = anchor.other.body == body && base(anchor.body) < base(body) + k_beside;
-    if (holds && (anchor.body == body || beside))
+    const bool in_place = state == io::k_anchor_holds || state == io::k_anchor_slack;
+    if (in_place && study::holds(model, anchor, body))
       return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
   }
   return "";

@@ -16,7 +16,7 @@ std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits) {
   for (const LoggedEdit& edit : edits) {
     const bool same =
         !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
-        marks.back().last.edit.index == edit.edit.index &&
+        marks.back().last.edit.index == edit.edit.index && marks.back().last.branch == edit.branch &&
         (holds_on(marks.back().last.edit) || edit.time - marks.back().last.time < k_of_one_drag);
     if (same)
       marks.back().last = edit;

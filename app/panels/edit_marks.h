@@ -12,8 +12,8 @@ struct EditMark {
   LoggedEdit first, last;
 };
 
-/// `edits` in order of their steps. Two belong together when no other edit stands between them and less than
-/// 0.5 s of the run, or the earlier one is a pull that goes on.
+/// `edits` in order of their steps. Two of a branch belong together when no other edit stands between them
+/// and less than 0.5 s of the run, or the earlier one is a pull that goes on.
 std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits);
 
 }  // namespace topple::app

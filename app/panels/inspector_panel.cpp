@@ -215,6 +215,7 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
   list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, theme().cursor,
                1.5f);
   ImGui::Dummy({width, height});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_over_run_about).c_str());
 }
 
 /// Name, what it is, and a pin. True when the pin was pressed.

@@ -49,9 +49,16 @@ enum class ShellRequest { none, scenes, save, export_view, furnish, new_room, sh
 /// many rows as the width of the box asks for; `height`: that they need.
 ShellRequest draw_transport_bar(Player& player, const Box& box, float& height);
 
+/// Another run beside the one shown.
+struct GhostCurves {
+  std::span<const RowPtr> way;
+  std::vector<int> body;  ///< per piece of furniture of the run shown, the index of its own; -1: it has none
+};
+
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.
-void draw_timeline(Player& player, const Box& box);
+/// `ghost`: the run that is drawn pale.
+void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost = {});
 
 /// Of a static run: load factor over the displacement of one place, with where stability is lost and the
 /// present step. A click goes to the load step nearest to it.

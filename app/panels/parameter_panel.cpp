@@ -163,7 +163,9 @@ class Row {
     end();
   }
 
-  void tick(const std::string& label, const std::string& tooltip) {
+  /// `also`: others of the same key, which are set with it.
+  void tick(const std::string& label, const std::string& tooltip, std::vector<int> also = {}) {
+    also_ = std::move(also);
     bool on = edit_.value.x() != 0;
     ImGui::PushID(label.c_str());
     ImGui::PushID(io::edit_key(edit_).c_str());
@@ -218,9 +220,9 @@ class Row {
     post(value);
   }
   void post(const Vec3& value) {
-    const Edit edit{edit_.key, edit_.index, value};
     try {
-      player_.edit(edit);
+      player_.edit({edit_.key, edit_.index, value});
+      for (const int index : also_) player_.edit({edit_.key, index, value});
       refused_.clear();
     } catch (const io::InputError& error) {
       refused_ = error.what();
@@ -232,6 +234,7 @@ class Row {
   const Edit edit_;
   const Vec3 scene_value_;
   std::string& refused_;
+  std::vector<int> also_;
 };
 
 /// One that is edited, and where the refusal of an edit goes.
@@ -300,15 +303,29 @@ void draw_integrator(const Parameter& of) {
   if (const std::string words = integrators_in_words(of.player); !words.empty()) write_below(words);
 }
 
+/// All points of a fixing have one box, at the first of them.
 void draw_anchor(const Parameter& of) {
-  const Anchor& anchor = of.model().anchors[static_cast<std::size_t>(of.index)];
+  const std::vector<Anchor>& anchors = of.model().anchors;
+  const auto index = static_cast<std::size_t>(of.index);
+  const Anchor& anchor = anchors[index];
+  const auto is_of_same = [&](std::size_t k) {
+    return anchor.fixing_number > 0 && anchors[k].fixing_number == anchor.fixing_number;
+  };
+  if (index > 0 && is_of_same(index - 1)) return;
+  std::vector<int> also;
+  for (std::size_t k = index + 1; k < anchors.size() && is_of_same(k); ++k)
+    also.push_back(static_cast<int>(k));
+  const std::string called = also.empty() ? anchor.name : anchor.name.substr(0, anchor.name.rfind('-'));
   const auto name = [&](int body) { return of.model().bodies[static_cast<std::size_t>(body)].name; };
   const auto row = of.player.row();
-  const bool broke = row && row->anchor[static_cast<std::size_t>(of.index)].state == io::k_anchor_broken;
-  of.row().tick(broke ? say(k_anchor_broke, anchor.name) : anchor.name,
-                anchor.other.body < 0
-                    ? say(k_anchor_about, name(anchor.body))
-                    : say(k_anchor_between_about, name(anchor.body), name(anchor.other.body)));
+  bool broke = false;
+  for (std::size_t k = index; row && k <= index + also.size(); ++k)
+    broke |= row->anchor[k].state == io::k_anchor_broken;
+  const std::string& to = anchor.other.body < 0 ? anchor.leads_to : name(anchor.other.body);
+  of.row().tick(broke ? say(k_anchor_broke, called) : called,
+                to.empty() ? say(k_anchor_about, name(anchor.body))
+                           : say(k_anchor_between_about, name(anchor.body), to),
+                also);
 }
 
 /// What sets a parameter; one without a row has a slider.

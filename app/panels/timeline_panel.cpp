@@ -19,6 +19,8 @@
 namespace topple::app {
 namespace {
 
+constexpr int k_most_told = 6;  // marks at one place, in its tooltip
+
 using namespace window_words;
 
 constexpr double k_tilt_room = 1.35;  // of the critical angle; tilts beyond it are cut there
@@ -68,7 +70,7 @@ ImU32 line_colour(const std::vector<std::size_t>& coloured, std::size_t body) {
 
 using Value = std::function<double(const io::FrameRow&)>;
 
-void add_curve(ImDrawList& list, const Lane& lane, const std::vector<RowPtr>& rows, const Value& value,
+void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const Value& value,
                ImU32 colour, float thickness) {
   add_curve(
       list, lane, rows, [&](std::size_t i) { return value(*rows[i]); }, colour, thickness);
@@ -117,7 +119,8 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
 
-void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_left) {
+void add_tilts(ImDrawList& list, Lane lane, const Player& player, const GhostCurves& ghost,
+               float label_left) {
   const std::vector<RowPtr>& rows = player.way();
   const auto& bodies = player.scene().setup.model.bodies;
   const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
@@ -147,7 +150,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, float label_le
   for (const bool with_colour : {false, true})  // coloured ones lie on top
     for (std::size_t b = 0; b < furniture; ++b) {
       if (is_coloured(b) != with_colour) continue;
-      add_curve(list, lane, player.ghost_way(), tilt(b), theme().ghost, 1);
+      if (b < ghost.body.size() && ghost.body[b] >= 0)
+        add_curve(list, lane, ghost.way, tilt(static_cast<std::size_t>(ghost.body[b])), theme().ghost, 1);
       add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other, 1.6f);
     }
   const float room = lane.left - label_left - 4;
@@ -177,10 +181,14 @@ std::string when(const Player& player, std::int64_t step, double time) {
                                   : instant_in_words(player.scene().setup, **at);
 }
 
+bool is_pull(const EditMark& mark) {
+  return traits(mark.last.edit.key).of == Edit::Of::node;
+}
+
 std::string edit_text(const Player& player, const EditMark& mark) {
   const auto instant = [&](const LoggedEdit& edit) { return when(player, edit.step, edit.time); };
   const Edit& edit = mark.last.edit;
-  if (traits(edit.key).of != Edit::Of::node)
+  if (!is_pull(mark))
     return say(k_edited, instant(mark.last), io::scene_key(edit, player.scene().setup.model),
                io::edit_value_text(edit, io::EditSpelling::shown));
   const Model& model = player.scene().setup.model;
@@ -283,11 +291,16 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   const float size = 0.28f * ImGui::GetTextLineHeight();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
+  int told = 0, more = 0;
   const auto add = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
     const float x = lane.x(time);
     if (x < lane.left || x > lane.right) return;
     shape(ImVec2(x, y));
-    if (std::abs(mouse.x - x) < size && std::abs(mouse.y - y) < 2 * size) hovered = text();
+    if (std::abs(mouse.x - x) >= size || std::abs(mouse.y - y) >= 2 * size) return;
+    if (told == k_most_told)
+      ++more;
+    else
+      hovered += (told++ > 0 ? "\n" : "") + text();
   };
   const float y = lane.bottom + size + 2;
   const std::vector<std::size_t> coloured = coloured_bodies(player);
@@ -300,7 +313,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
   }
   for (const EditMark& mark : edit_marks(player.edits()))
     add(
-        mark.last.time, lane.top, [&] { return edit_text(player, mark); },
+        is_pull(mark) ? mark.first.time : mark.last.time, lane.top, [&] { return edit_text(player, mark); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
@@ -312,12 +325,13 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
       const float x = lane.x((*at)->time);
       list.AddLine({x, lane.top}, {x, lane.bottom}, theme().axis);
     }
+  if (more > 0) hovered += "\n" + say(k_more, more);
   if (!hovered.empty()) ImGui::SetTooltip("%s", hovered.c_str());
 }
 
 }  // namespace
 
-void draw_timeline(Player& player, const Box& box) {
+void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost) {
   begin_panel("timeline", box);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight();
@@ -338,7 +352,7 @@ void draw_timeline(Player& player, const Box& box) {
     add_load_factor(list, upper, player.way(), label_left);
   else
     add_acceleration(list, upper, player.way(), label_left);
-  add_tilts(list, lower, player, label_left);
+  add_tilts(list, lower, player, ghost, label_left);
   add_axis(list, lower, player.scene().setup, label_left);
 
   const float x = lane.x(player.time());

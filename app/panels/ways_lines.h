@@ -1,11 +1,8 @@
 // The way out at the instant shown, in lines of text.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "app/live/player.h"
-#include "solver/run/place_hits.h"
+#include "app/picture/ways_in_words.h"
 
 namespace topple::app {
 
@@ -13,22 +10,19 @@ namespace topple::app {
 class WaysLines {
  public:
   /// None: the scene has no places.
-  const std::vector<std::string>& of(const Player& player, const io::FrameRow& row);
-  /// Those of them that tell of harm: who is hit, who has no way out.
+  const std::vector<std::string>& of(const Player& player, const io::FrameRow& row) {
+    return at(player, row).lines;
+  }
   const std::vector<std::string>& harms(const Player& player, const io::FrameRow& row) {
-    of(player, row);
-    return harms_;
+    return at(player, row).harms;
   }
 
  private:
-  void follow_hits(const Player& player);
+  const WaysInWords& at(const Player& player, const io::FrameRow& row);
 
-  std::vector<std::string> lines_, harms_;
+  WaysInWords words_;
   std::int32_t branch_ = -1;
-  double time_ = -1;  // s, of the lines
-  std::vector<PlaceOutcome> hits_;
-  std::size_t rows_ = 0;  // of Player::way() that are in the hits
-  RowPtr first_, last_;   // of them
+  double time_ = -1;  // s, of the words
 };
 
 }  // namespace topple::app

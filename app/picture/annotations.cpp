@@ -167,7 +167,7 @@ void add_doors(const Room& room, const Vec3& shift, render::SceneFrame& out) {
   for (const Room::Door& door : room.doors) {
     const Vec2 face = k_before_wall * room.walls[static_cast<std::size_t>(door.wall)].normal;
     const Vec2 a = room.jamb(door, 0) + face, b = room.jamb(door, 1) + face;
-    out.panels.push_back({{above(a, 0), above(b, 0), above(b, k_door), above(a, k_door)}});
+    out.panels.push_back({{above(a, 0), above(b, 0), above(b, k_door), above(a, k_door)}, render::k_no_body});
     out.labels.push_back({above((a + b) / 2, k_door), door.name});
   }
   for (const Room::Place& place : room.places) {

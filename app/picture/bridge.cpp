@@ -9,6 +9,7 @@
 #include "app/picture/anchor_picture.h"
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
+#include "app/picture/ways_in_words.h"
 #include "app/picture/window_words.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
@@ -106,7 +107,8 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time) {
   return out;
 }
 
-Bridge::Bridge(const io::Scene& scene, const RunExtent& extent) : scene_(scene), extent_(extent) {
+Bridge::Bridge(const io::Scene& scene, const RunExtent& extent, bool tells_ways)
+    : scene_(scene), extent_(extent), tells_ways_(tells_ways) {
   const Model& model = scene.setup.model;
   for (const Section& section : model.sections) profiles_.push_back(profile(section));
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
@@ -407,7 +409,7 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
     const double a = Vec3(row.floor_acceleration).dot(shake.direction) / k_gal;
     const double d = Vec3(row.floor_displacement).dot(shake.direction);
     out.caption.lines.push_back(
-        say(window_words::k_now, shake_in_words(parameters), whole(a), whole(1e3 * d)));
+        say(window_words::k_now, shake_in_words(parameters, row.time), whole(a), whole(1e3 * d)));
     const bool along_one = ranges::all_of(parameters.shakes, [&](const Shake& other) {
       return other.direction.cross(shake.direction).norm() < 1e-6;
     });
@@ -428,9 +430,18 @@ void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
   }
   for (const std::string& line : bodies_in_words(setup.model, parameters.gravity, row))
     out.caption.lines.push_back(line);
+  std::size_t most_harms = 0;
+  if (tells_ways_ && settings.words) {
+    const std::vector<std::string> harms = ways_in_words(setup, row, extent_.hits).harms;
+    const auto shown = static_cast<std::ptrdiff_t>(std::min(harms.size(), k_most_harms));
+    out.caption.lines.insert(out.caption.lines.end(), harms.begin(), harms.begin() + shown);
+    most_harms = setup.room.places.size();
+    for (const PlaceOutcome& place : extent_.hits) most_harms += place.hits.size();
+    most_harms = std::min(most_harms, k_most_harms);
+  }
   for (const std::string& line : anchors_in_words(setup.model, row)) out.caption.lines.push_back(line);
   if (out.legend.quantity.empty()) out.caption.lines.push_back(say(window_words::k_all_rigid));
-  out.caption.most_lines = 2 + most_lines_of_bodies(setup.model) +
+  out.caption.most_lines = 2 + most_lines_of_bodies(setup.model) + static_cast<int>(most_harms) +
                            static_cast<int>(anchors_in_words(setup.model, row).size()) +
                            out.legend.quantity.empty();
   std::string contact;

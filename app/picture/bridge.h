@@ -25,7 +25,8 @@ io::FrameRow blend(const io::FrameRow& a, const io::FrameRow& b, double time);
 /// Translates rows of one scene.
 class Bridge {
  public:
-  Bridge(const io::Scene& scene, const RunExtent& extent);
+  /// `tells_ways`: captions tell of people who are hit or have no way out, which takes a millisecond to find.
+  Bridge(const io::Scene& scene, const RunExtent& extent, bool tells_ways = true);
   /// `parameters`: those that held at the row. Of a row that is not finite only the floor and words that say
   /// so.
   render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters,
@@ -52,6 +53,7 @@ class Bridge {
 
   const io::Scene& scene_;
   const RunExtent& extent_;
+  const bool tells_ways_;
   std::vector<render::Profile> profiles_;  ///< one per section, then one per block
   std::vector<std::uint32_t> of_block_;    ///< per body: index of its profile, if it is a block
   std::vector<bool> joint_;  ///< per node: ends of several members, whose sections are drawn through it

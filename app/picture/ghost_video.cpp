@@ -50,8 +50,7 @@ class Actor {
   RunExtent extent_of_all() const {
     RunExtent extent;
     for (std::int64_t i = 0; i < replay_.replay.frame_count() && !interrupted(); ++i)
-      extent.add(replay_.scene.setup.model, replay_.scene.setup.parameters,
-                 from_floor(replay_.replay.frame(i)));
+      extent.add(replay_.scene.setup, replay_.scene.setup.parameters, from_floor(replay_.replay.frame(i)));
     return extent;
   }
 

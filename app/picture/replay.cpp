@@ -26,7 +26,7 @@ io::FrameRow Replay::at(double time) const {
 RunExtent extent_of(const Replay& replay, const io::Scene& scene) {
   RunExtent extent;
   for (std::int64_t i = 0; i < replay.frame_count() && !interrupted(); ++i)
-    extent.add(scene.setup.model, scene.setup.parameters, replay.frame(i));
+    extent.add(scene.setup, scene.setup.parameters, replay.frame(i));
   return extent;
 }
 

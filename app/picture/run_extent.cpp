@@ -5,6 +5,7 @@
 
 #include "app/picture/row.h"
 #include "app/picture/thinning.h"
+#include "app/picture/ways_in_words.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::app {
@@ -55,8 +56,10 @@ double greatest_contact_force(const io::FrameRow& row) {
   return greatest;
 }
 
-void RunExtent::add(const Model& model, const Parameters& parameters, const io::FrameRow& row) {
+void RunExtent::add(const Setup& setup, const Parameters& parameters, const io::FrameRow& row) {
+  const Model& model = setup.model;
   expect_same_model(model, row);
+  add_hits(setup, row, hits);
   const Vec3 shift = floor_shift(row);
   for (int i = 0; i < model.node_total(); ++i) {
     if (model.bodies[model.node_body[i]].ground) continue;

@@ -8,6 +8,8 @@
 #include "render/scene/scene_frame.h"
 #include "solver/io/recording/observer.h"
 #include "solver/model/parameters.h"
+#include "solver/run/place_hits.h"
+#include "solver/run/run.h"
 
 namespace topple::app {
 
@@ -23,7 +25,7 @@ double greatest_contact_force(const io::FrameRow& row);
 /// another model, such as an older version may have built from the same scene.
 class RunExtent {
  public:
-  void add(const Model& model, const Parameters& parameters, const io::FrameRow& row);
+  void add(const Setup& setup, const Parameters& parameters, const io::FrameRow& row);
   /// Leaves older instants out; the box stays.
   void thin();
 
@@ -39,6 +41,7 @@ class RunExtent {
   Vec3 low = Vec3::Constant(1e30), high = -low;  ///< m, box of the furniture's nodes, with the floor's way
   std::vector<float> time_s, acceleration_gal;   ///< along the first shake's direction
   std::vector<float> way, load_factor;           ///< per row: State::time of a static run, and its loads
+  std::vector<PlaceOutcome> hits;                ///< one per place of the room
 
  private:
   std::vector<std::vector<double>> peak_;  ///< SI, of each quantity and row

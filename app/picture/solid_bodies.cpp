@@ -274,7 +274,9 @@ void SolidBodies::dress(const io::FrameRow& row, render::SceneFrame& frame) cons
                                          codes + model_.bodies[b].element_count;
   }
   if (!traits(bodies_).beams) take_beams_away(solid, frame);
-  std::erase_if(frame.panels, [&](const render::Panel& panel) { return solid[panel.body]; });
+  std::erase_if(frame.panels, [&](const render::Panel& panel) {
+    return panel.body != render::k_no_body && solid[panel.body];
+  });
   for (std::size_t b = 0; b < parts_.size(); ++b)
     if (solid[b])
       for (const Part& part : parts_[b]) add(part, static_cast<int>(b), row, frame);

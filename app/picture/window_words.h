@@ -73,6 +73,7 @@ inline constexpr Phrase k_floor_sweep{"floor: sweep {0:.4g} to {1:.4g} Hz, {2:.4
 inline constexpr Phrase k_floor_pulse{"floor: pulse {0:g} s, {1:.4g} gal", "床：パルス {0:g} s、{1:.4g} gal"};
 inline constexpr Phrase k_floor_record{"floor: record {0:.3g} s, peak {1:.4g} gal",
                                        "床：加速度記録 {0:.3g} s、最大 {1:.4g} gal"};
+inline constexpr Phrase k_still_at{", still {0:.0f} gal", "（移行中、現在 {0:.0f} gal）"};
 inline constexpr Phrase k_more_shakes{"{0}, and {1} more", "{0}、ほか{1}件"};
 inline constexpr Phrase k_now{"{0};  now {1:+.0f} gal, {2:+.0f} mm", "{0}　現在 {1:+.0f} gal、{2:+.0f} mm"};
 
@@ -89,6 +90,7 @@ inline constexpr Phrase k_loads_done{"All load steps are done.", "全荷重ス�
 inline constexpr Phrase k_run_ended{"The run ended at {0:.2f} s.", "計算は {0:.2f} s で終了しました。"};
 inline constexpr Phrase k_after_end{" R, then Space runs it again, dragging on the timeline looks back.",
                                     " R の後 Space で再計算、タイムラインのドラッグで過去を表示します。"};
+inline constexpr Phrase k_warns{" Warning: {0}.", " 注意：{0}。"};
 inline constexpr Phrase k_no_instants{"The recording holds no instants.", "記録に時刻のデータがありません。"};
 inline constexpr Phrase k_running_loads{"Running through the load steps.", "荷重ステップを計算中。"};
 inline constexpr Phrase k_running{"Running: {0:.2f} times real time asked, {1:.2f} reached.",
@@ -366,6 +368,10 @@ inline constexpr Phrase k_draw_along{"Draw it along the member in the scene", "�
 inline constexpr Phrase k_integrated{"integrated", "積分点"};
 inline constexpr Phrase k_stresses_at{"stresses (hinge: filled)", "応力評価点（ヒンジ：塗り）"};
 inline constexpr Phrase k_s_of_elements{"s of its elements: {0}", "各要素の s：{0}"};
+inline constexpr Phrase k_over_run_about{
+    "At the recorded instants.\nA blow between two of them may be harder:\nthe summary of topple run has its "
+    "peak.",
+    "記録された時刻での値。\nその間の衝撃はこれより大きいことがあり、\ntopple run の要約に最大値が示される"};
 inline constexpr Phrase k_over_run{"{0}, peak {1} {2}", "{0}、最大 {1} {2}"};
 inline constexpr Phrase k_pin{"Pin", "固定表示"};
 inline constexpr Phrase k_unpin{"Unpin", "固定解除"};

@@ -20,6 +20,8 @@ namespace {
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
 constexpr double k_slid_least = 1e-3;  // m
+constexpr double k_surely_lying = 80;  // degrees: also of what slides about
+constexpr double k_fall = 0.5;         // m/s: what moves faster below that falls
 constexpr double k_at_rest = 0.01;     // m/s: what moves slower at large rests there
 constexpr std::size_t k_few_anchors = 4;
 
@@ -29,15 +31,19 @@ using namespace window_words;
 
 enum class Stance { fallen, toppling, tipped, leaning, standing };
 
-bool is_at_rest(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
-  return io::kinetic_energy(model, gravity, row, static_cast<int>(body)) <
-         model.bodies[body].mass * k_at_rest * k_at_rest / 2;
+bool moves_faster(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body,
+                  double speed) {
+  return io::kinetic_energy(model, gravity, row, static_cast<int>(body)) >=
+         model.bodies[body].mass * speed * speed / 2;
 }
 
 Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body) {
   const double tilt = row.body[body].tilt * k_degrees, critical = row.body[body].critical_angle * k_degrees;
-  return tilt > k_lying     ? Stance::fallen
-         : tilt > critical  ? (is_at_rest(model, gravity, row, body) ? Stance::tipped : Stance::toppling)
+  const bool lies =
+      tilt > k_lying && (tilt > k_surely_lying || !moves_faster(model, gravity, row, body, k_fall));
+  return lies ? Stance::fallen
+         : tilt > critical
+             ? (moves_faster(model, gravity, row, body, k_at_rest) ? Stance::toppling : Stance::tipped)
          : tilt > k_upright ? Stance::leaning
                             : Stance::standing;
 }
@@ -57,6 +63,14 @@ constexpr ShakeWords k_shake_words[] = {
        return say(k_floor_record, s.record->duration, std::abs(s.scale) * s.record->peak / k_gal);
      }},
 };
+
+/// Of an edit that has not come to its end.
+std::string change_in_words(const Shake& shake, double t) {
+  if (shake.ramp.over == 0 || shake.ramp.share(t) == 1) return "";
+  const double now = traits(shake.kind).has_amplitude ? shake_amplitude(shake, t).norm()
+                                                      : std::abs(shake_scale(shake, t)) * shake.record->peak;
+  return say(k_still_at, now / k_gal);
+}
 
 std::string building_in_words(const Shake& shake) {
   if (!shake.building) return "";
@@ -198,13 +212,13 @@ std::string instant_in_words(const Setup& setup, const io::FrameRow& row) {
   return fmt::format("t = {:.{}f} s", row.time, hundredths == std::round(hundredths) ? 2 : 3);
 }
 
-std::string shake_in_words(const Parameters& parameters) {
+std::string shake_in_words(const Parameters& parameters, double t) {
   if (parameters.shakes.empty()) return "";
   const Shake& shake = parameters.shakes.front();
   const auto* const words = ranges::find(k_shake_words, shake.kind, &ShakeWords::kind);
   const std::string one =
       (words == std::end(k_shake_words) ? traits(shake.kind).word : words->say_it(shake)) +
-      building_in_words(shake);
+      change_in_words(shake, t) + building_in_words(shake);
   const std::size_t more = parameters.shakes.size() - 1;
   return more > 0 ? say(k_more_shakes, one, more) : one;
 }

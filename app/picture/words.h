@@ -32,6 +32,6 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row);
 
 /// "floor: 0.5 Hz, 190 gal" of the first shake; empty without one.
-std::string shake_in_words(const Parameters& parameters);
+std::string shake_in_words(const Parameters& parameters, double t);
 
 }  // namespace topple::app

@@ -69,7 +69,7 @@ Edit read_edit(const std::string& key, const std::string& value, const Parameter
     std::string known;
     for (const auto& [one, index] : editable(model, parameters))
       known += (known.empty() ? "" : ", ") + io::edit_key({.key = one, .index = index});
-    throw io::InputError(key + ": cannot be changed while it runs; what can: " + known);
+    throw io::InputError(key + ": cannot be changed while it runs; what can: " + known + ", node.N.pull");
   }
   io::Node written;
   io::apply_override(written, "value=" + value);

@@ -84,7 +84,7 @@ py::object page_of(const Result& self) {
 const app::RunExtent& Result::extent() const {
   std::call_once(looked_, [this] {
     for (std::size_t k = 0; k < rows->size(); ++k)
-      extent_.add(scene->setup.model, scene->setup.parameters, rows->row(k));
+      extent_.add(scene->setup, scene->setup.parameters, rows->row(k));
   });
   return extent_;
 }

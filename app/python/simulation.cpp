@@ -124,7 +124,7 @@ std::string Simulation::render(PictureSize size) {
   const py::gil_scoped_release released;
   const io::FrameRow row = io::frame_row(*run_);
   app::RunExtent extent;
-  extent.add(model(), run_->parameters(), row);
+  extent.add(run_->setup(), run_->parameters(), row);
   return draw_png(*scene_, extent, row, run_->parameters(), size);
 }
 

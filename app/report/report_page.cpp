@@ -36,6 +36,17 @@ std::size_t most_tilted(const ReportPage& page) {
   return most;
 }
 
+/// By the share of the angle at which it would overturn; of bodies that have none, by the angle.
+std::size_t nearest_to_falling(const ReportPage& page) {
+  std::optional<std::size_t> most;
+  const auto share = [&](std::size_t b) {
+    return page.bodies()[b]["peak_tilt_deg"].get<double>() / *page.report().tilts[b].critical;
+  };
+  for (std::size_t b = 0; b < page.bodies().size(); ++b)
+    if (page.report().tilts[b].critical && (!most || share(b) > share(*most))) most = b;
+  return most.value_or(most_tilted(page));
+}
+
 std::string fall_time(const ReportPage& page, std::size_t body) {
   return shown(page.bodies()[body]["overturn_time_s"].get<double>(), 2);
 }
@@ -45,7 +56,7 @@ std::string verdict(const ReportPage& page) {
   const std::size_t count = page.bodies().size();
   std::string out;
   if (falls.empty()) {
-    const std::size_t most = most_tilted(page);
+    const std::size_t most = nearest_to_falling(page);
     const std::string tilt = shown(page.bodies()[most]["peak_tilt_deg"].get<double>(), 2);
     const std::optional<double>& critical = page.report().tilts[most].critical;
     const bool over = critical && page.bodies()[most]["peak_tilt_deg"].get<double>() > *critical;
@@ -89,10 +100,29 @@ bool verdict_is_open(const ReportPage& page) {
   return e.contains("disagreements") && !e["disagreements"].empty();
 }
 
+/// Who is hit, and who has no way out any more.
+std::string harms(const ReportPage& page) {
+  std::string out;
+  for (const ordered_json& way : page.report().summary.value("ways", ordered_json::array())) {
+    const auto place = way["place"].get<std::string>();
+    for (const ordered_json& hit : way["hit_by"])
+      out += page.say(words::k_is_hit, place, hit["body"].get<std::string>(),
+                      shown(hit["time_s"].get<double>(), 2)) +
+             " ";
+    std::string blocked;
+    for (const ordered_json& body : way.value("blocked_by", ordered_json::array()))
+      blocked += (blocked.empty() ? "" : ", ") + body.get<std::string>();
+    if (way["open"] == false && way["before"]["open"] == true)
+      out += page.say(words::k_is_shut_in, place, blocked) + " ";
+  }
+  return out;
+}
+
 std::string result(const ReportPage& page) {
   const Report& report = page.report();
   const std::vector<std::size_t> falls = fallen(page);
   std::string out = page.paragraph(verdict(page), "verdict");
+  if (const std::string told = harms(page); !told.empty()) out += page.paragraph(told, "verdict");
   if (!report.page.empty())
     out += page.paragraph("<a href=\"" + escaped(address_of(report.page)) + "\">" +
                           page.say(words::k_live_page) + "</a>");

@@ -21,13 +21,19 @@ inline constexpr Phrase k_many_fall{
     "{0} of {1} bodies overturn; the first is “{2}”, {3} s after the start of the run.",
     "{1}体のうち{0}体が転倒する。最初は「{2}」で、計算開始から{3}秒後。"};
 inline constexpr Phrase k_nothing_falls{
-    "Nothing overturns. “{0}” tilts most, by {1}° of the {2}° at which it would.",
-    "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（転倒限界角 {2}°）。"};
+    "Nothing overturns. “{0}” comes nearest to it: it tilts by {1}° of the {2}° at which it would.",
+    "転倒する家具はない。最も転倒に近いのは「{0}」で、最大傾斜角{1}°（転倒限界角 {2}°）。"};
 inline constexpr Phrase k_nothing_stays_over{
-    "Nothing overturns. “{0}” tilts most, by {1}°, beyond the {2}° at which it would alone, and comes back.",
-    "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°（単独での転倒限界角 {2}°を超えて戻る）。"};
+    "Nothing overturns. “{0}” comes nearest to it: it tilts by {1}°, beyond the {2}° at which it would "
+    "alone, "
+    "and comes back.",
+    "転倒する家具はない。最も転倒に近いのは「{0}」で、最大傾斜角{1}°（単独での転倒限界角 "
+    "{2}°を超えて戻る）。"};
 inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts most, by {1}°.",
                                             "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°。"};
+inline constexpr Phrase k_is_hit{"“{0}” is hit by “{1}” after {2} s.", "「{0}」に{2}秒で「{1}」が当たる。"};
+inline constexpr Phrase k_is_shut_in{"“{0}” has no way out any more: {1}.",
+                                     "「{0}」から扉まで通れなくなる（{1}）。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
 inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};

@@ -32,6 +32,7 @@ inline bool is_static(const Setup& setup) {
 inline std::string percent_of(double part, double whole) {
   const double percent = 100 * part / whole;
   if (percent > 99 && percent < 100) return ">99 %";
+  if (percent < 0.05) return "0 %";
   return percent < 1 ? fmt::format("{:.1g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 

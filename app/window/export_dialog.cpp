@@ -175,6 +175,7 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
     }
   }
   quiet_text(say(*kinds[static_cast<int>(what)].second));
+  if (player.shown_branch() != player.status().branch) quiet_text(say(ww::k_export_newest));
   if (what != What::tables && viewer.shows_earlier()) quiet_text(say(ww::k_export_without_before));
   // what follows a run is drawn at its newest step, of which rows may not tell yet
   if (const double last = player.way().empty() ? player.time() : player.way().back()->time;

@@ -71,7 +71,7 @@ LiveSource open_source(const ViewOptions& o, const std::string& program) {
     if (source.recording->frame_count() == 0) throw BadInput(o.source + ": holds no frames");
     const Setup& setup = source.scene->setup;
     io::check_edits(source.recording->history(), setup);
-    RunExtent().add(setup.model, setup.parameters, source.recording->frame(0));  // is it of this model?
+    RunExtent().add(setup, setup.parameters, source.recording->frame(0));  // is it of this model?
   } else {
     source.scene = std::make_shared<const io::Scene>(io::load_scene(o.source, o.overrides));
   }

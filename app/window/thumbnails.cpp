@@ -60,7 +60,7 @@ std::optional<render::SceneFrame> eventful_frame(const io::Scene& scene, const s
   }
   if (stop) return std::nullopt;
   RunExtent extent;
-  extent.add(setup.model, setup.parameters, row);
+  extent.add(setup, setup.parameters, row);
   return Bridge(scene, extent).frame(row, run.parameters());
 }
 

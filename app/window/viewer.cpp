@@ -67,6 +67,16 @@ void EarlierRun::add(double time, const PictureSettings& settings, render::Scene
   for (render::Tube& tube : out.ghost_tubes) tube.profile += profiles;
 }
 
+GhostCurves EarlierRun::curves(const Model& model) const {
+  GhostCurves curves{way_, {}};
+  const std::vector<Body>& own = scene_->setup.model.bodies;
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    const auto same = std::ranges::find(own, model.bodies[static_cast<std::size_t>(b)].name, &Body::name);
+    curves.body.push_back(same == own.end() ? -1 : static_cast<int>(same - own.begin()));
+  }
+  return curves;
+}
+
 render::OverlayFonts set_up_interface(render::Stage& stage, float scale, const Appearance& appearance,
                                       const io::Scene* scene) {
   window_language() = appearance.language;
@@ -115,7 +125,7 @@ Viewer::Viewer(Player& player, render::Stage& stage, float scale, render::NamedV
       desktop_scale_(scale),
       appearance_(appearance),
       keep_(std::move(keep)),
-      bridge_(player.scene(), player.extent()),
+      bridge_(player.scene(), player.extent(), false),
       settings_(settings),
       view_(view),
       hand_(player) {
@@ -234,10 +244,27 @@ void Viewer::build(const std::function<void()>& over, bool covered) {
   draw_scene();
 }
 
+bool Viewer::shows_earlier() const {
+  if (!earlier_ || !ghost_shown_) return false;
+  const auto& branches = player_.history().branches;
+  const auto shown = std::ranges::find(branches, player_.shown_branch(), &Branch::id);
+  return !player_.ghost_branch() || shown == branches.end() || shown->fork_step == 0;
+}
+
+GhostCurves Viewer::ghost_curves() const {
+  const Model& model = player_.scene().setup.model;
+  if (shows_earlier()) return earlier_->curves(model);
+  GhostCurves curves;
+  if (!ghost_shown_) return curves;
+  curves.way = player_.ghost_way();
+  for (int b = 0; b < model.furniture_total(); ++b) curves.body.push_back(b);
+  return curves;
+}
+
 void Viewer::draw_panels() {
   draw_side_panel(row_);
   asked_ = draw_transport_bar(player_, transport_, transport_height_);
-  draw_timeline(player_, timeline_);
+  draw_timeline(player_, timeline_, ghost_curves());
   if (is_static(player_.scene().setup)) draw_load_path(player_, path_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();

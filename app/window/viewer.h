@@ -32,6 +32,8 @@ class EarlierRun {
   EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way);
   /// Its bodies at `time`, as ghosts; as long as it lasted.
   void add(double time, const PictureSettings& settings, render::SceneFrame& out) const;
+  /// Of the pieces that `model` has by the same names.
+  GhostCurves curves(const Model& model) const;
 
  private:
   std::shared_ptr<const io::Scene> scene_;
@@ -115,8 +117,9 @@ class Viewer {
     scene_changed_ = true;
   }
   bool keeps_in_picture() const { return keeps_in_picture_; }
-  /// The run of the room before it was changed is drawn pale, rather than a branch that was left.
-  bool shows_earlier() const { return earlier_ && ghost_shown_; }
+  /// The run of the room before it was changed is drawn pale, rather than a branch that was left: until one
+  /// goes on from an instant.
+  bool shows_earlier() const;
   bool ghost_shown() const { return ghost_shown_; }
   void show_ghost(bool on) {
     ghost_shown_ = on;
@@ -163,6 +166,7 @@ class Viewer {
   void draw_status();
   void draw_key_table();
   void draw_panels();
+  GhostCurves ghost_curves() const;
   float aspect() const { return scene_.width / scene_.height; }
 
   Player& player_;

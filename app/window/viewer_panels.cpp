@@ -8,9 +8,9 @@
 
 #include "app/chart/theme.h"
 #include "app/panels/shell_words.h"
-#include "app/panels/ways_words.h"
 #include "app/picture/furnish_words.h"
 #include "app/picture/image_files.h"
+#include "app/picture/ways_words.h"
 #include "app/picture/words.h"
 #include "app/support/files.h"
 #include "app/window/status_line.h"
@@ -29,7 +29,6 @@ constexpr int k_most_status_lines = 3;
 constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
 constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
-constexpr std::size_t k_most_harms = 4;  // lines
 constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
 
 }  // namespace
@@ -56,8 +55,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
     }
   };
   if (!low) add(fonts_.text, player_.scene().title);
-  add(fonts_.small,
-      instant_in_words(player_.scene().setup, row) + "   " + shake_in_words(player_.parameters_so_far()));
+  add(fonts_.small, instant_in_words(player_.scene().setup, row) + "   " +
+                        shake_in_words(player_.parameters_so_far(), row.time));
   const Model& model = player_.scene().setup.model;
   for (const std::string& words : bodies_in_words(model, player_.parameters().gravity, row))
     add(fonts_.small, words);

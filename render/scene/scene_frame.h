@@ -41,9 +41,10 @@ struct Tube {
 };
 
 /// A translucent sheet of a cabinet: a quadrilateral, corners in order.
+inline constexpr std::uint32_t k_no_body = 0xffffffff;
 struct Panel {
   std::array<Float3, 4> corners;
-  std::uint32_t body = 0;
+  std::uint32_t body = 0;  ///< Tube::body; k_no_body: a door
 };
 
 /// A floor or wall: a rectangle with a metric grid (1 m bold, 0.1 m faint). `normal` points to the

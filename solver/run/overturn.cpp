@@ -51,9 +51,10 @@ bool is_base_supported(const Model& model, int index) {
   });
 }
 
-/// From the centre of gravity to the edge in the direction of the tilt, m, of an upright body.
+/// From the centre of gravity to the edge in the direction of the tilt, and to the nearest one, m, of an
+/// upright body.
 struct EdgeAhead {
-  double distance, height;
+  double distance, height, nearest;
 };
 std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose) {
   const Body& body = model.bodies[index];
@@ -62,18 +63,15 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
   const double lean = up.head<2>().norm();
-  double distance = std::numeric_limits<double>::infinity();
-  if (lean > k_uplift_angle) {
-    distance =
-        distance_to_edge(body.support_polygon, body.centre_of_gravity, Vec3(-up.x(), -up.y(), 0) / lean);
-  } else {
-    for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
-      const Vec3 edge = body.support_polygon[(i + 1) % body.support_polygon.size()] - body.support_polygon[i];
-      const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
-      distance = std::min(distance, outward.dot(body.support_polygon[i] - body.centre_of_gravity));
-    }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
+    const Vec3 edge = body.support_polygon[(i + 1) % body.support_polygon.size()] - body.support_polygon[i];
+    const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
+    nearest = std::min(nearest, outward.dot(body.support_polygon[i] - body.centre_of_gravity));
   }
-  return EdgeAhead{distance, height};
+  if (lean <= k_uplift_angle) return EdgeAhead{nearest, height, nearest};
+  const Vec3 downhill = Vec3(-up.x(), -up.y(), 0) / lean;
+  return EdgeAhead{distance_to_edge(body.support_polygon, body.centre_of_gravity, downhill), height, nearest};
 }
 
 }  // namespace
@@ -87,12 +85,13 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
   const auto edge = edge_ahead(model, index, pose);
   constexpr double k_never = std::numeric_limits<double>::infinity();
   if (!edge) return {k_never, k_never};
-  const double critical = elementary::atan2(edge->distance, edge->height);
-  const auto barrier = [&](double angle) {
-    return model.bodies[index].mass * gravity * elementary::hypot(edge->distance, edge->height) *
+  const auto barrier = [&](double distance, double angle) {
+    const double critical = elementary::atan2(distance, edge->height);
+    return model.bodies[index].mass * gravity * elementary::hypot(distance, edge->height) *
            (1 - elementary::cos(critical - std::min(angle, critical)));
   };
-  return {barrier(tilt(pose)), barrier(0)};
+  const double upright = barrier(edge->nearest, 0);
+  return {std::min(barrier(edge->distance, tilt(pose)), upright), upright};
 }
 
 double slide(const Model& model, int index, const BodyPose& pose, int bearer, const BodyPose& on) {

@@ -32,12 +32,12 @@ inline constexpr std::size_t k_kept_impacts = 100;
 /// body without a base or with supports there.
 double critical_angle(const Model& model, int body, const BodyPose& pose);
 
-/// Energy that lifts the centre of gravity of a rigid body over the edge in the direction of its tilt, J;
-/// both infinite where critical_angle is.
+/// Energy that lifts the centre of gravity of a rigid body over an edge, J; both infinite where
+/// critical_angle is.
 ///   m g R (1 - cos(critical - tilt)),  R from the edge to the centre of gravity; 0 beyond the critical angle
 struct OverturnBarrier {
-  double left;   ///< from this tilt on
-  double whole;  ///< from upright, in the same direction
+  double left;   ///< over the edge ahead from this tilt on, or over the nearest from upright, if that is less
+  double whole;  ///< from upright, over the nearest edge
 };
 /// gravity: m/s^2.
 OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, double gravity);

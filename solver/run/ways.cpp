@@ -39,6 +39,7 @@ void hold(const Room& room, const RoomPlan& plan, const Vec2& at, Way& way) {
   }
   if (on_him.empty()) return;
   way.open = false;
+  way.caught = true;
   way.blocked_by = std::move(on_him);
 }
 

@@ -29,6 +29,7 @@ struct Way {
   double widest = 0;  ///< m, of the disc that passes, at most the door's width
   /// Closed: bodies that a wider disc would have to pass between, or that lie where the person stands.
   std::vector<int> blocked_by = {};
+  bool caught = false;  ///< they lie where the person stands
 };
 
 /// From each place.

@@ -12,7 +12,7 @@ namespace {
 
 RunExtent extent_of_rows(const io::Scene& scene, const std::vector<io::FrameRow>& rows) {
   RunExtent extent;
-  for (const io::FrameRow& row : rows) extent.add(scene.setup.model, scene.setup.parameters, row);
+  for (const io::FrameRow& row : rows) extent.add(scene.setup, scene.setup.parameters, row);
   return extent;
 }
 

@@ -246,13 +246,14 @@ void add_contact(std::vector<Key>& keys) {
   Rows rows(keys, "contact");
   const ContactLaw law{};
   const Words with_restitution = words_where(contact_laws(), &ContactLawTraits::has_restitution);
-  rows.word("law", contact_laws(), law.kind, "contact_law.h").only_in({"dynamic"});
+  rows.word("law", contact_laws(), law.kind, "coulomb damps and sticks; paper, printed: as in the paper")
+      .only_in({"dynamic"});
   rows.number("alpha", D::force, "kgf", 1e-3 * k_standard_gravity, 1e6 * k_standard_gravity,
-              "penalty coefficient of Eq. 2")
+              "stiffness of contacts: penalty coefficient of Eq. 2")
       .absent(law.alpha)
       .absent_means(
-          "what lets every body stand, lift and land on its edges as a rigid one "
-          "(contact_default.h); 50 kgf when none stands on a floor");
+          "what lets every body stand, lift and land on its edges as a rigid one; 50 kgf when none stands on "
+          "a floor");
   rows.number("q", 0.5, 4, "penalty index of Eq. 2").absent(law.q);
   rows.number("friction", 0, 1.5, "coefficient of friction").absent(law.friction);
   rows.number("friction_static", 0, 1.5,

@@ -56,6 +56,12 @@ std::optional<Plane> floor_of(const Model& model) {
   return std::nullopt;
 }
 
+bool holds(const Model& model, const Anchor& anchor, int body) {
+  constexpr double k_beside = 0.05;  // m, between the bases of bodies that stand side by side
+  const auto base = [&](int b) { return model.bodies[b].base_centre.z(); };
+  return anchor.body == body || (anchor.other.body == body && base(anchor.body) < base(body) + k_beside);
+}
+
 std::string why_not_standing(const Model& model, int index) {
   const Body& body = model.bodies[index];
   const auto floor = floor_of(model);

@@ -15,6 +15,10 @@ std::optional<Plane> floor_of(const Model& model);
 /// does.
 std::string why_not_standing(const Model& model, int body);
 
+/// Whether an anchor holds a body: its own, or of another one beside it. What stands on a body and is fixed
+/// to it does not hold it.
+bool holds(const Model& model, const Anchor& anchor, int body);
+
 /// One body in its reference pose, to be settled, without the other bodies, without loads, shakes and probes.
 /// `walls`: with all planes, else with the floor alone, which must exist.
 Setup alone(const Setup& scene, int body, bool walls);

@@ -193,8 +193,9 @@ Standing pushed(const Setup& setup, int body) {
 std::string why_no_criteria(const Setup& setup, int body) {
   const std::vector<bool>& in_place = setup.parameters.anchors;
   for (std::size_t k = 0; k < setup.model.anchors.size(); ++k)
-    if (setup.model.anchors[k].body == body && (in_place.empty() || in_place[k]))
-      return "is held by \"" + setup.model.anchors[k].name + '"';
+    if (const Anchor& anchor = setup.model.anchors[k];
+        holds(setup.model, anchor, body) && (in_place.empty() || in_place[k]))
+      return "is held by \"" + anchor.name + '"';
   return why_no_block(setup.model, body);
 }
 

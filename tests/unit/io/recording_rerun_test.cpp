@@ -23,12 +23,13 @@ class Session {
       take(observer_.observe(run_));
     }
   }
-  void edit(Edit::Key key, double value) {
-    const Edit edit{.key = key, .value = Vec3(value, 0, 0)};
+  void edit(Edit::Key key, double value) { this->edit({.key = key, .value = Vec3(value, 0, 0)}); }
+  void edit(const Edit& edit) {
     history_.edits.push_back({branch_, run_.state().step, run_.state().time, edit});
     recorder_.write(history_.edits.back());
     run_.edit(edit);
   }
+  const topple::Run& run() const { return run_; }
   RunPoint point() const { return run_.point(); }
   void go_on_from(RunPoint point, std::int32_t parent) {
     take(observer_.last(run_));
@@ -142,6 +143,29 @@ TEST_F(RerunTest, rows_stand_at_multiples_of_the_output_interval_whatever_the_st
   }
   EXPECT_GT(in_one_step, 3);
   EXPECT_TRUE(again(auto_steps).differences.empty());
+}
+
+// The hand makes a rigid body of what was a planar block, and springs of an elastic one are then others.
+TEST_F(RerunTest, rows_of_a_step_that_an_edit_follows_are_those_before_it) {
+  for (const char* want : {"motion", "stress"}) {
+    const std::string text = "topple = 1\nfloor = {}\n[run]\nduration = \"3 s\"\nwant = [\"motion\"" +
+                             std::string(want == std::string("stress") ? ", \"stress\"" : "") +
+                             "]\n[[shake]]\ntype = \"sine\"\nfrequency = \"1 Hz\"\namplitude = \"150 gal\"\n"
+                             "[[furniture]]\nkind = \"desk\"\n";
+    Session session(path("pulled.h5"), parse_scene(text, "pulled"));
+    const int top = session.run().setup().model.node_total() - 1;
+    session.edit({.key = Edit::Key::pull, .index = top, .value = Vec3(10, 0, 0)});
+    for (const double force : {0., 40., 0., 60., 0.}) {
+      for (int i = 0; i < 25; ++i) session.go_to(session.run().step() + 1);
+      session.edit({.key = Edit::Key::pull, .index = top, .value = Vec3(force, 0, force)});
+    }
+    for (int i = 0; i < 25; ++i) session.go_to(session.run().step() + 1);
+    session.finish();
+    const Rerun result = again(Recording(path("pulled.h5")));
+    EXPECT_GT(result.checkpoints, 0);
+    for (const Difference& one : result.differences)
+      ADD_FAILURE() << want << ": " << one.what << " at " << one.at.time;
+  }
 }
 
 TEST_F(RerunTest, a_checkpoint_with_another_hash_is_told_with_its_branch) {

@@ -128,6 +128,22 @@ TEST(Alone, bodies_that_differ_by_their_place_are_alike) {
   EXPECT_FALSE(alike(io::load_scene("paper-a", {"cabinet.walled.mass=41"}).setup.model, 0, 1));
 }
 
+// Side by side both ends are held; of two that stand on each other the upper one is.
+TEST(Alone, an_anchor_holds_both_that_stand_side_by_side_and_the_upper_of_a_stack) {
+  Model model = io::load_scene("paper-a").setup.model;
+  Anchor anchor{};
+  anchor.body = 0;
+  anchor.other.body = -1;
+  EXPECT_TRUE(holds(model, anchor, 0));
+  EXPECT_FALSE(holds(model, anchor, 1));
+  anchor.other.body = 1;
+  EXPECT_TRUE(holds(model, anchor, 0));
+  EXPECT_TRUE(holds(model, anchor, 1));
+  model.bodies[0].base_centre.z() += 1;
+  EXPECT_TRUE(holds(model, anchor, 0));
+  EXPECT_FALSE(holds(model, anchor, 1));
+}
+
 TEST(Alone, what_does_not_stand_says_why) {
   Model model = io::load_scene("paper-a").setup.model;
   EXPECT_EQ(why_not_standing(model, 0), "");

@@ -79,6 +79,9 @@ TEST(EditMarks, one_drag_is_one_mark) {
   EXPECT_EQ(marks[1].last.edit.key, friction);
   EXPECT_EQ(marks[2].last.edit.value.x(), 4);
   EXPECT_EQ(marks[3].first.time, 1.5);  // another drag, a second later
+  std::vector<LoggedEdit> branched{edit(0.5, amplitude, 1), edit(0.6, amplitude, 2)};
+  branched[1].branch = 1;
+  EXPECT_EQ(edit_marks(branched).size(), 2u);  // what was done before one went on from there stays
   const std::vector<EditMark> pulls =
       edit_marks({edit(1, pull, 5), edit(3, pull, 6), edit(3.1, pull, 0), edit(4, pull, 5)});
   ASSERT_EQ(pulls.size(), 2u);  // a hand that keeps still pulls on

@@ -19,7 +19,7 @@ TEST(BlockPicture, is_one_solid_with_its_surface_half_a_width_outside) {
   const io::FrameRow row = io::frame_row(run);
   RunExtent extent;
   const Model& model = scene.setup.model;
-  extent.add(model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   PictureSettings settings;
   settings.panels = true;
   const Bridge bridge(scene, extent);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/picture/annotations.h"
+#include "app/picture/solid_bodies.h"
 #include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "solver/body/anchors.h"
@@ -21,10 +22,10 @@ class BridgeTest : public ::testing::Test {
  protected:
   BridgeTest() : scene_(io::parse_scene(k_shaken, "s.toml")), run_(scene_.setup) {
     start_ = io::frame_row(run_);
-    extent_.add(model(), scene_.setup.parameters, start_);
+    extent_.add(scene_.setup, scene_.setup.parameters, start_);
     for (int i = 0; i < 100; ++i) EXPECT_TRUE(run_.advance().ok());
     end_ = io::frame_row(run_);
-    extent_.add(model(), scene_.setup.parameters, end_);
+    extent_.add(scene_.setup, scene_.setup.parameters, end_);
   }
   const Model& model() const { return scene_.setup.model; }
   static double distance(const Float3& a, const Vec3& b) { return (Vec3(a[0], a[1], a[2]) - b).norm(); }
@@ -144,7 +145,7 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
   const topple::Run run(scene.setup);
   io::FrameRow row = io::frame_row(run);
   RunExtent extent;
-  extent.add(model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   const auto drawn = [&](float state) {
     row.anchor[1].state = state;
     render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
@@ -211,7 +212,7 @@ TEST(RoomPicture, shows_doors_in_their_walls_and_places_on_the_floor) {
   const topple::Run run(scene.setup);
   const io::FrameRow row = io::frame_row(run);
   RunExtent extent;
-  extent.add(scene.setup.model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   const Bridge bridge(scene, extent);
   const render::SceneFrame frame = bridge.frame(row, scene.setup.parameters);
   std::vector<std::string> words;
@@ -244,7 +245,7 @@ TEST(StaticBridge, pictures_of_a_static_run_tell_load_step_and_load_factor) {
       ASSERT_TRUE(run.advance().ok());
     }
     row = io::frame_row(run);
-    extent.add(scene.setup.model, scene.setup.parameters, row);
+    extent.add(scene.setup, scene.setup.parameters, row);
   }
   const render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
   EXPECT_EQ(frame.caption.lines.front(),
@@ -266,7 +267,7 @@ TEST(StaticBridge, rings_of_hinges_turn_as_their_elements_do) {
   RunExtent extent;
   while (!run.over()) ASSERT_TRUE(run.advance().ok());
   const io::FrameRow row = io::frame_row(run);
-  extent.add(scene.setup.model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   const render::SceneFrame frame = Bridge(scene, extent).frame(row, scene.setup.parameters);
   int feet = 0;
   for (const render::Ring& ring : frame.rings) {
@@ -321,7 +322,7 @@ TEST_F(BridgeTest, captions_have_no_minus_before_a_zero) {
 TEST_F(BridgeTest, a_row_of_another_model_is_refused) {
   io::FrameRow foreign = end_;
   foreign.position.resize(foreign.position.size() - 3);
-  EXPECT_THROW(extent_.add(model(), scene_.setup.parameters, foreign), io::InputError);
+  EXPECT_THROW(extent_.add(scene_.setup, scene_.setup.parameters, foreign), io::InputError);
 }
 
 TEST_F(BridgeTest, blends_begin_and_end_in_their_rows_and_stay_between_them) {
@@ -342,11 +343,11 @@ TEST_F(BridgeTest, blends_begin_and_end_in_their_rows_and_stay_between_them) {
 
 TEST_F(BridgeTest, the_colour_scale_ends_below_a_rare_peak) {
   RunExtent extent;
-  for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
+  for (int i = 0; i < 100; ++i) extent.add(scene_.setup, scene_.setup.parameters, start_);
   const double usual = extent.top(BeamQuantity::stress);
   io::FrameRow peak = start_;
   for (float& force : peak.section_force) force = 1e6f;
-  extent.add(model(), scene_.setup.parameters, peak);
+  extent.add(scene_.setup, scene_.setup.parameters, peak);
   EXPECT_EQ(extent.top(BeamQuantity::stress), usual);
   EXPECT_EQ(RunExtent().top(BeamQuantity::stress), 0);
 }
@@ -392,7 +393,7 @@ TEST_F(BridgeTest, legends_mark_yield_and_say_what_else_is_not_as_it_is) {
   const io::Scene yields = io::load_scene("yielding");
   const io::FrameRow row = io::frame_row(topple::Run(yields.setup));
   RunExtent extent;
-  extent.add(yields.setup.model, yields.setup.parameters, row);
+  extent.add(yields.setup, yields.setup.parameters, row);
   EXPECT_EQ(notes(yields, extent, row, {}).mark_label, "yield 235 MPa");
   EXPECT_FLOAT_EQ(notes(yields, extent, row, {}).mark, 235);
   EXPECT_EQ(notes(yields, extent, row, {.colour = BeamQuantity::yield_ratio}).mark, 1);
@@ -412,10 +413,10 @@ TEST_F(BridgeTest, arrows_of_a_resting_body_add_up_to_its_weight) {
 
 TEST_F(BridgeTest, arrows_of_a_blow_have_the_scale_of_the_run_and_in_a_picture_alone_one_that_fits) {
   RunExtent extent;
-  for (int i = 0; i < 100; ++i) extent.add(model(), scene_.setup.parameters, start_);
+  for (int i = 0; i < 100; ++i) extent.add(scene_.setup, scene_.setup.parameters, start_);
   io::FrameRow blow = start_;
   for (float& force : blow.contact_force) force *= 50;
-  extent.add(model(), scene_.setup.parameters, blow);
+  extent.add(scene_.setup, scene_.setup.parameters, blow);
   const Bridge bridge(scene_, extent);
   const auto frame = [&](const io::FrameRow& row, bool alone) {
     return bridge.frame(row, scene_.setup.parameters, {.contact_forces = true, .alone = alone});
@@ -462,7 +463,7 @@ members = [{ nodes = [0, 1], section = "post", material = "steel", elements = 2,
   const MemberForce& touch = run.member_contacts()[0];
   const io::FrameRow row = io::frame_row(run);
   RunExtent extent;
-  extent.add(scene.setup.model, scene.setup.parameters, row);
+  extent.add(scene.setup, scene.setup.parameters, row);
   const render::SceneFrame frame =
       Bridge(scene, extent).frame(row, scene.setup.parameters, {.contact_forces = true});
   ASSERT_EQ(frame.arrows.size(), 2u);
@@ -494,7 +495,7 @@ TEST_F(BridgeTest, trails_lead_to_the_centre_of_gravity_and_grow_stronger) {
     rows.push_back(start_);
     rows.back().time = 0.1 * i;
     rows.back().body[0].x = 0.01 * i;
-    extent.add(model(), scene_.setup.parameters, rows.back());
+    extent.add(scene_.setup, scene_.setup.parameters, rows.back());
   }
   const Bridge bridge(scene_, extent);
   for (const Trails trails : {Trails::second, Trails::run}) {
@@ -508,6 +509,52 @@ TEST_F(BridgeTest, trails_lead_to_the_centre_of_gravity_and_grow_stronger) {
     EXPECT_EQ(centre.strength.back(), 1);
     EXPECT_GT(frame.trails[1].points[0][2], centre.points[0][2] + 0.5f);  // the top
   }
+}
+
+// Also where furniture is drawn as it looks.
+TEST(Bridge, doors_are_drawn_and_people_under_a_piece_are_told) {
+  const io::Scene scene = io::parse_scene(R"(topple = 1
+[run]
+want = ["motion"]
+[floor]
+[[wall]]
+name = "back"
+at = [-2, 0]
+normal = [1, 0, 0]
+[[door]]
+name = "door"
+wall = "back"
+at = 0
+width = 0.9
+[[place]]
+name = "seat"
+at = [1, 0]
+[[block]]
+name = "box"
+size = [0.5, 0.5, 0.5]
+mass = 20
+at = [1, 1, 0]
+)",
+                                          "room.toml");
+  const topple::Setup& setup = scene.setup;
+  io::FrameRow row = io::frame_row(topple::Run(setup));
+  RunExtent extent;
+  extent.add(setup, setup.parameters, row);
+  for (std::size_t n = 0; 3 * n < row.position.size(); ++n) row.position[3 * n + 1] -= 1;
+  row.time = 1;
+  extent.add(setup, setup.parameters, row);
+  const Bridge bridge(scene, extent);
+  render::SceneFrame frame = bridge.frame(row, setup.parameters);
+  const std::vector<std::string>& lines = frame.caption.lines;
+  for (const char* told : {"seat: cannot leave, box lies where they stand", "seat: hit by box at 1.00 s"})
+    EXPECT_NE(std::ranges::find(lines, told), lines.end()) << told;
+  EXPECT_GE(frame.caption.most_lines, static_cast<int>(lines.size()));
+  for (const std::string& line : Bridge(scene, extent, false).frame(row, setup.parameters).caption.lines)
+    EXPECT_EQ(line.find("seat"), std::string::npos);
+  const auto is_door = [](const render::Panel& panel) { return panel.body == render::k_no_body; };
+  EXPECT_EQ(std::ranges::count_if(frame.panels, is_door), 1);
+  SolidBodies(scene, Bodies::solid).dress(row, frame);
+  EXPECT_EQ(std::ranges::count_if(frame.panels, is_door), 1);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_file.h"
+#include "solver/run/edit.h"
 #include "unit/app/scenes.h"
 
 namespace topple::app {
@@ -15,11 +16,11 @@ namespace {
 
 TEST(Words, a_second_shake_is_not_left_out) {
   const io::Scene one = io::parse_scene(k_shaken, "s.toml");
-  EXPECT_EQ(shake_in_words(one.setup.parameters), "floor: 2 Hz, 400 gal");
+  EXPECT_EQ(shake_in_words(one.setup.parameters, 0), "floor: 2 Hz, 400 gal");
   const std::string shake =
       "[[shake]]\nname = \"other\"\nfrequency = 1\namplitude = 1\ndirection = [0, 1, 0]\n";
   const io::Scene two = io::parse_scene(k_shaken + shake, "s.toml");
-  EXPECT_EQ(shake_in_words(two.setup.parameters), "floor: 2 Hz, 400 gal, and 1 more");
+  EXPECT_EQ(shake_in_words(two.setup.parameters, 0), "floor: 2 Hz, 400 gal, and 1 more");
 }
 
 TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
@@ -37,6 +38,29 @@ TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
   EXPECT_EQ(lines[0], model.bodies[0].name + ": fallen, tilt 80°");
   EXPECT_EQ(lines[1], fmt::format("{} others stand", all - 1));
   EXPECT_EQ(most_lines_of_bodies(model), 6);
+}
+
+TEST(Words, a_shake_that_is_on_its_way_to_another_amplitude_says_what_it_is_now) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  Parameters parameters = scene.setup.parameters;
+  apply({.key = Edit::Key::amplitude, .value = Vec3(2, 0, 0)}, scene.setup.model, 0.1, parameters);
+  EXPECT_EQ(shake_in_words(parameters, 0.1), "floor: 2 Hz, 200 gal, still 400 gal");
+  EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 8), "floor: 2 Hz, 200 gal, still 300 gal");
+  EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 4), "floor: 2 Hz, 200 gal");
+}
+
+TEST(Words, what_falls_has_not_fallen_before_it_lies) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  const Model& model = scene.setup.model;
+  const Vec3& gravity = scene.setup.parameters.gravity;
+  io::FrameRow row = io::frame_row(topple::Run(scene.setup));
+  row.body[0].critical_angle = 12 / k_degrees;
+  row.body[0].tilt = 66 / k_degrees;
+  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 66°");
+  row.body[0].energy += 0.5 * model.bodies[0].mass * 1.5 * 1.5;  // at 1.5 m/s
+  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: toppling, tilt 66.0° (critical 12.0°)");
+  row.body[0].tilt = 90 / k_degrees;  // slides about
+  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 90°");
 }
 
 TEST(Words, an_instant_has_the_digits_of_its_rows) {

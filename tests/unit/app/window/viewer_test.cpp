@@ -10,6 +10,7 @@
 #include <future>
 #include <mutex>
 
+#include "solver/io/edit/scene_save.h"
 #include "unit/app/live.h"
 #include "unit/app/mouse.h"
 #include "unit/render/off_screen.h"
@@ -21,6 +22,19 @@ namespace {
 
 constexpr float k_width = 1280, k_height = 720;
 constexpr int k_space = ' ';
+
+/// Two points on a wall behind the cabinet of k_rocking. Appended to it.
+const std::string k_brackets = R"(
+[[wall]]
+name = "behind"
+at = [-0.22, 0]
+normal = [1, 0, 0]
+[[fixing]]
+name = "held"
+kind = "L-bracket"
+body = "free"
+to = "behind"
+)";
 
 class ViewerTest : public ::testing::Test {
  protected:
@@ -114,6 +128,17 @@ class ViewerTest : public ::testing::Test {
     return {-1, -1};
   }
   /// What of a panel scrolls.
+  /// Where the box of a parameter is, by the label beside it and its key; x < 0: nowhere.
+  ImVec2 box_of(const char* label, const char* key) {
+    const ImGuiWindow* const side = content("side");
+    const ImGuiID box = ImHashStr(label, 0, ImHashStr(key, 0, ImHashStr(label, 0, side->ID)));
+    hover({2, 400});
+    for (float y = side->Pos.y + 5; y < side->Pos.y + side->Size.y; y += 9) {
+      hover({side->Pos.x + 20, y});
+      if (ImGui::GetHoveredID() == box) return ImGui::GetIO().MousePos;
+    }
+    return {-1, -1};
+  }
   static const ImGuiWindow* content(const std::string& panel) {
     for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
       if (std::string_view(window->Name).starts_with(panel + "/content")) return window;
@@ -156,20 +181,27 @@ class ViewerTest : public ::testing::Test {
 
 TEST_F(ViewerTest, a_box_takes_an_anchor_away) {
   start(&topple::Run::advance, k_rocking + k_straps);
-  const ImGuiWindow* const side = content("side");
-  const ImGuiID box = ImHashStr("strong", 0, ImHashStr("anchor.2.on", 0, ImHashStr("strong", 0, side->ID)));
-  hover({2, 400});
-  ImVec2 at{-1, -1};
-  for (float y = side->Pos.y + 5; at.x < 0 && y < side->Pos.y + side->Size.y; y += 9) {
-    hover({side->Pos.x + 20, y});
-    if (ImGui::GetHoveredID() == box) at = ImGui::GetIO().MousePos;
-  }
+  const ImVec2 at = box_of("strong", "anchor.2.on");
   ASSERT_GE(at.x, 0);
   click(at);
   EXPECT_FALSE(player_->parameters().anchors[1]);
   EXPECT_TRUE(player_->parameters().anchors[0]);
   click(at);
   EXPECT_TRUE(player_->parameters().anchors[1]);
+}
+
+TEST_F(ViewerTest, a_box_takes_a_fixing_with_all_its_points_away_and_the_scene_can_be_saved) {
+  start(&topple::Run::advance, k_rocking + k_brackets);
+  ASSERT_EQ(player_->parameters().anchors.size(), 2u);
+  EXPECT_LT(box_of("held-2", "anchor.2.on").x, 0);
+  const ImVec2 at = box_of("held", "anchor.1.on");
+  ASSERT_GE(at.x, 0);
+  click(at);
+  EXPECT_EQ(player_->parameters().anchors, (std::vector<bool>{false, false}));
+  const io::SavedScene saved = io::edited_scene(player_->scene(), player_->parameters());
+  EXPECT_NE(saved.text.find("on = false"), std::string::npos);
+  press('Z', true);
+  EXPECT_EQ(player_->parameters().anchors, (std::vector<bool>{true, true}));
 }
 
 TEST_F(ViewerTest, space_plays_and_pauses) {

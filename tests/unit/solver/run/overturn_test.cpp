@@ -116,6 +116,11 @@ TEST(Overturn, barrier_is_the_weight_times_the_rise_to_above_the_edge) {
     EXPECT_NEAR(barrier.left, body.mass * k_g * (height(k_edge_angle) - height(angle)), 1e-9) << angle;
     EXPECT_NEAR(barrier.whole, body.mass * k_g * (height(k_edge_angle) - height(0)), 1e-9) << angle;
   }
+  // leaning to its wide side it falls over the narrow one as easily as upright
+  const OverturnBarrier upright = overturn_barrier(s.model, 0, turned(s.model, Vec3::Zero()), k_g),
+                        aside = overturn_barrier(s.model, 0, turned(s.model, 0.02 * Vec3::UnitX()), k_g);
+  EXPECT_EQ(aside.left, upright.whole);
+  EXPECT_EQ(aside.whole, upright.whole);
   EXPECT_EQ(overturn_barrier(s.model, 0, turned(s.model, 0.3 * Vec3::UnitY()), k_g).left, 0);
   EXPECT_TRUE(std::isinf(overturn_barrier(sled(1, 0.06, 0.03), 0, turned(s.model, Vec3::Zero()), k_g).left));
 }
