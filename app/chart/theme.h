@@ -13,7 +13,7 @@ struct CellStyle {
 struct Theme {
   ImU32 text, quiet;  ///< words on panels and sheets
   ImU32 sheet;        ///< behind charts
-  ImU32 veil;         ///< behind words over the scene
+  ImU32 halo;         ///< of letters over the scene
   ImU32 frame, axis, faint, cursor;
   ImU32 line, chosen, positive, negative, hinge, edit, ghost, other;
   ImU32 floor[3];        ///< its components

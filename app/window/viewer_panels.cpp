@@ -71,19 +71,15 @@ void Viewer::draw_words(const io::FrameRow& row) {
   else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
     add(fonts_.small, say(k_ghost_is, *ghost));
   float x = scene_.left + margin, y = scene_.top + margin;
-  list.AddRectFilled({x - pad, y - pad}, {x + width + pad, y + height + pad}, theme().veil, pad);
   const float more = k_words_to_come * fonts_.small->FontSize;
   words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
   words_left_ = margin + width + pad;
   for (const auto& [font, line] : lines) {
-    list.AddText(font, font->FontSize, {x, y}, font == fonts_.text ? theme().text : theme().quiet,
-                 line.c_str());
+    render::add_text(list, *font, {x, y}, font == fonts_.text ? theme().text : theme().quiet, theme().halo,
+                     line);
     y += std::round(1.3f * font->FontSize);
   }
-  // The scene may lie behind the legend, which is not drawn where it has no room.
-  list.ChannelsSplit(2);
-  list.ChannelsSetCurrent(1);
-  const float inner = right - legend, outer = inner - margin;
+  const float inner = right - legend;
   render::LeftOut left_out;
   const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
                                             render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
@@ -97,14 +93,6 @@ void Viewer::draw_words(const io::FrameRow& row) {
         {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
   words_bottom_ = flat ? bottom - flat->top + pad : 0;
   words_right_ = drawn ? right - inner : 0;
-  list.ChannelsSetCurrent(0);
-  const ImU32 veil = theme().veil, clear = veil & ~IM_COL32_A_MASK;
-  if (drawn) {
-    list.AddRectFilledMultiColor({outer, scene_.top}, {inner, bottom}, clear, veil, veil, clear);
-    list.AddRectFilled({inner, scene_.top}, {right, bottom}, veil);
-  }
-  if (flat) list.AddRectFilled({scene_.left, flat->top - pad}, {right, bottom}, veil);
-  list.ChannelsMerge();
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
                       {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom);
   list.PopClipRect();

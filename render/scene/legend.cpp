@@ -146,7 +146,14 @@ bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
                                          ColourMap map, const OverlayBox& room, bool dark,
                                          LeftOut& left_out) {
-  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, colours(dark)};
+  const Layout at{list,
+                  fonts,
+                  room.right,
+                  room.bottom,
+                  fonts.text->FontSize / 17,
+                  0,
+                  colours(dark),
+                  colours(dark).sheet | IM_COL32_A_MASK};
   std::vector<OverlayBox> boxes;
   if (can_be_drawn(legend, left_out)) {
     draw_legend(at, legend, map, {room.left, room.top, room.right, room.bottom, room.bottom - room.top},
@@ -159,7 +166,14 @@ std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFon
                                               const Legend& legend, ColourMap map, const OverlayBox& room,
                                               bool dark) {
   if (legend.quantity.empty() || !has_value_range(legend)) return std::nullopt;
-  const Layout at{list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, colours(dark)};
+  const Layout at{list,
+                  fonts,
+                  room.right,
+                  room.bottom,
+                  fonts.text->FontSize / 17,
+                  0,
+                  colours(dark),
+                  colours(dark).sheet | IM_COL32_A_MASK};
   const ImFont* const font = fonts.small;
   const float line = at.line(font), gap = 8 * at.unit, width = room.right - room.left;
   const bool on_bar =

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render/scene/font.h"
+#include "render/scene/text_layout.h"
 
 namespace topple::render {
 
@@ -24,11 +25,11 @@ struct Layout {
   float unit;  // px of the picture for one pixel of a design 720 pixels high
   float margin;
   const Colours& colours;
+  ImU32 halo = 0;  // of letters over bodies; 0: none
   float line(const ImFont* font) const { return std::round(1.32f * font->FontSize); }
 
   void text(const ImFont* font, float x, float y, ImU32 colour, const std::string& words) const {
-    list.AddText(font, font->FontSize, {std::round(x), std::round(y)}, colour, words.data(),
-                 words.data() + words.size());
+    add_text(list, *font, {std::round(x), std::round(y)}, colour, halo, words);
   }
 };
 

@@ -60,6 +60,20 @@ float text_width(const ImFont& font, std::string_view text) {
       .x;
 }
 
+void add_text(ImDrawList& list, const ImFont& font, ImVec2 at, ImU32 colour, ImU32 halo,
+              std::string_view text) {
+  const float edge = std::max(1.f, std::round(font.FontSize / 13));
+  const auto add = [&](float x, float y, ImU32 of) {
+    list.AddText(&font, font.FontSize, {at.x + x * edge, at.y + y * edge}, of, text.data(),
+                 text.data() + text.size());
+  };
+  if (halo != 0)
+    for (const float y : {-1.f, 0.f, 1.f})
+      for (const float x : {-1.f, 0.f, 1.f})
+        if (x != 0 || y != 0) add(x, y, halo);
+  add(0, 0, colour);
+}
+
 std::string shortened(const ImFont& font, std::string_view text, float width) {
   std::string line = one_line(text);
   if (text_width(font, line) <= width) return line;

@@ -1,16 +1,20 @@
 // Fitting text into a width.
 #pragma once
 
+#include <imgui.h>
+
 #include <string>
 #include <string_view>
 #include <vector>
-
-struct ImFont;
 
 namespace topple::render {
 
 /// Width of one line in px.
 float text_width(const ImFont& font, std::string_view text);
+
+/// A line over bodies, which stay seen between its letters: those have an edge of the colour `halo`; 0: none.
+void add_text(ImDrawList& list, const ImFont& font, ImVec2 at, ImU32 colour, ImU32 halo,
+              std::string_view text);
 
 /// The text on one line (control characters become spaces), cut with an ellipsis when it is wider
 /// than `width` px.

@@ -59,6 +59,9 @@ TEST(Overlay, parts_stay_inside_and_apart_at_every_size_with_any_length_of_text)
   }
 }
 
+constexpr float k_edge = 2;   // px, of letters over bodies
+constexpr int k_strokes = 9;  // of such a letter: itself and its edge
+
 TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
   ImGui::CreateContext();
   ImGui::GetIO().DisplaySize = {1280, 720};
@@ -80,7 +83,8 @@ TEST(Overlay, a_legend_alone_stays_in_its_room_and_fills_it) {
     ASSERT_GT(list.VtxBuffer.Size, before + 100);
     for (int i = before; i < list.VtxBuffer.Size; ++i) {
       const ImVec2 p = list.VtxBuffer[i].pos;
-      EXPECT_TRUE(p.x >= room.left && p.x <= room.right && p.y >= room.top && p.y <= room.bottom)
+      EXPECT_TRUE(p.x >= room.left - k_edge && p.x <= room.right + k_edge && p.y >= room.top - k_edge &&
+                  p.y <= room.bottom + k_edge)
           << p.x << ", " << p.y;
     }
   }
@@ -113,7 +117,8 @@ TEST(Overlay, a_flat_legend_has_quantity_policy_ticks_mark_and_notes_in_its_room
     EXPECT_EQ(box.has_value(), list.VtxBuffer.Size > before);
     for (int i = before; i < list.VtxBuffer.Size; ++i) {
       const ImVec2 p = list.VtxBuffer[i].pos;
-      EXPECT_TRUE(p.x >= box->left && p.x <= box->right && p.y >= box->top && p.y <= box->bottom)
+      EXPECT_TRUE(p.x >= box->left - k_edge && p.x <= box->right + k_edge && p.y >= box->top - k_edge &&
+                  p.y <= box->bottom + k_edge)
           << p.x << ", " << p.y;
     }
     if (box) {
@@ -130,7 +135,7 @@ TEST(Overlay, a_flat_legend_has_quantity_policy_ticks_mark_and_notes_in_its_room
   const int bare = vertices(legend, wide);
   ASSERT_GT(bare, 100);
   legend.range_policy = "fixed";
-  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5);  // letters
+  EXPECT_EQ(vertices(legend, wide), bare + k_strokes * 4 * 5);  // letters
   // 0, 5, 10, 15; a third of the width has no room for all of them, and one too narrow for anything
   legend.range_policy.clear();
   EXPECT_LT(vertices(legend, {"", 20, 100, 320, 300}), bare);
@@ -140,9 +145,9 @@ TEST(Overlay, a_flat_legend_has_quantity_policy_ticks_mark_and_notes_in_its_room
   legend.mark_label = "yield";
   EXPECT_EQ(vertices(legend, wide), bare);
   legend.mark = 9;
-  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5 + 4);  // and the mark
+  EXPECT_EQ(vertices(legend, wide), bare + k_strokes * 4 * 5 + 4);  // and the mark
   legend.notes = {"x5", "1 N"};
-  EXPECT_EQ(vertices(legend, wide), bare + 4 * 5 + 4 + 4 * (1 + 2 + 1 + 2));
+  EXPECT_EQ(vertices(legend, wide), bare + k_strokes * 4 * 5 + 4 + k_strokes * 4 * (1 + 2 + 1 + 2));
   legend.range_policy = legend.notes[0] = legend.quantity = std::string(400, 'W');
   EXPECT_GT(vertices(legend, wide), 0);
   ImGui::EndFrame();
