@@ -90,7 +90,6 @@ inline constexpr Phrase k_loads_done{"All load steps are done.", "全荷重ス�
 inline constexpr Phrase k_run_ended{"The run ended at {0:.2f} s.", "計算は {0:.2f} s で終了しました。"};
 inline constexpr Phrase k_after_end{" R, then Space runs it again, dragging on the timeline looks back.",
                                     " R の後 Space で再計算、タイムラインのドラッグで過去を表示します。"};
-inline constexpr Phrase k_warns{" Warning: {0}.", " 注意：{0}。"};
 inline constexpr Phrase k_no_instants{"The recording holds no instants.", "記録に時刻のデータがありません。"};
 inline constexpr Phrase k_running_loads{"Running through the load steps.", "荷重ステップを計算中。"};
 inline constexpr Phrase k_running{"Running: {0:.2f} times real time asked, {1:.2f} reached.",
