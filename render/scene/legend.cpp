@@ -143,17 +143,19 @@ bool can_be_drawn(const Legend& legend, LeftOut& left_out) {
   return drawn;
 }
 
+namespace {
+
+Layout layout_over_bodies(ImDrawList& list, const OverlayFonts& fonts, const OverlayBox& room, bool dark) {
+  const Colours& on = colours(dark);
+  return {list, fonts, room.right, room.bottom, fonts.text->FontSize / 17, 0, on, on.sheet | IM_COL32_A_MASK};
+}
+
+}  // namespace
+
 std::optional<OverlayBox> draw_legend_in(ImDrawList& list, const OverlayFonts& fonts, const Legend& legend,
                                          ColourMap map, const OverlayBox& room, bool dark,
                                          LeftOut& left_out) {
-  const Layout at{list,
-                  fonts,
-                  room.right,
-                  room.bottom,
-                  fonts.text->FontSize / 17,
-                  0,
-                  colours(dark),
-                  colours(dark).sheet | IM_COL32_A_MASK};
+  const Layout at = layout_over_bodies(list, fonts, room, dark);
   std::vector<OverlayBox> boxes;
   if (can_be_drawn(legend, left_out)) {
     draw_legend(at, legend, map, {room.left, room.top, room.right, room.bottom, room.bottom - room.top},
@@ -166,14 +168,7 @@ std::optional<OverlayBox> draw_flat_legend_in(ImDrawList& list, const OverlayFon
                                               const Legend& legend, ColourMap map, const OverlayBox& room,
                                               bool dark) {
   if (legend.quantity.empty() || !has_value_range(legend)) return std::nullopt;
-  const Layout at{list,
-                  fonts,
-                  room.right,
-                  room.bottom,
-                  fonts.text->FontSize / 17,
-                  0,
-                  colours(dark),
-                  colours(dark).sheet | IM_COL32_A_MASK};
+  const Layout at = layout_over_bodies(list, fonts, room, dark);
   const ImFont* const font = fonts.small;
   const float line = at.line(font), gap = 8 * at.unit, width = room.right - room.left;
   const bool on_bar =

@@ -1,14 +1,13 @@
 // Anchors against theory, on every level and with every integrator.
 #include "solver/contact/anchor.h"
 
-#include <thread>
-
 #include "solver/body/anchors.h"
 #include "solver/body/body_pose.h"
 #include "solver/body/step_control.h"
 #include "solver/frame/central_difference.h"
 #include "solver/reduced/elastic_basis.h"
 #include "unit/solver/body_models.h"
+#include "unit/solver/two_threads.h"
 
 namespace topple::test {
 namespace {
@@ -449,14 +448,7 @@ TEST(Anchor, threads_change_no_bit) {
     setup.parameters.anchors.push_back(true);
     setup.parameters.models.push_back(BodyModel::frame);
     topple::Run run(setup);
-    if (workers > 1)
-      run.share({workers, [](int count, const std::function<void(int, int)>& f) {
-                   std::thread second([&] {
-                     for (int task = 1; task < count; task += 2) f(task, 1);
-                   });
-                   for (int task = 0; task < count; task += 2) f(task, 0);
-                   second.join();
-                 }});
+    share(run, workers);
     while (run.time() < 1.6) EXPECT_TRUE(run.advance().ok());
     EXPECT_TRUE(run.outcome().anchors()[2].broke);
     return hash(run.state());

@@ -1,10 +1,10 @@
 // Anchors between two bodies, whatever these are computed as.
 #include <array>
-#include <thread>
 
 #include "solver/body/anchors.h"
 #include "solver/reduced/member_coupling.h"
 #include "unit/solver/body_models.h"
+#include "unit/solver/two_threads.h"
 
 namespace topple::test {
 namespace {
@@ -224,14 +224,7 @@ TEST(Tie, threads_change_no_bit) {
       for (BodyStart& start : setup.starts) start.velocity = Vec3(0.3, -0.2, 0.1);
       setup.starts[0].angular_velocity = Vec3(0.5, 0.2, -0.3);
       topple::Run run(setup);
-      if (workers > 1)
-        run.share({workers, [](int count, const std::function<void(int, int)>& f) {
-                     std::thread second([&] {
-                       for (int task = 1; task < count; task += 2) f(task, 1);
-                     });
-                     for (int task = 0; task < count; task += 2) f(task, 0);
-                     second.join();
-                   }});
+      share(run, workers);
       for (int i = 0; i < 60; ++i) EXPECT_TRUE(run.advance().ok());
       return hash(run.state());
     };

@@ -1,7 +1,7 @@
 // A hand that pulls, against theory, on every level and with every integrator.
-#include <thread>
 
 #include "unit/solver/body_models.h"
+#include "unit/solver/two_threads.h"
 
 namespace topple::test {
 namespace {
@@ -196,14 +196,7 @@ TEST(Pull, of_a_body_beside_another_keeps_the_balance_and_every_bit_on_two_threa
       setup.parameters.contact.restitution = 0.3;
       compute_as(setup, model);
       topple::Run run(setup);
-      if (workers > 1)
-        run.share({workers, [](int count, const std::function<void(int, int)>& f) {
-                     std::thread second([&] {
-                       for (int task = 1; task < count; task += 2) f(task, 1);
-                     });
-                     for (int task = 0; task < count; task += 2) f(task, 0);
-                     second.join();
-                   }});
+      share(run, workers);
       const double weight = k_g * setup.model.bodies[0].mass;
       run.edit(pull(setup.model.bodies[0].node_count - 1, Vec3(0.4 * weight, 0, 0)));
       while (!run.over()) EXPECT_TRUE(run.advance().ok());
